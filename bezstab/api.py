@@ -13,6 +13,7 @@ import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from fractions import Fraction
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -24,7 +25,7 @@ from bezstab.goals import Goal
 from bezstab.mechanism import Scene, Simulation
 from bezstab.methods import REGISTRY, Method, Verdict, lookup
 from bezstab.rationals import exact, rational, within_float64
-from bezstab.units import check_step, to_dimensionless
+from bezstab.units import to_dimensionless
 
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -247,31 +248,14 @@ def choose(
     InputError if nothing stable meets the goal, or if an argument is out of range. Source: the poles of
     paper Eq. 17; the goals are this package's.
     """
+    asked = dict(locals())
     named = None if engine is None else engine_named(engine)
     drive = _drive(pd)
     if method is None and drive:
         raise InputError("pd: name one method, such as 'SYM' where the drive is applied explicitly")
     with _in_keywords():
-        question = questions.Question(
-            methods=() if method is None else (_method(method),),
-            goal=goal or questions.usual_goal(named, drive),
-            h=_exact_if_given(h, "h"),
-            h_min=_exact_if_given(h_min, "h_min"),
-            h_max=_exact_if_given(h_max, "h_max"),
-            hold=hold,
-            engine=named,
-            drive=drive,
-            omega=_exact_if_given(omega, "omega"),
-            omega_h=_exact_if_given(omega_h, "omega_h"),
-            scene=_scene_or_name(scene),
-            speed=_exact(speed, "speed"),
-            spread=_real(spread, "spread"),
-            settle=_exact_if_given(settle, "settle"),
-            equal=equal,
-            chain=_chain(chain, mass_ratio),
-            iterations=_whole(iterations, "iterations"),
-        )
-        (chosen,) = questions.answers(question)
+        goal = goal or questions.usual_goal(named, drive)
+        (chosen,) = questions.answers(_question(asked, goal=goal, engine=named, drive=drive))
     return chosen
 
 
@@ -330,32 +314,14 @@ def check(
     InputError unless the point is given in one of these ways and the numbers are in range.
     NumericalError if a pole leaves the range of float64. Sources as for `verdict`.
     """
+    asked = dict(locals())
     named, values = (None, None) if engine is None else engine_and_values(engine)
     drive = _drive(pd)
     point = None
     if not (named or drive) or any(each is not None for each in (alpha_hat, beta_hat, alpha, beta)):
         point = _plane_point(alpha_hat, beta_hat, alpha, beta, h_max if h is None else h)
     with _in_keywords():
-        question = questions.Question(
-            methods=() if method is None else (_method(method),),
-            point=point,
-            h=_exact_if_given(h, "h"),
-            h_min=_exact_if_given(h_min, "h_min"),
-            h_max=_exact_if_given(h_max, "h_max"),
-            hold=hold,
-            engine=named,
-            values=values,
-            as_typed=as_typed,
-            drive=drive,
-            omega=_exact_if_given(omega, "omega"),
-            omega_h=_exact_if_given(omega_h, "omega_h"),
-            scene=_scene_or_name(scene),
-            speed=_exact(speed, "speed"),
-            spread=_real(spread, "spread"),
-            chain=_chain(chain, mass_ratio),
-            iterations=_whole(iterations, "iterations"),
-        )
-        given = list(questions.answers(question))
+        given = list(questions.answers(_question(asked, point=point, engine=named, values=values, drive=drive)))
     return next((answer for answer in given if not answer.safe), given[0])
 
 
@@ -388,14 +354,17 @@ def check_drive(
     InputError for a number out of range, and for a method that is no way of applying a drive. Source:
     Gil et al., J. Comput. Inf. Sci. Eng. 9, 011005, 2009.
     """
-    step, drive = _exact(h, "h"), _drive(pd)
+    drive = _drive(pd)
     assert drive
     with _in_keywords():
-        check_step(step, "h")
-        timing = stability.Timing(every, _exact(late, "late"), _exact(filter_seconds, "filter_seconds") / step)
-        question = questions.HeldQuestion(drive=drive, h=step, timing=timing)
-        if method is not None:
-            question = questions.HeldQuestion(drive=drive, h=step, timing=timing, methods=(_method(method),))
+        question = questions.held_question(
+            drive,
+            _exact(h, "h"),
+            () if method is None else (_method(method),),
+            every=every,
+            late=_exact(late, "late"),
+            filter_seconds=_exact(filter_seconds, "filter_seconds"),
+        )
         found = list(questions.held_answers(question))
     return next((answer for answer in found if not answer.safe), found[0])
 
@@ -495,7 +464,7 @@ def simulate(
             perturb=_real(perturb, "perturb"),
             start=start,
         )
-    return questions.run_answer(question)
+        return questions.run_answer(question)
 
 
 def verify(
@@ -653,9 +622,23 @@ def _drive(gains: Sequence[Number] | None) -> Drive | None:
     return Drive(*(_exact(gain, name) for gain, name in zip(gains, ("kp", "kd", "inertia"), strict=True)))
 
 
-def _chain(bodies: int | None, mass_ratio: Number | None) -> questions.Chain | None:
-    """Return the chain that is asked about, None without one; InputError as `typed_chain`."""
-    return questions.typed_chain(_whole(bodies, "chain"), _exact_if_given(mass_ratio, "mass_ratio"))
+def _question(asked: dict[str, Any], **found: Any) -> questions.Question:
+    """Return the question of `choose` or `check`: its keywords as they were given, and the fields that need several."""
+    exact = ("h", "h_min", "h_max", "settle", "omega", "omega_h")
+    as_given = ("hold", "equal", "as_typed")
+    as_read: dict[str, Any] = {name: _exact_if_given(asked[name], name) for name in exact if name in asked}
+    method, mass_ratio = asked["method"], _exact_if_given(asked["mass_ratio"], "mass_ratio")
+    return questions.Question(
+        methods=() if method is None else (_method(method),),
+        scene=_scene_or_name(asked["scene"]),
+        speed=_exact(asked["speed"], "speed"),
+        spread=_real(asked["spread"], "spread"),
+        chain=questions.typed_chain(_whole(asked["chain"], "chain"), mass_ratio),
+        iterations=_whole(asked["iterations"], "iterations"),
+        **as_read,
+        **{name: asked[name] for name in as_given if name in asked},
+        **found,
+    )
 
 
 def _whole(value: int | None, name: str) -> int | None:
@@ -675,8 +658,12 @@ def _in_keywords() -> Iterator[None]:
     try:
         yield
     except InputError as error:
-        said = re.sub(r"--([a-z]+(?:-[a-z]+)*)", lambda option: option[1].replace("-", "_"), str(error))
-        raise InputError(said) from None
+        raise InputError(re.sub(r"--([a-z]+(?:-[a-z]+)*)", _keyword, str(error))) from None
+
+
+def _keyword(option: re.Match[str]) -> str:
+    """Return the keyword for what an option is about."""
+    return {"time": "duration", "filter": "filter_seconds"}.get(option[1], option[1].replace("-", "_"))
 
 
 def _real(value: Number, name: str) -> float:

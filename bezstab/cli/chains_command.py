@@ -3,37 +3,34 @@
 from collections.abc import Sequence
 from fractions import Fraction
 
-import click
-
 from bezstab.cli.asking import say_what_is_left_out
-from bezstab.cli.options import ENGINE_VALUES, NUMBER, SECONDS, EngineValues, format_option
-from bezstab.cli.output import Files, for_reading, picture_options, show_rows
-from bezstab.show import CHAINS, Format, chain_rows
+from bezstab.cli.options import NUMBER, EngineValues, changed, command, option
+from bezstab.cli.output import Files, for_reading, show_rows
+from bezstab.show import CHAINS, chain_rows
 
 SWEEPS_DRAWN = 50
 
 
-@click.command()
-@click.option("--engine", type=ENGINE_VALUES, required=True, help="An engine's own values, such as chipmunk=0.0018.")
-@click.option("--h", type=SECONDS, required=True, help="Step size in s.")
-@click.option(
-    "--mass-ratio",
-    "mass_ratios",
-    type=NUMBER,
-    multiple=True,
-    default=("1", "10"),
-    help="The mass of the last body over that of each other one. Repeatable.",
+@command(
+    changed("engine_values", required=True, help="An engine's own values, such as chipmunk=0.0018."),
+    changed("h", required=True),
+    option(
+        "--mass-ratio mass_ratios",
+        NUMBER,
+        "The mass of the last body over that of each other one. Repeatable.",
+        multiple=True,
+        default=("1", "10"),
+    ),
+    option("--to bodies", int, "Bodies in the longest chain.", default=20),
+    "picture",
+    "form",
 )
-@click.option("--to", "bodies", type=int, default=20, help="Bodies in the longest chain.")
-@picture_options
-@format_option
 def chains(
     engine: EngineValues,
     h: Fraction,
     mass_ratios: Sequence[Fraction],
     bodies: int,
     files: Files,
-    form: Format,
 ) -> None:
     """Show how many sweeps an engine's chains need.
 
@@ -51,10 +48,10 @@ def chains(
     words, values = engine
     maps = [chain_map(words, values, h, ratio, bodies, SWEEPS_DRAWN) for ratio in mass_ratios]
     rows = [row for one in maps for row in chain_rows(words, one)]
-    show_rows(CHAINS, rows, form)
+    show_rows(CHAINS, rows)
 
     typed = ", ".join(f"{name} = {float(value):.4g}" for name, value in zip(words.parameters, values, strict=False))
     title = f"{words.name}: {typed}, h = {float(h):.3g} s"
     files.write(files.path("chains", words.name), lambda: show.chains_figure(words, title, maps))
-    if for_reading(form):
+    if for_reading():
         say_what_is_left_out(words, many=True)

@@ -4,48 +4,31 @@ from collections.abc import Iterable, Iterator
 from itertools import groupby
 from typing import TYPE_CHECKING, Any
 
-import click
-
-from bezstab.cli.asking import (
-    TypedPoint,
-    asked_of_feedback,
-    chain_options,
-    given_point_options,
-    h_min_option,
-    hold_option,
-    left_out,
-    moving_scene_options,
-    omega_option,
-    say_varying,
-    show_below,
-)
-from bezstab.cli.held_drives import held_asked, refuse_others, show_held, timing_options
-from bezstab.cli.options import SECONDS, format_option, methods_option
+from bezstab.cli.asking import asked_of_feedback, left_out, say_varying, show_below
+from bezstab.cli.held_drives import held_asked, refuse_others, show_held
+from bezstab.cli.options import TypedPoint, changed, command, typed_options
 from bezstab.cli.output import for_reading, say, show_rows, show_text
 from bezstab.errors import InputError, NumericalError
 from bezstab.methods import Method
-from bezstab.show import CHECKED, LARGEST_STEPS, Format, answer_row, costs_words, largest_step_row
+from bezstab.show import CHECKED, LARGEST_STEPS, answer_row, costs_words, largest_step_row
 
 if TYPE_CHECKING:
     from bezstab.questions import Answer
 
-NEEDING_A_STEP = ("h", "h_min", "scene", "engine", "drive", "as_typed", "hold", "omega")
-"""Without any of these, a question about α and β in 1/s is about every step."""
+OF_EVERY_STEP = {"--alpha", "--beta", "--physical", "--method", "--format", "--speed"}
+"""With no other option, a question about α and β in 1/s is about every step."""
 
 
-@click.command()
-@methods_option()
-@given_point_options
-@chain_options
-@timing_options
-@omega_option
-@h_min_option
-@click.option("--h-max", type=SECONDS, help="With --h-min: the longest step in s [--h].")
-@hold_option
-@moving_scene_options("Is it safe for this mechanism as it moves? Needs --h.")
-@format_option
-@click.pass_context
-def check(context: click.Context, /, point: TypedPoint, form: Format, **typed: Any) -> None:
+@command(
+    "methods",
+    "given_point",
+    "swept",
+    "timing",
+    *("omega", "h_min", "h_max", "hold"),
+    changed("scene", help="Is it safe for this mechanism as it moves? Needs --h."),
+    *("speed", "form"),
+)
+def check(**typed: Any) -> bool:
     """Tell whether a choice is safe: exit status 0 if so, 1 if not.
 
     Safe means that errors are proven to shrink, with every method named. Prints the verdict, the margins, the largest
@@ -83,27 +66,27 @@ def check(context: click.Context, /, point: TypedPoint, form: Format, **typed: A
     drive = typed["drive"]
     if held := held_asked(typed):
         refuse_others("--every, --late and --filter")
-        context.exit(0 if all(answer.safe for answer in show_held(held, form)) else 1)
-    if point.physical and not any(typed[name] for name in NEEDING_A_STEP):
+        return all(answer.safe for answer in show_held(held))
+    if typed["point"].physical and typed_options() <= OF_EVERY_STEP:
         check_speed(None, typed["speed"])
-        context.exit(0 if _check_without_step(typed["methods"], point, form) else 1)
-    question = asked_of_feedback(point=point, **typed)
+        return _check_without_step(typed["methods"], typed["point"])
+    question = asked_of_feedback(**typed)
     found = list(_with_instead(answers(question)))
     given = [answer for answer in found if answer.role == "given"]
-    if for_reading(form):
+    if for_reading():
         without = left_out(question)
-        show_rows(CHECKED, [answer_row(answer) for answer in given], form, without)
+        show_rows(CHECKED, [answer_row(answer) for answer in given], without)
         say_varying(given)
         for sentence in map(costs_words, given if not drive else ()):
             if sentence:
                 show_text(f"\n{sentence}")
         if instead := [answer_row(answer) for answer in found if answer.role == "instead"]:
             show_text("\nWhat `choose` gives instead:\n")
-            show_rows(CHECKED, instead, form, without)
+            show_rows(CHECKED, instead, without)
     else:
-        show_rows(CHECKED, [answer_row(answer) for answer in found], form)
-    show_below(question, found, form)
-    context.exit(0 if all(answer.safe for answer in given) else 1)
+        show_rows(CHECKED, [answer_row(answer) for answer in found])
+    show_below(question, found)
+    return all(answer.safe for answer in given)
 
 
 def _with_instead(given: "Iterable[Answer]") -> "Iterator[Answer]":
@@ -117,12 +100,11 @@ def _with_instead(given: "Iterable[Answer]") -> "Iterator[Answer]":
             say(f"bezstab: nothing instead: {error}")
 
 
-def _check_without_step(methods: tuple[Method, ...], point: TypedPoint, form: Format) -> bool:
+def _check_without_step(methods: tuple[Method, ...], point: TypedPoint) -> bool:
     """Print the step up to which alpha and beta (1/s) are safe with each method; return whether each method has one."""
     from bezstab.questions import largest_step, methods_for
 
-    if point.numbers is None:
-        raise click.UsageError("a point is needed: --alpha with --beta, --engine, or --pd")
+    assert point.numbers
     found = [largest_step(method, *point.numbers) for method in methods_for(methods, None, None)]
-    show_rows(LARGEST_STEPS, [largest_step_row(each) for each in found], form)
+    show_rows(LARGEST_STEPS, [largest_step_row(each) for each in found])
     return all(each.safe for each in found)

@@ -7,95 +7,54 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from bezstab.cli.asking import (
-    asked_of_feedback,
-    chain_options,
-    h_min_option,
-    hold_option,
-    inertia_or_drive_of,
-    left_out,
-    moving_scene_options,
-    omega_option,
-    say_varying,
-    show_below,
-)
-from bezstab.cli.held_drives import held_asked, refuse_others, show_held, timing_options
-from bezstab.cli.options import (
-    ENGINE,
-    NUMBER,
-    SECONDS,
-    SHARE,
-    ParsedType,
-    Rule,
-    format_option,
-    left_at_default,
-    methods_option,
-    ruled,
-)
+from bezstab.cli.asking import asked_of_feedback, left_out, say_varying, show_below
+from bezstab.cli.held_drives import held_asked, refuse_others, show_held
+from bezstab.cli.options import INERTIA, NUMBER, SECONDS, SHARE, changed, command, left_at_default, option
 from bezstab.cli.output import for_reading, progress, show_rows, show_text
 from bezstab.goals import GOALS, Goal
 from bezstab.methods import lookup
 from bezstab.rationals import typed_number
-from bezstab.show import CHOICES, Format, alone_words, answer_row, trade_words
+from bezstab.show import CHOICES, alone_words, answer_row, trade_words
 
 if TYPE_CHECKING:
     from bezstab.questions import Answer, HeldQuestion
 
 
-@click.command()
-@methods_option()
-@click.option("--h", type=SECONDS, required=True, help="Step size in s.")
-@click.option(
-    "--goal",
-    type=click.Choice(list(GOALS)),
-    help="; ".join(f"{goal}: {meaning}" for goal, meaning in GOALS.items())
-    + " [accurate; robust with --pd, and with an --engine whose α and β depend on each other].",
+@command(
+    "methods",
+    changed("h", required=True),
+    option(
+        "--goal",
+        click.Choice(list(GOALS)),
+        "; ".join(f"{goal}: {meaning}" for goal, meaning in GOALS.items())
+        + " [accurate; robust with --pd, and with an --engine whose α and β depend on each other].",
+    ),
+    "omega",
+    changed(
+        "h_max",
+        help="The longest step in s that may occur. For the goals accurate and robust, and with --h-min [--h].",
+    ),
+    *("h_min", "hold"),
+    option("--spread", SHARE, "The share by which α and β may be off.", default="0.1"),
+    option(
+        "--settle",
+        SECONDS,
+        "The time in s in which errors fall to a thousandth. For the goals gentle and accurate, and with --pd.",
+    ),
+    option("--keep equal", click.Choice(["alpha=beta"]), "Only points with α = β."),
+    "engine",
+    "swept",
+    changed(
+        "drive",
+        type=INERTIA,
+        help="Choose gains for a joint drive on this inertia (SI units); of KP,KD,INERTIA only the inertia counts.",
+    ),
+    option("--bandwidth", NUMBER, "With --pd: choose critically damped gains with this natural frequency in Hz."),
+    "timing",
+    changed("scene", help="Choose for this mechanism as it moves."),
+    *("speed", "form"),
 )
-@omega_option
-@click.option(
-    "--h-max",
-    type=SECONDS,
-    help="The longest step in s that may occur. For the goals accurate and robust, and with --h-min [--h].",
-)
-@h_min_option
-@hold_option
-@click.option("--spread", type=SHARE, default="0.1", help="The share by which α and β may be off.")
-@click.option(
-    "--settle",
-    type=SECONDS,
-    help="The time in s in which errors fall to a thousandth. For the goals gentle and accurate, and with --pd.",
-)
-@click.option("--keep", "equal", type=click.Choice(["alpha=beta"]), help="Only points with α = β.")
-@click.option(
-    "--engine",
-    metavar="NAME",
-    type=ENGINE,
-    help="Choose only what this engine can express, and print the line to paste.",
-)
-@chain_options
-@click.option(
-    "--pd",
-    "drive",
-    type=ParsedType("inertia", inertia_or_drive_of),
-    help="Choose gains for a joint drive on this inertia (SI units); of KP,KD,INERTIA only the inertia counts.",
-)
-@click.option(
-    "--bandwidth", type=NUMBER, help="With --pd: choose critically damped gains with this natural frequency in Hz."
-)
-@timing_options
-@moving_scene_options("Choose for this mechanism as it moves.")
-@format_option
-@ruled(Rule("--bandwidth", "it is that of a drive", needs=("--pd",)))
-@click.pass_context
-def choose(
-    context: click.Context,
-    /,
-    goal: Goal | None,
-    equal: str | None,
-    bandwidth: Fraction | None,
-    form: Format,
-    **typed: Any,
-) -> None:
+def choose(goal: Goal | None, equal: str | None, bandwidth: Fraction | None, **typed: Any) -> bool:
     """Recommend α and β for an integrator and its step size.
 
     The answer is proven stable, and its margins are printed. You may ask for more: that it is safe as a mechanism
@@ -128,20 +87,20 @@ def choose(
     drive, settle = typed["drive"], typed["settle"]
     gains_asked = bandwidth is not None or (drive is not None and settle is not None and goal is None)
     if held := held_asked(typed, always=gains_asked):
-        context.exit(0 if _choose_held(held, bandwidth, settle, form) else 1)
+        return _choose_held(held, bandwidth, settle)
     goal = goal or usual_goal(typed["engine"], drive)
     question = asked_of_feedback(goal=goal, equal=equal is not None, **typed)
     chosen = list(progress(answers(question), goal, len(question.methods)))
-    show_rows(CHOICES, [answer_row(answer) for answer in chosen], form, left_out(question))
-    if for_reading(form):
+    show_rows(CHOICES, [answer_row(answer) for answer in chosen], left_out(question))
+    if for_reading():
         say_varying(chosen)
         if not (drive or question.swept):
             _say_trades(chosen)
-    show_below(question, chosen, form)
+    show_below(question, chosen)
     for line in map(alone_words, chosen):
-        if line and for_reading(form):
+        if line and for_reading():
             show_text(f"\n{line}")
-    context.exit(0 if all(answer.safe for answer in chosen) else 1)
+    return all(answer.safe for answer in chosen)
 
 
 def _say_trades(chosen: "Sequence[Answer]") -> None:
@@ -152,7 +111,7 @@ def _say_trades(chosen: "Sequence[Answer]") -> None:
             show_text("\n" + "\n".join(f"{name}{line}" for line in lines))
 
 
-def _choose_held(question: "HeldQuestion", bandwidth: Fraction | None, settle: Fraction | None, form: Format) -> bool:
+def _choose_held(question: "HeldQuestion", bandwidth: Fraction | None, settle: Fraction | None) -> bool:
     """Print gains for a bandwidth (Hz) or a time to settle (s) as `check` would; return whether every way is safe.
 
     Of the question's drive only the inertia counts.
@@ -164,6 +123,5 @@ def _choose_held(question: "HeldQuestion", bandwidth: Fraction | None, settle: F
     drive = held_gains(
         question.drive.inertia, question.h, question.timing, bandwidth=bandwidth, settle=settle, methods=methods
     )
-    if for_reading(form):
-        show_text(f"kp = {typed_number(drive.kp)}, kd = {typed_number(drive.kd)}\n")
-    return all(answer.safe for answer in show_held(replace(question, drive=drive, methods=methods), form))
+    show_text(f"kp = {typed_number(drive.kp)}, kd = {typed_number(drive.kd)}\n")
+    return all(answer.safe for answer in show_held(replace(question, drive=drive, methods=methods)))

@@ -29,6 +29,9 @@ ELSEWHERE: Mapping[str, str] = {"paper": "bezstab.paper.command"}
 COMPLETE = "_BEZSTAB_COMPLETE"
 """Environment variable in which a shell says that it wants to complete a command."""
 
+AS_TYPED = "bezstab.as_typed"
+"""In the meta data of a context: the words of the command line."""
+
 NUMERICAL_TROUBLE = 3
 """Exit status if a part of an answer could not be found, or a run broke down; a message says why."""
 
@@ -48,6 +51,11 @@ class BezstabGroup(click.Group):
     130 after Ctrl-C, 143 after TERM, 129 when the terminal is gone (bezstab.stopping), 141 where nobody reads the
     answer any more (`| head`).
     """
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Take the command line apart, and keep its words."""
+        ctx.meta[AS_TYPED] = tuple(args)
+        return super().parse_args(ctx, args)
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Return the names of all commands in the order of their sections."""
@@ -87,15 +95,9 @@ class BezstabGroup(click.Group):
         except click.ClickException as error:
             _complain(error.format_message())
             sys.exit(2)
-        except InputError as error:
+        except (InputError, NumericalError) as error:
             _complain(str(error))
-            sys.exit(2)
-        except NumericalError as error:
-            _complain(str(error))
-            sys.exit(NUMERICAL_TROUBLE)
-        except click.Abort:
-            _complain("interrupted")
-            sys.exit(130)
+            sys.exit(2 if isinstance(error, InputError) else NUMERICAL_TROUBLE)
         except OSError as error:
             _give_up_output()
             _complain(f"{error.filename}: {error.strerror}" if error.filename else error.strerror or str(error))
@@ -104,7 +106,9 @@ class BezstabGroup(click.Group):
             traceback.print_exc()
             _complain("this is a defect of bezstab: no verdict")
             sys.exit(DEFECT)
-        sys.exit(status if isinstance(status, int) else 0)  # a command that calls ctx.exit(status) returns it here
+        if isinstance(status, bool):  # whether what a command judges is safe
+            sys.exit(0 if status else 1)
+        sys.exit(status or 0)
 
 
 def _module_of(name: str) -> str:

@@ -5,13 +5,11 @@ from fractions import Fraction
 
 import click
 
-from bezstab.cli.options import USUAL_METHODS, methods_option, step_option
+from bezstab.cli.options import USUAL_METHODS, changed, command
 from bezstab.methods import Method
 
 
-@click.command()
-@methods_option(*USUAL_METHODS)
-@step_option
+@command(changed("methods", default=USUAL_METHODS), changed("h", default="0.001"))
 def explore(methods: Sequence[Method], h: Fraction) -> None:
     """Open a window: point at the region, see poles and decay.
 

@@ -1,18 +1,12 @@
 """The command that measures what holds at extreme sizes: extremes."""
 
-import click
-
-from bezstab.cli.options import compiled_option, format_option
+from bezstab.cli.options import command, flag
 from bezstab.cli.output import progress, show_rows
-from bezstab.show import EXTREMES, Format
+from bezstab.show import EXTREMES
 
 
-@click.command()
-@click.option("--short", is_flag=True, help="Fewer methods and runs of 1e5 steps, in seconds instead of minutes.")
-@compiled_option
-@format_option
-@click.pass_context
-def extremes(context: click.Context, short: bool, form: Format) -> None:
+@command(flag("--short", "Fewer methods and runs of 1e5 steps, in seconds instead of minutes."), "compiled", "form")
+def extremes(short: bool) -> bool:
     """Measure what holds at the extremes of sizes, steps and masses.
 
     Each check says beforehand what must come out. Poles from 1e-300 to 1e300, and multiple roots, are compared with 50
@@ -26,5 +20,5 @@ def extremes(context: click.Context, short: bool, form: Format) -> None:
     checks = list(extreme_checks(not short))
     outcomes = [check() for check in progress(checks, "extremes")]
     rows = [EXTREMES.row(outcome) for outcome in outcomes]
-    show_rows(EXTREMES, rows, form)
-    context.exit(0 if all(outcome.held for outcome in outcomes) else 1)
+    show_rows(EXTREMES, rows)
+    return all(outcome.held for outcome in outcomes)

@@ -4,23 +4,24 @@ from typing import TYPE_CHECKING
 
 import click
 
-from bezstab.cli.options import format_option
-from bezstab.cli.output import Files, picture_options, show_rows
+from bezstab.cli.options import command, option
+from bezstab.cli.output import Files, show_rows
 from bezstab.errors import InputError
 from bezstab.methods import STEP_FAMILIES
-from bezstab.show import MEMBERS, Format, Row
+from bezstab.show import MEMBERS, Row
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-@click.command()
+@command(
+    option("--from first", click.IntRange(min=1), "Smallest n.", default=2),
+    option("--to last", click.IntRange(min=1), "Largest n [12 for bezier, 8 for adams-bashforth]."),
+    "picture",
+    "form",
+)
 @click.argument("name", metavar="|".join(STEP_FAMILIES), type=click.Choice(list(STEP_FAMILIES)))
-@click.option("--from", "first", type=click.IntRange(min=1), default=2, help="Smallest n.")
-@click.option("--to", "last", type=click.IntRange(min=1), help="Largest n [12 for bezier, 8 for adams-bashforth].")
-@picture_options
-@format_option
-def family(name: str, first: int, last: int | None, files: Files, form: Format) -> None:
+def family(name: str, first: int, last: int | None, files: Files) -> None:
     """Show how a family of methods changes with its number of steps n.
 
     Prints the area of each region, the least |z_p| and the error constant. The Bézier methods tend to a limit, which
@@ -42,7 +43,7 @@ def family(name: str, first: int, last: int | None, files: Files, form: Format) 
     rows: list[Row] = [MEMBERS.row(member) for member in members]
     if limit:
         rows.append(show.limit_row(limit))
-    show_rows(MEMBERS, rows, form)
+    show_rows(MEMBERS, rows)
 
     def draw() -> "Figure":
         families = {

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 
 import click
 
-from bezstab.cli.options import NUMBER, ParsedType, Rule, format_option, ruled
+from bezstab.cli.options import OF_A_CONTROLLER, ParsedType, changed, command, option
 from bezstab.cli.output import for_reading, progress, show_rows, show_text
 from bezstab.errors import InputError
 from bezstab.rationals import rational
-from bezstab.show import LINTED, Format
+from bezstab.show import LINTED
 
 if TYPE_CHECKING:
     from bezstab.evidence import MotorGains
@@ -28,30 +28,20 @@ def _gains(text: str) -> "MotorGains":
     return MotorGains(pattern, *map(rational, gains))
 
 
-@click.command()
+@command(
+    option(
+        "--pd gains",
+        ParsedType("name=kp,kd", _gains),
+        "Judge the motors of that name, or regular expression, with a controller's gains. Repeatable.",
+        multiple=True,
+    ),
+    changed("every", default=1, show_default=False),
+    changed("late", default="0", show_default=False),
+    "form",
+    OF_A_CONTROLLER,
+)
 @click.argument("model", type=click.Path(path_type=Path))
-@click.option(
-    "--pd",
-    "gains",
-    type=ParsedType("name=kp,kd", _gains),
-    multiple=True,
-    help="Judge the motors of that name, or regular expression, with a controller's gains. Repeatable.",
-)
-@click.option(
-    "--every", type=int, default=1, show_default=True, help="With --pd: the torque is computed every so many steps."
-)
-@click.option(
-    "--late", type=NUMBER, default="0", show_default=True, help="With --pd: the torque is applied so many steps late."
-)
-@format_option
-@ruled(
-    Rule("--every", "it is about a motor's controller", needs=("--pd",)),
-    Rule("--late", "it is about a motor's controller", needs=("--pd",)),
-)
-@click.pass_context
-def lint(
-    context: click.Context, model: Path, gains: "Sequence[MotorGains]", every: int, late: Fraction, form: Format
-) -> None:
+def lint(model: Path, gains: "Sequence[MotorGains]", every: int, late: Fraction) -> bool:
     """Judge a MuJoCo model: exit status 1 if anything is unsafe.
 
     MODEL is MuJoCo's XML or a URDF. MuJoCo also opens the files that it includes: meshes, textures, height fields.
@@ -81,11 +71,11 @@ def lint(
     model_data = read_mujoco_model(model)
     linted = list(progress(linted_model(model_data, gains, timing), "lint", model_data.size))
     heading = f"{model.name}: timestep {model_data.h:g} s, integrator {model_data.integrator}"
-    if linted or not for_reading(form):
+    if linted or not for_reading():
         rows = [LINTED.row(each, advice=each.advice or None) for each in linted]
-        show_rows(LINTED, rows, form, heading=heading)
+        show_rows(LINTED, rows, heading=heading)
     else:
         show_text(
             f"{heading}\n\nNothing to judge: no equality, limit, friction loss, contact, spring, damper or drive."
         )
-    context.exit(1 if any(each.unsafe for each in linted) else 0)
+    return not any(each.unsafe for each in linted)

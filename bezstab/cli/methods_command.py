@@ -4,15 +4,14 @@ from collections.abc import Sequence
 
 import click
 
-from bezstab.cli.options import METHOD, format_option
-from bezstab.cli.output import show_blocks, show_groups, show_rows, show_text
+from bezstab.cli.options import METHOD, command, flag
+from bezstab.cli.output import chosen_format, show_blocks, show_groups, show_rows, show_text
 from bezstab.methods import GROUPS, Method, lookup
 from bezstab.show import (
     LISTED_METHODS,
     NAMED_METHODS,
     PROPERTIES,
     Column,
-    Format,
     Row,
     column,
     method_row,
@@ -23,11 +22,9 @@ from bezstab.show import (
 )
 
 
-@click.command()
+@command(flag("--latex", "Formulas as LaTeX."), "form")
 @click.argument("methods", metavar="[NAME]...", type=METHOD, nargs=-1)
-@click.option("--latex", is_flag=True, help="Formulas as LaTeX.")
-@format_option
-def methods(methods: Sequence[Method], latex: bool, form: Format) -> None:
+def methods(methods: Sequence[Method], latex: bool) -> None:
     """List the methods, or show all about those you name.
 
     Prints the number of steps, the evaluations of f in a step (of an implicit method in an iteration), the order of
@@ -44,6 +41,7 @@ def methods(methods: Sequence[Method], latex: bool, form: Format) -> None:
     """
     from bezstab.questions import region_answer
 
+    form = chosen_format()
     if not methods:
         listed = [
             (group, [method_row(lookup(name), name, group.heading) for name in group.methods]) for group in GROUPS
@@ -56,11 +54,11 @@ def methods(methods: Sequence[Method], latex: bool, form: Format) -> None:
             )
         else:
             rows = [row for _, of_group in listed for row in of_group]
-            show_rows(LISTED_METHODS, rows, form)
+            show_rows(LISTED_METHODS, rows)
         return
     rows = [whole_row(region_answer(method), latex=latex) for method in methods]
     if form in ("json", "csv"):
-        show_rows(NAMED_METHODS, rows, form)
+        show_rows(NAMED_METHODS, rows)
         return
     for number, row in enumerate(rows):
         if form == "markdown":

@@ -1,43 +1,43 @@
-"""Options that several commands share, the types of their values, and rules for options that are typed together."""
+"""Every option that commands share, declared once; the types of values; rules for options that are typed together."""
 
 import os
 import re
-from collections.abc import Callable, Collection, Iterable
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, fields
 from fractions import Fraction
-from functools import wraps
+from functools import partial, wraps
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, get_args
 
 import click
 
-from bezstab.engines import ENGINES, Engine, engine_and_values, engine_named
+from bezstab.cli.output import Files, Work
+from bezstab.engines import ENGINES, Drive, Engine, Point, engine_and_values, engine_named
 from bezstab.errors import InputError
 from bezstab.methods import REGISTRY, lookup
 from bezstab.rationals import rational
-from bezstab.show import Format
+from bezstab.show import FIGURE_FORMS, TABLE_FORMS, Format
 
 if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
-
-    from bezstab.mechanism import Stabilise
 
 EngineValues = tuple[Engine, tuple[Fraction, ...]]
 Function = Callable[..., Any]
 Decorator = Callable[[Any], Any]
 """It takes a command's function and returns it with one more option."""
 
+Option = Callable[..., Decorator]
+"""`click.option`, with all but what a command may change of the option."""
+
 MOST_IN_SEQUENCE = 10**6  # steps: a run of minutes
 SHORTEST = Fraction("1e-100")  # s, and the longest time's inverse: their squares are within float64
 USUAL_METHODS = ("B2", "B3", "B4", "AB2", "AB3", "AB4", "RK4@5", "SIE")
 """The methods that poles and explore show without --method: the Bezier methods and their usual alternatives."""
 
-
-OF_FEEDBACK = ("--alpha", "--beta", "--physical", "--hold", "--omega")
-"""Options that are about feedback alone."""
-
 WITH_PARAMETERS = ("newmark(1/4,1/2)", "hht(-1/20)", "generalized-alpha(4/5)")
 """Methods whose names have parameters, with usual values: the shell offers them, too."""
+
+GAINS = ("kp", "kd", "inertia")
 
 
 class ParsedType(click.ParamType):  # type: ignore[type-arg]  # generic since click 8.3
@@ -46,7 +46,9 @@ class ParsedType(click.ParamType):  # type: ignore[type-arg]  # generic since cl
     The shell offers the `names` when it completes a value.
     """
 
-    def __init__(self, name: str, parse: Callable[[str], object], names: Iterable[str] = ()) -> None:
+    def __init__(
+        self, name: str, parse: Callable[[str], object], names: Callable[[], Iterable[str]] | None = None
+    ) -> None:
         self.name, self.parse, self.names = name, parse, names
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
@@ -60,19 +62,17 @@ class ParsedType(click.ParamType):  # type: ignore[type-arg]  # generic since cl
         self, ctx: click.Context, param: click.Parameter, incomplete: str
     ) -> "list[CompletionItem[Any]]":
         """Return the names that begin with the typed text."""
-        if not self.names:
+        if self.names is None:
             return []
         from bezstab.cli.completion import offered
 
-        return offered(self.names, incomplete)
+        return offered(self.names(), incomplete)
 
 
-def _offered_scenes(ctx: click.Context, param: click.Parameter, incomplete: str) -> "list[CompletionItem[Any]]":
-    """Return the shipped scenes whose names begin with the typed text."""
-    from bezstab.cli.completion import offered
+def _scenes() -> Iterable[str]:
     from bezstab.mechanism import shipped_scenes
 
-    return offered(shipped_scenes(), incomplete)
+    return shipped_scenes()
 
 
 def _positive(text: str) -> Fraction:
@@ -112,49 +112,44 @@ def _sequence(text: str) -> list[Fraction]:
     return sequence
 
 
+def _drive(text: str) -> Drive:
+    """Return the drive of a text such as 100,2,0.01."""
+    try:
+        numbers = [rational(number) for number in text.split(",")]
+    except InputError as error:
+        raise InputError(f"{error}: expected {','.join(GAINS)}") from None
+    if len(numbers) != len(GAINS):
+        raise InputError(f"{len(numbers)} values, expected {','.join(GAINS)}")
+    return Drive(*numbers)
+
+
+def _inertia(text: str) -> Drive:
+    """Return the drive of an inertia alone, or of a text such as 100,2,0.01: its gains are to be chosen."""
+    return Drive(Fraction(0), Fraction(0), rational(text)) if "," not in text else _drive(text)
+
+
 NUMBER = ParsedType("number", rational)
 POSITIVE = ParsedType("number", _positive)
 SECONDS = ParsedType("seconds", _within_squares("s"))
 SPEED = ParsedType("number", _within_squares("times the scene's own speed"))
 SEQUENCE = ParsedType("steps", _sequence)
-METHOD = ParsedType("method", lookup, (*REGISTRY, *WITH_PARAMETERS))
+METHOD = ParsedType("method", lookup, lambda: (*REGISTRY, *WITH_PARAMETERS))
 SHARE = ParsedType("number", lambda text: float(rational(text)))
-ENGINE = ParsedType("NAME", engine_named, ENGINES)
-ENGINE_VALUES = ParsedType("name=values", engine_and_values, [f"{name}=" for name in ENGINES])
+ENGINE = ParsedType("name", engine_named, lambda: ENGINES)
+ENGINE_VALUES = ParsedType("name=values", engine_and_values, lambda: [f"{name}=" for name in ENGINES])
+SCENE = ParsedType("scene", str, _scenes)
+DRIVE = ParsedType(",".join(GAINS), _drive)
+INERTIA = ParsedType("inertia", _inertia)
 
 
-def methods_option(*default: str) -> Decorator:
-    """Return the option --method, any number of times, as the parameter `methods`; without a default none are."""
-    return click.option(
-        "--method",
-        "methods",
-        type=METHOD,
-        multiple=True,
-        default=default,
-        help="A method's name, as `bezstab methods` lists it, or a .toml file; NAME@m takes steps of m h. Repeatable.",
-    )
+def option(names: str, kind: Any, meaning: str, **more: Any) -> Option:
+    """Return an option: its names as `click.option` has them, with spaces between; its values' type; its help."""
+    return partial(click.option, *names.split(), type=kind, help=meaning, **more)
 
 
-def scene_option(default: str | None, help_text: str = "A shipped scene's name, or a .toml file.") -> Decorator:
-    """Return the option --scene; without a default the command works without a scene, too."""
-    return click.option("--scene", default=default, help=help_text, shell_complete=_offered_scenes)
-
-
-speed_option = click.option(
-    "--speed",
-    type=SPEED,
-    default="1",
-    help="Multiply the speed of the scene's drivers and initial velocities by this.",
-)
-step_option = click.option("--h", type=SECONDS, default="0.001", help="Step size in s.")
-physical_option = click.option("--physical", is_flag=True, help="--alpha and --beta are α and β in 1/s; needs --h.")
-format_option = click.option(
-    "--format",
-    "form",
-    type=click.Choice(get_args(Format)),
-    default="text",
-    help="What to print on standard output.",
-)
+def flag(names: str, meaning: str) -> Option:
+    """Return an option without a value."""
+    return partial(click.option, *names.split(), is_flag=True, help=meaning)
 
 
 def _choose_compiled(context: click.Context, parameter: click.Parameter, choice: str) -> None:
@@ -179,63 +174,108 @@ def _choose_compiled(context: click.Context, parameter: click.Parameter, choice:
     context.call_on_close(restore)
 
 
-compiled_option = click.option(
-    "--compiled",
-    type=click.Choice(["auto", "yes", "no"]),
-    default="auto",
-    expose_value=False,
-    callback=_choose_compiled,
-    help="Compile runs with numba. auto: if numba is installed and compiling saves time.",
-)
+A_METHOD = "A method's name, as `bezstab methods` lists it, or a .toml file; NAME@m takes steps of m h."
 
-
-def together(*options: Decorator) -> Decorator:
-    """Return one decorator that adds several options, in this order."""
-
-    def with_options(function: Function) -> Function:
-        for option in reversed(options):
-            function = option(function)
-        return function
-
-    return with_options
-
-
-def gathered(kind: type, parameter: str, *options: Decorator) -> Decorator:
-    """Return a decorator that adds options. The command gets one value of a dataclass, whose fields they are."""
-
-    def with_options(function: Function) -> Function:
-        @wraps(function)
-        def with_one_value(*arguments: Any, **typed: Any) -> Any:
-            own = {field.name: typed.pop(field.name) for field in fields(kind) if field.name in typed}
-            return function(*arguments, **{parameter: kind(**own)}, **typed)
-
-        with_option: Function = together(*options)(with_one_value)
-        return with_option
-
-    return with_options
-
-
-stabilise_options = together(
-    click.option(
-        "--stabilise",
-        type=click.Choice(["baumgarte", "projection", "none"]),
-        default="baumgarte",
-        help="How the constraints are held. baumgarte: by feedback with α and β. projection: each new state is moved "
-        "onto the constraints, by the least change in the metric of the masses. none: not at all (α = β = 0).",
+OPTIONS = {
+    "methods": option("--method methods", METHOD, f"{A_METHOD} Repeatable.", multiple=True),
+    "method": option("--method", METHOD, A_METHOD),
+    "alpha": option("--alpha", NUMBER, "α̂ as a decimal or a fraction, read exactly. With --physical: α in 1/s."),
+    "beta": option("--beta", NUMBER, "β̂ as a decimal or a fraction, read exactly. With --physical: β in 1/s."),
+    "physical": flag("--physical", "--alpha and --beta are α and β in 1/s; needs --h."),
+    "h": option("--h", SECONDS, "Step size in s."),
+    "h_min": option(
+        "--h-min", SECONDS, "Steps vary from this one (s) up to --h-max: ask whether every sequence of them is safe."
     ),
-    click.option(
+    "h_max": option("--h-max", SECONDS, "With --h-min: the longest step in s [--h]."),
+    "hold": flag(
+        "--hold",
+        "With --h-min: α̂ and β̂ stay the same while steps vary, as in engines with an ERP. Without it α and β do.",
+    ),
+    "engine": option("--engine", ENGINE, "Choose only what this engine can express, and print the line to paste."),
+    "engine_values": option(
+        "--engine",
+        ENGINE_VALUES,
+        "An engine's own values, such as mujoco=0.02,1, in place of --alpha and --beta; needs --h.",
+    ),
+    "as_typed": flag(
+        "--as-typed",
+        "With --engine: take the values as typed, without what the engine does to them, such as clamps.",
+    ),
+    "drive": option(
+        "--pd drive",
+        DRIVE,
+        "A joint drive's gains and inertia (SI units), in place of --alpha and --beta; needs --h.",
+    ),
+    "every": option("--every", int, "With --pd: the torque is computed every so many steps and held in between [1]."),
+    "late": option("--late", NUMBER, "With --pd: the torque is applied so many steps late. Fractions are allowed [0]."),
+    "filter_seconds": option(
+        "--filter filter_seconds",
+        NUMBER,
+        "With --pd: the time constant in s of a first-order filter of the measured velocity [0].",
+    ),
+    "chain": option("--chain", int, "With --engine: ask about a straight chain of so many bodies."),
+    "mass_ratio": option(
+        "--mass-ratio", NUMBER, "With --chain: the last body is so many times as heavy as each other one [1]."
+    ),
+    "sweeps": option(
         "--iterations",
-        type=click.IntRange(min=1),
-        help="With projection: at most so many Newton iterations for the position in a step [as many as reach 1e-12].",
+        int,
+        "With --chain or --scene: the number of sweeps over all constraints in a step [the engine's own number].",
     ),
-)
+    "scene": option("--scene", SCENE, "A shipped scene's name, or a .toml file."),
+    "speed": option(
+        "--speed", SPEED, "Multiply the speed of the scene's drivers and initial velocities by this.", default="1"
+    ),
+    "omega": option(
+        "--omega",
+        POSITIVE,
+        "The rate of the mechanism's motion in 1/s. The errors that the feedback makes depend on it. Needs --h [the "
+        "rate of --scene, else ωh = 0.01].",
+    ),
+    "duration": option("--time duration", SECONDS, "Duration in s."),
+    "stabilise": option(
+        "--stabilise",
+        click.Choice(["baumgarte", "projection", "none"]),
+        "How the constraints are held. baumgarte: by feedback with α and β. projection: each new state is moved "
+        "onto the constraints, by the least change in the metric of the masses. none: not at all (α = β = 0).",
+        default="baumgarte",
+    ),
+    "iterations": option(
+        "--iterations",
+        click.IntRange(min=1),
+        "With projection: at most so many Newton iterations for the position in a step [as many as reach 1e-12].",
+    ),
+    "compiled": option(
+        "--compiled",
+        click.Choice(["auto", "yes", "no"]),
+        "Compile runs with numba. auto: if numba is installed and compiling saves time.",
+        default="auto",
+        expose_value=False,
+        callback=_choose_compiled,
+    ),
+    "workers": option("--workers", click.IntRange(1, 1000), "Number of processes [one for each core]."),
+    "scheduler": option("--scheduler", str, "Address of a Dask scheduler, tcp://host:port, in place of --workers."),
+    "resume": flag("--resume", "Continue a run with the same options that was stopped."),
+    "form": option(
+        "--format form", click.Choice(get_args(Format)), "What to print on standard output.", default="text"
+    ),
+    "output": option("-o --output", click.Path(path_type=Path), "Directory for what is written.", default="."),
+    "figure": option("--figure", click.Choice([*FIGURE_FORMS, "none"]), "Format of the figure.", default="png"),
+    "table": option("--table", click.Choice([*TABLE_FORMS, "none"]), "Format of the table.", default="none"),
+}
+"""The options that several commands take. Most are called like the field of a question that they give."""
+
+
+def changed(name: str, **more: Any) -> Option:
+    """Return the option of that name in OPTIONS as one command has it, with another default, help or type."""
+    return partial(OPTIONS[name], **more)
 
 
 @dataclass(frozen=True)
 class Rule:
-    """An option needs one of some others, and excludes others. `why` is the reason that the message gives."""
+    """Each of some options needs one of some others, and excludes others; `why` is the reason that a message gives."""
 
-    option: str
+    options: tuple[str, ...]
     why: str
     needs: tuple[str, ...] = ()
     excludes: tuple[str, ...] = ()
@@ -243,27 +283,11 @@ class Rule:
     def check(self) -> None:
         """Raise UsageError if the options of the running command break this rule."""
         typed = typed_options()
-        if self.option not in typed:
-            return
-        if self.needs and not typed & set(self.needs):
-            one_of = "one of " if len(self.needs) > 1 else ""
-            raise click.UsageError(f"{self.option} needs {one_of}{', '.join(self.needs)}: {self.why}")
-        refuse_beside(self.option, self.excludes, self.why)
-
-
-def ruled(*rules: Rule) -> Decorator:
-    """Return a decorator that checks these rules before the command runs."""
-
-    def with_rules(function: Function) -> Function:
-        @wraps(function)
-        def checked(*arguments: Any, **typed: Any) -> Any:
-            for rule in rules:
-                rule.check()
-            return function(*arguments, **typed)
-
-        return checked
-
-    return with_rules
+        for option in filter(typed.__contains__, self.options):
+            if self.needs and not typed & set(self.needs):
+                one_of = "one of " if len(self.needs) > 1 else ""
+                raise click.UsageError(f"{option} needs {one_of}{', '.join(self.needs)}: {self.why}")
+            refuse_beside(option, {*self.excludes} - {option}, self.why)
 
 
 def typed_options() -> set[str]:
@@ -283,7 +307,92 @@ def left_at_default(parameter: str) -> bool:
     return click.get_current_context().get_parameter_source(parameter) != click.core.ParameterSource.COMMANDLINE
 
 
-def refuse_feedback(stabilise: "Stabilise") -> None:
+def refuse_feedback(stabilise: str) -> None:
     """Raise UsageError if an option about feedback was typed, and there is to be no feedback."""
     if stabilise != "baumgarte":
-        refuse_beside(f"--stabilise {stabilise}", OF_FEEDBACK, "it has no feedback")
+        of_feedback = ("--alpha", "--beta", "--physical", "--hold", "--omega")
+        refuse_beside(f"--stabilise {stabilise}", of_feedback, "it has no feedback")
+
+
+OF_A_CONTROLLER = Rule(
+    ("--every", "--late", "--filter", "--bandwidth"), "it is about a drive's controller", needs=("--pd",)
+)
+
+GROUPS: Mapping[str, tuple[str | Option | Rule, ...]] = {
+    "point": ("alpha", "beta", "physical"),
+    "given_point": (  # in the plane, by an engine's own values, or by a drive's gains
+        "point",
+        changed("h", help="Step size in s, for --physical, --engine, --pd, --scene and --omega."),
+        *("engine_values", "as_typed", "drive"),
+        Rule(("--engine", "--pd"), "it gives the point itself", excludes=("--alpha", "--beta", "--physical")),
+    ),
+    "timing": ("every", "late", "filter_seconds", OF_A_CONTROLLER),
+    "swept": ("chain", "mass_ratio", "sweeps"),
+    "picture": ("output", "figure"),
+    "files": ("picture", "table"),
+    "work": ("workers", "scheduler", "resume"),
+}
+"""Options that go together, by a name for all of them, with their rules."""
+
+
+@dataclass(frozen=True)
+class TypedPoint:
+    """The options --alpha, --beta and --physical as typed: alpha_hat and beta_hat, or with `physical` both in 1/s."""
+
+    alpha: Fraction | None
+    beta: Fraction | None
+    physical: bool = False
+
+    @property
+    def numbers(self) -> Point | None:
+        """The two numbers, None without them; UsageError if one is missing."""
+        if self.alpha is not None and self.beta is not None:
+            return self.alpha, self.beta
+        if self.alpha is not None or self.beta is not None:
+            raise click.UsageError("--alpha and --beta go together: they give one point")
+        if self.physical:
+            raise click.UsageError("--physical needs --alpha and --beta: it says that they are in 1/s")
+        return None
+
+
+GATHERED = {"point": TypedPoint, "files": Files, "work": Work}
+"""What a command gets as one value, whose fields are the options that it takes of these."""
+
+
+def command(*options: str | Option | Rule) -> Callable[[Function], click.Command]:
+    """Return a decorator that makes a command with options, in this order: of OPTIONS or GROUPS, changed, or its own.
+
+    Rules are checked before the command runs. The command does not get --format: `bezstab.cli.output` knows it.
+    """
+    every = list(_one_by_one(options))
+
+    def with_options(function: Function) -> click.Command:
+        @wraps(function)
+        def checked(**typed: Any) -> Any:
+            for rule in every:
+                if isinstance(rule, Rule):
+                    rule.check()
+            typed.pop("form", None)
+            for parameter, kind in GATHERED.items():
+                if own := {field.name: typed.pop(field.name) for field in fields(kind) if field.name in typed}:
+                    typed[parameter] = kind(**own)
+            return function(**typed)
+
+        with_option: Function = checked
+        for option in reversed(every):
+            if not isinstance(option, Rule):
+                with_option = option()(with_option)
+        return click.command()(with_option)
+
+    return with_options
+
+
+def _one_by_one(options: Iterable[str | Option | Rule]) -> Iterator[Option | Rule]:
+    """Yield options and rules for their names, and one by one for the names of groups."""
+    for each in options:
+        if not isinstance(each, str):
+            yield each
+        elif each in GROUPS:
+            yield from _one_by_one(GROUPS[each])
+        else:
+            yield OPTIONS[each]

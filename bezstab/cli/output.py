@@ -12,12 +12,9 @@ from typing import TYPE_CHECKING, Any, BinaryIO, TypeVar
 
 import click
 
-from bezstab.cli.options import gathered
 from bezstab.cli.terminal import text_width
 from bezstab.files import output_directory, write_whole
 from bezstab.show import (
-    FIGURE_FORMS,
-    TABLE_FORMS,
     Column,
     Format,
     Row,
@@ -45,16 +42,26 @@ CONTINUED = " \\"
 """Ends a line of a command that goes on in the next."""
 
 
-def show_rows(
-    kind: RowKind, rows: Sequence[Row], form: Format, without: Collection[str] = (), heading: str = ""
-) -> None:
+def chosen_format() -> Format:
+    """Return the --format of the running command."""
+    form: Format = click.get_current_context().params["form"]
+    return form
+
+
+def for_reading() -> bool:
+    """Return whether people read the answer of the running command: then texts are printed, too."""
+    return chosen_format() in ("text", "markdown")
+
+
+def show_rows(kind: RowKind, rows: Sequence[Row], without: Collection[str] = (), heading: str = "") -> None:
     """Print rows of a kind on standard output, below a heading where people read them; `without` as RowKind.columns.
 
     As text, a single row is a block of lines below its sentence; so is each row of a table wider than the terminal.
     """
-    if heading and for_reading(form):
+    if heading:
         show_text(f"{heading}\n")
-    columns = kind.columns(rows, without) if for_reading(form) else []
+    form = chosen_format()
+    columns = kind.columns(rows, without) if for_reading() else []
     answer = render(rows, columns, form)
     if form == "text" and rows and (len(rows) == 1 or not fits(answer, text_width())):
         show_blocks(rows, columns, kind.sentence)
@@ -89,8 +96,9 @@ def show_groups(
 
 
 def show_text(text: str) -> None:
-    """Print a text on standard output, its lines no longer than the terminal's."""
-    click.echo(wrapped(text, text_width()))
+    """Print a text for people on standard output, its lines no longer than the terminal's; nothing for programs."""
+    if for_reading():
+        click.echo(wrapped(text, text_width()))
 
 
 def show_command(command: str) -> None:
@@ -109,11 +117,6 @@ def say(message: str) -> None:
     """Print a message on standard error, in one line; if that cannot be written, go on."""
     with suppress(OSError):
         click.echo(visible(message), err=True)
-
-
-def for_reading(form: Format) -> bool:
-    """Return whether the format is for people to read: then sentences are printed, too."""
-    return form in ("text", "markdown")
 
 
 def file_name(name: str) -> str:
@@ -169,27 +172,6 @@ class Files:
             write_file(path.with_name(f"{path.name}.{self.figure}"), partial(save, drawn, self.figure))
 
 
-_where_and_figure = (
-    click.option("-o", "--output", type=click.Path(path_type=Path), default=".", help="Directory for what is written."),
-    click.option("--figure", type=click.Choice([*FIGURE_FORMS, "none"]), default="png", help="Format of the figure."),
-)
-_table_forms = click.Choice([*TABLE_FORMS, "none"])
-
-picture_options = gathered(Files, "files", *_where_and_figure)
-"""For a command that writes a figure and no table."""
-
-figure_options, file_options = (
-    gathered(
-        Files,
-        "files",
-        *_where_and_figure,
-        click.option("--table", type=_table_forms, default=usual, help="Format of the table."),
-    )
-    for usual in ("none", "csv")
-)
-"""For commands that also write a table: only if it is asked for, or by default."""
-
-
 @dataclass(frozen=True)
 class Work:
     """Who computes what takes long: a number of processes, or a cluster. `resume` continues a run that was stopped."""
@@ -197,15 +179,6 @@ class Work:
     workers: int | None
     scheduler: str | None
     resume: bool
-
-
-work_options = gathered(
-    Work,
-    "work",
-    click.option("--workers", type=click.IntRange(1, 1000), help="Number of processes [one for each core]."),
-    click.option("--scheduler", help="Address of a Dask scheduler, tcp://host:port, in place of --workers."),
-    click.option("--resume", is_flag=True, help="Continue a run with the same options that was stopped."),
-)
 
 
 def progress(

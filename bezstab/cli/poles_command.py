@@ -3,23 +3,22 @@
 from dataclasses import replace
 from typing import Any
 
-import click
-
-from bezstab.cli.asking import asked_of_feedback, given_point_options, moving_scene_options, omega_option, show_below
-from bezstab.cli.options import USUAL_METHODS, Rule, format_option, methods_option, ruled
+from bezstab.cli.asking import asked_of_feedback, show_below
+from bezstab.cli.options import USUAL_METHODS, Rule, changed, command, flag
 from bezstab.cli.output import show_rows
-from bezstab.show import POLES, Format, Row, added_cells, engine_cells, one_pole_sentence, pole_rows
+from bezstab.show import POLES, Row, added_cells, engine_cells, one_pole_sentence, pole_rows
 
 
-@click.command()
-@methods_option(*USUAL_METHODS)
-@given_point_options
-@click.option("--all-poles", is_flag=True, help="Print every pole, not only the dominant one.")
-@omega_option
-@moving_scene_options("Also say what the motion of this mechanism does to the poles; needs --h.")
-@format_option
-@ruled(Rule("--h", "α̂ and β̂ have no unit", needs=("--physical", "--engine", "--pd", "--scene", "--omega")))
-def poles(all_poles: bool, form: Format, **typed: Any) -> None:
+@command(
+    changed("methods", default=USUAL_METHODS),
+    "given_point",
+    flag("--all-poles", "Print every pole, not only the dominant one."),
+    "omega",
+    changed("scene", help="Also say what the motion of this mechanism does to the poles; needs --h."),
+    *("speed", "form"),
+    Rule(("--h",), "α̂ and β̂ have no unit", ("--physical", "--engine", "--pd", "--scene", "--omega")),
+)
+def poles(all_poles: bool, **typed: Any) -> None:
     """Print each method's dominant pole at one point, and the verdict.
 
     converges: every |z| < 1, so errors shrink. marginal: errors stay bounded but do not shrink. diverges: errors
@@ -46,5 +45,5 @@ def poles(all_poles: bool, form: Format, **typed: Any) -> None:
     kind = replace(POLES, sentence=one_pole_sentence) if all_poles else POLES
     alpha_hat, beta_hat = map(float, question.given.point)
     without = () if costs_shown else ("total_error", "times_least")
-    show_rows(kind, rows, form, without, f"α̂ = {alpha_hat:.10g}, β̂ = {beta_hat:.10g}")
-    show_below(question, at_point, form, motion=costs_shown)
+    show_rows(kind, rows, without, f"α̂ = {alpha_hat:.10g}, β̂ = {beta_hat:.10g}")
+    show_below(question, at_point, motion=costs_shown)

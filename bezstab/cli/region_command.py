@@ -7,24 +7,13 @@ from typing import TYPE_CHECKING, Any
 import click
 import numpy as np
 
-from bezstab.cli.asking import DRIVE, asked, find_turning, omega_option, say_if_it_turns_too_far
+from bezstab.cli.asking import asked, say_if_it_turns_too_far
 from bezstab.cli.command_group import NUMERICAL_TROUBLE
-from bezstab.cli.held_drives import held_asked, refuse_others, show_held, timing_options
-from bezstab.cli.options import (
-    ENGINE,
-    NUMBER,
-    POSITIVE,
-    SECONDS,
-    SPEED,
-    Rule,
-    format_option,
-    methods_option,
-    ruled,
-    scene_option,
-)
-from bezstab.cli.output import Files, figure_options, for_reading, progress, say, show_rows, show_text
+from bezstab.cli.held_drives import held_asked, refuse_others, show_held
+from bezstab.cli.options import NUMBER, POSITIVE, SPEED, Rule, changed, command, flag, option
+from bezstab.cli.output import Files, progress, say, show_rows, show_text
 from bezstab.errors import NumericalError
-from bezstab.show import NOT_KNOWN, REGIONS, Format, Row, combined_words, region_row
+from bezstab.show import NOT_KNOWN, REGIONS, Row, combined_words, region_row
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -32,82 +21,45 @@ if TYPE_CHECKING:
     from bezstab.questions import HeldAnswer, HeldQuestion, MapAnswer, MapQuestion
 
 
-@click.command()
-@methods_option("B4")
-@figure_options
-@click.option(
-    "--quality",
-    type=click.Choice(["balanced", "fast", "fine"]),
-    default="balanced",
-    help="Points per axis of the map: fast 50, balanced 200, fine 1000.",
+@command(
+    changed("methods", default=["B4"]),
+    option(
+        "--quality",
+        click.Choice(["balanced", "fast", "fine"]),
+        "Points per axis of the map: fast 50, balanced 200, fine 1000.",
+        default="balanced",
+    ),
+    option("--grid", click.IntRange(2, 4000), "Points per axis, in place of --quality."),
+    option("--alpha-range", NUMBER, "α̂ is drawn from the first value to the second [over the region].", nargs=2),
+    option("--beta-range", NUMBER, "β̂ is drawn from the first value to the second [over the region].", nargs=2),
+    changed("h", help="Step size in s; the axes are then 2α (1/s) and β² (1/s²)."),
+    flag("--alpha-beta", "Write α and β (1/s) at the axes of the figure; needs --h."),
+    option(
+        "--level levels",
+        POSITIVE,
+        "Also draw where |z_p| < LEVEL, and print that area. LEVEL is below 1. Repeatable [one level is drawn: a "
+        "quarter of the way from the least |z_p| to 1].",
+        multiple=True,
+    ),
+    flag("--compare", "Draw the boundaries of all methods in one figure, at --level [1]."),
+    flag("--accuracy", "Draw the error that the feedback makes on a motion, together with |z_p|, on logarithmic axes."),
+    "omega",
+    changed("drive", help="Draw a joint drive in the plane of kd and kp, and mark these gains (SI units); needs --h."),
+    "timing",
+    changed("engine", help="Mark this engine's default values and rules of thumb; needs --h."),
+    changed(
+        "scene",
+        help="Also draw the region of this mechanism as it moves; with --accuracy the motion is its own. Needs --h.",
+    ),
+    option("--speed speeds", SPEED, "With --scene: multiply its speed by this. Repeatable [1].", multiple=True),
+    "files",
+    "form",
+    Rule(("--alpha-beta", "--engine"), "what it shows depends on the step in s", needs=("--h",)),
+    Rule(("--compare",), "it draws boundaries alone", excludes=("--scene", "--engine", "--accuracy")),
+    Rule(("--accuracy",), "its axes are α̂ and β̂", excludes=("--alpha-beta",)),
+    Rule(("--omega",), "it is the motion that the errors are about", needs=("--accuracy",)),
 )
-@click.option("--grid", type=click.IntRange(2, 4000), help="Points per axis, in place of --quality.")
-@click.option(
-    "--alpha-range", type=NUMBER, nargs=2, help="α̂ is drawn from the first value to the second [over the region]."
-)
-@click.option(
-    "--beta-range", type=NUMBER, nargs=2, help="β̂ is drawn from the first value to the second [over the region]."
-)
-@click.option("--h", type=SECONDS, help="Step size in s; the axes are then 2α (1/s) and β² (1/s²).")
-@click.option("--alpha-beta", is_flag=True, help="Write α and β (1/s) at the axes of the figure; needs --h.")
-@click.option(
-    "--level",
-    "levels",
-    type=POSITIVE,
-    multiple=True,
-    help="Also draw where |z_p| < LEVEL, and print that area. LEVEL is below 1. Repeatable [one level is drawn: a "
-    "quarter of the way from the least |z_p| to 1].",
-)
-@click.option("--compare", is_flag=True, help="Draw the boundaries of all methods in one figure, at --level [1].")
-@click.option(
-    "--accuracy",
-    is_flag=True,
-    help="Draw the error that the feedback makes on a motion, together with |z_p|, on logarithmic axes.",
-)
-@omega_option
-@click.option(
-    "--pd",
-    "drive",
-    type=DRIVE,
-    help="Draw a joint drive in the plane of kd and kp, and mark these gains (SI units); needs --h.",
-)
-@timing_options
-@click.option(
-    "--engine",
-    metavar="NAME",
-    type=ENGINE,
-    help="Mark this engine's default values and rules of thumb; needs --h.",
-)
-@scene_option(
-    None, "Also draw the region of this mechanism as it moves; with --accuracy the motion is its own. Needs --h."
-)
-@click.option(
-    "--speed",
-    "speeds",
-    type=SPEED,
-    multiple=True,
-    help="With --scene: multiply the speed of the mechanism by this. Repeatable [1].",
-)
-@format_option
-@ruled(
-    Rule("--pd", "the step in s", needs=("--h",)),
-    Rule("--alpha-beta", "α and β at the axes depend on the step in s", needs=("--h",)),
-    Rule("--engine", "it marks points of one map, which depend on the step", needs=("--h",), excludes=("--compare",)),
-    Rule("--compare", "it draws one map for each method", excludes=("--scene",)),
-    Rule("--accuracy", "it draws one map for each method", excludes=("--compare", "--alpha-beta")),
-    Rule("--omega", "it is the motion that the errors are about", needs=("--accuracy",)),
-)
-@click.pass_context
-def region(
-    context: click.Context,
-    /,
-    quality: str,
-    grid: int | None,
-    alpha_beta: bool,
-    files: Files,
-    form: Format,
-    **typed: Any,
-) -> None:
+def region(quality: str, grid: int | None, alpha_beta: bool, files: Files, **typed: Any) -> int:
     """Draw where each method is stable, and |z_p| there.
 
     Prints how far the exact region reaches, its area, the smallest |z_p| and where that is. Writes region_METHOD.png.
@@ -125,12 +77,11 @@ def region(
 
     points = grid or QUALITY[quality]
     if held := held_asked(typed, always=typed["drive"] is not None):
-        _show_held(held, points, files, form)
-        return
+        _show_held(held, points, files)
+        return 0
     del typed["drive"]
     question = asked(MapQuestion, points=points, **typed)
     for speed in () if question.motion else question.speeds:
-        find_turning(question.scene, speed, question.h)
         say_if_it_turns_too_far(question.scene, speed, question.h)
     files.check_output()
     rows: list[Row] = []
@@ -147,11 +98,12 @@ def region(
             raise failed[0]
     for each in failed:
         say(f"bezstab: {each}")
-    show_rows(REGIONS, rows, form, () if question.levels else ("z_abs_below",))
-    if question.motion and for_reading(form):
+    show_rows(REGIONS, rows, () if question.levels else ("z_abs_below",))
+    if question.motion:
         show_text(combined_words(question.motion))
     if failed or any((row["best_reason"] or "").startswith(NOT_KNOWN) for row in rows):
-        context.exit(NUMERICAL_TROUBLE)
+        return NUMERICAL_TROUBLE
+    return 0
 
 
 def _show_map(answer: "MapAnswer", alpha_beta: bool, files: Files) -> list[Row]:
@@ -188,7 +140,7 @@ def _show_boundaries(question: "MapQuestion", alpha_beta: bool, files: Files) ->
     return [region_row(answer) for answer in answers]
 
 
-def _show_held(question: "HeldQuestion", points: int, files: Files, form: Format) -> None:
+def _show_held(question: "HeldQuestion", points: int, files: Files) -> None:
     """Print what `check` prints of a held drive, and write the map of each way of applying it over kd and kp."""
     from bezstab import show
 
@@ -198,5 +150,5 @@ def _show_held(question: "HeldQuestion", points: int, files: Files, form: Format
     def draw(answer: "HeldAnswer") -> "Figure":
         return show.held_figure(answer, answer.map(points))
 
-    for answer in show_held(question, form):
+    for answer in show_held(question):
         files.write(files.path("region", answer.method.name, "held"), partial(draw, answer))

@@ -7,35 +7,23 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from bezstab.cli.asking import TypedPoint, omega_option, point_options, say_if_units_were_mistaken
+from bezstab.cli.asking import say_if_units_were_mistaken
 from bezstab.cli.options import (
     POSITIVE,
     SECONDS,
     Rule,
-    compiled_option,
-    format_option,
+    TypedPoint,
+    changed,
+    command,
+    flag,
     left_at_default,
-    methods_option,
+    option,
     refuse_beside,
     refuse_feedback,
-    ruled,
-    scene_option,
-    speed_option,
-    stabilise_options,
     typed_options,
 )
-from bezstab.cli.output import (
-    Files,
-    Work,
-    file_options,
-    for_reading,
-    progress,
-    results_of_chunks,
-    show_rows,
-    show_text,
-    work_options,
-)
-from bezstab.show import FRONTS, SWEPT, Format, combined_words, front_row
+from bezstab.cli.output import Files, Work, progress, results_of_chunks, show_rows, show_text
+from bezstab.show import FRONTS, SWEPT, combined_words, front_row
 
 if TYPE_CHECKING:
     from bezstab.questions import FrontQuestion
@@ -47,46 +35,38 @@ PREDICTED = {
 """Options of tradeoff that go with --predicted."""
 
 
-@click.command()
-@scene_option("slider_crank_light")
-@speed_option
-@methods_option("B2", "B3", "B4", "AB2", "AB4", "ABM4", "RK4", "SIE", "SYM")
-@click.option("--h", "steps", type=SECONDS, multiple=True, help="Step size in s. Repeatable [ten from 0.0001 to 0.02].")
-@click.option("--time", "duration", type=SECONDS, default="2", help="Duration in s.")
-@point_options(
-    "α̂ of every run; α in 1/s with --physical [the goal accurate for the scene's motion, at each step].",
-    "β̂ of every run; β in 1/s with --physical.",
-)
-@omega_option
-@stabilise_options
-@click.option(
-    "--predicted",
-    is_flag=True,
-    help="Simulate nothing; print the least error that each method's feedback makes, for each speed of decay.",
-)
-@click.option(
-    "--level",
-    "levels",
-    type=POSITIVE,
-    multiple=True,
-    help="With --predicted: decay with |z_p| of at most LEVEL, below 1. Repeatable [fifteen from 0.1 to 0.999].",
-)
-@click.option("--tolerance", type=POSITIVE, default="1e-6", help="The error that is good enough, in m and rad.")
-@click.option("--repeats", type=click.IntRange(1, 100), default=3, help="How often each run is timed.")
-@click.option(
-    "--against",
-    type=click.Choice(["evaluations", "time", "projection"]),
-    default="evaluations",
-    help="What errors are compared with: evaluations of f, or processor time on this machine. With "
-    "projection each run is made with feedback and with projection, and errors are compared with factorizations.",
-)
-@compiled_option
-@work_options
-@file_options
-@format_option
-@ruled(
-    Rule("--level", "it says how fast errors must decay", needs=("--predicted",)),
-    Rule("--physical", "it says that they are in 1/s", needs=("--alpha",)),
+@command(
+    changed("scene", default="slider_crank_light"),
+    "speed",
+    changed("methods", default=("B2", "B3", "B4", "AB2", "AB4", "ABM4", "RK4", "SIE", "SYM")),
+    option("--h steps", SECONDS, "Step size in s. Repeatable [ten from 0.0001 to 0.02].", multiple=True),
+    changed("duration", default="2"),
+    *("point", "omega", "stabilise", "iterations"),
+    flag(
+        "--predicted",
+        "Simulate nothing; print the least error that each method's feedback makes, for each speed of decay.",
+    ),
+    option(
+        "--level levels",
+        POSITIVE,
+        "With --predicted: decay with |z_p| of at most LEVEL, below 1. Repeatable [fifteen from 0.1 to 0.999].",
+        multiple=True,
+    ),
+    option("--tolerance", POSITIVE, "The error that is good enough, in m and rad.", default="1e-6"),
+    option("--repeats", click.IntRange(1, 100), "How often each run is timed.", default=3),
+    option(
+        "--against",
+        click.Choice(["evaluations", "time", "projection"]),
+        "What errors are compared with: evaluations of f, or processor time on this machine. With projection each run "
+        "is made with feedback and with projection, and errors are compared with factorizations.",
+        default="evaluations",
+    ),
+    "compiled",
+    "work",
+    "picture",
+    changed("table", default="csv"),
+    "form",
+    Rule(("--level",), "it says how fast errors must decay", needs=("--predicted",)),
 )
 def tradeoff(
     point: TypedPoint,
@@ -95,7 +75,6 @@ def tradeoff(
     tolerance: Fraction,
     work: Work,
     files: Files,
-    form: Format,
     **typed: Any,
 ) -> None:
     """Measure what accuracy costs, by method and step.
@@ -127,14 +106,14 @@ def tradeoff(
         refuse_beside("--predicted", typed_options() - PREDICTED, "it simulates nothing")
         scene = None if left_at_default("scene") else typed["scene"]
         of_fronts = {name: typed[name] for name in ("methods", "omega", "speed", "steps")}
-        _show_fronts(FrontQuestion(**of_fronts, scene=scene, levels=levels), files, form)
+        _show_fronts(FrontQuestion(**of_fronts, scene=scene, levels=levels), files)
         return
     refuse_feedback(typed["stabilise"])
     if typed["against"] == "projection":
         refuse_beside("--against projection", ["--stabilise"], "it has runs with and without feedback")
     question = TradeQuestion(numbers=point.numbers, physical=point.physical, **typed)
     if question.numbers and question.steps and not question.physical:
-        say_if_units_were_mistaken(question.methods, *question.numbers, max(question.steps))
+        say_if_units_were_mistaken(question.methods, question.numbers, max(question.steps))
     path = files.path("tradeoff", Path(typed["scene"]).stem)
     job = f"{question.methods} {question}"
     with results_of_chunks(evidence.measured_runs, question.sweeps, path, job, work) as results:
@@ -143,17 +122,11 @@ def tradeoff(
         files.write(path, None, lambda: show.untimed_arrays(rows))
         for name, draw in show.trade_figures(swept, question.moving.name).items():
             files.write(path.with_name(f"{path.name}_{name}"), draw)
-    show_rows(SWEPT, rows, form)
-    if for_reading(form):
-        show_text(f"\nThe reference is known to {question.reference.error:.0e} (m, rad).")
-        if question.rate is not None:
-            rate = f"ω = {float(question.rate):.3g} 1/s"
-            show_text(f"Each point is the choice of the goal accurate for a motion with {rate}.")
-        for sentence in question.sentences(swept, float(tolerance)):
-            show_text(sentence)
+    show_rows(SWEPT, rows)
+    show_text("\n" + "\n".join(question.sentences(swept, float(tolerance))))
 
 
-def _show_fronts(question: "FrontQuestion", files: Files, form: Format) -> None:
+def _show_fronts(question: "FrontQuestion", files: Files) -> None:
     """Print the least error that each method forces, by speed of decay; write it as table and figure."""
     from bezstab import show
 
@@ -166,6 +139,5 @@ def _show_fronts(question: "FrontQuestion", files: Files, form: Format) -> None:
         lambda: show.error_front_figure([front for front in fronts if front]),
         lambda: show.untimed_arrays(rows),
     )
-    show_rows(FRONTS, rows, form)
-    if for_reading(form):
-        show_text(combined_words(question.motion))
+    show_rows(FRONTS, rows)
+    show_text(combined_words(question.motion))

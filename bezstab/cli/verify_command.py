@@ -6,83 +6,53 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from bezstab.cli.asking import asked, point_options
+from bezstab.cli.asking import asked
 from bezstab.cli.command_group import NUMERICAL_TROUBLE
-from bezstab.cli.options import (
-    Rule,
-    compiled_option,
-    format_option,
-    methods_option,
-    ruled,
-    scene_option,
-    speed_option,
-    step_option,
-)
-from bezstab.cli.output import (
-    Files,
-    Work,
-    file_options,
-    for_reading,
-    progress,
-    results_of_chunks,
-    show_rows,
-    show_text,
-    work_options,
-)
-from bezstab.show import FORCED, MEASUREMENTS, SUMMARIES, VERDICT_MAPS, WITNESSED, Format
+from bezstab.cli.options import Rule, changed, command, flag, option
+from bezstab.cli.output import Files, Work, for_reading, progress, results_of_chunks, show_rows, show_text
+from bezstab.show import FORCED, MEASUREMENTS, SUMMARIES, VERDICT_MAPS, WITNESSED
 
 if TYPE_CHECKING:
     from bezstab.questions import VerifyQuestion
 
-ONE_CHOICE = "each says which points are verified"
+WHICH_POINTS = ("--alpha", "--points", "--map", "--witness")
+"""Options each of which says what is verified."""
 
 OVER_THE_MOTION = ("followed", "map_error", "law_error", "floquet_error", "wrong_sides")
 """What a summary leaves out without --floquet."""
 
 
-@click.command()
-@scene_option("slider_crank")
-@speed_option
-@methods_option("B4")
-@point_options(
-    "α̂ of one point, instead of --points; α in 1/s with --physical.", "β̂ of one point; β in 1/s with --physical."
+@command(
+    changed("scene", default="slider_crank"),
+    "speed",
+    changed("methods", default=["B4"]),
+    "point",
+    option(
+        "--points",
+        click.IntRange(1, 1000),
+        "Verify so many points, spread over the region and around it, instead of one at --alpha and --beta [20].",
+    ),
+    option("--map cells_across", click.IntRange(2, 10000), "Simulate N×N points, and draw their verdicts."),
+    flag("--floquet", "Also predict exactly, for a motion that repeats itself, by linearising its steps."),
+    flag("--accuracy", "Compare predicted and measured errors that the feedback makes."),
+    option("--witness", click.Choice(["mujoco"]), "Run the scene in this engine, with its own integrators."),
+    changed("h", default="0.001"),
+    "compiled",
+    "work",
+    "picture",
+    changed("table", default="csv"),
+    "form",
+    Rule(("--accuracy",), "it compares one point", excludes=("--points", "--map", "--witness", "--floquet")),
+    Rule(WHICH_POINTS, "each says which points are verified", excludes=WHICH_POINTS),
 )
-@click.option(
-    "--points", type=click.IntRange(1, 1000), help="Verify so many points, spread over the region and around it [20]."
-)
-@click.option(
-    "--map", "cells_across", type=click.IntRange(2, 10000), help="Simulate N×N points, and draw their verdicts."
-)
-@click.option(
-    "--floquet", is_flag=True, help="Also predict exactly, for a motion that repeats itself, by linearising its steps."
-)
-@click.option("--accuracy", is_flag=True, help="Compare predicted and measured errors that the feedback makes.")
-@click.option(
-    "--witness", type=click.Choice(["mujoco"]), help="Run the scene in this engine, with its own integrators."
-)
-@step_option
-@compiled_option
-@work_options
-@file_options
-@format_option
-@ruled(
-    Rule("--accuracy", "it compares one point", excludes=("--points", "--map", "--witness", "--floquet")),
-    Rule("--alpha", ONE_CHOICE, excludes=("--points", "--map", "--witness")),
-    Rule("--points", ONE_CHOICE, excludes=("--map", "--witness")),
-    Rule("--map", ONE_CHOICE, excludes=("--witness",)),
-)
-@click.pass_context
 def verify(
-    context: click.Context,
-    /,
     cells_across: int | None,
     accuracy: bool,
     witness: str | None,
     work: Work,
     files: Files,
-    form: Format,
     **typed: Any,
-) -> None:
+) -> int:
     """Compare predicted poles with poles measured in a simulation.
 
     Two runs start with opposite kicks. The dominant pole is fitted to their difference. If no pole can be measured, the
@@ -104,24 +74,25 @@ def verify(
 
     question = asked(VerifyQuestion, **typed)
     if accuracy:
-        context.exit(_show_forced_errors(question, form))
-    elif witness:
-        _show_witnesses(question, form)
+        return _show_forced_errors(question)
+    if witness:
+        _show_witnesses(question)
     elif cells_across:
-        _show_map(question, cells_across, work, files, form)
+        _show_map(question, cells_across, work, files)
     else:
-        _show_measurements(question, form)
+        _show_measurements(question)
+    return 0
 
 
-def _show_witnesses(question: "VerifyQuestion", form: Format) -> None:
+def _show_witnesses(question: "VerifyQuestion") -> None:
     """Print a row for each run of MuJoCo's integrators."""
     from bezstab.evidence import mujoco_witnesses, witness_count
 
     witnesses = progress(mujoco_witnesses(question.mechanism, float(question.h)), "MuJoCo", witness_count())
-    show_rows(WITNESSED, [WITNESSED.row(each, scene=question.mechanism.scene.name) for each in witnesses], form)
+    show_rows(WITNESSED, [WITNESSED.row(each, scene=question.mechanism.scene.name) for each in witnesses])
 
 
-def _show_forced_errors(question: "VerifyQuestion", form: Format) -> int:
+def _show_forced_errors(question: "VerifyQuestion") -> int:
     """Print predicted and measured errors at shares of a point's gains, and return the exit status."""
     from bezstab import evidence, show
 
@@ -131,36 +102,33 @@ def _show_forced_errors(question: "VerifyQuestion", form: Format) -> int:
     }
     every_pair = [pair for pairs in by_method.values() for pair in pairs]
     scene = question.mechanism.scene.name
-    show_rows(FORCED, [row for pair in every_pair for row in show.forced_rows(scene, pair)], form)
-    if for_reading(form):
-        click.echo()
-        for name, pairs in by_method.items():
-            show_text(show.forced_words(name, pairs))
+    show_rows(FORCED, [row for pair in every_pair for row in show.forced_rows(scene, pair)])
+    show_text("\n" + "\n".join(show.forced_words(name, pairs) for name, pairs in by_method.items()))
     outcomes = {pair.holds for pair in every_pair}
     if None in outcomes:
         return NUMERICAL_TROUBLE
     return 0 if outcomes == {True} else 1
 
 
-def _show_measurements(question: "VerifyQuestion", form: Format) -> None:
+def _show_measurements(question: "VerifyQuestion") -> None:
     """Print the poles measured at one point, else at random ones, and where there are several how well they agree."""
     from bezstab import evidence, show
 
     mechanism, floquet = question.mechanism, question.floquet
     measured = [question.measurements(method, partial(progress, label=method.name)) for method in question.methods]
     rows = [MEASUREMENTS.row(each, scene=mechanism.scene.name) for of_method in measured for each in of_method]
-    show_rows(MEASUREMENTS, rows, form, () if floquet else ("right",))
-    if not for_reading(form):
+    show_rows(MEASUREMENTS, rows, () if floquet else ("right",))
+    if not for_reading():
         return
     for of_method in measured if floquet else ():
         show_text(show.exact_rate_words(mechanism, of_method))
     if len(rows) > len(measured):  # of one point each there is nothing to sum up
         click.echo()
         summaries = [SUMMARIES.row(evidence.measurement_summary(of_method)) for of_method in measured]
-        show_rows(SUMMARIES, summaries, form, () if floquet else OVER_THE_MOTION)
+        show_rows(SUMMARIES, summaries, () if floquet else OVER_THE_MOTION)
 
 
-def _show_map(question: "VerifyQuestion", across: int, work: Work, files: Files, form: Format) -> None:
+def _show_map(question: "VerifyQuestion", across: int, work: Work, files: Files) -> None:
     """Simulate across x across runs of each method, write their verdicts as table and figure, print how many agree."""
     from bezstab import evidence, show
     from bezstab.stability import region
@@ -176,4 +144,4 @@ def _show_map(question: "VerifyQuestion", across: int, work: Work, files: Files,
             draw = partial(show.verdict_figure, verdicts, region(method))
             files.write(path, draw, partial(show.verdict_arrays, verdicts))
         rows.append(VERDICT_MAPS.row(verdicts))
-    show_rows(VERDICT_MAPS, rows, form)
+    show_rows(VERDICT_MAPS, rows)

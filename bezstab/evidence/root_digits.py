@@ -23,7 +23,7 @@ from fractions import Fraction
 import mpmath as mp
 
 from bezstab.errors import NumericalError
-from bezstab.methods import Method, coefficient_table, feedback_matrix
+from bezstab.methods import Method, coefficient_table
 from bezstab.stability import poles
 
 DIGITS = 100
@@ -78,10 +78,9 @@ def _mus(method: Method, alpha_hat: float, beta_hat: float) -> list[mp.mpc]:
     They are the roots of mu^2 + 2 half mu + product, the coefficients as the method's step takes alpha_hat and
     beta_hat. The larger one comes from the sum that does not cancel, the other from their product.
     """
-    (a, b), (c, d) = (map(_exact, row) for row in feedback_matrix(method))
-    x, y = mp.mpf(alpha_hat), mp.mpf(beta_hat)
-    half = (a * x + b * y) / 2
-    product_of_both = c * x + d * y
+    multiple = _exact(method.step_multiple)
+    half = multiple * mp.mpf(alpha_hat) / 2
+    product_of_both = multiple**2 * mp.mpf(beta_hat)
     root = mp.sqrt(half**2 - product_of_both)
     larger = -(half + root) if half >= 0 else root - half
     if mp.im(larger):

@@ -111,9 +111,9 @@ class Simulation:
 def check_duration(duration: float, whole_step: float) -> None:
     """Raise InputError unless a duration (s) is a number of a method's own steps (s) that a run can take."""
     if not whole_step / 2 < duration < math.inf:
-        raise InputError(f"duration {duration:g} s: expected at least one step of {whole_step:g} s")
+        raise InputError(f"--time {duration:g} s: expected at least one step of {whole_step:g} s")
     if duration > MOST_STEPS * whole_step:
-        raise InputError(f"duration {duration:g} s: expected at most {MOST_STEPS:g} steps of {whole_step:g} s")
+        raise InputError(f"--time {duration:g} s: expected at most {MOST_STEPS:g} steps of {whole_step:g} s")
 
 
 def simulated(

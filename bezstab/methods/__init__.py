@@ -51,7 +51,6 @@ if TYPE_CHECKING:
         closed_loop_polynomial,
         closed_loop_table,
         coefficient_table,
-        feedback_matrix,
         mapping_equations,
     )
     from bezstab.methods.determinants import characteristic
@@ -64,6 +63,7 @@ if TYPE_CHECKING:
         Limit,
         PlaneStrips,
         Strip,
+        crossing_polynomials,
         plane_strips,
     )
     from bezstab.methods.shared_factors import fixed_poles, reduced_table, without_shared_factor
@@ -71,7 +71,6 @@ if TYPE_CHECKING:
     from bezstab.methods.step_matrices import (
         StepMatrix,
         StepPolynomial,
-        matrix_product,
         polynomial_determinant,
         polynomial_product,
         step_matrix,

@@ -41,17 +41,12 @@ def closed_loop_polynomial(method: Method) -> sp.Poly:
     Paper Eq. 17 for B2; for a multistep method it is rho^2 + alpha_hat rho sigma + beta_hat sigma^2. Monic in z for an
     explicit method; else its leading coefficient is one at alpha_hat = beta_hat = 0.
     """
-    return plane_polynomial(closed_loop_table(method))
-
-
-def plane_polynomial(table: PlaneTable) -> sp.Poly:
-    """Return a table as a polynomial in z over QQ[alpha_hat, beta_hat]."""
     plane = sp.QQ[ALPHA_HAT, BETA_HAT]
     by_power = {
         (k,): plane.ring.from_dict({
             (i, j): in_field(c) for i, row in enumerate(in_plane) for j, c in enumerate(row) if c
         })
-        for k, in_plane in enumerate(table)
+        for k, in_plane in enumerate(closed_loop_table(method))
     }  # fmt: skip
     return sp.Poly.from_dict({power: c for power, c in by_power.items() if c}, Z, domain=plane)
 
@@ -95,14 +90,6 @@ def _whole_planes(method: Method) -> tuple[list[list[list[int]]], int]:
 def _whole_powers(number: Fraction, most: int) -> list[int]:
     """Return d^most number^k for k = 0 to `most`, d its denominator: whole numbers, whose sums are fast."""
     return [number.numerator**k * number.denominator ** (most - k) for k in range(most + 1)]
-
-
-def feedback_matrix(method: Method) -> tuple[tuple[Fraction, Fraction], tuple[Fraction, Fraction]]:
-    """Return the 2x2 matrix that takes (alpha_hat, beta_hat) to the coefficients of mu^1 and mu^0 in the feedback.
-
-    mu^2 + alpha_hat mu + beta_hat = 0 for a step of h, so that the parameters of the method's own step stand in it.
-    """
-    return (method.step_multiple, Fraction(0)), (Fraction(0), method.step_multiple**2)
 
 
 def branch_polynomial(method: Method) -> tuple[Fraction, ...]:

@@ -24,9 +24,9 @@ Where a crossing comes to at a strip's end, a number or an infinite alpha_hat, a
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cache
+from functools import cache, reduce
 from itertools import combinations, pairwise
-from math import inf
+from math import ceil, floor, inf
 from typing import Any
 
 import sympy as sp
@@ -34,7 +34,9 @@ from sympy.polys.matrices import DomainMatrix
 from sympy.polys.rings import PolyElement
 
 from bezstab.errors import NumericalError
-from bezstab.methods.root_isolation import BITS, WholePolynomial, real_roots, size_in_bits, whole_coefficients
+from bezstab.methods.determinants import as_fraction, in_field
+from bezstab.methods.polynomials import horner, without_zeros
+from bezstab.methods.root_isolation import BITS, WholePolynomial, real_roots, shifted, size_in_bits, whole_coefficients
 from bezstab.methods.schemes import Method
 from bezstab.methods.schur import is_schur
 from bezstab.methods.shared_factors import reduced_table
@@ -93,21 +95,22 @@ def plane_strips(method: Method, level: Fraction) -> PlaneStrips | None:
     NumericalError where numbers have so many digits that it would take minutes.
     """
     coefficients = _coefficients(reduced_table(method), level)
-    in_ring = [RING.from_sympy(coefficient.as_expr()) for coefficient in coefficients]
-    edges = [sp.Poly(RING.to_sympy(edge), A, B, domain=sp.QQ) for edge in crossing_polynomials(in_ring, RING)]
-    if any(not edge for edge in edges):
+    edges = crossing_polynomials(coefficients, RING)
+    if not all(edges):
         return None  # a pair z_i z_j = r^2, or a root +-r, everywhere
-    factors = _factors(edges)
+    factors = _factors([sp.Poly.from_dict(dict(edge), A, B, domain=sp.QQ) for edge in edges])
     _refuse_what_takes_minutes(factors, method, level)
     curves = [factor for factor in factors if factor.degree(A) > 0]
     levels, lost = _levels(factors, curves)
     between = _between(list(levels))
     ends = [None, *levels, None]
     tables = tuple(_table(curve) for curve in curves)
+    planes = [_table(coefficient) for coefficient in coefficients]
     strips = []
     for (low, high), beta_hat in zip(pairwise(ends), between, strict=True):
-        crossings, places = _crossings(curves, beta_hat)
-        stable = tuple(is_schur(_at(coefficients, alpha_hat, beta_hat)) for alpha_hat in _between(places))
+        crossings, places = _crossings(tables, beta_hat)
+        lines = [[horner(row, beta_hat) for row in plane] for plane in planes]  # by powers of alpha_hat
+        stable = tuple(is_schur([horner(line, alpha_hat) for line in lines]) for alpha_hat in _between(places))
         limits = {}
         if any(stable):
             at_low = _limits(tables, lost, crossings, beta_hat, low, sign=-1)
@@ -117,42 +120,21 @@ def plane_strips(method: Method, level: Fraction) -> PlaneStrips | None:
     return PlaneStrips(tables, tuple(strips), tuple(lost))
 
 
-def _coefficients(table: Iterable[CurveTable], level: Fraction) -> list[sp.Poly]:
+def _coefficients(table: Iterable[CurveTable], level: Fraction) -> list[PolyElement]:
     """Return the coefficients of P(level z), ascending, without a factor that all of them share."""
-    coefficients = []
-    for k, in_plane in enumerate(table):
-        terms = {
-            (i, j): sp.Rational(c.numerator, c.denominator) * sp.Rational(level.numerator, level.denominator) ** k
-            for i, row in enumerate(in_plane)
-            for j, c in enumerate(row)
-            if c
-        }
-        coefficients.append(sp.Poly(terms or {(0, 0): 0}, A, B, domain=sp.QQ))
-    shared = coefficients[-1]
-    for coefficient in coefficients[:-1]:
-        shared = sp.gcd(shared, coefficient)
+    coefficients = [
+        RING.ring.from_dict({
+            (i, j): in_field(c * level**k) for i, row in enumerate(in_plane) for j, c in enumerate(row) if c
+        })
+        for k, in_plane in enumerate(table)
+    ]  # fmt: skip
+    shared = reduce(RING.gcd, coefficients)
     return [coefficient.exquo(shared) for coefficient in coefficients]
 
 
-def _at(coefficients: list[sp.Poly], alpha_hat: Fraction, beta_hat: Fraction) -> list[Fraction]:
-    """Return the coefficients at a point, ascending in z."""
-    return [_value(_table(coefficient), alpha_hat, beta_hat) for coefficient in coefficients]
-
-
-def _value(table: CurveTable, alpha_hat: Fraction, beta_hat: Fraction) -> Fraction:
-    total = ZERO
-    for row in reversed(table):
-        in_beta = ZERO
-        for c in reversed(row):
-            in_beta = in_beta * beta_hat + c
-        total = total * alpha_hat + in_beta
-    return total
-
-
-@cache
-def _table(polynomial: sp.Poly) -> CurveTable:
-    terms = {powers: Fraction(int(c.p), int(c.q)) for powers, c in polynomial.terms()}
-    highest = [max(powers[axis] for powers in terms) for axis in (0, 1)]
+def _table(polynomial: sp.Poly | PolyElement) -> CurveTable:
+    terms = {powers: as_fraction(c) for powers, c in polynomial.terms()}
+    highest = [max((powers[axis] for powers in terms), default=0) for axis in (0, 1)]
     return tuple(tuple(terms.get((i, j), ZERO) for j in range(highest[1] + 1)) for i in range(highest[0] + 1))
 
 
@@ -241,9 +223,11 @@ def _primitive(polynomial: sp.Poly) -> sp.Poly:
 def _levels(factors: list[sp.Poly], curves: list[sp.Poly]) -> tuple[list[Fraction], list[dict[Fraction, int]]]:
     """Return the ascending beta_hat at which the crossings may change, and for each curve those where some are lost."""
     in_beta = [sp.Poly(factor.as_expr(), B) for factor in factors if factor.degree(A) == 0]
-    for curve in curves:
-        in_beta.append(_leading(curve))
-        in_beta.append(sp.Poly(curve.discriminant().as_expr(), B))
+    by_power = [
+        [sp.Poly(c, B) for c in sp.Poly(curve.as_expr(), A).all_coeffs()] for curve in curves
+    ]  # the highest first
+    in_beta += [top[0] for top in by_power]
+    in_beta += [sp.Poly(curve.discriminant().as_expr(), B) for curve in curves]
     for first, second in combinations(curves, 2):
         in_beta.append(sp.Poly(first.resultant(second).as_expr(), B))
     different: dict[WholePolynomial, None] = {}
@@ -253,9 +237,8 @@ def _levels(factors: list[sp.Poly], curves: list[sp.Poly]) -> tuple[list[Fractio
     roots = {factor: real_roots(factor) for factor in different if len(factor) > 1}
     levels = sorted(root for found in roots.values() for root in found)
     lost = []
-    for curve in curves:
+    for top in by_power:
         of_curve = {}
-        top = [sp.Poly(c, B) for c in sp.Poly(curve.as_expr(), A).all_coeffs()]
         for factor, _ in top[0].factor_list()[1]:
             number = 0  # of leading coefficients that vanish together
             while number < len(top) and (top[number].is_zero or top[number].rem(factor).is_zero):
@@ -265,19 +248,11 @@ def _levels(factors: list[sp.Poly], curves: list[sp.Poly]) -> tuple[list[Fractio
     return levels, lost
 
 
-def _leading(curve: sp.Poly) -> sp.Poly:
-    return sp.Poly(sp.Poly(curve.as_expr(), A).LC(), B)
-
-
 def _between(ascending: list[Fraction]) -> list[Fraction]:
     """Return a number below all, one between each two, and one above all, with short numerators."""
     if not ascending:
         return [ONE]
-    below, above = Fraction(int(ascending[0]) - 1), Fraction(int(ascending[-1]) + 1)
-    if below >= ascending[0]:
-        below -= 1
-    if above <= ascending[-1]:
-        above += 1
+    below, above = Fraction(floor(ascending[0]) - 1), Fraction(ceil(ascending[-1]) + 1)
     return [below, *(_shortest_between(low, high) for low, high in pairwise(ascending)), above]
 
 
@@ -287,15 +262,16 @@ def _shortest_between(low: Fraction, high: Fraction) -> Fraction:
     return Fraction(round((low + high) / 2 * (1 << bits)), 1 << bits)
 
 
-def _crossings(curves: list[sp.Poly], beta_hat: Fraction) -> tuple[tuple[Crossing, ...], list[Fraction]]:
+def _polynomial(ascending: Sequence[Fraction]) -> sp.Poly:
+    """Return the polynomial in alpha_hat with these coefficients."""
+    return sp.Poly([in_field(c) for c in reversed(ascending)], A, domain=sp.QQ)
+
+
+def _crossings(curves: Sequence[CurveTable], beta_hat: Fraction) -> tuple[tuple[Crossing, ...], list[Fraction]]:
     """Return the crossings with a line between levels, from left to right, and numbers that are in their order."""
-    lines = []
-    for curve in curves:
-        table = _table(curve)
-        values = [_value((row,), ZERO, beta_hat) for row in table]
-        lines.append(sp.Poly([sp.Rational(v.numerator, v.denominator) for v in reversed(values)], A, domain=sp.QQ))
     found = []
-    for number, line in enumerate(lines):
+    for number, curve in enumerate(curves):
+        line = _polynomial([horner(row, beta_hat) for row in curve])
         for k, root in enumerate(real_roots(whole_coefficients(line))):
             found.append((root, (number, k)))
     found.sort()
@@ -333,10 +309,10 @@ def _limits(
         if level is None:
             in_t = _towards_infinity(tables[number], sign)
             most = 1 / max(ONE, sign * inside)
-            at_end = _without_zeros([row[0] for row in in_t])
-            roots = _real_roots_of(at_end)
+            at_end = without_zeros([row[0] for row in in_t])
+            roots = list(real_roots(whole_coefficients(_polynomial(at_end).sqf_part())))
         elif level in lost[number]:
-            in_t = [_shifted(row, level, -sign) for row in tables[number]]
+            in_t = [[c * (-sign) ** k for k, c in enumerate(shifted(row, level))] for row in tables[number]]
             most = abs(inside - level)
             at_end = [row[0] for row in in_t[: len(in_t) - lost[number][level]]]
             roots = []
@@ -346,8 +322,9 @@ def _limits(
         beyond = 1 + max((abs(c / at_end[-1]) for c in at_end[:-1]), default=ZERO)  # Cauchy's bound of the roots
         fences = [-beyond, *(_shortest_between(*pair) for pair in pairwise(roots)), beyond]
         places: list[Limit] = [-inf, *map(float, roots), inf] if roots else [-inf, None, inf]
-        line = _line_at(in_t, min([most, *(_free_of_crossings(in_t, fence) for fence in fences)]))
-        left_of = [int(line.count_roots(None, sp.Rational(f.numerator, f.denominator))) for f in fences]
+        t = min([most, *(_free_of_crossings(in_t, fence) for fence in fences)])
+        line = _polynomial([horner(row, t) for row in in_t])
+        left_of = [int(line.count_roots(None, in_field(fence))) for fence in fences]
         for k in range(count):
             limits[number, k] = places[sum(left <= k for left in left_of)]
     return limits
@@ -358,36 +335,8 @@ def _towards_infinity(table: CurveTable, sign: int) -> list[list[Fraction]]:
     return [[c * sign**j for j, c in enumerate(row)][::-1] for row in table]
 
 
-def _shifted(row: Iterable[Fraction], level: Fraction, sign: int) -> list[Fraction]:
-    """Return a polynomial in beta_hat at level + sign t, in ascending powers of t."""
-    shifted: list[Fraction] = []
-    for c in reversed(tuple(row)):  # Horner's scheme: multiply by the sum, add the next
-        by_level = [level * each for each in shifted] + [ZERO]
-        by_t = [ZERO] + [sign * each for each in shifted]
-        shifted = [a + b for a, b in zip(by_level, by_t, strict=True)]
-        shifted[0] += c
-    return shifted
-
-
-def _without_zeros(ascending: list[Fraction]) -> list[Fraction]:
-    degree = max(power for power, c in enumerate(ascending) if c)
-    return ascending[: degree + 1]
-
-
-def _real_roots_of(ascending: list[Fraction]) -> list[Fraction]:
-    """Return the different real roots of a polynomial, ascending."""
-    polynomial = sp.Poly([sp.Rational(c.numerator, c.denominator) for c in reversed(ascending)], A, domain=sp.QQ)
-    return list(real_roots(whole_coefficients(polynomial.sqf_part())))
-
-
 def _free_of_crossings(in_t: list[list[Fraction]], alpha_hat: Fraction) -> Fraction:
     """Return a t > 0 up to which a curve does not pass this alpha_hat, by Cauchy's bound of the inverse roots."""
-    first, *others = [_value((column,), ZERO, alpha_hat) for column in zip(*in_t, strict=True)]
+    first, *others = [horner(column, alpha_hat) for column in zip(*in_t, strict=True)]
     bound = abs(first) / (abs(first) + max(map(abs, others), default=ZERO))
     return Fraction(2) ** (size_in_bits(bound) - 1)  # a short number
-
-
-def _line_at(in_t: list[list[Fraction]], t: Fraction) -> sp.Poly:
-    """Return the polynomial in alpha_hat of a curve at one t."""
-    values = [_value((tuple(row),), ZERO, t) for row in in_t]
-    return sp.Poly([sp.Rational(v.numerator, v.denominator) for v in reversed(values)], A, domain=sp.QQ)

@@ -35,6 +35,11 @@ def lagrange_integral(node: Fraction | int, others: Sequence[Fraction | int], en
     return sum((a * end ** (k + 1) / (k + 1) for k, a in enumerate(ascending)), Fraction(0))
 
 
+def without_zeros(ascending: Polynomial) -> list[Fraction]:
+    """Return the coefficients without the zeros at their end."""
+    return list(ascending[: max(k for k, c in enumerate(ascending) if c) + 1])
+
+
 def trimmed(polynomial: Polynomial) -> list[Fraction]:
     """Return the monic polynomial with the same roots, leading zeros dropped; ZeroDivisionError for zero."""
     p = list(polynomial)

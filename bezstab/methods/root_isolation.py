@@ -10,6 +10,7 @@ from fractions import Fraction
 from functools import cache
 from itertools import pairwise
 from math import ceil, floor, gcd
+from typing import TypeVar
 
 import sympy as sp
 
@@ -18,6 +19,8 @@ from bezstab.rationals import bisected_integers, whole_multiples
 
 BITS = 70  # of a root, relative: float64 has 53
 SHORT = 2**24  # denominators up to it are tried for a root that is known to 70 bits: one that fits is no chance
+
+Number = TypeVar("Number", int, Fraction)
 
 WholePolynomial = tuple[int, ...]
 """Whole coefficients without a common factor, ascending powers, the last positive."""
@@ -79,8 +82,8 @@ def _isolated(whole: Sequence[int], low: Fraction, high: Fraction) -> list[tuple
     scale = low.denominator * high.denominator
     start, width = int(low * scale), int((high - low) * scale)
     n = len(whole) - 1
-    of_scaled = _shifted([c * scale ** (n - k) for k, c in enumerate(whole)], start)  # in scale x - start
-    in_y = _shifted([c * width**k for k, c in enumerate(of_scaled)][::-1], 1)  # times (1 + y)^n
+    of_scaled = shifted([c * scale ** (n - k) for k, c in enumerate(whole)], start)  # in scale x - start
+    in_y = shifted([c * width**k for k, c in enumerate(of_scaled)][::-1], 1)  # times (1 + y)^n
     changes = sum(one != other for one, other in pairwise(c > 0 for c in in_y if c))
     if changes > 1:
         middle = (low + high) / 2
@@ -89,13 +92,13 @@ def _isolated(whole: Sequence[int], low: Fraction, high: Fraction) -> list[tuple
     return [*at_low, (low, high)] if changes else at_low
 
 
-def _shifted(ascending: Sequence[int], by: int) -> list[int]:
+def shifted(ascending: Sequence[Number], by: Number) -> list[Number]:
     """Return the polynomial in x of p(x + by)."""
-    shifted = list(ascending)
-    for k in range(len(shifted) - 1):
-        for j in range(len(shifted) - 2, k - 1, -1):
-            shifted[j] += by * shifted[j + 1]
-    return shifted
+    moved = list(ascending)
+    for k in range(len(moved) - 1):
+        for j in range(len(moved) - 2, k - 1, -1):
+            moved[j] += by * moved[j + 1]
+    return moved
 
 
 def _refined(whole: WholePolynomial, low: Fraction, high: Fraction) -> Fraction:

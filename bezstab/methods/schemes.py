@@ -22,7 +22,14 @@ from functools import cached_property
 from itertools import zip_longest
 
 from bezstab.errors import InputError
-from bezstab.methods.polynomials import MuTable, PlaneTable, Polynomial, polynomial_gcd, quotient_and_remainder
+from bezstab.methods.polynomials import (
+    MuTable,
+    PlaneTable,
+    Polynomial,
+    polynomial_gcd,
+    quotient_and_remainder,
+    without_zeros,
+)
 from bezstab.methods.schur import recursion_verdict
 from bezstab.methods.second_order import SecondOrder
 from bezstab.methods.step_equations import (
@@ -233,7 +240,7 @@ class RungeKutta(FirstOrder):
 
         less_weights = [[a - b for a, b in zip(row, self.weights, strict=True)] for row in self.tableau]
         # det(I - mu M) is the characteristic polynomial of M backwards
-        above, below = (_without_zeros(characteristic(each)[::-1]) for each in (less_weights, self.tableau))
+        above, below = (without_zeros(characteristic(each)[::-1]) for each in (less_weights, self.tableau))
         unused = polynomial_gcd(above, below)
         above, below = ([c * unused[0] for c in quotient_and_remainder(each, unused)[0]] for each in (above, below))
         columns = list(zip_longest(above, below, fillvalue=ZERO))
@@ -275,11 +282,6 @@ def _one(name: str, step: int) -> Combination:
 
 def _sum(terms: list[tuple[Fraction, Quantity]]) -> Combination:
     return tuple((coefficient, quantity) for coefficient, quantity in terms if coefficient)
-
-
-def _without_zeros(ascending: list[Fraction]) -> list[Fraction]:
-    """Return coefficients without the zeros at their end."""
-    return ascending[: max(k for k, c in enumerate(ascending) if c) + 1]
 
 
 Scheme = LinearMultistep | PredictorCorrector | RungeKutta | SecondOrder

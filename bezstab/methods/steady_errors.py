@@ -32,7 +32,7 @@ nothing, and R_0 + R_1 theta + ... the response of x to accelerations of the eva
 what is forced.
 """
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cache
@@ -131,8 +131,8 @@ def forced_errors(method: Method) -> ForcedErrors:
     unforced = _determinant(step)
     return ForcedErrors(
         method=method,
-        position=_sum([*_times_forcing(_determinant(step, POSITION, alike)), (0, (0, 0), -ONE, unforced)]),
-        velocity=_sum([*_times_forcing(_determinant(step, VELOCITY, alike)), (1, (0, 0), -ONE, unforced)]),
+        position=_forced_less(_determinant(step, POSITION, alike), unforced, power=0),
+        velocity=_forced_less(_determinant(step, VELOCITY, alike), unforced, power=1),
         denominator=unforced,
         rounding=ZERO if method.digits is None else Fraction(1, 10 ** (method.digits - KEPT_DIGITS)),
     )
@@ -223,21 +223,14 @@ def _in_h(polynomial: PlanePolynomial, multiple: Fraction, power: int) -> PlaneP
     return {(i, j): c * multiple ** (power + i + 2 * j) for (i, j), c in polynomial.items()}
 
 
-Summand = tuple[int, Powers, Fraction, ExponentialSum]
-"""A power of theta, powers of alpha_hat and beta_hat and a factor, by which a sum is multiplied."""
+def _forced_less(forced: ExponentialSum, unforced: ExponentialSum, power: int) -> ExponentialSum:
+    """Return F times one sum, F = theta^2 + alpha_hat theta + beta_hat, less theta^power times another.
 
-
-def _times_forcing(terms: ExponentialSum) -> Iterator[Summand]:
-    """Yield F = theta^2 + alpha_hat theta + beta_hat times a sum."""
-    yield 2, (0, 0), ONE, terms
-    yield 1, (1, 0), ONE, terms
-    yield 0, (0, 1), ONE, terms
-
-
-def _sum(summands: Iterable[Summand]) -> ExponentialSum:
-    """Return the sum of products; like terms are added up, and those that cancel are left out."""
+    Like terms are added up, and those that cancel are left out.
+    """
+    by_forcing = [(forced, 2, (0, 0), ONE), (forced, 1, (1, 0), ONE), (forced, 0, (0, 1), ONE)]
     total: ExponentialSum = {}
-    for by_theta, (by_alpha, by_beta), factor, terms in summands:
+    for terms, by_theta, (by_alpha, by_beta), factor in [*by_forcing, (unforced, power, (0, 0), -ONE)]:
         for (i, j), of_powers in terms.items():
             sum_so_far = total.setdefault((i + by_alpha, j + by_beta), {})
             for (k, m), c in of_powers.items():

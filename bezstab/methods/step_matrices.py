@@ -131,12 +131,6 @@ def _ends_with_its_acceleration(scheme: SecondOrder) -> bool:
     return Evaluation(Quantity(ACCELERATION, 1), *at_end) in scheme.equations
 
 
-def matrix_product(first: list[list[Fraction]], second: list[list[Fraction]]) -> list[list[Fraction]]:
-    """Return the product of two square matrices, exact."""
-    columns = list(zip(*second, strict=True))
-    return [[sum((a * b for a, b in zip(row, c, strict=True)), ZERO) for c in columns] for row in first]
-
-
 def polynomial_product(first: StepPolynomial, second: StepPolynomial) -> StepPolynomial:
     """Return the product of two polynomials in s, exact, coefficients ascending."""
     product = [ZERO] * (len(first) + len(second) - 1)

@@ -5,29 +5,27 @@ from typing import TYPE_CHECKING
 
 import click
 
-from bezstab.cli.options import compiled_option, format_option
-from bezstab.cli.output import Files, picture_options, progress, show_blocks, show_rows, write_file
+from bezstab.cli.options import command, option
+from bezstab.cli.output import Files, chosen_format, for_reading, progress, show_blocks, show_rows, write_file
 from bezstab.files import output_directory
 from bezstab.paper.printed import PARTS
 
 if TYPE_CHECKING:  # so that `bezstab --help`, which lists this command, loads nothing that computes or draws
     from bezstab.paper.findings import Finding
     from bezstab.paper.reports import Report
-    from bezstab.show import Format
 
 
-@click.command()
-@click.option(
-    "--only",
-    metavar="PART",
-    type=click.Choice(PARTS),
-    multiple=True,
-    help="One of table1 to table6 and fig1 to fig9. Repeatable.",
+@command(
+    option(
+        "--only",
+        click.Choice(PARTS),
+        "One of table1 to table6 and fig1 to fig9. Repeatable.",
+        metavar="PART",
+        multiple=True,
+    ),
+    *("compiled", "picture", "form"),
 )
-@compiled_option
-@picture_options
-@format_option
-def paper(only: tuple[str, ...], files: Files, form: "Format") -> None:
+def paper(only: tuple[str, ...], files: Files) -> None:
     """Regenerate the paper's tables and figures, and test its claims.
 
     Writes Tables 1 to 6 as paper_table1.md and so on, Figures 1 to 9 as paper_fig1a.png and so on, and, unless --only
@@ -45,12 +43,12 @@ def paper(only: tuple[str, ...], files: Files, form: "Format") -> None:
             continue
         report = subject.report(progress)
         write_parts(report, wanted, files)
-        if report.aside and form in ("text", "markdown"):
+        if report.aside and for_reading():
             click.echo(f"{report.aside}\n")
         findings += report.findings
     if not only:
         write_text(files.output / "LEDGER.md", ledger_text(findings))
-    show_findings(findings, form)
+    show_findings(findings)
 
 
 def write_parts(report: "Report", wanted: set[str], files: Files) -> None:
@@ -68,13 +66,13 @@ def write_text(path: Path, text: str) -> None:
     write_file(path, lambda file: file.write(text.encode()))
 
 
-def show_findings(findings: "list[Finding]", form: "Format") -> None:
+def show_findings(findings: "list[Finding]") -> None:
     """Print what came out; as text one claim below the other, as a table of them is too wide for any terminal."""
     from bezstab.paper.ledger import finding_rows
     from bezstab.show import CLAIMS
 
     rows = finding_rows(findings)
-    if form == "text":
+    if chosen_format() == "text":
         show_blocks(rows, CLAIMS.columns(rows), CLAIMS.sentence)
     else:
-        show_rows(CLAIMS, rows, form)
+        show_rows(CLAIMS, rows)

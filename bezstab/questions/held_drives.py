@@ -49,23 +49,49 @@ SETTLED = 9.2334
 
 @dataclass(frozen=True, kw_only=True)
 class HeldQuestion:
-    """Is a drive safe whose torque is computed every few steps of h (s) and applied late? `methods` as DRIVE_METHODS.
+    """Is a drive safe whose torque is computed every few steps of h (s) and applied late?
 
-    InputError for a step that is not positive, and for a method that is no way of applying a drive.
+    Without `methods` all ways of applying a drive are asked about. InputError for a step that is not positive, and for
+    a method that is no way of applying a drive.
     """
 
     drive: Drive
     h: Fraction
     timing: Timing
-    methods: tuple[Method, ...] = tuple(map(lookup, DRIVE_METHODS))
+    methods: tuple[Method, ...] = ()
 
     def __post_init__(self) -> None:
         check_step(self.h, "h")
+        object.__setattr__(self, "methods", self.methods or tuple(map(lookup, DRIVE_METHODS)))
         for method in self.methods:
             if method.name not in DRIVE_METHODS:
                 raise InputError(
                     f"--method {method.name}: expected a way of applying a drive, {', '.join(DRIVE_METHODS)}"
                 )
+
+
+def held_question(
+    drive: Drive,
+    h: Fraction | None,
+    methods: tuple[Method, ...] = (),
+    *,
+    every: int | None = None,
+    late: Fraction | None = None,
+    filter_seconds: Fraction | None = None,
+) -> HeldQuestion:
+    """Return the question for a torque that is computed `every` so many steps, is so many steps `late`, and so on.
+
+    What is not given is as in a controller that is as fast as the physics. The time constant of the filter is in s.
+    InputError as `HeldQuestion` and `Timing`, and without a step.
+    """
+    if h is None:
+        raise InputError("--pd needs --h: the step in s")
+    check_step(h, "h")
+    seconds = filter_seconds or Fraction(0)
+    if seconds < 0:
+        raise InputError(f"--filter {float(seconds):g}: expected 0 s or more")
+    timing = Timing(1 if every is None else every, late or Fraction(0), seconds / h)
+    return HeldQuestion(drive=drive, h=h, timing=timing, methods=methods)
 
 
 @dataclass(frozen=True, repr=False)

@@ -9,7 +9,7 @@ from fractions import Fraction
 from functools import cached_property
 
 from bezstab.engines import Point
-from bezstab.errors import InputError
+from bezstab.errors import InputError, NumericalError
 from bezstab.evidence import (
     Likeness,
     LikePoint,
@@ -162,6 +162,16 @@ def log_answers(question: LogQuestion) -> Iterator[ColumnAnswer]:
         names = [log.columns[place] for place in group]
         other = None if minus is None else _columns_called(names, minus, log, group)
         yield ColumnAnswer(question, ", ".join(names), probed_pole(log.values[:, group], other))
+
+
+def check_told(found: Sequence[ColumnAnswer]) -> None:
+    """Raise NumericalError, which says why, if no column tells a pole that fits."""
+    untold = [f"{answer.column}: {answer.found.reason}" for answer in found if not answer.told]
+    unfit = [answer.column for answer in found if answer.told and not answer.fits]
+    if len(untold) + len(unfit) == len(found):
+        failures = [f"no pole can be told: {'; '.join(untold)}"] if untold else []
+        failures += [f"nothing fits {', '.join(unfit)}"] if unfit else []
+        raise NumericalError("; ".join(failures))
 
 
 def _columns_called(names: Sequence[str], other: Log, log: Log, places: Sequence[int]) -> FloatArray:

@@ -1,6 +1,5 @@
 """The motion that a question is about: how fast it is, and how the constraints of a scene turn with it."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -13,7 +12,6 @@ from bezstab.mechanism import (
     compiled_mechanism,
     constraint_motion,
     load_scene,
-    regular_motion,
     turning_normals,
 )
 from bezstab.rationals import exact, typed_number
@@ -91,17 +89,6 @@ def name_of(scene: str | Scene) -> str:
 def scene_at_speed(scene: str | Scene, speed: Fraction) -> Scene:
     """Return a scene, loaded where its name or file is given, so many times as fast; errors as `load_scene`."""
     return at_speed(load_scene(scene) if isinstance(scene, str) else scene, float(speed))
-
-
-def turning_stages(scene: str | Scene, speed: Fraction) -> tuple[str, list[Callable[[], object]]]:
-    """Return a scene's name and the stages of finding how its normals turn; each keeps its result for the next."""
-    moving = scene_at_speed(scene, speed)
-    stages: list[Callable[[], object]] = [
-        lambda: compiled_mechanism(moving),
-        lambda: regular_motion(compiled_mechanism(moving), moving.duration),
-        lambda: turning_normals(compiled_mechanism(moving), moving.duration),
-    ]
-    return moving.name, stages
 
 
 def turning_of(scene: str | Scene | None, speed: Fraction, h: Fraction | None) -> TurningNormals | None:

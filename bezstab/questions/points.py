@@ -1,12 +1,16 @@
 """How a point is given: alpha_hat and beta_hat, an engine's own values, or a drive's gains."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import Literal
 
 from bezstab.engines import Drive, Engine, Point
 from bezstab.errors import InputError
-from bezstab.units import feedback_gains
+from bezstab.methods import Method
+from bezstab.stability import verdict
+from bezstab.units import feedback_gains, to_dimensionless
 
 SAME_GAINS = 1e-9
 """Of gains in 1/s and 1/s^2: roots and powers that engines take are rounded to float64."""
@@ -67,3 +71,31 @@ def engine_holds(
         f"--h-min: {engine.name} makes of these values neither the same α and β nor the same α̂ and β̂ at steps of "
         f"{float(shorter):g} and {float(longer):g} s; with --hold, what it makes of them at --h is asked about"
     )
+
+
+LARGE = 10
+"""From this alpha_hat or beta_hat on, 1/s was probably meant: as alpha_hat it leaves e^-5 of an error after a step."""
+
+
+def meant_in_seconds(
+    methods: Sequence[Method], point: Point, h: Fraction | None
+) -> Literal["at this step", "at another step"] | None:
+    """Return whether numbers that were given as alpha_hat and beta_hat look like alpha and beta in 1/s.
+
+    They do if no method is stable there, and all methods are stable at alpha and beta in 1/s for the step h (s). They
+    also do if no method is stable and one of the numbers is LARGE.
+    """
+    if not methods or max(point) < 1 or any(verdict(method, *point) == "converges" for method in methods):
+        return None
+    if h is not None and _all_stable(methods, point, h):
+        return "at this step"
+    return "at another step" if max(point) > LARGE else None
+
+
+def _all_stable(methods: Sequence[Method], point: Point, h: Fraction) -> bool:
+    """Return whether alpha and beta in 1/s are stable with every method at a step of h (s)."""
+    try:
+        alpha_hat, beta_hat = to_dimensionless(*point, h)
+    except InputError:  # out of range: not meant
+        return False
+    return all(verdict(method, alpha_hat, beta_hat) == "converges" for method in methods)

@@ -69,6 +69,8 @@ class RunQuestion:
             check_projected(self.method)
         if self.sequence:
             check_one_step(self.method)
+        elif self.hold:
+            raise InputError("--hold needs --steps: it is about steps that vary")
         if (self.point is None) == (self.stabilise == "baumgarte"):
             raise InputError("--alpha and --beta are those of feedback: they go with --stabilise baumgarte")
 

@@ -133,13 +133,17 @@ class TradeQuestion:
         return with_fronts(list(runs), self.reference.error, self.against)
 
     def sentences(self, swept: SweptRuns, tolerance: float) -> list[str]:
-        """Return in words what runs within a tolerance (m, rad) cost, and which methods win."""
+        """Return in words what runs are compared with, what those within a tolerance (m, rad) cost, and who wins."""
+        said = [f"The reference is known to {swept.reference_error:.0e} (m, rad)."]
+        if self.rate is not None:
+            rate = f"ω = {float(self.rate):.3g} 1/s"
+            said.append(f"Each point is the choice of the goal accurate for a motion with {rate}.")
         if self.against == "projection":
-            return projection_sentences(swept.runs, swept.reference_error)
+            return said + projection_sentences(swept.runs, swept.reference_error)
         held: Held = "alpha and beta" if self.physical else "alpha_hat and beta_hat"
         if self.numbers is None:
             held = "own choice" if swept.runs[0].advised else "no feedback"
-        return sweep_sentences(swept.runs, tolerance, held)
+        return said + sweep_sentences(swept.runs, tolerance, held)
 
 
 @dataclass(frozen=True, kw_only=True)

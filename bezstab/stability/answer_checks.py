@@ -59,7 +59,7 @@ def sampled_points(extent: Extent, alpha_hat: float, beta_hat: float) -> tuple[F
 
 def check_deadbeat(pencil: Pencil, alpha_hat: float, beta_hat: float) -> None:
     """Raise NumericalError unless every pole of a one-step method is zero, to rounding, at its best point."""
-    mu_abs = np.sqrt(abs(pencil.to_feedback[1] @ (alpha_hat, beta_hat)))
+    mu_abs = pencil.multiple * np.sqrt(abs(beta_hat))
     size = float(np.abs(pencil.table[0]) @ mu_abs ** np.arange(pencil.table.shape[1]))
     z_abs = float(largest_modulus(pencil, alpha_hat, beta_hat))
     if z_abs > 100 * np.sqrt(EPS) * size:  # a double mu splits by the root of rounding
@@ -93,8 +93,9 @@ def check_least(
 
     cut: only points within the extent are an answer.
     """
-    alpha_hats, beta_hats = _positive_samples(extent, alpha_hat, beta_hat, cut)
-    _compare(method, objective, alpha_hat, beta_hat, alpha_hats, beta_hats)
+    alpha_hats, beta_hats = sampled_points(extent, alpha_hat, beta_hat)
+    kept = np.logical_not(cut) | ((alpha_hats <= extent[0][1]) & (beta_hats <= extent[1][1]))
+    _compare(method, objective, alpha_hat, beta_hat, alpha_hats[kept], beta_hats[kept])
 
 
 def check_least_equal(
@@ -177,17 +178,6 @@ def check_gentle(method: Method, modulus: Modulus, alpha_hat: float, rate: float
         raise NumericalError(
             f"{method.name}: alpha_hat = {first:.9g} with alpha = beta is gentler than {alpha_hat:.9g}"
         )
-
-
-def _positive_samples(
-    extent: Extent, alpha_hat: float, beta_hat: float, cut: bool = False
-) -> tuple[FloatArray, FloatArray]:
-    """Return those of the sampled points with alpha, beta > 0; cut: within the extent."""
-    alpha_hats, beta_hats = sampled_points(extent, alpha_hat, beta_hat)
-    kept = (alpha_hats > 0) & (beta_hats > 0)
-    if cut:
-        kept &= (alpha_hats <= extent[0][1]) & (beta_hats <= extent[1][1])
-    return alpha_hats[kept], beta_hats[kept]
 
 
 def _compare(

@@ -124,7 +124,7 @@ def _deadbeat(pencil: Pencil) -> BestPoint | None:
 
 
 def _user_point(pencil: Pencil, mu: complex) -> tuple[float, float]:
-    alpha_hat, beta_hat = pencil.to_user @ np.array([-2 * mu.real, abs(mu) ** 2])
+    alpha_hat, beta_hat = pencil.user_points(mu, mu.conjugate())
     return float(alpha_hat), float(beta_hat)
 
 

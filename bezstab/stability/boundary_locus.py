@@ -35,7 +35,6 @@ from math import inf, isfinite, pi
 
 import numpy as np
 from numpy.polynomial.polynomial import polyval2d
-from numpy.typing import NDArray
 
 from bezstab.stability.arrays import DOUBLE, ROUNDING, SAME, BoolArray, ComplexArray, FloatArray
 from bezstab.stability.locus_tracks import Track, sampled_angles, tracks
@@ -52,38 +51,32 @@ AT_INFINITY = 1 / SAME  # a larger |mu| is the rounding of an infinite one
 Interval = tuple[float, float]
 
 
-def feedback_coefficients(first: NDArray[np.inexact], second: NDArray[np.inexact]) -> FloatArray:
-    """Return (-(mu_1 + mu_2), mu_1 mu_2), the coefficients of a feedback with these two roots; shape (points, 2)."""
-    return np.stack([-(first + second).real, (first * second).real], axis=-1)
-
-
 @dataclass(frozen=True, eq=False, repr=False)
 class Arc(Track):
     """A piece of one branch mu(theta) where it bounds S_r's upper half, sampled from end to end."""
 
     def plane(self) -> FloatArray:
-        """Return the samples in the plane of the feedback's coefficients (p, q); shape (samples, 2)."""
-        return feedback_coefficients(self.mu, self.mu.conj())
+        """Return alpha_hat and beta_hat at the samples; shape (samples, 2)."""
+        return self.pencil.user_points(self.mu, self.mu.conj())
 
-    def coordinate(self, theta: FloatArray, direction: FloatArray) -> FloatArray:
-        """Return direction . (p, q) = direction . (-2x, x^2 + y^2) of mu(theta) = x + iy for a row of theta."""
+    def coordinate(self, theta: FloatArray, axis: int) -> FloatArray:
+        """Return alpha_hat (axis 0) or beta_hat of mu(theta) for a row of theta."""
         mu = self.at(theta)
-        return np.asarray(feedback_coefficients(mu, mu.conj()) @ direction)
+        return self.pencil.user_points(mu, mu.conj())[:, axis]
 
-    def turns(self, direction: FloatArray) -> FloatArray:
-        """Return every theta where that coordinate turns: the same in a direction and its opposite, so found once."""
-        sign = -1.0 if tuple(direction) < (0.0, 0.0) else 1.0
-        return _turns(self, (float(sign * direction[0]), float(sign * direction[1])))
+    def turns(self, axis: int) -> FloatArray:
+        """Return every theta where that coordinate turns."""
+        return _turns(self, axis)
 
-    def furthest(self, direction: FloatArray) -> float:
-        """Return the largest value of that coordinate on the arc: at an end, or where it turns."""
-        candidates = np.append(self.theta[[0, -1]], self.turns(direction))
-        return float(self.coordinate(candidates, direction).max())
+    def ends_and_turns(self, axis: int) -> FloatArray:
+        """Return the values of that coordinate among which are its least and its largest."""
+        return self.coordinate(np.append(self.theta[[0, -1]], self.turns(axis)), axis)
 
     def area(self) -> float:
-        """Return the arc's contribution to the area of the image of S_r's upper half in the (p, q) plane.
+        """Return the arc's contribution to the area of the image of S_r's upper half, for a step of h.
 
-        (p, q) = (-2x, x^2 + y^2) has the Jacobian 4y, and by Green int int 4y dx dy = -closed int 2 y^2 dx.
+        (alpha_hat, beta_hat) = (-2x, x^2 + y^2) has the Jacobian 4y, and by Green int int 4y dx dy = -closed int
+        2 y^2 dx.
         """
         edges = np.unique(np.append(self.theta[::PANEL_SAMPLES], self.theta[-1]))
         (area,), _ = integrals(self._area_density, np.stack([edges[:-1], edges[1:]], axis=1))
@@ -100,10 +93,9 @@ class Arc(Track):
 
 
 @lru_cache  # a region asks for the same ones four times
-def _turns(arc: Arc, towards: tuple[float, float]) -> FloatArray:
+def _turns(arc: Arc, axis: int) -> FloatArray:
     """Return every theta where an arc's coordinate turns, by narrowing in on the samples where it does."""
-    direction = np.array(towards)
-    values = arc.plane() @ direction
+    values = arc.plane()[:, axis]
     turning = np.flatnonzero(np.diff(np.sign(np.diff(values)))) + 1
     if not turning.size:
         return np.empty(0)
@@ -112,7 +104,7 @@ def _turns(arc: Arc, towards: tuple[float, float]) -> FloatArray:
     high = arc.theta[np.minimum(turning + 1, len(arc.theta) - 1)]
 
     def below_the_turn(theta: FloatArray) -> FloatArray:
-        return -upwards * arc.coordinate(theta.ravel(), direction).reshape(theta.shape)
+        return -upwards * arc.coordinate(theta.ravel(), axis).reshape(theta.shape)
 
     theta, _ = least_between(below_the_turn, low, high)
     return theta

@@ -62,7 +62,7 @@ def chart_of(pencil: AnyPencil, stable: Region, finer: int = 1) -> Chart:
 def _mu_chart(pencil: Pencil, stable: Region, points: int) -> Chart:
     assert stable.view
     seen = np.concatenate(stable.boundary) if stable.bounded else np.array(list(product(*stable.view)))
-    corners = np.abs(seen @ pencil.to_feedback.T)
+    corners = np.abs(seen * [pencil.multiple, pencil.multiple**2])
     reach = float(np.max(corners[:, 0] + np.sqrt(corners[:, 1])))  # of both roots of the feedback
     rightmost = 0.0 if pencil.implicit else reach / 4
 
@@ -80,7 +80,7 @@ def _mu_chart(pencil: Pencil, stable: Region, points: int) -> Chart:
         return np.stack([x, np.abs(points[..., 1])], axis=-1)
 
     def user_point(place: Place) -> tuple[float, float]:
-        alpha_hat, beta_hat = pencil.to_user @ np.array([-2 * place[0], place[0] ** 2 + place[1] ** 2])
+        alpha_hat, beta_hat = pencil.user_points(complex(*place), complex(*place).conjugate())
         return float(alpha_hat), float(beta_hat)
 
     axes = np.linspace(-reach, rightmost, points), np.linspace(0, reach, points)
@@ -93,8 +93,8 @@ def _plane_chart(pencil: PlanePencil, stable: Region, points: int) -> Chart:
     high = np.array([max(stable.view[0][1], 0.0), np.sqrt(max(stable.view[1][1], 0.0))])
     if not stable.bounded:
         high = np.maximum(high, FAR)
-    table = np.array(pencil.split)[..., 0]
-    tables = [np.moveaxis(each, 0, -1) for each in (table, polyder(table, axis=1), polyder(table, axis=2))]
+    slopes = (polyder(pencil.table, axis=axis) for axis in (1, 2))
+    tables = [np.moveaxis(each, 0, -1) for each in (pencil.table, *slopes)]
 
     def coefficients(x: float, y: float) -> ComplexArray:
         return np.array([polyval2d(x, y, each) for each in tables], complex)

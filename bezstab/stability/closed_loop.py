@@ -24,7 +24,7 @@ from bezstab.methods import (
     without_shared_factor,
 )
 from bezstab.stability.arrays import EPS, ComplexArray, FloatArray, real_array
-from bezstab.stability.exact_sums import feedback_discriminant, feedback_roots
+from bezstab.stability.exact_sums import feedback_discriminant
 from bezstab.stability.low_degrees import largest_quadratic_root, polynomial_of_pair
 from bezstab.stability.neighbourhoods import FEWEST, SIDE
 from bezstab.stability.pencils import Pencil, largest_root_in_z, pencil_of
@@ -151,9 +151,8 @@ def _write_largest_poles(
         _write_largest_of_one_step(pencil, alpha_hat, beta_hat, into=poles)
     elif poles.size >= FEWEST and pencil.degree <= MOST_FOLLOWED and _ordinary(alpha_hat, beta_hat):
         largest_plane_root(plane_pencil_of(pencil.method), alpha_hat, beta_hat, shape, into=poles)
-        p, q = (of_alpha * alpha_hat + of_beta * beta_hat for of_alpha, of_beta in pencil.to_feedback)
-        square = p * p / 4
-        close = np.flatnonzero(np.abs(square - q) <= CANCELS * square)  # P's roots would keep less than 12 digits
+        square = alpha_hat * alpha_hat / 4
+        close = np.flatnonzero(np.abs(square - beta_hat) <= CANCELS * square)  # P's roots keep less than 12 digits
         poles[close] = _largest_by_mu(pencil, alpha_hat[close], beta_hat[close])
     else:
         for i in range(0, poles.size, CHUNK):
@@ -167,12 +166,13 @@ def _write_largest_of_one_step(pencil: Pencil, alpha_hat: FloatArray, beta_hat: 
 
     From R at the sum and the product of both mu, as P's coefficients, of high degree, would lose digits.
     """
-    stability_function = (-pencil.table[0] / pencil.table[1, 0]).tolist()
+    in_mu = -pencil.table[0] / pencil.table[1, 0]
+    stability_function = (in_mu * pencil.multiple ** np.arange(in_mu.size)).tolist()  # of the user's mu
     for start in range(0, alpha_hat.size, CHUNK):
         chunk = slice(start, start + CHUNK)
-        p, q, discriminant = feedback_discriminant(pencil.feedback, alpha_hat[chunk], beta_hat[chunk])
-        middle, factor = polynomial_of_pair(stability_function, p, q)
-        largest_quadratic_root(-middle, factor * factor * discriminant, into[chunk])
+        alphas, betas = alpha_hat[chunk], beta_hat[chunk]
+        middle, factor = polynomial_of_pair(stability_function, alphas, betas)
+        largest_quadratic_root(-middle, factor * factor * feedback_discriminant(alphas, betas), into[chunk])
 
 
 def _largest_by_mu(pencil: Pencil, alpha_hat: FloatArray, beta_hat: FloatArray) -> ComplexArray:
@@ -180,7 +180,7 @@ def _largest_by_mu(pencil: Pencil, alpha_hat: FloatArray, beta_hat: FloatArray) 
 
     Conjugate mu have conjugate poles, so one of the two is enough; of two real mu both are looked at.
     """
-    first_mu, second_mu = feedback_roots(pencil.feedback, alpha_hat, beta_hat)
+    first_mu, second_mu = pencil.feedback_roots(alpha_hat, beta_hat)
     some = np.flatnonzero(first_mu.imag == 0)
     both = largest_root_in_z(pencil, np.concatenate([first_mu, second_mu[some]]))
     found, others = both[: first_mu.size], both[first_mu.size :]

@@ -1,9 +1,8 @@
 """Sums and products of float64 that keep what rounding takes away, and the roots mu of the feedback from them.
 
-The feedback asks for mu^2 + p mu + q = 0 with p and q linear in alpha_hat and beta_hat. Near critical damping
-(p^2 = 4 q, the parabola beta_hat = alpha_hat^2 / 4 for most methods) p^2 / 4 - q nearly cancels: in plain float64 half
-the digits of mu would be lost. So p, q and the discriminant are held as unevaluated sums of two numbers, high + low,
-where high is what float64 would have had and low is the error it would have made.
+The feedback asks for mu^2 + alpha_hat mu + beta_hat = 0. Near critical damping (beta_hat = alpha_hat^2 / 4) the
+discriminant nearly cancels: in plain float64 half the digits of mu would be lost. So it is held as an unevaluated sum
+of two numbers, high + low, where high is what float64 would have had and low is the error it would have made.
 """
 
 from collections.abc import Sequence
@@ -13,50 +12,30 @@ import numpy as np
 
 from bezstab.stability.arrays import ComplexArray, FloatArray
 
-ExactMatrix = Sequence[Sequence[Fraction]]
-
-SHIFT = 64  # binary places by which what is huge is scaled down, and what comes of it up again
-HUGE = float(np.finfo(float).max) / 2.0 ** (2 * SHIFT)  # beyond, products may overflow on the way to what fits
 SPLITTER = 2.0**27 + 1  # multiplying by it parts the 53 bits of a float64 into two halves (Dekker)
 
 
-def feedback_roots(
-    feedback: ExactMatrix, alpha_hat: FloatArray, beta_hat: FloatArray
-) -> tuple[ComplexArray, ComplexArray]:
-    """Return both roots mu of the feedback mu^2 + p mu + q: a conjugate pair, upper first, or two real numbers.
+def feedback_roots(alpha_hat: FloatArray, beta_hat: FloatArray) -> tuple[ComplexArray, ComplexArray]:
+    """Return both roots of mu^2 + alpha_hat mu + beta_hat: a conjugate pair, upper first, or two real numbers.
 
-    `feedback` is the exact 2x2 matrix from (alpha_hat, beta_hat) to (p, q); arrays of one shape in and out, all
-    dimensionless. The discriminant is exact until rounded. Not finite where a root leaves the range of float64.
+    Arrays of one shape in and out, all dimensionless. The discriminant is exact until rounded. Not finite where a root
+    leaves the range of float64.
     """
     with np.errstate(over="ignore", under="ignore", invalid="ignore"):
-        largest = max(np.abs(alpha_hat).max(initial=0.0), np.abs(beta_hat).max(initial=0.0))
-        shift = SHIFT if largest > HUGE else 0
-        if shift:
-            alpha_hat = np.ldexp(alpha_hat, -shift)
-            beta_hat = np.ldexp(beta_hat, -shift)
-        p, p_low = exact_combination(feedback[0], alpha_hat, beta_hat)
-        q, q_low = exact_combination(feedback[1], alpha_hat, beta_hat)
-
-        # mu is computed in units of 2^exponent, so that neither p^2 nor q leaves the range of float64
-        exponent = np.maximum(np.frexp(p)[1] + shift, (np.frexp(q)[1] + (shift + 1)) // 2)
-        half = np.ldexp(p, shift - exponent - 1)
-        half_low = np.ldexp(p_low, shift - exponent - 1)
-        scaled_once = np.ldexp(q, shift - exponent)  # where q scaled twice underflows, the nearer mu need not
-        q = np.ldexp(q, shift - 2 * exponent)
-        q_low = np.ldexp(q_low, shift - 2 * exponent)
-
-        square, square_low = two_square(half)
-        high, low = two_sum(square, -q)
-        discriminant = high + (low + (square_low + 2 * half * half_low - q_low))
+        # mu is computed in units of 2^exponent, so that neither alpha_hat^2 nor beta_hat leaves the range of float64
+        exponent = np.maximum(np.frexp(alpha_hat)[1], (np.frexp(beta_hat)[1] + 1) // 2)
+        half = np.ldexp(alpha_hat, -exponent - 1)
+        discriminant = feedback_discriminant(2 * half, np.ldexp(beta_hat, -2 * exponent))
         root = np.sqrt(np.abs(discriminant))
         real = discriminant >= 0
 
-        # real roots: the one further from zero without cancellation, the nearer as q over it
+        # real roots: the one further from zero without cancellation, the nearer as beta_hat over it
         further = -(half + np.copysign(root, half))
+        scaled_once = np.ldexp(beta_hat, -exponent)  # where beta_hat scaled twice underflows, the nearer mu need not
         nearer = np.divide(scaled_once, further, out=np.zeros_like(further), where=further != 0)
         middle = np.ldexp(-half, exponent)
-        first = np.empty_like(p, complex)
-        second = np.empty_like(p, complex)
+        first = np.empty_like(half, complex)
+        second = np.empty_like(half, complex)
         first.real = np.where(real, np.ldexp(further, exponent), middle)
         second.real = np.where(real, nearer, middle)
         first.imag = np.where(real, 0, np.ldexp(root, exponent))
@@ -64,32 +43,11 @@ def feedback_roots(
     return first, second
 
 
-def feedback_discriminant(
-    feedback: ExactMatrix, alpha_hat: FloatArray, beta_hat: FloatArray
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return p, q and p^2 / 4 - q of the feedback, the third exact until rounded; for points of ordinary size."""
-    p, p_low = exact_combination(feedback[0], alpha_hat, beta_hat)
-    q, q_low = exact_combination(feedback[1], alpha_hat, beta_hat)
-    half = 0.5 * p
-    square, square_low = two_square(half)
-    high, low = two_sum(square, -q)
-    if np.ndim(p_low) or np.ndim(q_low):
-        square_low = square_low + half * p_low - q_low
-    return p, q, high + (low + square_low)
-
-
-def exact_combination(
-    factors: Sequence[Fraction], x: FloatArray, y: FloatArray
-) -> tuple[FloatArray, FloatArray | float]:
-    """Return a x + b y, (a, b) the factors, as an unevaluated sum of two float64, of which the second may be just 0."""
-    a, b = factors
-    if {a, b} == {0, 1}:  # one of the two itself, as for most methods
-        return x if a else y, 0.0
-    ax, ax_low = two_product(float(a), x)
-    by, by_low = two_product(float(b), y)
-    total, total_low = two_sum(ax, by)
-    of_rounded_factors = float(a - Fraction(float(a))) * x + float(b - Fraction(float(b))) * y
-    return total, total_low + (ax_low + by_low + of_rounded_factors)
+def feedback_discriminant(alpha_hat: FloatArray, beta_hat: FloatArray) -> FloatArray:
+    """Return alpha_hat^2 / 4 - beta_hat, exact until rounded; for points of ordinary size."""
+    square, square_low = two_square(0.5 * alpha_hat)
+    high, low = two_sum(square, -beta_hat)
+    return high + (low + square_low)
 
 
 Double = tuple[FloatArray, FloatArray]

@@ -25,8 +25,9 @@ from itertools import pairwise
 import numpy as np
 from numpy.polynomial.polynomial import polyval
 
-from bezstab.stability.arrays import DOUBLE, SAME, FloatArray
+from bezstab.stability.arrays import DOUBLE, SAME, BoolArray, FloatArray
 from bezstab.stability.plane_pencils import PlanePencil
+from bezstab.stability.root_finding import companion_roots
 from bezstab.stability.searches import least_between
 
 Direction = tuple[int, int]
@@ -59,11 +60,10 @@ class FarLimit:
 
 def least_far_limit(pencil: PlanePencil) -> FarLimit:
     """Return the least of all values that |z_p| tends to as alpha_hat >= 0 or beta_hat >= 0 grow; perhaps infinite."""
-    exponents = sorted({(i, j) for terms in pencil.terms for i, j, _ in terms})
-    sides = _directions_of_sides(exponents)
+    sides = _directions_of_sides([(i, j) for i, j in np.argwhere(pencil.table.any(axis=0)).tolist()])
     # the directions of a corner lie between those of two neighbouring sides, or before neither parameter grows
     fan = pairwise([(0, -1), *sides, (-1, 0)])
-    on_corner = min((_on_corner(pencil, exponents, *between) for between in fan), key=lambda limit: limit.z_abs)
+    on_corner = min((_on_corner(pencil, *between) for between in fan), key=lambda limit: limit.z_abs)
     on_side = min((_on_side(pencil, side) for side in sides), key=lambda limit: limit.z_abs, default=on_corner)
     return on_side if on_side.z_abs < on_corner.z_abs * (1 - DOUBLE) else on_corner  # of poles that may be double
 
@@ -79,24 +79,24 @@ def _directions_of_sides(exponents: Sequence[Direction]) -> list[Direction]:
         for k, m in exponents:
             divisor = math.gcd(i - k, j - m)
             normal = ((j - m) // divisor, (k - i) // divisor) if divisor else (0, 0)
-            if max(normal) > 0 and _highest(exponents, normal) == normal[0] * i + normal[1] * j:
+            if max(normal) > 0 and all(normal[0] * (i - a) + normal[1] * (j - b) >= 0 for a, b in exponents):
                 normals.add(normal)
     return sorted(normals, key=_angle)
 
 
-def _highest(exponents: Sequence[Direction], direction: Direction) -> int:
-    return max(direction[0] * i + direction[1] * j for i, j in exponents)
+def _deciding(pencil: PlanePencil, direction: Direction) -> BoolArray:
+    """Return which terms of P decide as parameters grow along a direction: shape of a table by both powers."""
+    i, j = np.indices(pencil.table.shape[1:])
+    powers_of_t = np.where(pencil.table.any(axis=0), direction[0] * i + direction[1] * j, -np.inf)
+    return np.asarray(powers_of_t == powers_of_t.max())
 
 
-def _on_corner(pencil: PlanePencil, exponents: Sequence[Direction], first: Direction, last: Direction) -> FarLimit:
+def _on_corner(pencil: PlanePencil, first: Direction, last: Direction) -> FarLimit:
     """Return the limit in all directions strictly between two."""
     inside = [each for each in PREFERRED if _angle(first) < _angle(each) < _angle(last)]
     direction = inside[0] if inside else _primitive(first[0] + last[0], first[1] + last[1])
-    highest = _highest(exponents, direction)
-    coefficients = [
-        sum(c for i, j, c in terms if direction[0] * i + direction[1] * j == highest) for terms in pencil.terms
-    ]
-    return FarLimit(float(_largest_moduli(np.array(coefficients)[:, np.newaxis])[0]), direction)
+    coefficients = pencil.table[:, _deciding(pencil, direction)]
+    return FarLimit(float(_largest_moduli(coefficients)[0]), direction)
 
 
 def _primitive(p: int, q: int) -> Direction:
@@ -107,16 +107,13 @@ def _primitive(p: int, q: int) -> Direction:
 def _on_side(pencil: PlanePencil, direction: Direction) -> FarLimit:
     """Return the least limit along a side's direction, over all ratios alpha_hat^q / beta_hat^p."""
     p, q = direction
-    highest = max(p * i + q * j for terms in pencil.terms for i, j, _ in terms)
-    on_side = [[(i, j, c) for i, j, c in terms if p * i + q * j == highest] for terms in pencil.terms]
+    deciding = _deciding(pencil, direction)
+    i, j = np.nonzero(deciding)
     # all (i, j) on the side are one of them plus a multiple of (q, -p), and that multiple is the power of the ratio
-    power = [[i // q if q else -j // p for i, j, _ in terms] for terms in on_side]
-    lowest = min(each for powers in power for each in powers)
-    degree = max(each for powers in power for each in powers) - lowest
-    table = np.zeros((len(on_side), degree + 1))
-    for k, (terms, powers) in enumerate(zip(on_side, power, strict=True)):
-        for (_, _, c), each in zip(terms, powers, strict=True):
-            table[k, each - lowest] = c
+    power = i // q if q else -j // p
+    power -= power.min()
+    table = np.zeros((len(pencil.table), power.max() + 1))
+    table[:, power] = pencil.table[:, deciding]
 
     def modulus(log_ratios: FloatArray) -> FloatArray:
         return _largest_moduli(np.asarray(polyval(np.exp(log_ratios), table.T)))
@@ -132,10 +129,4 @@ def _on_side(pencil: PlanePencil, direction: Direction) -> FarLimit:
 
 def _largest_moduli(coefficients: FloatArray) -> FloatArray:
     """Return the largest |z| of polynomials, ascending along the first axis; infinite where the leading one is zero."""
-    degree = len(coefficients) - 1
-    infinite = coefficients[-1] == 0
-    monic = coefficients[:-1] / np.where(infinite, 1, coefficients[-1])
-    companion = np.zeros((coefficients.shape[1], degree, degree))
-    companion[:, range(1, degree), range(degree - 1)] = 1
-    companion[:, :, -1] = -monic.T
-    return np.asarray(np.where(infinite, np.inf, np.abs(np.linalg.eigvals(companion)).max(axis=-1)))
+    return np.where(coefficients[-1] == 0, np.inf, np.abs(companion_roots(coefficients)).max(axis=0))

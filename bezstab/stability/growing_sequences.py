@@ -11,7 +11,7 @@ from itertools import groupby
 
 import numpy as np
 
-from bezstab.methods import StepMatrix, characteristic, matrix_product, recursion_verdict
+from bezstab.methods import StepMatrix, characteristic, recursion_verdict
 from bezstab.rationals import exact
 from bezstab.stability.arrays import FloatArray
 
@@ -34,7 +34,7 @@ def lengths_tried(shortest: Fraction) -> list[Fraction]:
 def growing_words(matrix: StepMatrix, shortest: Fraction) -> Iterator[list[Fraction]]:
     """Yield sequences of lengths, shortest sequences first, whose product seems to grow in float64."""
     lengths = lengths_tried(shortest)
-    matrices = np.array([[[float(entry) for entry in row] for row in matrix.at(s)] for s in lengths])
+    matrices = np.array([matrix.at(s) for s in lengths], np.float64)
     powers = {1: matrices}
     for count in range(2, max(COUNTS) + 1):
         powers[count] = powers[count - 1] @ matrices
@@ -62,27 +62,16 @@ def _radii(products: FloatArray) -> FloatArray:
 
 def grows(matrix: StepMatrix, word: Sequence[Fraction]) -> bool:
     """Return whether the product of the steps, first taken first, has a spectral radius of one or more: exact."""
-    product: list[list[Fraction]] | None = None
+    product = np.eye(matrix.size, dtype=object)
     for length, same in groupby(word):
-        repeated = _power(matrix.at(length), len(list(same)))
-        product = repeated if product is None else matrix_product(repeated, product)
-    assert product is not None
-    return recursion_verdict(characteristic(product)) != "converges"
-
-
-def _power(matrix: list[list[Fraction]], exponent: int) -> list[list[Fraction]]:
-    """Return a power of a matrix by squaring: of exact numbers few products are fast, and many are not."""
-    if exponent == 1:
-        return matrix
-    half = _power(matrix, exponent // 2)
-    square = matrix_product(half, half)
-    return matrix_product(matrix, square) if exponent % 2 else square
+        product = np.linalg.matrix_power(np.array(matrix.at(length)), len(list(same))) @ product
+    return recursion_verdict(characteristic(product.tolist())) != "converges"
 
 
 def growth_of(matrix: StepMatrix, word: Sequence[Fraction]) -> float:
     """Return the spectral radius of the product of the steps, in float64; infinite where a step has no solution."""
     try:
-        matrices = [np.array([[float(entry) for entry in row] for row in matrix.at(length)]) for length in word]
+        matrices = np.array([matrix.at(length) for length in word], np.float64)
     except (ZeroDivisionError, OverflowError):
         return float("inf")
     product = np.eye(matrix.size)

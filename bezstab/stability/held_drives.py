@@ -13,7 +13,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 from math import ceil, floor
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,7 +27,10 @@ MOST_STEPS = 100
 """Of `every` and of `late`: the polynomial's degree is theirs, and nobody's controller is slower."""
 
 Number = TypeVar("Number", Fraction, FloatArray)
-"""Exact, or for |z_p| in float64: as many as there are points."""
+"""Exact, or in float64: as many as there are points."""
+
+Numbers = NDArray[Any]
+"""The same at so many points: in float64 for |z_p|, or Fractions."""
 
 
 @dataclass(frozen=True)
@@ -101,14 +104,10 @@ def held_polynomial(way: str, alpha_hat: Fraction, beta_hat: Fraction, timing: T
 
     `way` is one of SEEN. KeyError for another.
     """
-    from sympy import QQ  # a fifth of a second, which a Timing alone need not wait for
-    from sympy.polys.matrices import DomainMatrix
+    from bezstab.methods import characteristic  # loads sympy in a fifth of a second, for which a Timing need not wait
 
-    matrix = _steps_matrix(SEEN[way], alpha_hat, beta_hat, timing)
-    size = len(matrix)
-    elements = [[QQ(entry.numerator, entry.denominator) for entry in row] for row in matrix]
-    coefficients = DomainMatrix(elements, (size, size), QQ).charpoly()
-    return [Fraction(int(each.numerator), int(each.denominator)) for each in reversed(coefficients)]
+    matrix = _steps_matrix(SEEN[way], np.array([alpha_hat]), np.array([beta_hat]), timing)
+    return characteristic(matrix[..., 0].tolist())
 
 
 def held_verdict(way: str, alpha_hat: Fraction, beta_hat: Fraction, timing: Timing) -> Verdict:
@@ -126,8 +125,7 @@ def held_spectral_radius(way: str, alpha_hat: Fraction, beta_hat: Fraction, timi
 
 def held_moduli(way: str, alpha_hat: FloatArray, beta_hat: FloatArray, timing: Timing) -> FloatArray:
     """Return `held_spectral_radius` at many points, shape (points,)."""
-    rows = _steps_matrix(SEEN[way], alpha_hat, beta_hat, timing)
-    matrices = np.moveaxis(np.array(rows), -1, 0)  # (points, size, size)
+    matrices = np.moveaxis(_steps_matrix(SEEN[way], alpha_hat, beta_hat, timing), -1, 0)
     moduli: FloatArray = np.abs(np.linalg.eigvals(matrices)).max(axis=-1) ** (1 / timing.every)
     return moduli
 
@@ -156,62 +154,45 @@ def law_bounds(way: str, alpha_hat: Number, timing: Timing) -> tuple[Number, ...
 # The matrix of `every` steps
 
 
-def _steps_matrix(seen: _Seen, alpha_hat: Number, beta_hat: Number, timing: Timing) -> list[list[Number]]:
+def _steps_matrix(seen: _Seen, alpha_hat: Numbers, beta_hat: Numbers, timing: Timing) -> Numbers:
     """Return the matrix that takes the state over `every` steps, from one computation of the torque to the next.
 
-    The state is x, v, the filtered velocity if there is a filter, then the torques computed before, latest first, as
-    many as are still to be applied. h = 1, and torques are over the inertia. A row is a number that is linear in the
-    state at the first step: its coefficients.
+    Of shape (size, size, points) for gains of shape (points,), with entries of their kind. The state is x, v, the
+    filtered velocity if there is a filter, then the torques computed before, latest first, as many as are still to be
+    applied. h = 1, and torques are over the inertia. Each is linear in the state at the first step: its coefficients.
     """
-
-    def number(value: Fraction | int) -> Number:
-        return _as(value, alpha_hat)
-
+    number: Callable[[Fraction | int], Any] = Fraction if alpha_hat.dtype == object else float
     whole = floor(timing.late)
     left = timing.late - whole  # of a step, which the torque before keeps
     gain = number(1 / (1 + timing.filter_steps / timing.every))
-    one, nothing = number(1), [number(0)]
     filters = 1 if timing.filter_steps else 0
     pending: int = ceil(Fraction(whole, timing.every)) + (1 if left else 0)
     size = 2 + filters + pending
-    state: list[list[Number]] = [[number(int(row == column)) for column in range(size)] for row in range(size)]
+    state = np.zeros((size, size, alpha_hat.size), alpha_hat.dtype)
+    state[range(size), range(size)] = 1
     x, v, filtered = state[0], state[1], state[1 + filters]
-    torques = [nothing * size]  # latest first; the new one's place is kept
-    torques.extend(state[2 + filters :])
+    torques: list[Numbers] = [np.zeros_like(x), *state[2 + filters :]]  # latest first; the new one's place is kept
+
+    def applied(step: int) -> Numbers:
+        """Return the torque applied in a step after the latest computation."""
+        return np.asarray(sum(number(share) * torques[back] for back, share in timing.applied(step)))
 
     # u = -b (x + x_by_velocity v + x_by_torque p) - a w,   w = filtered + gain (v + v_by_torque p - filtered),
     # p = share u + rest, the torque applied in the step that computes u
     share = number(1 - left if whole == 0 else 0)
-    rest = _applied(0, timing, torques)
-    seen_x = _sum((one, x), (number(seen.x_by_velocity), v), (number(seen.x_by_torque), rest))
-    seen_v = _sum((one, v), (number(seen.v_by_torque), rest))
-    seen_w = _sum((1 - gain, filtered), (gain, seen_v)) if filters else seen_v
+    rest = applied(0)
+    seen_x = x + seen.x_by_velocity * v + seen.x_by_torque * rest
+    seen_v = v + seen.v_by_torque * rest
+    seen_w = (1 - gain) * filtered + gain * seen_v if filters else seen_v
     divisor = 1 + share * (beta_hat * seen.x_by_torque + alpha_hat * gain * seen.v_by_torque)
-    torques[0] = _sum((-beta_hat / divisor, seen_x), (-alpha_hat / divisor, seen_w))
+    torques[0] = -beta_hat / divisor * seen_x - alpha_hat / divisor * seen_w
 
     for step in range(timing.every):
-        torque = _applied(step, timing, torques)
-        v = _sum((one, v), (one, torque))
-        x = _sum((one, x), (one, v), (number(Fraction(-1, 2) if seen.accelerates else 0), torque))
-    w = _sum((one, seen_w), (gain * share * seen.v_by_torque, torques[0]))
-    of_state: list[list[Number]] = [x, v, w] if filters else [x, v]
-    return of_state + torques[:pending]
-
-
-def _applied(step: int, timing: Timing, torques: list[list[Number]]) -> list[Number]:
-    """Return the torque applied in a step after the latest computation: `torques` begins with that one's, then back."""
-    return _sum(*((_as(share, torques[0][0]), torques[back]) for back, share in timing.applied(step)))
-
-
-def _as(value: Fraction | int, like: Number) -> Number:
-    """Return an exact number as what it is to be computed with: itself, or an array of the shape of others."""
-    return like * 0 + (value if isinstance(like, Fraction) else float(value))
-
-
-def _sum(*terms: tuple[Number, list[Number]]) -> list[Number]:
-    """Return a linear combination of numbers that are linear in the state."""
-    zero = terms[0][0] * 0
-    return [sum((factor * row[k] for factor, row in terms), zero) for k in range(len(terms[0][1]))]
+        torque = applied(step)
+        v = v + torque
+        x = x + v - number(Fraction(1, 2) if seen.accelerates else 0) * torque
+    w = seen_w + gain * share * seen.v_by_torque * torques[0]
+    return np.stack([x, v, w][: 2 + filters] + torques[:pending])
 
 
 # What is used up

@@ -15,7 +15,7 @@ root lies outside, and straight lines: one mu held at the end of a real interval
       |/_______/_________ alpha_hat
           line: one mu at the right end (for r = 1 mu = 0, the axis itself)
 
-(For a method whose feedback matrix is not the identity all this is its preimage, of a determinant that is not one.)
+(Drawn for a method whose own step is h.)
 
 Of an implicit method S_r may be unbounded. It is cut off at a rim |mu| = radius (boundary_locus): edges end there, and
 what grows with the radius has no end.
@@ -34,7 +34,6 @@ from bezstab.stability.boundary_locus import (
     RIM,
     Bounds,
     bounds_of,
-    feedback_coefficients,
     rim_radius,
 )
 from bezstab.stability.pencils import Pencil, deadbeat_mu, roots_in_mu
@@ -58,14 +57,14 @@ def locus_shape(pencil: Pencil, level: float, finer: int) -> Shape | None:
         )
     radius = rim_radius(pencil, level) if pencil.implicit else math.inf
     bounds = bounds_of(pencil, level, finer, radius)
-    edges = [arc.plane() @ pencil.to_user.T for arc in bounds.arcs]
+    edges = [arc.plane() for arc in bounds.arcs]
     edges += straight_edges(pencil, bounds)
     extent = _extent(pencil, bounds)
     area = _area(pencil, bounds) if bounds.bounded else None
     if extent is None:
         return None
     mu_abs = max((float(np.abs(arc.mu).max()) for arc in bounds.arcs), default=0.0)
-    noise = ROUNDING * np.abs(pencil.to_user) @ np.array([mu_abs, mu_abs**2])
+    noise = ROUNDING * (mu_abs / pencil.multiple) ** np.array([1, 2])
     if area is not None and (area <= 0 or (np.ptp(extent, axis=1) <= noise).any()):
         return None  # where two roots on the circle meet
     curves = joined(edges, most=MEETING * np.abs(np.concatenate(edges)).max(axis=0))
@@ -99,44 +98,39 @@ def straight_edges(pencil: Pencil, bounds: Bounds) -> list[FloatArray]:
     """
     held = [end for interval in bounds.intervals for end in interval if abs(end) < bounds.radius]
     return [
-        feedback_coefficients(np.full(2, fixed), np.array(interval)) @ pencil.to_user.T
-        for fixed in held
-        for interval in bounds.intervals
+        pencil.user_points(np.full(2, fixed), np.array(interval)) for fixed in held for interval in bounds.intervals
     ]
 
 
 def _area(pencil: Pencil, bounds: Bounds) -> float:
     """Return the area in the user's plane: of conjugate pairs, of pairs from one interval, and from two.
 
-    For real mu (p, q) = (-(mu_1 + mu_2), mu_1 mu_2) has the Jacobian |mu_1 - mu_2|.
+    For real mu of a step of h (alpha_hat, beta_hat) = (-(mu_1 + mu_2), mu_1 mu_2) has the Jacobian |mu_1 - mu_2|.
     """
     conjugate = sum(arc.area() for arc in bounds.arcs)
     real = sum((end - start) ** 3 / 6 for start, end in bounds.intervals)
     area = conjugate + real
     for (a, b), (c, d) in combinations(bounds.intervals, 2):
         area += (b - a) * (d - c) * ((c + d) - (a + b)) / 2
-    return area * float(np.linalg.det(pencil.to_user))
+    return area / pencil.multiple**3
 
 
 def _extent(pencil: Pencil, bounds: Bounds) -> Extent | None:
     """Return the ranges of alpha_hat and beta_hat within the rim: of pairs of ends, and of arcs' furthest points."""
     ends = np.array(bounds.intervals).ravel()
-    corners = [feedback_coefficients(np.full(len(ends), end), ends) @ pencil.to_user.T for end in ends]
-    corners += [arc.plane() @ pencil.to_user.T for arc in bounds.arcs]
+    corners = [pencil.user_points(np.full(len(ends), end), ends) for end in ends]
+    corners += [arc.plane() for arc in bounds.arcs]
     if not corners:
         return None
-    points = np.concatenate(corners)
 
-    def furthest(axis: int, sign: int) -> float:
-        on_arcs = [arc.furthest(sign * pencil.to_user[axis]) for arc in bounds.arcs]
-        return max([float((sign * points[:, axis]).max()), *on_arcs])
+    def ends_of(axis: int) -> tuple[float, float]:
+        on_arcs = [arc.ends_and_turns(axis) for arc in bounds.arcs]
+        values = np.concatenate([*(points[:, axis] for points in corners), *on_arcs])
+        low, high = float(values.min()), float(values.max())
+        negligible = ROUNDING * (high - low)
+        return (0.0 if abs(low) < negligible else low, 0.0 if abs(high) < negligible else high)
 
-    def both(axis: int) -> tuple[float, float]:
-        below, above = furthest(axis, -1), furthest(axis, 1)
-        negligible = ROUNDING * (below + above)
-        return (0.0 if abs(below) < negligible else -below, 0.0 if abs(above) < negligible else above)
-
-    return both(0), both(1)
+    return ends_of(0), ends_of(1)
 
 
 def _known(pencil: Pencil, level: float, bounds: Bounds) -> FloatArray:
@@ -154,7 +148,7 @@ def _known(pencil: Pencil, level: float, bounds: Bounds) -> FloatArray:
         if not any(start < zero < end for start, end in bounds.intervals):
             raise NumericalError(f"{pencil.method.name}: |z_p| < {level:g} around mu = {zero:.6g} was not found")
     pairs = zeros[wide & ~real]
-    return np.asarray(feedback_coefficients(pairs, pairs.conj()) @ pencil.to_user.T)
+    return pencil.user_points(pairs, pairs.conj())
 
 
 def _unbounded_extent(pencil: Pencil, level: float, bounds: Bounds, finer: int) -> Extent:
@@ -172,8 +166,8 @@ def _unbounded_extent(pencil: Pencil, level: float, bounds: Bounds, finer: int) 
     near, far = ranges
     assert near
     assert far
-    size = bounds.radius / RIM
-    scales = np.abs(pencil.to_user) @ np.array([size, size**2])
+    size = bounds.radius / RIM / pencil.multiple
+    scales = size, size**2
 
     def limit(axis: int, end: int) -> float:
         nearer, further = near[axis][end], far[axis][end]
@@ -195,19 +189,19 @@ def _view(pencil: Pencil, bounds: Bounds) -> Extent:
     """
     off_rim = bounds.radius * (1 - SAME)
     ends = np.array([end for interval in bounds.intervals for end in interval if abs(end) < off_rim])
-    shapely = [feedback_coefficients(np.full(len(ends), end), ends) for end in ends]
+    shapely = [pencil.user_points(np.full(len(ends), end), ends) for end in ends]
     deadbeat = deadbeat_mu(pencil)
-    shapely.append(feedback_coefficients(deadbeat, deadbeat.conj()))
+    shapely.append(pencil.user_points(deadbeat, deadbeat.conj()))
     for arc in bounds.arcs:
         mu = arc.mu
         if np.abs(mu[[0, -1]]).max() >= off_rim:
             # a coordinate that hardly varies is constant, and turns by rounding alone
-            steep = [each for each in pencil.to_user if np.ptp(arc.plane() @ each) > DOUBLE * np.abs(mu).max()]
-            turns = [arc.turns(direction) for direction in steep]
+            steep = np.flatnonzero(np.ptp(arc.plane(), axis=0) > DOUBLE * np.abs(mu).max() / pencil.multiple)
+            turns = [arc.turns(axis) for axis in steep.tolist()]
             mu = arc.at(np.concatenate([arc.theta[[0, -1]], *turns]))
             mu = mu[np.abs(mu) < off_rim]
-        shapely.append(feedback_coefficients(mu, mu.conj()))
-    points = np.concatenate([*shapely, np.zeros((1, 2))]) @ pencil.to_user.T
-    size = np.array([USUAL_SIZE, USUAL_SIZE]) / float(pencil.method.step_multiple) ** np.array([1, 2])
+        shapely.append(pencil.user_points(mu, mu.conj()))
+    points = np.concatenate([*shapely, np.zeros((1, 2))])
+    size = USUAL_SIZE / pencil.multiple ** np.array([1, 2])
     alpha_max, beta_max = np.maximum(points[(points >= 0).all(axis=1)].max(axis=0, initial=0), size).tolist()
     return (0.0, alpha_max), (0.0, beta_max)

@@ -22,13 +22,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.polynomial.polynomial import polyval
 from numpy.typing import NDArray
 
 from bezstab.errors import NumericalError
-from bezstab.stability.arrays import SAME, BoolArray, ComplexArray, FloatArray
+from bezstab.stability.arrays import BoolArray, ComplexArray, FloatArray
 from bezstab.stability.pencils import Pencil, roots_in_mu
-from bezstab.stability.root_finding import MORE_STEPS, horner_with_slope
 
 SAMPLES = 1024  # of theta over half the circle: what is shorter is looked for by itself
 STEP_SHARE = 0.12  # of the distance to the nearest branch point; the proof above allows 0.17
@@ -45,36 +43,11 @@ class Track:
     mu: ComplexArray
 
     def at(self, theta: FloatArray) -> ComplexArray:
-        """Return mu(theta) for a row of theta (rad) between the samples: Newton's method from the nearest of them.
-
-        Where it does not settle, or goes further than the samples lie apart (next to a branch point on the circle):
-        the nearest of all roots.
-        """
-        z = self.level * np.exp(1j * theta)
-        table = self.pencil.table
-        if table.shape[1] == 2:  # a multistep method: one mu for each z
-            single: ComplexArray = -polyval(z, table[:, 0]) / polyval(z, table[:, 1])
-            return single
+        """Return mu(theta) for a row of theta (rad) between the samples: of all mu that nearest to the next sample."""
         right = np.clip(np.searchsorted(self.theta, theta), 1, len(self.theta) - 1)
         left_is_nearer = theta - self.theta[right - 1] < self.theta[right] - theta
-        start = self.mu[np.where(left_is_nearer, right - 1, right)]
-        spacing = np.abs(self.mu[right] - self.mu[right - 1])
-        mu = start.copy()
-        settled: BoolArray = np.zeros(mu.shape, bool)
-        in_mu = polyval(z, table)  # coefficients of pi(z, .), ascending; shape (powers, theta.size)
-        with np.errstate(all="ignore"):  # what is not finite has not settled
-            for _ in range(MORE_STEPS):
-                value, slope = horner_with_slope(in_mu, mu)
-                step = value / slope
-                mu = mu - step
-                settled = np.abs(step) <= SAME * np.abs(mu)
-                if settled.all():
-                    break
-            near = np.abs(mu - start) <= np.maximum(spacing, SAME * np.abs(start))  # further lies another branch
-        lost = ~(settled & near)
-        if lost.any():
-            mu[lost] = nearest(roots_in_mu(self.pencil, z[lost]), start[lost])
-        return mu
+        samples = self.mu[np.where(left_is_nearer, right - 1, right)]
+        return nearest(roots_in_mu(self.pencil, self.level * np.exp(1j * theta)), samples)
 
 
 def nearest(candidates: ComplexArray, targets: ComplexArray) -> ComplexArray:

@@ -11,12 +11,16 @@ from functools import cache, cached_property
 
 import numpy as np
 from numpy.polynomial.polynomial import polyder, polymul, polyroots, polysub, polyval, polyval2d
+from numpy.typing import NDArray
 
 from bezstab.errors import NumericalError
-from bezstab.methods import Method, branch_polynomial, coefficient_table, feedback_matrix
+from bezstab.methods import Method, branch_polynomial, coefficient_table
 from bezstab.stability.arrays import EPS, BoolArray, ComplexArray, FloatArray
-from bezstab.stability.exact_sums import ExactMatrix, feedback_roots
+from bezstab.stability.exact_sums import feedback_roots
 from bezstab.stability.root_finding import horner, inside_circle, roots_of_table
+
+Mu = NDArray[np.inexact] | complex
+"""Complex or real, one or many."""
 
 LEADING = 4 * EPS  # of the sum of its terms' sizes: a leading coefficient below it is rounding of zero
 
@@ -25,9 +29,8 @@ LEADING = 4 * EPS  # of the sum of its terms' sizes: a leading coefficient below
 class Pencil:
     """A method's polynomial pi(z, mu) = sum_kj table[k, j] z^k mu^j in float64, and what follows from it.
 
-    `steps` is its degree in z. `table_by_z` and `table_by_mu` are the tables of its derivatives. The feedback asks for
-    mu^2 + p mu + q = 0: `feedback` is the exact 2x2 matrix from (alpha_hat, beta_hat) to (p, q), `to_feedback` the
-    same in float64, `to_user` its inverse. Everything is dimensionless.
+    `steps` is its degree in z. `table_by_z` and `table_by_mu` are the tables of its derivatives. mu is that of the
+    method's own step, `multiple` times the user's h. Everything is dimensionless.
     """
 
     method: Method
@@ -35,9 +38,7 @@ class Pencil:
     table: FloatArray
     table_by_z: FloatArray
     table_by_mu: FloatArray
-    feedback: ExactMatrix
-    to_feedback: FloatArray
-    to_user: FloatArray
+    multiple: float
 
     def __repr__(self) -> str:
         return f"Pencil({self.method.name})"
@@ -47,9 +48,19 @@ class Pencil:
         """How many poles there are, counted with their multiplicity."""
         return 2 * self.steps
 
+    def feedback_roots(self, alpha_hat: FloatArray, beta_hat: FloatArray) -> tuple[ComplexArray, ComplexArray]:
+        """Return both mu that the feedback asks for at some points: a conjugate pair, upper first, or two real ones."""
+        first, second = feedback_roots(alpha_hat, beta_hat)
+        return self.multiple * first, self.multiple * second
+
+    def user_points(self, first_mu: Mu, second_mu: Mu) -> FloatArray:
+        """Return alpha_hat and beta_hat of the feedback with these two roots; shape (*that of one, 2)."""
+        first, second = np.divide(first_mu, self.multiple), np.divide(second_mu, self.multiple)
+        return np.stack([-(first + second).real, (first * second).real], axis=-1)
+
     def poles(self, alpha_hat: FloatArray, beta_hat: FloatArray) -> ComplexArray:
         """Return all poles at a row of points; shape (degree, points). Errors as `roots_in_z`."""
-        mu = np.stack(feedback_roots(self.feedback, alpha_hat, beta_hat))
+        mu = np.stack(self.feedback_roots(alpha_hat, beta_hat))
         z = roots_in_z(self, mu.ravel())
         of_each_mu = z.reshape(len(z), *mu.shape).swapaxes(0, 1)
         return of_each_mu.reshape(self.degree, alpha_hat.size)
@@ -59,7 +70,7 @@ class Pencil:
 
         False where an implicit step has no solution.
         """
-        first, second = feedback_roots(self.feedback, alpha_hat, beta_hat)
+        first, second = self.feedback_roots(alpha_hat, beta_hat)
         within = all_inside(self, first, level)
         real = within & (first.imag == 0)  # of a conjugate pair both have the same moduli
         within[real] = all_inside(self, second[real], level[real])
@@ -130,17 +141,13 @@ def pencil_of(method: Method) -> Pencil:
     TypeError for a second-order scheme, which has no pi(z, mu).
     """
     table = _floats(method, coefficient_table(method))
-    feedback = feedback_matrix(method)
-    to_feedback = _floats(method, feedback)
     return Pencil(
         method=method,
         steps=len(table) - 1,
         table=table,
         table_by_z=np.asarray(polyder(table, axis=0), float),
         table_by_mu=np.asarray(polyder(table, axis=1), float),
-        feedback=feedback,
-        to_feedback=to_feedback,
-        to_user=np.asarray(np.linalg.inv(to_feedback), float),
+        multiple=float(method.step_multiple),
     )
 
 

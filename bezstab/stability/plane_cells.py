@@ -27,7 +27,7 @@ from bezstab.rationals import exact
 from bezstab.stability.arrays import DOUBLE, ROUNDING, SAME, ComplexArray, Extent, FloatArray
 from bezstab.stability.exact_sums import double_polynomial, split
 from bezstab.stability.quadratures import integrals
-from bezstab.stability.root_finding import STEPS, horner_with_slope
+from bezstab.stability.root_finding import STEPS, companion_roots, horner_with_slope
 from bezstab.stability.searches import least_between
 from bezstab.stability.shapes import USUAL_SIZE, Approached, Shape, joined
 
@@ -122,13 +122,8 @@ def _real_roots(coefficients: FloatArray, count: int) -> FloatArray:
             return np.asarray(-coefficients[:1] / coefficients[1])
         if len(coefficients) == 3:
             return _quadratic_places(*coefficients)
-        monic = coefficients[:-1] / coefficients[-1]
-        n, lines = monic.shape
-        lost = ~np.isfinite(monic).all(axis=0)
-        companion = np.zeros((lines, n, n))
-        companion[:, range(1, n), range(n - 1)] = 1
-        companion[:, :, -1] = -np.where(lost, 0, monic).T
-        roots = np.linalg.eigvals(companion).astype(complex)
+        lost = ~np.isfinite(coefficients[:-1] / coefficients[-1]).all(axis=0)
+        roots = companion_roots(coefficients).T
         x = np.sort(_most_real(roots, count), axis=1).T
         # a larger step than what eigenvalues may be off by does not polish but leads away
         allowed = np.maximum(DOUBLE * np.abs(x), ROUNDING * np.abs(roots).max(axis=1))

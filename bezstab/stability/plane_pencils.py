@@ -21,21 +21,18 @@ from bezstab.stability.root_finding import CHUNK, horner, inside_circle, roots_o
 
 CANCELS = 1e-5  # of (b/2)^2: where the discriminant is below it, its root would be good to 1e-13 or less
 
-Term = tuple[int, int, float]
-"""A power of alpha_hat, one of beta_hat, and the coefficient."""
-
 
 @dataclass(frozen=True, eq=False, repr=False)
 class PlanePencil:
     """P(z; alpha_hat, beta_hat) of a second-order scheme, its degree in z, and its coefficients in float64.
 
-    `terms[k]` has the terms of the coefficient of z^k, `split[k]` its whole table, each entry with what its rounding
+    `table[k, i, j]` belongs to z^k alpha_hat^i beta_hat^j, `split[k][i][j]` is the same number with what its rounding
     leaves over; everything is dimensionless.
     """
 
     method: Method
     degree: int
-    terms: tuple[tuple[Term, ...], ...]
+    table: FloatArray
     split: tuple[tuple[tuple[tuple[float, float], ...], ...], ...]
 
     def __repr__(self) -> str:
@@ -65,10 +62,7 @@ def plane_pencil_of(method: Method, free: bool = False) -> PlanePencil:
         halves = tuple(tuple(tuple(split(c) for c in row) for row in in_plane) for in_plane in exact)
     except OverflowError:
         raise NumericalError(f"{method.name}: products of its coefficients leave the range of float64") from None
-    terms = tuple(
-        tuple((i, j, c) for i, row in enumerate(in_plane) for j, (c, _) in enumerate(row) if c) for in_plane in halves
-    )
-    return PlanePencil(method, len(exact) - 1, terms, halves)
+    return PlanePencil(method, len(exact) - 1, np.array(halves)[..., 0], halves)
 
 
 def coefficients_at(pencil: PlanePencil, alpha_hat: FloatArray, beta_hat: FloatArray) -> list[FloatArray]:

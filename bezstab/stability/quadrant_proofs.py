@@ -1,36 +1,30 @@
 r"""Whether a method is stable for all alpha_hat, beta_hat > 0: proven in exact arithmetic, or refuted at a point.
 
-The substitution z = (1 + w) / (1 - w) takes the unit disc to the left half-plane:
+On a way from one point of the quadrant to another a pole leaves the unit disc through the circle: a real one through 1
+or -1, others in pairs. Each way out is where a polynomial in alpha_hat and beta_hat vanishes (plane_edges), so where
+none of the three does, the whole quadrant is as stable as any point of it:
 
-      z plane    . - .                      w plane     |
-               /       \                     . . . . . .|
-              |   o     |    <---------->     . o . . . .|        all roots z inside the circle if and only if
-               \       /                     . . . . . .|        all roots w are left of the axis
-                 ' - '                                  |
+      beta_hat |   o
+               |  /            P(1), P(-1) and prod (1 - z_i z_j) have no zero in the quadrant:
+               | o             what is stable at one o is stable at the other
+               +------- alpha_hat
 
-There Hurwitz' determinants decide (in the form of Lienard and Chipart: F. R. Gantmacher, The Theory of Matrices 2,
-section XV.13): all coefficients in w and every other determinant must be positive. They are polynomials in alpha_hat
-and beta_hat. One without negative coefficients is positive on the whole quadrant; so is a sum over powers of alpha_hat
-whose factors, polynomials in beta_hat, are nowhere negative by Sturm's theorem, if one has no negative coefficient.
+A polynomial whose coefficients have one sign has no zero there; nor has a sum over powers of alpha_hat whose factors,
+polynomials in beta_hat, are nowhere negative by Sturm's theorem, if one has no negative coefficient.
 """
 
-from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from functools import cache
-from typing import Any, Literal
+from typing import Literal
 
 import sympy as sp
-from sympy.polys.matrices import DomainMatrix
 
-from bezstab.methods import ALPHA_HAT, BETA_HAT, Method, closed_loop_table
+from bezstab.methods import ALPHA_HAT, BETA_HAT, Method, closed_loop_polynomial, crossing_polynomials
 from bezstab.stability.closed_loop import verdict
 
 StableForAll = Literal["proven", "no unstable point found", "no"]
 
-RING = sp.QQ[ALPHA_HAT, BETA_HAT]
-W = sp.Symbol("w")
-
-MOST_ROOTS = 16  # of P, for which determinants are computed: beyond, they take minutes
+MOST_ROOTS = 16  # of P, for which a determinant is computed: beyond, it takes minutes
 DAMPING_RATIOS = [
     *(Fraction(1, part) for part in (1000, 100, 30, 10, 4, 2)),
     *(Fraction(part, 20) for part in (15, 18, 20, 25, 40)),
@@ -53,64 +47,19 @@ def stable_for_all(method: Method) -> StableForAll:
         for beta_step in reversed(BETA_STEPS):  # most methods fail at large steps
             if verdict(method, 2 * damping_ratio * beta_step, beta_step**2) != "converges":
                 return "no"
-    table = closed_loop_table(method)
-    if len(table) - 1 > MOST_ROOTS:
+    polynomial = closed_loop_polynomial(method)
+    if polynomial.degree() > MOST_ROOTS:
         return "no unstable point found"
-    coefficients = [_in_plane(plane) for plane in table]
-    if all(_positive(condition) for condition in stability_conditions(coefficients, RING)):
+    ascending = polynomial.rep.to_list()[::-1]
+    at_one, at_minus_one, _, of_pairs = crossing_polynomials(ascending, polynomial.domain)
+    edges = [polynomial.domain.to_sympy(edge) for edge in (at_one, at_minus_one, of_pairs)]
+    if all(_positive(edge) or _positive(-edge) for edge in edges):
         return "proven"
     return "no unstable point found"
 
 
-def stability_conditions(coefficients: Sequence[Any], ring: Any) -> Iterator[Any]:
-    """Yield what must be positive, or with the opposite sign of P negative, for all roots to have |z| < 1.
-
-    `coefficients` of P in ascending powers of z, elements of a polynomial ring; so are the conditions.
-    """
-    in_w = coefficients_in_w(coefficients, ring)
-    yield from in_w
-    for size in range(len(in_w) - 2, 1, -2):
-        yield hurwitz_determinant(in_w, size, ring)
-
-
-def coefficients_in_w(coefficients: Sequence[Any], ring: Any) -> list[Any]:
-    """Return the coefficients of (1 - w)^n P((1 + w) / (1 - w)) in ascending powers of w."""
-    degree = len(coefficients) - 1
-    total = [ring.zero] * (degree + 1)
-    for k, coefficient in enumerate(coefficients):
-        moved = sp.Poly((1 + W) ** k * (1 - W) ** (degree - k), W)
-        for power, factor in enumerate(reversed(moved.all_coeffs())):
-            total[power] += coefficient * ring.convert(sp.Integer(factor))
-    return total
-
-
-def hurwitz_determinant(in_w: Sequence[Any], size: int, ring: Any) -> Any:
-    """Return Hurwitz' determinant of some size: its entry in row i, column j (from 1) is that of w^(n + i - 2 j)."""
-
-    def entry(row: int, column: int) -> Any:
-        power = len(in_w) - 1 + row - 2 * column
-        return in_w[power] if 0 <= power < len(in_w) else ring.zero
-
-    indices = range(1, size + 1)
-    matrix = DomainMatrix([[entry(row, column) for column in indices] for row in indices], (size, size), ring)
-    return matrix.charpoly()[-1] * (-1) ** size  # by Berkowitz' algorithm, which divides nothing
-
-
-def _in_plane(plane: Sequence[Sequence[Fraction]]) -> Any:
-    """Return a table of coefficients of alpha_hat^i beta_hat^j as an element of RING."""
-    alpha_hat, beta_hat = RING.from_sympy(ALPHA_HAT), RING.from_sympy(BETA_HAT)
-    total = RING.zero
-    for i, row in enumerate(plane):
-        for j, coefficient in enumerate(row):
-            total += (
-                alpha_hat**i * beta_hat**j * RING.convert(sp.Rational(coefficient.numerator, coefficient.denominator))
-            )
-    return total
-
-
-def _positive(polynomial: Any) -> bool:
+def _positive(expression: sp.Expr) -> bool:
     """Return whether a polynomial is proven positive wherever alpha_hat, beta_hat > 0."""
-    expression = RING.to_sympy(polynomial)
     if expression == 0:
         return False
     if _without_negative(sp.Poly(expression, ALPHA_HAT, BETA_HAT)):

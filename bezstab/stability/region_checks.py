@@ -303,18 +303,10 @@ def _panels(shape: Shape) -> FloatArray:
         if (curve[0] == curve[-1]).all():
             points = np.concatenate([points, points[1:2]])
         chords = np.diff(points, axis=0)
-        before, after = chords[:-1], chords[1:]
         angle = np.arctan2(*(chords / size).T[::-1])
         turned = np.abs((np.diff(angle) + np.pi) % (2 * np.pi) - np.pi) > TURNED
-        turning = before[:, 0] * after[:, 0] <= 0
-        middle = points[1:-1]
-        with np.errstate(all="ignore"):  # the parabola through three points, as alpha_hat over beta_hat
-            slopes = before[:, 0] / before[:, 1], after[:, 0] / after[:, 1]
-            curvature = (slopes[1] - slopes[0]) / (before[:, 1] + after[:, 1])
-            slope = slopes[0] + curvature * before[:, 1]
-            summit = middle[:, 0] - slope**2 / (4 * curvature)
-        within = np.abs(summit - middle[:, 0]) <= np.maximum(*np.abs([before[:, 0], after[:, 0]]))
-        ends += [points[[0, -1], 0], middle[turned, 0], np.where(within, summit, middle[:, 0])[turning]]
+        turning = chords[:-1, 0] * chords[1:, 0] <= 0  # where it turns between two points hardly differs
+        ends += [points[[0, -1], 0], points[1:-1][turned | turning, 0]]
     places = np.unique(np.concatenate(ends))
     places = places[(places >= first) & (places <= last)]
     places = places[np.append(True, np.diff(places) > SAME * (last - first))]

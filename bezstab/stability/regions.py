@@ -1,13 +1,12 @@
 """The exact region |z_p| < r of the alpha_hat-beta_hat plane: its boundary, area and extent, without a grid."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache, partial
+from functools import cache
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bezstab.errors import InputError, NumericalError
+from bezstab.errors import InputError
 from bezstab.methods import Method, fixed_poles, without_shared_factor
 from bezstab.read_only import ReadOnlyArrays
 from bezstab.stability.arrays import ROUNDING, BoolArray, Extent, FloatArray
@@ -16,9 +15,9 @@ from bezstab.stability.locus_shapes import locus_shape
 from bezstab.stability.pencils import pencil_of
 from bezstab.stability.plane_cells import strips_shape
 from bezstab.stability.region_checks import check_region
+from bezstab.stability.searches import checked
 from bezstab.stability.shapes import ATTAINED, GOES_ON, Approached, Shape
 
-FINER = 4  # times as many samples of the locus, where the first sampling failed the check
 MARGIN = 0.05  # of what is to be seen of a bounded region
 
 
@@ -78,13 +77,13 @@ def region(method: Method, level: float = 1.0) -> Region:
     empty = Region(method, level, 0.0, (), None, stuck)
     if stuck and abs(stuck[0]) >= level * (1 - ROUNDING):
         return empty
-    shape_from = shape_source(method, level)
-    try:
-        shape = shape_from(finer=1)
+
+    def checked_shape(finer: int) -> Shape | None:
+        shape = shape_of(method, level, finer)
         check_region(method, level, shape)
-    except NumericalError:
-        shape = shape_from(finer=FINER)
-        check_region(method, level, shape)
+        return shape
+
+    shape = checked(checked_shape)
     if shape is None:
         return empty
     return Region(
@@ -100,11 +99,11 @@ def region(method: Method, level: float = 1.0) -> Region:
     )
 
 
-def shape_source(method: Method, level: float) -> Callable[..., Shape | None]:
-    """Return what makes the shape from so many times finer samples: the locus of a method that has a mu, or strips."""
+def shape_of(method: Method, level: float, finer: int = 1) -> Shape | None:
+    """Return the shape from so many times finer samples of the locus of a method that has a mu, or from strips."""
     if method.has_mu:
-        return partial(locus_shape, pencil_of(without_shared_factor(method)), level)
-    return lambda finer: strips_shape(method, level)
+        return locus_shape(pencil_of(without_shared_factor(method)), level, finer)
+    return strips_shape(method, level)
 
 
 def pole_place(z: complex) -> str:

@@ -168,23 +168,32 @@ def _starts_of_few(coefficients: ComplexArray) -> ComplexArray:
     leading coefficient vanishes, or eigenvalues coincide or vanish, starts might never part: there, and of more
     polynomials, they are those of the Newton polygon.
     """
-    n, points = len(coefficients) - 1, coefficients.shape[1]
-    if points > FEW:
+    if coefficients.shape[1] > FEW:
         return newton_polygon_starts(coefficients)
-    companion = np.zeros((points, n, n), complex)
-    companion[:, range(1, n), range(n - 1)] = 1
-    companion[:, :, -1] = -(coefficients[:-1] / coefficients[-1]).T
-    finite = np.isfinite(companion[:, :, -1]).all(axis=1)
-    companion[~finite] = 0
     try:
-        starts = np.linalg.eigvals(companion).T.astype(complex)
+        starts = companion_roots(coefficients)
     except np.linalg.LinAlgError:
         return newton_polygon_starts(coefficients)
-    apart = np.diff(np.sort(starts, axis=0), axis=0).all(axis=0) & starts.all(axis=0)
-    rest = ~(finite & apart)
+    rest = ~(np.diff(np.sort(starts, axis=0), axis=0).all(axis=0) & starts.all(axis=0))
     if rest.any():
         starts[:, rest] = newton_polygon_starts(coefficients[:, rest])
     return starts
+
+
+def companion_roots(coefficients: NDArray[np.inexact]) -> ComplexArray:
+    """Return eigenvalues of companion matrices, the roots of polynomials but for rounding; shape (n, points).
+
+    Coefficients ascending, of shape (n + 1, points). Zeros where the leading one vanishes beside another.
+    LinAlgError where eigenvalues are not found.
+    """
+    n, points = len(coefficients) - 1, coefficients.shape[1]
+    with np.errstate(all="ignore"):
+        monic = coefficients[:-1] / coefficients[-1]
+    companion = np.zeros((points, n, n), coefficients.dtype)
+    companion[:, range(1, n), range(n - 1)] = 1
+    companion[:, :, -1] = -monic.T
+    companion[~np.isfinite(monic).all(axis=0)] = 0
+    return np.linalg.eigvals(companion).T.astype(complex)
 
 
 def _aberth(coefficients: ComplexArray, starts: ComplexArray) -> ComplexArray:

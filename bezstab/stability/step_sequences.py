@@ -110,8 +110,8 @@ def varying_steps(
     if matrix.commuting:
         return result("proven", "commuting") if alone else result("not known")
     samples = _samples(shortest, down=hold or matrix.size == 3)
-    matrices = np.array([[[float(entry) for entry in row] for row in matrix.at(s)] for s in samples])
-    lengths = np.array([float(s) for s in samples])
+    matrices = np.array([matrix.at(s) for s in samples], np.float64)
+    lengths = np.array(samples, np.float64)
     form: FloatArray | None = None
     frame: FloatArray | None = None
     with suppress(np.linalg.LinAlgError):  # where what decays is lost in rounding
@@ -178,7 +178,7 @@ def _samples(shortest: Fraction, down: bool) -> list[Fraction]:
 
 def _flow(matrix: StepMatrix) -> FloatArray:
     """Return the G of short steps, M = 1 + s G: its entries are those of M for a step without length, derived."""
-    return (np.array([[float(entry) for entry in row] for row in matrix.at(SHORT)]) - np.eye(2)) / float(SHORT)
+    return (np.array(matrix.at(SHORT), np.float64) - np.eye(2)) / float(SHORT)
 
 
 def _form(lengths: FloatArray, matrices: FloatArray, alpha_hat: float, beta_hat: float) -> FloatArray:

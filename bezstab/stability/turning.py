@@ -20,13 +20,13 @@ For an exact integrator z = e^mu: chi = 0, as it must be.
 from functools import cache
 
 import numpy as np
-from numpy.polynomial.polynomial import polyval2d
+from numpy.polynomial.polynomial import polyder, polyval2d, polyval3d
 from numpy.typing import ArrayLike
 
-from bezstab.methods import Method, closed_loop_table
+from bezstab.methods import Method
 from bezstab.stability.arrays import ComplexArray, FloatArray
-from bezstab.stability.exact_sums import feedback_roots
 from bezstab.stability.pencils import pencil_of
+from bezstab.stability.plane_pencils import plane_pencil_of
 
 
 def turning_sensitivity(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike, z: ArrayLike) -> ComplexArray:
@@ -62,7 +62,7 @@ def own_feedback_root(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike,
     if not method.has_mu:
         return np.zeros(z.shape, complex)
     pencil = pencil_of(method)
-    mu = np.stack(feedback_roots(pencil.feedback, alpha_hat.ravel(), beta_hat.ravel())).reshape(2, *z.shape)
+    mu = np.stack(pencil.feedback_roots(alpha_hat.ravel(), beta_hat.ravel())).reshape(2, *z.shape)
     left_over = np.abs(polyval2d(np.broadcast_to(z, mu.shape), mu, pencil.table))
     return np.asarray(np.take_along_axis(mu, np.argmin(left_over, axis=0)[np.newaxis], axis=0)[0])
 
@@ -85,10 +85,10 @@ def _by_closed_loop(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray,
 @cache
 def _closed_loop_slopes(method: Method) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return the tables of P's derivatives by z, alpha_hat and beta_hat, indexed by powers in this order."""
-    table = np.array(closed_loop_table(method), float)
-    by_z, by_alpha, by_beta = (np.polynomial.polynomial.polyder(table, axis=axis) for axis in range(3))
+    table = plane_pencil_of(method).table
+    by_z, by_alpha, by_beta = (np.asarray(polyder(table, axis=axis), float) for axis in range(3))
     return by_z, by_alpha, by_beta
 
 
 def _value(table: FloatArray, z: ComplexArray, alpha_hat: FloatArray, beta_hat: FloatArray) -> ComplexArray:
-    return np.asarray(np.polynomial.polynomial.polyval3d(z, alpha_hat, beta_hat, table))
+    return np.asarray(polyval3d(z, alpha_hat, beta_hat, table))

@@ -55,7 +55,7 @@ from bezstab.show.explorer import Explorer
 from bezstab.stability import FloatArray, Pencil, Region, pencil_of, region, roots_in_z, spectral_radius, window
 from bezstab.stability.boundary_locus import bounds_of
 from bezstab.stability.region_checks import check_region
-from bezstab.stability.regions import shape_source
+from bezstab.stability.regions import shape_of
 from tests.evidence.exact_rates import own_motion_rates
 
 HERE = Path(__file__).parent
@@ -305,7 +305,7 @@ def self_checks() -> Iterator[Line]:
                 remembered.cache_clear()
             return region(pencil.method)
 
-        shape = shape_source(pencil.method, 1.0)(finer=1)
+        shape = shape_of(pencil.method, 1.0)
         (whole, _), (check, _) = interleaved(found, partial(check_region, pencil.method, 1.0, shape))
         note = f"{1e3 * check:.1f} ms of {1e3 * whole:.0f} ms"
         yield Line("check", f"{name}: a region and its check", (whole - check) / check, 0.4, note)

@@ -47,7 +47,7 @@ def scan(method: Method, beta_hat: FloatArray, level: float = 1.0) -> tuple[IntA
     _, (low, high) = region(method, level).extent or ((0, 0), (0, 0))
     start, end = np.searchsorted(beta_hat, low, "right"), np.searchsorted(beta_hat, high)
     lines = beta_hat[start:end]
-    found = [arc_crossings(arc, lines, pencil.to_user) for arc in bounds_of(pencil, level).arcs]
+    found = [arc_crossings(arc, lines) for arc in bounds_of(pencil, level).arcs]
     for (first_alpha_hat, first_beta_hat), (last_alpha_hat, last_beta_hat) in _edges(method, level):
         if first_beta_hat == last_beta_hat:
             continue  # no line crosses it
@@ -72,19 +72,17 @@ def crossed_levels(levels: FloatArray, values: FloatArray) -> tuple[IntArray, In
     return first + np.arange(number.sum()), step
 
 
-def arc_crossings(arc: Arc, beta_hat: FloatArray, to_user: FloatArray) -> tuple[IntArray, FloatArray]:
+def arc_crossings(arc: Arc, beta_hat: FloatArray) -> tuple[IntArray, FloatArray]:
     """Return the numbers of the ascending levels beta_hat that an arc crosses, and alpha_hat there, by false position.
-
-    `to_user` takes (p, q) to (alpha_hat, beta_hat); the identity for lines of constant q.
 
     Between two neighbouring turns or samples beta_hat is monotonic, so each crossing is bracketed. Illinois: the value
     of an end that stays twice is halved, lest it stay for ever (M. Dowell & P. Jarratt, BIT 11, 1971).
     """
-    turns = arc.turns(to_user[1])
+    turns = arc.turns(1)
     theta = np.append(arc.theta, turns)
     order = np.argsort(theta)
     theta = theta[order]
-    values = np.append(arc.plane() @ to_user[1], arc.coordinate(turns, to_user[1]))[order]
+    values = np.append(arc.plane()[:, 1], arc.coordinate(turns, 1))[order]
     rows, step = crossed_levels(beta_hat, values)
     low, high, target = theta[step], theta[step + 1], beta_hat[rows]
     below, above = values[step] - target, values[step + 1] - target
@@ -93,7 +91,7 @@ def arc_crossings(arc: Arc, beta_hat: FloatArray, to_user: FloatArray) -> tuple[
     rounding = ROUNDINGS * EPS * np.abs(values).max()
     for k in range(FALSE_POSITIONS):
         middle = low - below * (high - low) / (above - below)
-        off = arc.coordinate(middle, to_user[1]) - target
+        off = arc.coordinate(middle, 1) - target
         if (np.abs(off) <= rounding).all():
             break
         last = beyond
@@ -101,4 +99,4 @@ def arc_crossings(arc: Arc, beta_hat: FloatArray, to_user: FloatArray) -> tuple[
         stays = np.where(last == beyond, 0.5 if k else 1.0, 1.0)
         high, low = np.where(beyond, middle, high), np.where(beyond, low, middle)
         above, below = np.where(beyond, off, stays * above), np.where(beyond, stays * below, off)
-    return rows, arc.coordinate(middle, to_user[0])
+    return rows, arc.coordinate(middle, 0)

@@ -39,20 +39,15 @@ def test_the_example_in_the_help_runs(name: str) -> None:
 
 
 NUMBERS = ["0", "-0.1", "0.5", "1", "2", "1e-17", "-1e-30", "1e-300", "1e100", "1e300", "6/11", "nan", "1e999", "x"]
-STEPS = ["1e-100", "0.001", "1", "1e100", "0", "1e300"]
-POINT = {"--alpha": NUMBERS, "--beta": NUMBERS, "--h": STEPS}
-TYPED: dict[str, dict[str, list[str]]] = {
-    "poles": {**POINT, "--physical": [], "--all-poles": [], "--omega": NUMBERS},
-    "check": {
-        **POINT,
-        "--physical": [],
-        "--omega": NUMBERS,
-        "--engine": ["mujoco=0.02,1", "mujoco=0,0", "bullet=0.2", "box2d=60,-2", "drake=1e300,1", "ode=", "x=1"],
-    },
-    "engines": POINT,
-    "methods": {"--latex": []},
-    "region --figure none --table none": {"--level": NUMBERS, "--h": STEPS, "--compare": [], "--engine": ["mujoco"]},
+ENGINES = ["mujoco=0.02,1", "mujoco=0,0", "bullet=0.2", "box2d=60,-2", "drake=1e300,1", "ode=", "x=1", "mujoco"]
+TYPED = {
+    "poles": ["--alpha", "--beta", "--h", "--physical", "--all-poles", "--omega"],
+    "check": ["--alpha", "--beta", "--h", "--physical", "--omega", "--engine"],
+    "engines": ["--alpha", "--beta", "--h"],
+    "methods": ["--latex"],
+    "region --figure none --table none": ["--level", "--h", "--compare", "--engine"],
 }
+FLAGS = ("--physical", "--all-poles", "--latex", "--compare")
 METHODS = ["B2", "AB4", "RK4@5", "SYM", "B4@1e-6", "RK1@1e300", "b4"]
 
 
@@ -62,15 +57,15 @@ METHODS = ["B2", "AB4", "RK4@5", "SYM", "B4@1e-6", "RK1@1e300", "b4"]
 def test_whatever_is_typed_ends_in_an_answer_or_one_line(data: st.DataObject) -> None:
     command = data.draw(st.sampled_from(sorted(TYPED)))
     words = command.split()
-    for name in data.draw(st.lists(st.sampled_from(sorted(TYPED[command])), unique=True)):
-        values = TYPED[command][name]
-        words += [name, data.draw(st.sampled_from(values))] if values else [name]
+    for name in data.draw(st.lists(st.sampled_from(TYPED[command]), unique=True)):
+        value = data.draw(st.sampled_from(ENGINES if name == "--engine" else NUMBERS))
+        words += [name] if name in FLAGS else [name, value]
     for method in data.draw(st.lists(st.sampled_from(METHODS), max_size=2)):
         words += [method] if command == "methods" else ["--method", method]
     result = run(*words, "--format", data.draw(st.sampled_from(["text", "json"])))
     assert isinstance(result.exception, SystemExit | None)
     assert result.exit_code in (0, 1, 2, 3)
-    assert result.stderr.count("\n") == (result.exit_code > 1)
+    assert result.exit_code < 2 or result.stderr.count("\n") == 1  # beside an answer there may be notes
 
 
 def test_numerical_trouble_is_status_three_and_no_file(tmp_path: Path) -> None:
@@ -80,19 +75,6 @@ def test_numerical_trouble_is_status_three_and_no_file(tmp_path: Path) -> None:
 
 
 EULER = 'A = [["0"]]\nb = ["1"]\n'
-ODD = ("../../x", "a|b", "/etc/x", "..", ".", "CON:", "c\\d", "-o", "x" * 200, "é中")
-
-
-@pytest.mark.slow
-def test_a_method_may_have_any_name_and_a_file_of_its_own(tmp_path: Path) -> None:
-    for number, name in enumerate(ODD):
-        own = f"{number}.toml"
-        Path(own).write_text(f"name = '{name}'\n{EULER}", encoding="utf-8")
-        result = run("region", "--method", own, "--grid", "9", "--figure", "none", "--table", "csv", "-o", "out")
-        assert result.exit_code == 0
-        assert result.stderr.count("\n") == 1
-    assert len(list((tmp_path / "out").glob("region_*.csv"))) == len(ODD)
-    assert len(list(tmp_path.iterdir())) == len(ODD) + 1
 
 
 @pytest.mark.parametrize("name", ["\x1b[2J\x07", "line\nline", "\N{LINE SEPARATOR}", "a  b", "x" * 300])

@@ -2,7 +2,6 @@ import csv
 import importlib.util
 import io
 import json
-import os
 from pathlib import Path
 
 import numpy as np
@@ -35,18 +34,10 @@ def test_a_run_that_fails_is_status_three_with_its_time_and_keeps_the_history(tm
     assert "at t = 0.5 s: Newton's method did not converge in" in result.stderr.splitlines()[-1]
 
 
-@pytest.mark.parametrize(
-    ("time", "passages", "said"),
-    [
-        ("0.7", 0, ""),
-        ("4", 2, "2 singular configurations, at t = 0.772, "),
-    ],
-)
-def test_simulate_says_where_it_goes_through_singular_configurations(time: str, passages: int, said: str) -> None:
-    result = run("simulate", "--scene", "slider_crank_equal", *NOTHING, "--format", "json", "--time", time)
-    assert json.loads(result.stdout)[0]["singular_passages"] == passages
-    assert said in result.stderr
-    assert (result.exit_code, len(result.stderr.splitlines())) == (0, bool(said))
+def test_simulate_says_where_it_goes_through_singular_configurations() -> None:
+    result = run("simulate", "--scene", "slider_crank_equal", *NOTHING, "--format", "json", "--time", "4")
+    assert (result.exit_code, json.loads(result.stdout)[0]["singular_passages"]) == (0, 2)
+    assert "2 singular configurations, at t = 0.772, " in result.stderr
 
 
 @pytest.mark.slow
@@ -77,18 +68,6 @@ def test_tradeoff_holds_feedback_against_projection(tmp_path: Path) -> None:
     assert {path.name for path in tmp_path.iterdir()} == {"tradeoff_pendulum.csv", "tradeoff_pendulum_projection.png"}
     (*_, last) = rows(*f"tradeoff {command} --stabilise none".split(), *NOTHING)
     assert (last["stabilise"], last["alpha_hat"], last["z_abs"]) == ("none", 0, None)
-
-
-@pytest.mark.slow
-def test_compiled_runs_answer_the_same() -> None:
-    """But for rounding: runs agree to 1e-12 of the coordinates' size, of which an error may be a small part."""
-    command = ("simulate", "--scene", "pendulum", "--method", "SYM", "--time", "0.1", *NOTHING)
-    by_numpy, compiled = (rows(*command, "--compiled", choice) for choice in ("no", "yes"))
-    for row, again in zip(by_numpy, compiled, strict=True):
-        for key, value in row.items():
-            alike = pytest.approx(value, rel=1e-6, abs=1e-12) if isinstance(value, float) else value
-            assert again[key] == alike, key
-    assert "BEZSTAB_COMPILED" not in os.environ
 
 
 @pytest.mark.parametrize("command", ["simulate", "paper"])

@@ -6,12 +6,8 @@ A validator that is not ours holds the rows against the schema.
 import csv
 import io
 import json
-import os
-import pty
 import re
 import shlex
-import subprocess
-import sys
 
 import click
 import pytest
@@ -143,22 +139,3 @@ def test_without_a_width_several_rows_are_a_table_and_one_row_is_a_block(
     assert len(several) == 2 + 1 + 8 + 2  # the last line says what errors are shares of
     single = run("poles", "--alpha", "0.5", "--beta", "0.1", "--method", "B4").stdout.splitlines()
     assert single[2:5] == ["Safe. Each step multiplies the error by 0.78.", "", "method    B4"]
-
-
-@pytest.mark.slow
-def test_a_terminal_that_says_how_wide_it_is_is_believed() -> None:
-    """On a real terminal of 60 columns, without COLUMNS: what goes to a pipe is wider."""
-    import fcntl
-    import struct
-    import termios
-
-    ours, theirs = pty.openpty()
-    fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 60, 0, 0))
-    environment = {key: value for key, value in os.environ.items() if key != "COLUMNS"}
-    command = "poles --alpha 0.5 --beta 0.1"
-    subprocess.run([sys.executable, "-m", "bezstab", *command.split()], stdout=theirs, env=environment, check=True)
-    os.close(theirs)
-    shown = os.read(ours, 65536).decode()
-    os.close(ours)
-    assert 40 < widest(shown) <= 60
-    assert widest(printed(command)) > 60

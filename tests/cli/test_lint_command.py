@@ -53,14 +53,6 @@ def test_without_mujoco_one_line_says_how_to_install_it(monkeypatch: pytest.Monk
     assert "pip install 'bezstab[mujoco]'" in result.stderr
 
 
-def test_a_drive_in_a_closed_loop_is_no_reason_for_status_one() -> None:
-    """Alone it would diverge; what the whole loop does decides, and both rows say so."""
-    loop, servo, together = rows("lint", str(DATA / "closed_loop.xml"))
-    assert [row["verdict"] for row in (loop, servo, together)] == ["converges", "diverges", "converges"]
-    assert [row["safe"] for row in (loop, servo, together)] == [True, True, True]
-    assert "which decides" in str(servo["advice"])
-
-
 def test_a_robots_urdf_is_judged_as_it_is() -> None:
     """Its joint limits and damping are MuJoCo's: the damping's inertia is m r^2 + iyy = 0.0825 kg m^2."""
     found = rows("lint", str(DATA / "arm.urdf"))

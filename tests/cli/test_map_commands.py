@@ -7,7 +7,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from bezstab.errors import InputError
 from bezstab.methods import lookup
 from bezstab.stability import combined_error
 from tests.cli.running import arrays, rows, run
@@ -43,14 +42,6 @@ def test_the_tables_of_a_map_and_of_compared_boundaries(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_a_users_method_has_maps_and_steps_of_several_h(tmp_path: Path) -> None:
-    Path("mine.toml").write_text('name = "a/b"\nrho = ["1", "-1"]\nsigma = ["0", "1"]', encoding="utf-8")
-    assert run("region", "--method", "mine.toml", "--grid", "5").exit_code == 0
-    assert (tmp_path / "region_a_b.png").exists()
-    assert rows("poles", "--alpha", "1", "--beta", "1/2", "--method", "mine.toml@2")[0]["method"] == "a/b@2"
-
-
-@pytest.mark.slow
 def test_a_map_of_each_way_of_applying_a_drive_is_written_and_the_rows_are_those_of_check(tmp_path: Path) -> None:
     late = ("--pd", "200,5,0.1", "--h", "0.002", "--every", "4", "--late", "1")
     assert rows("region", *late, "--quality", "fast") == rows("check", *late)
@@ -75,15 +66,3 @@ def test_the_map_of_errors_is_written_as_figure_and_table(tmp_path: Path) -> Non
     assert np.isnan(table["combined_error"][~decaying]).all()
     expected = combined_error(lookup("RK4"), alpha_hat[decaying], beta_hat[decaying], Fraction(1, 100))
     assert table["combined_error"][decaying] == pytest.approx(expected)
-
-
-@pytest.mark.slow
-def test_a_method_without_an_accurate_point_has_its_map_nevertheless(monkeypatch: pytest.MonkeyPatch) -> None:
-    def refused(*_: object, **__: object) -> None:
-        raise InputError("RK4: no feedback decays so fast")
-
-    monkeypatch.setattr("bezstab.questions.regions.choose", refused)
-    result = run(*ACCURACY, "--format", "csv")
-    assert result.exit_code == 0
-    assert "no most accurate point: RK4: no feedback decays so fast" in result.stderr
-    assert "wrote region_RK4_accuracy.png" in result.stderr

@@ -1,19 +1,11 @@
 """--scene and --speed of poles, choose, check and region."""
 
-import json
-from typing import Any
-
 import pytest
 
 from bezstab.mechanism import compiled_mechanism, constraint_motion, load_scene
 from tests.cli.running import rows, run
 
 FOUR_BAR = ("--scene", "driven_four_bar", "--h", "0.01")
-
-
-def rows_and_status(*arguments: str) -> tuple[list[dict[str, Any]], int]:
-    result = run(*arguments, "--format", "json")
-    return json.loads(result.stdout), result.exit_code
 
 
 def test_poles_print_what_the_motion_does() -> None:
@@ -57,14 +49,6 @@ def test_beyond_the_law_choose_calls_nothing_safe() -> None:
     result = run("choose", "--method", "AB4", "--goal", "robust", "--h", "0.02", *FOUR_BAR[:2], "--speed", "1.8")
     assert "turn by κh = 0.12 a step: beyond 0.1 the law fails" in result.stderr
     assert (result.stdout[:8], result.exit_code) == ("Not safe", 1)
-
-
-@pytest.mark.slow
-def test_check_prints_up_to_which_speed_errors_shrink() -> None:
-    point = ("check", "--alpha", "0.3", "--beta", "0.64", "--method", "B4", *FOUR_BAR)
-    limit = rows_and_status(*point)[0][0]["safe_speed"]
-    slower, faster = (rows_and_status(*point, "--speed", f"{share * limit:.4f}")[0][0] for share in (0.99, 1.01))
-    assert slower["z_abs_moving"] < 1 < faster["z_abs_moving"]
 
 
 @pytest.mark.slow

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator
 from fractions import Fraction
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -61,21 +60,6 @@ def test_a_method_without_a_region_withholds_no_other(monkeypatch: pytest.Monkey
     result = run("region", "--method", "AB4", "--method", "B4", *FILES)
     assert (result.exit_code, result.stderr) == (3, f"bezstab: {REASON}\n")
     assert "0.8096847184" in result.stdout
-
-
-STEPS = 40  # implicit Euler steps composed, z = (1 - mu / 40)^-40: as many stages as a file may have
-
-
-@pytest.mark.slow
-def test_of_any_stages_the_verdict_is_given(tmp_path: Path) -> None:
-    rows_of_a = ", ".join(str(["1/40"] * (k + 1) + ["0"] * (STEPS - k - 1)) for k in range(STEPS))
-    path = tmp_path / "composed.toml"
-    path.write_text(f"A = [{rows_of_a}]\nb = {['1/40'] * STEPS}\n")
-    result = run("check", "--method", str(path), "--alpha", "1", "--beta", "1/4")
-    assert result.exit_code == 0
-    assert result.stdout.startswith("Safe. Each step multiplies the error by")
-    assert "The step, α and β may grow without limit." in result.stdout  # it is A-stable
-    assert "too many stages" in result.stderr  # to look for what to take instead
 
 
 def test_a_defect_does_not_end_as_unsafe(monkeypatch: pytest.MonkeyPatch) -> None:

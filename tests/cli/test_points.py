@@ -2,16 +2,11 @@
 
 import json
 import math
-from fractions import Fraction
 from typing import Any
 
-import click
 import pytest
 
-from bezstab.cli import main
-from bezstab.cli.asking import say_if_units_were_mistaken
-from bezstab.engines import DRIVE_METHODS, ENGINES
-from bezstab.methods import lookup
+from bezstab.engines import DRIVE_METHODS
 from tests.cli.running import DATA, rows, run
 
 
@@ -54,9 +49,6 @@ def test_an_engines_clamps_are_applied_unless_told_not_to() -> None:
     assert "mujoco: left out: " in applied.stderr
     given = json.loads(as_typed.stdout)[0]
     assert (given["alpha_hat"], given["applied"], as_typed.stderr) == (40, "as typed", "")
-    clamped = first_row("check", "--engine", "box2d=120,2", "--h", "1/240")
-    assert "clamped to 0.25/h = 60" in clamped["applied"]
-    assert clamped["excludes"] == ENGINES["box2d"].excludes
 
 
 def test_what_is_meant_in_seconds_has_a_largest_step_and_what_is_meant_per_step_has_none() -> None:
@@ -73,22 +65,6 @@ def test_what_is_meant_in_seconds_has_a_largest_step_and_what_is_meant_per_step_
     # stiffness and damping stay as they are, as alpha and beta do: the two ways agree
     of_the_engine, of_alpha_and_beta = limits("brax-spring=5000,20,1")
     assert of_the_engine == pytest.approx(of_alpha_and_beta, rel=1e-9)
-
-
-@pytest.mark.slow
-def test_what_choose_prints_for_an_engine_that_engine_reads_as_the_point() -> None:
-    h = Fraction(1, 240)
-    for name, engine in ENGINES.items():
-        if not engine.method or name == "chrono-explicit":
-            continue
-        (row,) = rows("choose", "--engine", name, "--h", "1/240", "--goal", "fastest")
-        point = row["alpha_hat"], row["beta_hat"]
-        values = engine.values((Fraction(str(point[0])), Fraction(str(point[1]))), h)
-        assert all(value in str(row["setting"]) for value in values), name
-        read = engine.applied(tuple(map(Fraction, values)), h)
-        assert not read.notes
-        assert tuple(map(float, read.point)) == pytest.approx(point, rel=1e-7, abs=1e-9), name
-        assert (row["safe"], row["sweeps"]) == (True, engine.sweeps)
 
 
 @pytest.mark.promise("What a drive's gains mean")
@@ -111,23 +87,6 @@ def test_numbers_that_look_like_one_over_seconds_are_said_to() -> None:
     for command in ("poles", "check --method SYM", f"probe {DATA}/pendulum.csv"):  # and no step to read them at
         said = run(*command.split(), "--alpha", "14217", "--beta", "16544").stderr
         assert "taken as α̂ and β̂, without unit; if they are in 1/s, add --physical and your --h\n" in said
-
-
-@pytest.mark.parametrize(
-    ("alpha", "beta", "h"),
-    [
-        ("1.5", "0.9", "1/240"),  # stable as typed
-        ("4", "3", None),  # too strong for SYM, but no number of 1/s
-        ("4", "3", "2"),  # too strong in either unit
-        ("-0.5", "0.9", "1e-3"),  # no feedback in 1/s is so weak
-    ],
-)
-def test_other_numbers_are_taken_without_a_word(
-    alpha: str, beta: str, h: str | None, capsys: pytest.CaptureFixture[str]
-) -> None:
-    with click.Context(main, info_name="check"):
-        say_if_units_were_mistaken([lookup("SYM")], Fraction(alpha), Fraction(beta), None if h is None else Fraction(h))
-    assert capsys.readouterr().err == ""
 
 
 def test_what_was_typed_is_shown_as_typed() -> None:

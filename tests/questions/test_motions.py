@@ -3,7 +3,8 @@ from fractions import Fraction
 import pytest
 
 from bezstab.errors import InputError
-from bezstab.questions import motion_of, turning_of, turning_stages, turns_too_far
+from bezstab.questions import motion_of, turns_too_far
+from bezstab.questions.motions import turning_of
 from bezstab.stability import OMEGA_H
 
 ONE = Fraction(1)
@@ -35,7 +36,6 @@ def test_a_scene_turns_so_much_faster_as_it_moves_faster() -> None:
     assert once
     assert twice
     assert twice.kappa == pytest.approx(2 * once.kappa, rel=1e-6)
-    assert turning_stages("driven_four_bar", ONE)[0] == "driven four-bar"
     assert turns_too_far("driven_four_bar", ONE, Fraction(1, 10**4)) is None
     assert "beyond 0.1 the law fails" in str(turns_too_far("driven_four_bar", Fraction(10), H))
 

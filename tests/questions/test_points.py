@@ -4,7 +4,8 @@ import pytest
 
 from bezstab.engines import Drive, engine_and_values
 from bezstab.errors import InputError
-from bezstab.questions.points import all_points, engine_holds, point_of_drive, point_of_engine
+from bezstab.methods import lookup
+from bezstab.questions.points import all_points, engine_holds, meant_in_seconds, point_of_drive, point_of_engine
 
 H = Fraction(1, 500)
 
@@ -37,3 +38,20 @@ def test_an_engine_holds_alpha_hat_and_beta_hat_or_alpha_and_beta_or_is_refused(
     assert not engine_holds(*spring, H, 2 * H, as_typed=False)
     with pytest.raises(InputError, match="box2d makes of these values neither"):
         engine_holds(*engine_and_values("box2d=60,2"), H, 2 * H, as_typed=False)
+
+
+@pytest.mark.parametrize(
+    ("alpha", "beta", "h", "meant"),
+    [
+        ("50", "50.5", "0.002", "at this step"),
+        ("14217", "16544", None, "at another step"),
+        ("1.5", "0.9", "1/240", None),  # stable as typed
+        ("4", "3", None, None),  # too strong for SYM, but no number of 1/s
+        ("4", "3", "2", None),  # too strong in either unit
+    ],
+)
+def test_numbers_that_would_be_stable_in_one_over_seconds_only_are_meant_so(
+    alpha: str, beta: str, h: str | None, meant: str | None
+) -> None:
+    point = Fraction(alpha), Fraction(beta)
+    assert meant_in_seconds([lookup("SYM")], point, None if h is None else Fraction(h)) == meant

@@ -4,7 +4,7 @@ from typing import Any
 
 import mpmath
 
-from bezstab.methods import Method, closed_loop_polynomial, coefficient_table, feedback_matrix
+from bezstab.methods import Method, closed_loop_polynomial, coefficient_table
 
 EPS = 2.0**-52
 
@@ -15,8 +15,8 @@ def poles_with_errors(method: Method, alpha_hat: float, beta_hat: float) -> list
     Rounding the coefficients of pi, mu and the evaluation by a few eps moves a root of multiplicity k by the k-th
     root of (rounding / |k-th derivative|).
     """
-    (a, b), (c, d) = ([mpmath.mpf(x.numerator) / x.denominator for x in row] for row in feedback_matrix(method))
-    p, q = a * mpmath.mpf(alpha_hat) + b * mpmath.mpf(beta_hat), c * mpmath.mpf(alpha_hat) + d * mpmath.mpf(beta_hat)
+    multiple = mpmath.mpf(method.step_multiple.numerator) / method.step_multiple.denominator
+    p, q = multiple * mpmath.mpf(alpha_hat), multiple**2 * mpmath.mpf(beta_hat)
     root = mpmath.sqrt(p * p / 4 - q)
     pairs = []
     for mu in (-p / 2 + root, -p / 2 - root):

@@ -93,5 +93,5 @@ def slice_area(
     if len(panels):
         total += float(whole.sum())
         error += float(differences.sum())
-    scale = abs(float(np.linalg.det(pencil.to_user)))
+    scale = pencil.multiple**-3
     return SliceArea(total * scale, error * scale, taken)

@@ -1,19 +1,16 @@
 from fractions import Fraction
-from itertools import product
+from itertools import combinations, product
 
 import numpy as np
 import pytest
 import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from sympy import RR
 
-from bezstab.methods import ALPHA_HAT, BETA_HAT, LinearMultistep, Method, lookup, recipe
+from bezstab.methods import ALPHA_HAT, BETA_HAT, LinearMultistep, Method, crossing_polynomials, lookup, recipe
 from bezstab.stability import stable_for_all
-from bezstab.stability.quadrant_proofs import (
-    RING,
-    _positive,
-    stability_conditions,
-)
+from bezstab.stability.quadrant_proofs import _positive
 from tests.reference.rationals import rationals
 
 PROVEN = [
@@ -70,16 +67,12 @@ def test_newmark_is_stable_for_all_where_hughes_says_so(velocity: Fraction, posi
 
 
 @settings(max_examples=50, deadline=None)
-@given(st.lists(st.complex_numbers(max_magnitude=1.5, allow_nan=False), min_size=1, max_size=3))
-def test_the_conditions_say_what_the_roots_say(roots: list[complex]) -> None:
-    real = np.poly([*roots, *np.conj(roots)]).real
-    exact = [Fraction(c).limit_denominator(10**6) for c in real[::-1]]
-    moduli = np.abs(np.roots([float(c) for c in exact[::-1]]))
-    if (np.abs(moduli - 1) < 1e-3).any():
-        return  # too near for float64, of which roots may be triple
-    ring = sp.QQ[sp.Symbol("step")]
-    conditions = stability_conditions([ring.convert(sp.Rational(c.numerator, c.denominator)) for c in exact], ring)
-    assert all(ring.to_sympy(condition) > 0 for condition in conditions) == (moduli < 1).all()
+@given(st.lists(st.complex_numbers(max_magnitude=1.5, allow_nan=False), min_size=1, max_size=3), st.floats(0.5, 2))
+def test_the_edge_of_pairs_is_the_product_of_what_pairs_of_roots_lack_to_one(roots: list[complex], last: float) -> None:
+    *_, found = crossing_polynomials((last * np.poly([*roots, *np.conj(roots)]).real[::-1]).tolist(), RR)
+    pairs = combinations([*roots, *np.conj(roots)], 2)
+    expected = last ** (2 * len(roots) - 1) * np.prod([1 - first * second for first, second in pairs])
+    assert float(found) == pytest.approx(expected.real, rel=1e-9, abs=1e-9 * last**5 * 4**15)
 
 
 def test_only_what_is_positive_on_the_whole_quadrant_passes() -> None:
@@ -87,4 +80,4 @@ def test_only_what_is_positive_on_the_whole_quadrant_passes() -> None:
     positive = [1 + a * b, a, (1 - b / 12) ** 2 + a**2 / 3, (a - 1) ** 2 + b, 5 + a * (b - 1) ** 2]
     not_proven = [sp.Integer(0), b - 1, (a - 1) ** 2, a * (b - 1) ** 3 + 1, -1 - a, (a - b) ** 2]
     for expression, expected in [*product(positive, [True]), *product(not_proven, [False])]:
-        assert _positive(RING.from_sympy(sp.expand(expression))) is expected
+        assert _positive(sp.expand(expression)) is expected

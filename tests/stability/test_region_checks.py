@@ -13,7 +13,7 @@ from bezstab.stability.boundary_locus import Arc, Bounds, bounds_of
 from bezstab.stability.locus_tracks import Track, tracks
 from bezstab.stability.pencils import Pencil
 from bezstab.stability.region_checks import check_region
-from bezstab.stability.regions import shape_source
+from bezstab.stability.regions import shape_of
 from bezstab.stability.shapes import Shape
 from tests.reference.second_order_methods import RECIPES, second_order
 from tests.stability.made_methods import CLOSE_BRANCHES, FAR_INTERVAL
@@ -123,7 +123,7 @@ SHAPES = [
 def found(name: str, level: float) -> tuple[Method, Shape]:
     """Return the shape of a region, from the locus or from strips."""
     method = second_order(name) if name in RECIPES else lookup(name)
-    shape = shape_source(method, level)(finer=1)
+    shape = shape_of(method, level)
     assert shape
     return method, shape
 
