@@ -2,7 +2,16 @@
 
 from fractions import Fraction
 
-from bezstab.engines.conversions import Applied, Curve, Engine, Point, in_words, refuse_unless_positive
+from bezstab.engines.conversions import (
+    NO_FEEDBACK,
+    Applied,
+    Curve,
+    Engine,
+    Point,
+    gains_in_words,
+    in_words,
+    refuse_unless_positive,
+)
 from bezstab.errors import InputError
 from bezstab.units import feedback_gains, from_dimensionless, from_feedback_gains, to_dimensionless
 
@@ -12,17 +21,7 @@ def _read_gains(h: Fraction, stiffness: Fraction, damping: Fraction) -> Point:
     return from_feedback_gains(damping, stiffness, h)
 
 
-def _gains_in_words(point: Point, h: Fraction) -> tuple[str, str]:
-    """Return beta^2 (1/s^2) and 2 alpha (1/s) of a point as they are pasted."""
-    damping, stiffness = feedback_gains(*point, h)
-    return in_words(float(stiffness)), in_words(float(damping))
-
-
 # Crocoddyl, Pinocchio, RigidBodyDynamics.jl: two gains
-
-
-def _paste_crocoddyl(stiffness: str, damping: str) -> str:
-    return f"gains = [{stiffness}, {damping}]"
 
 
 CROCODDYL = Engine(
@@ -32,15 +31,11 @@ CROCODDYL = Engine(
     parameters=("gains[0]", "gains[1]"),
     units=("1/s^2", "1/s"),
     read=_read_gains,
-    write=_gains_in_words,
-    paste=_paste_crocoddyl,
+    write=gains_in_words,
+    paste="gains = [{}, {}]",
     source="Crocoddyl source, contact-3d.hxx; integrator/euler.hxx (its Euler moves with the new velocity)",
     excludes="friction cones and impulses",
 )
-
-
-def _pinocchio_default(h: Fraction) -> Point:
-    return Fraction(0), Fraction(0)
 
 
 PINOCCHIO = Engine(
@@ -50,19 +45,11 @@ PINOCCHIO = Engine(
     parameters=("Kp", "Kd"),
     units=("1/s^2", "1/s"),
     read=_read_gains,
-    write=_gains_in_words,
-    marks=(("Pinocchio: Kp = Kd = 0", _pinocchio_default),),
+    write=gains_in_words,
+    marks=(("Pinocchio: Kp = Kd = 0", lambda h: NO_FEEDBACK),),
     source="Pinocchio source, contact-info.hpp (corrector, 0 and 0 unless set); constrained-dynamics.hxx",
     excludes="errors of orientation, which are logarithms of rotations; the proximal solver's mu",
 )
-
-
-def _paste_rigid_body_dynamics(stiffness: str, damping: str) -> str:
-    return f"PDGains({stiffness}, {damping})"
-
-
-def _rigid_body_dynamics_default(h: Fraction) -> Point:
-    return _read_gains(h, Fraction(100), Fraction(20))
 
 
 RIGID_BODY_DYNAMICS = Engine(
@@ -72,9 +59,9 @@ RIGID_BODY_DYNAMICS = Engine(
     parameters=("k", "d"),
     units=("1/s^2", "1/s"),
     read=_read_gains,
-    write=_gains_in_words,
-    paste=_paste_rigid_body_dynamics,
-    marks=(("RigidBodyDynamics.jl: PDGains(100, 20)", _rigid_body_dynamics_default),),
+    write=gains_in_words,
+    paste="PDGains({}, {})",
+    marks=(("RigidBodyDynamics.jl: PDGains(100, 20)", lambda h: _read_gains(h, Fraction(100), Fraction(20))),),
     source="RigidBodyDynamics.jl source, mechanism_algorithms.jl, pdcontrol.jl, simulate.jl (Munthe-Kaas with RK4)",
     excludes="errors of orientation; integrators other than its simulate",
 )
@@ -105,14 +92,6 @@ def _critical_damping(strongest: float) -> Curve:
 FASTEST_ASKED_FOR = 4.0  # of alpha h: there e^-4, a fiftieth of an error, is left after a step
 
 
-def _write_rbdl(point: Point, h: Fraction) -> tuple[str, ...]:
-    return (in_words(_time_constant("rbdl", point, h)),)
-
-
-def _rbdl_default(h: Fraction) -> Point:
-    return _read_rbdl(h, Fraction("0.1"))
-
-
 RBDL = Engine(
     name="rbdl",
     level="acceleration",
@@ -120,8 +99,8 @@ RBDL = Engine(
     parameters=("T_stab",),
     units=("s",),
     read=_read_rbdl,
-    write=_write_rbdl,
-    marks=(("RBDL: T_stab = 0.1", _rbdl_default),),
+    write=lambda point, h: (in_words(_time_constant("rbdl", point, h)),),
+    marks=(("RBDL: T_stab = 0.1", lambda h: _read_rbdl(h, Fraction("0.1"))),),
     curve=_critical_damping(FASTEST_ASKED_FOR),
     source="RBDL source, Constraint.h (setBaumgarteTimeConstant, default 0.1 s, off unless enabled)",
     excludes="contact constraints, which have it on velocities alone",
@@ -129,10 +108,6 @@ RBDL = Engine(
 
 
 # MapleSim, Drake's older solver: alpha and beta themselves
-
-
-def _read_alpha_beta(h: Fraction, alpha: Fraction, beta: Fraction) -> Point:
-    return to_dimensionless(alpha, beta, h)
 
 
 def _write_alpha_beta(point: Point, h: Fraction) -> tuple[str, ...]:
@@ -147,7 +122,7 @@ def _engine_with_alpha_and_beta(name: str, source: str) -> Engine:
         method=None,
         parameters=("alpha", "beta"),
         units=("1/s", "1/s"),
-        read=_read_alpha_beta,
+        read=lambda h, alpha, beta: to_dimensionless(alpha, beta, h),
         write=_write_alpha_beta,
         source=source,
         excludes="nothing: these are the coefficients of c'' + 2 alpha c' + beta^2 c = 0",
@@ -163,10 +138,6 @@ DRAKE = _engine_with_alpha_and_beta(
 # Chrono's explicit integrators solve for accelerations with c'' = 0 and nothing else
 
 
-def _read_nothing(h: Fraction) -> Point:
-    return Fraction(0), Fraction(0)
-
-
 def _write_nothing(point: Point, h: Fraction) -> tuple[str, ...]:
     raise InputError("chrono-explicit has no stabilisation: there is nothing to set")
 
@@ -177,7 +148,7 @@ CHRONO_EXPLICIT = Engine(
     method=None,
     parameters=(),
     units=(),
-    read=_read_nothing,
+    read=lambda h: NO_FEEDBACK,
     write=_write_nothing,
     source="Chrono source, ChIntegrable.cpp (StateSolveA: c'' = 0 by differences), ChTimestepperExplicit.cpp",
     excludes="nothing: Euler, Runge-Kutta, Heun and leapfrog add no feedback; lumped masses take penalties instead",
@@ -243,18 +214,6 @@ def _write_solref(point: Point, h: Fraction) -> tuple[str, ...]:
     return in_words(-float(stiffness)), in_words(-float(damping)), impedance, impedance
 
 
-def _paste_mujoco(stiffness: str, damping: str, d0: str, dmax: str) -> str:
-    return f'solref="{stiffness} {damping}" solimp="{d0} {dmax}"'
-
-
-def _least_time_constant(h: Fraction) -> Point:
-    return _read_solref(h, LEAST_TIME_CONSTANT * h, Fraction(1))
-
-
-def _default_solref(h: Fraction) -> Point:
-    return _read_solref(h, Fraction("0.02"), Fraction(1))
-
-
 MUJOCO = Engine(
     name="mujoco",
     level="acceleration",
@@ -264,9 +223,12 @@ MUJOCO = Engine(
     units=("s or -1/s^2", "- or -1/s", "-", "-"),
     read=_read_solref,
     write=_write_solref,
-    paste=_paste_mujoco,
+    paste='solref="{} {}" solimp="{} {}"',
     apply=_apply_mujoco,
-    marks=(("MuJoCo: timeconst = 2h", _least_time_constant), ("MuJoCo: solref = 0.02 1", _default_solref)),
+    marks=(
+        ("MuJoCo: timeconst = 2h", lambda h: _read_solref(h, 2 * h, Fraction(1))),
+        ("MuJoCo: solref = 0.02 1", lambda h: _read_solref(h, Fraction("0.02"), Fraction(1))),
+    ),
     source="MuJoCo documentation, Modeling, Constraint parameters: Reference; engine_core_constraint.c",
     excludes="the soft bias of 1 - d; the shape of solimp between no error and its width; implicit joint damping; "
     "contacts; integrator RK4, for which give --method RK4",

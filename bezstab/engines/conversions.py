@@ -1,6 +1,6 @@
 """What an engine is: its own words for the feedback, what it makes of them, and the method it steps with."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, Literal
@@ -8,11 +8,14 @@ from typing import Any, Literal
 from bezstab.engines.sweeping import Sweeping
 from bezstab.errors import InputError
 from bezstab.rationals import within_float64
+from bezstab.units import feedback_gains
 
 Level = Literal["acceleration", "velocity", "position"]
 
 Point = tuple[Fraction, Fraction]
 """alpha_hat and beta_hat."""
+
+NO_FEEDBACK: Point = (Fraction(0), Fraction(0))
 
 Curve = Callable[[Any], tuple[Any, Any]]
 """alpha_hat and beta_hat of a share from 0 (no feedback, or hardly any) to 1 (the strongest); numbers or arrays."""
@@ -39,13 +42,13 @@ class Engine:
     error back into velocities or positions; for one constraint its step is that of `method` at that point, no other.
     `method` is the name of the engine's own integrator, None for a library that has none: the user's decides.
     `read(h, *values)`, and `write(point, h)` with the values as text, raise InputError where the other has nothing.
-    `parameters` are the values needed, `optional` those that may follow, `units` the units of both; `paste(*values)` is
-    the line to paste where it is not name = value. `apply(h, *values)` is what the engine does to values before it uses
-    them (clamps, scaling), None if nothing. `marks` are the settings everybody meets: a label, and the point as a
-    function of h. `excludes` is what the conversion leaves out. `curve` are the points to choose among, None for all of
-    the plane. `sweeps` is whether the engine solves each constraint by itself, one after another, rather than all
-    together: then what holds for one constraint alone says little about a chain of them. `sweeping` is how it goes
-    through such a step, None where that is not written down here.
+    `parameters` are the values needed, `optional` those that may follow, `units` the units of both; `paste` is the
+    line to paste where it is not name = value, for as many values as it has {}. `apply(h, *values)` is what the
+    engine does to values before it uses them (clamps, scaling), None if nothing. `marks` are the settings everybody
+    meets: a label, and the point as a function of h. `excludes` is what the conversion leaves out. `curve` are the
+    points to choose among, None for all of the plane. `sweeps` is whether the engine solves each constraint by
+    itself, one after another, rather than all together: then what holds for one constraint alone says little about
+    a chain of them. `sweeping` is how it goes through such a step, None where that is not written down here.
     """
 
     name: str
@@ -60,7 +63,7 @@ class Engine:
     optional: tuple[str, ...] = ()
     apply: Callable[..., Applied] | None = None
     marks: tuple[tuple[str, Callable[[Fraction], Point]], ...] = ()
-    paste: Callable[..., str] | None = None
+    paste: str | None = None
     curve: Curve | None = None
     sweeps: bool = False
     sweeping: Sweeping | None = None
@@ -103,8 +106,8 @@ class Engine:
     def setting(self, point: Point, h: Fraction) -> str:
         """Return the line to paste for a point, h in s; InputError where there is nothing to set."""
         values = self.values(point, h)
-        if self.paste:
-            return self.paste(*values)
+        if self.paste and self.paste.count("{}") == len(values):
+            return self.paste.format(*values)
         names = (*self.parameters, *self.optional)
         return ", ".join(f"{name} = {value}" for name, value in zip(names, values, strict=False))
 
@@ -148,9 +151,6 @@ def engine_without_parameters(
             raise InputError(f"{name} is {theirs}, not {others}")
         return ()
 
-    def line() -> str:
-        return paste
-
     def curve(share: Any) -> tuple[Any, Any]:
         return float(point[0]), float(point[1])
 
@@ -162,13 +162,24 @@ def engine_without_parameters(
         units=(),
         read=read,
         write=write,
-        paste=line,
+        paste=paste,
         curve=curve,
         source=source,
         excludes=excludes,
         sweeps=sweeps,
         sweeping=sweeping,
     )
+
+
+def gains_in_words(point: Point, h: Fraction) -> tuple[str, str]:
+    """Return the stiffness beta^2 (1/s^2) and the damping 2 alpha (1/s) of a point as they are pasted, h in s."""
+    damping, stiffness = feedback_gains(*point, h)
+    return in_words(float(stiffness)), in_words(float(damping))
+
+
+def hard(share: Any) -> tuple[Any, Any]:
+    """Return the points of a constraint that ends every step with c' = 0 and takes back that share of the error."""
+    return 1.0, share
 
 
 def in_words(value: float) -> str:
@@ -179,12 +190,15 @@ def in_words(value: float) -> str:
 def refuse_below_zero(option: str, **values: Fraction) -> None:
     """Raise InputError, naming the engine and the values, unless none is below zero."""
     if min(values.values()) < 0:
-        typed = ", ".join(f"{name} = {float(value):g}" for name, value in values.items())
-        raise InputError(f"--engine {option}: {typed}: expected 0 or more")
+        raise _refusal(option, values, "0 or more")
 
 
 def refuse_unless_positive(option: str, **values: Fraction) -> None:
     """Raise InputError, naming the engine and the values, unless all are above zero."""
     if min(values.values()) <= 0:
-        typed = ", ".join(f"{name} = {float(value):g}" for name, value in values.items())
-        raise InputError(f"--engine {option}: {typed}: expected above 0")
+        raise _refusal(option, values, "above 0")
+
+
+def _refusal(option: str, values: Mapping[str, Fraction], expected: str) -> InputError:
+    typed = ", ".join(f"{name} = {float(value):g}" for name, value in values.items())
+    return InputError(f"--engine {option}: {typed}: expected {expected}")

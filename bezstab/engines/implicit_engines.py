@@ -8,7 +8,14 @@ unit of mass.
 import math
 from fractions import Fraction
 
-from bezstab.engines.conversions import Engine, Point, in_words, refuse_below_zero, refuse_unless_positive
+from bezstab.engines.conversions import (
+    Engine,
+    Point,
+    gains_in_words,
+    in_words,
+    refuse_below_zero,
+    refuse_unless_positive,
+)
 from bezstab.engines.sweeping import Sweeping, SweptStep, hard_velocity_step
 from bezstab.errors import InputError
 from bezstab.units import feedback_gains, from_feedback_gains
@@ -64,11 +71,6 @@ def _read_physx(h: Fraction, stiffness: Fraction, damping: Fraction) -> Point:
     return from_feedback_gains(damping, stiffness, h)
 
 
-def _write_gains(point: Point, h: Fraction) -> tuple[str, ...]:
-    damping, stiffness = feedback_gains(*point, h)
-    return in_words(float(stiffness)), in_words(float(damping))
-
-
 PHYSX_DRIVE = Engine(
     name="physx-drive",
     level="velocity",
@@ -76,7 +78,7 @@ PHYSX_DRIVE = Engine(
     parameters=("stiffness", "damping"),
     units=("1/s^2", "1/s"),
     read=_read_physx,
-    write=_write_gains,
+    write=gains_in_words,
     sweeps=True,
     source="PhysX source, DyCpuGpuArticulation.h, computeImplicitDriveParams (AccelerationDrive)",
     excludes="the inertia, by which both are divided in force drives (see --pd); force limits; h is TGS's substep",
@@ -126,10 +128,6 @@ def _read_brax_spring(h: Fraction, stiffness: Fraction, damping: Fraction, mass:
     return from_feedback_gains(damping / mass, stiffness / mass, h)
 
 
-def _write_brax_spring(point: Point, h: Fraction) -> tuple[str, ...]:
-    return *_write_gains(point, h), "1"
-
-
 BRAX_SPRING = Engine(
     name="brax-spring",
     level="acceleration",
@@ -138,7 +136,7 @@ BRAX_SPRING = Engine(
     optional=("mass",),
     units=("N/m", "N s/m", "kg"),
     read=_read_brax_spring,
-    write=_write_brax_spring,
+    write=lambda point, h: (*gains_in_words(point, h), "1"),
     source="Brax source, spring/joints.py, spring/pipeline.py, spring/integrator.py; io/mjcf.py (2000, 0 unless set)",
     excludes="angles (constraint_ang_damping); vel_damping and ang_damping; spring_mass_scale; contacts: brax-contact",
 )

@@ -7,9 +7,8 @@ Two kinds, for one constraint of unit mass, c* = c0 + h c0' and a share s that a
 """
 
 from fractions import Fraction
-from typing import Any
 
-from bezstab.engines.conversions import Engine, Point, engine_without_parameters, in_words
+from bezstab.engines.conversions import Engine, Point, engine_without_parameters, hard, in_words
 from bezstab.engines.sweeping import Move, Pass, Sweeping, SweptStep, VelocityOfMove
 from bezstab.errors import InputError
 
@@ -24,33 +23,16 @@ def _share_of_all(engine: str, share: Fraction, iterations: Fraction) -> Fractio
     return 1 - (1 - share) ** int(iterations)
 
 
-def _refuse_unless_equal(name: str, point: Point) -> Fraction:
-    """Return alpha_hat, which is beta_hat; InputError if it is not."""
+def _share_in_words(name: str, point: Point) -> tuple[str, ...]:
+    """Return alpha_hat, which is beta_hat, as it is pasted; InputError if it is not."""
     if point[0] != point[1]:
         raise InputError(f"{name} is α̂ = β̂, not ({float(point[0]):g}, {float(point[1]):g})")
-    return point[0]
-
-
-def _equal(share: Any) -> tuple[Any, Any]:
-    """Return the points of a velocity that is the whole move's, for what one step takes back: not more than all."""
-    return share, share
+    return (in_words(float(point[0])),)
 
 
 def _read_pbd(h: Fraction, share: Fraction, iterations: Fraction = ONE) -> Point:
     share_of_all = _share_of_all("pbd", share, iterations)
     return share_of_all, share_of_all
-
-
-def _write_pbd(point: Point, h: Fraction) -> tuple[str, ...]:
-    return (in_words(float(_refuse_unless_equal("pbd", point))),)
-
-
-def _pbd_default(h: Fraction) -> Point:
-    return ONE, ONE
-
-
-def _pbd_step(iterations: int, h: Fraction, share: Fraction, typed: Fraction = ONE) -> SweptStep:
-    return SweptStep(0.0, (Move(), Pass("position", iterations, 1.0, relaxation=float(share)), VelocityOfMove()))
 
 
 PBD = Engine(
@@ -61,14 +43,16 @@ PBD = Engine(
     optional=("iterations",),
     units=("-", "-"),
     read=_read_pbd,
-    write=_write_pbd,
-    marks=(("PBD: stiffness 1", _pbd_default),),
-    curve=_equal,
+    write=lambda point, h: _share_in_words("pbd", point),
+    marks=(("PBD: stiffness 1", lambda h: (ONE, ONE)),),
+    curve=lambda share: (share, share),  # not more than all
     sweeps=True,
     source="Mueller et al., Position based dynamics, J. Vis. Commun. Image R. 18, 2007; derived",
     excludes="other constraints in between; above 1 it is over-relaxation; velocity damping",
     sweeping=Sweeping(
-        _pbd_step,
+        lambda iterations, h, share, typed=ONE: SweptStep(
+            0.0, (Move(), Pass("position", iterations, 1.0, relaxation=float(share)), VelocityOfMove())
+        ),
         iterations=1,
         word="iterations",
         source="Mueller et al., Position based dynamics, 2007, Section 3.3 (Gauss-Seidel); derived",
@@ -77,28 +61,16 @@ PBD = Engine(
 )
 
 
-def _read_brax_positional(h: Fraction, share: Fraction) -> Point:
-    return share, share
-
-
-def _write_brax_positional(point: Point, h: Fraction) -> tuple[str, ...]:
-    return (in_words(float(_refuse_unless_equal("brax-positional", point))),)
-
-
-def _brax_default(h: Fraction) -> Point:
-    return Fraction("0.5"), Fraction("0.5")
-
-
 BRAX_POSITIONAL = Engine(
     name="brax-positional",
     level="position",
     method="SYM",
     parameters=("joint_scale_pos",),
     units=("-",),
-    read=_read_brax_positional,
-    write=_write_brax_positional,
-    marks=(("Brax positional: 0.5", _brax_default),),
-    curve=_equal,
+    read=lambda h, share: (share, share),
+    write=lambda point, h: _share_in_words("brax-positional", point),
+    marks=(("Brax positional: 0.5", lambda h: (Fraction("0.5"), Fraction("0.5"))),),
+    curve=lambda share: (share, share),  # not more than all
     sweeps=True,
     source="Brax source, positional/pipeline.py, joints.py, integrator.py (project_xd); io/mjcf.py (default)",
     excludes="joint_scale_ang (0.2 unless set), the same for angles; constraint_vel_damping; joints that share bodies",
@@ -116,14 +88,6 @@ def _write_jolt(point: Point, h: Fraction) -> tuple[str, ...]:
     return f"{1 - (1 - beta_hat) ** 0.5:.17g}", "2"  # all digits: it may be small
 
 
-def _jolt_joints(share: Any) -> tuple[Any, Any]:
-    return 1.0, share
-
-
-def _jolt_default(h: Fraction) -> Point:
-    return _read_jolt(h, Fraction("0.2"))
-
-
 def _jolt_step(iterations: int, h: Fraction, baumgarte: Fraction, position_steps: Fraction = Fraction(2)) -> SweptStep:
     positions = Pass("position", int(position_steps), 1.0, relaxation=float(baumgarte))
     return SweptStep(1.0, (Pass("velocity", iterations), Move(), positions))
@@ -138,8 +102,8 @@ JOLT = Engine(
     units=("-", "-"),
     read=_read_jolt,
     write=_write_jolt,
-    marks=(("Jolt: 0.2, 2 position steps", _jolt_default),),
-    curve=_jolt_joints,
+    marks=(("Jolt: 0.2, 2 position steps", lambda h: _read_jolt(h, Fraction("0.2"))),),
+    curve=hard,
     sweeps=True,
     source="Jolt source, PhysicsSettings.h, AxisConstraintPart.h (SolvePositionConstraint)",
     excludes="constraints with springs, which are jolt-spring; contacts' slop; constraints that share bodies",
@@ -160,10 +124,6 @@ JOLT = Engine(
 BOX2D_V2_POSITION_SWEEPS = 3
 
 
-def _box2d_v2_step(iterations: int, h: Fraction) -> SweptStep:
-    return SweptStep(1.0, (Pass("velocity", iterations), Move(), Pass("position", BOX2D_V2_POSITION_SWEEPS, 1.0)))
-
-
 BOX2D_V2 = engine_without_parameters(
     "box2d-v2",
     "position",
@@ -172,7 +132,9 @@ BOX2D_V2 = engine_without_parameters(
     source="Box2D 2.4 source, b2_revolute_joint.cpp (SolvePositionConstraints), b2_island.cpp",
     excludes="joints; contacts take back a fifth; errors within the slop of 5 mm, which end the sweeps; joint springs",
     sweeping=Sweeping(
-        _box2d_v2_step,
+        lambda iterations, h: SweptStep(
+            1.0, (Pass("velocity", iterations), Move(), Pass("position", BOX2D_V2_POSITION_SWEEPS, 1.0))
+        ),
         iterations=8,
         word="velocityIterations",
         source="Box2D 2.4 source, b2_island.cpp, b2_revolute_joint.cpp; its testbed's 8 velocity and 3 position sweeps",

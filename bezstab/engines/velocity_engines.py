@@ -11,13 +11,13 @@ c' = 0, whatever it was, has alpha_hat = 1 and the roots 0 and 1 - beta_hat.
 
 import math
 from fractions import Fraction
-from typing import Any
 
 from bezstab.engines.conversions import (
     Applied,
     Engine,
     Point,
     engine_without_parameters,
+    hard,
     in_words,
     refuse_below_zero,
     refuse_unless_positive,
@@ -29,10 +29,8 @@ ONE = Fraction(1)
 STIFFEST = 0.999
 """The alpha_hat that soft constraints are chosen with: rigid but for a thousandth; beyond, their words are huge."""
 
-
-def _hard(share: Any) -> tuple[Any, Any]:
-    """Return the points of a constraint that ends every step with c' = 0 and takes back that share of the error."""
-    return 1.0, share
+DOUBLE_POLE = (1 - math.sqrt(1 - STIFFEST)) ** 2
+"""Rapier's largest beta_hat there, over alpha_hat: where the damping ratio is 0."""
 
 
 def _refuse_unless_one(name: str, alpha_hat: Fraction) -> None:
@@ -62,9 +60,6 @@ def _engine_with_erp(
         _refuse_unless_one(name, point[0])
         return (in_words(float(point[1])),)
 
-    def default_point(h: Fraction) -> Point:
-        return read(h, Fraction(default))
-
     return Engine(
         name=name,
         level="velocity",
@@ -73,10 +68,10 @@ def _engine_with_erp(
         units=("-",),
         read=read,
         write=write,
-        marks=((f"{name}: {word} = {default}", default_point),),
+        marks=((f"{name}: {word} = {default}", lambda h: read(h, Fraction(default))),),
         source=source,
         excludes=excludes,
-        curve=_hard,
+        curve=hard,
         sweeps=sweeps,
         sweeping=sweeping,
     )
@@ -132,10 +127,6 @@ GODOT = _engine_with_erp(
 )
 
 
-def _godot_2d_step(iterations: int, h: Fraction, bias: Fraction) -> SweptStep:
-    return SweptStep(1.0, (Pass("velocity", iterations), Pass("position", iterations, float(bias)), Move()))
-
-
 GODOT_2D = _engine_with_erp(
     "godot-2d",
     "0.2",
@@ -144,7 +135,9 @@ GODOT_2D = _engine_with_erp(
     word="bias",
     sweeps=True,
     sweeping=Sweeping(
-        _godot_2d_step,
+        lambda iterations, h, bias: SweptStep(
+            1.0, (Pass("velocity", iterations), Pass("position", iterations, float(bias)), Move())
+        ),
         iterations=16,
         word="physics/2d/solver/solver_iterations",
         source="Godot source, godot_joints_2d.cpp (pre_solve applies P, solve has its own bias impulse), "
@@ -186,10 +179,6 @@ def _ode_step(
     return hard_velocity_step(erp, iterations, kept=0.0, relaxation=1.3, softness=softness)
 
 
-def _ode_default(h: Fraction) -> Point:
-    return _read_ode(h, Fraction("0.2"))
-
-
 ODE = Engine(
     name="ode",
     level="velocity",
@@ -199,9 +188,9 @@ ODE = Engine(
     units=("-", "s/kg", "kg"),
     read=_read_ode,
     write=_write_ode,
-    marks=(("ode: ERP = 0.2", _ode_default),),
+    marks=(("ode: ERP = 0.2", lambda h: _read_ode(h, Fraction("0.2"))),),
     source="ODE wiki, Manual: Concepts",
-    curve=_hard,  # which needs no effective mass
+    curve=hard,  # which needs no effective mass
     sweeps=True,
     excludes=f"CFM = 0 unless given, with the effective mass 1 / (J M^-1 J'); {IMPULSES}",
     sweeping=Sweeping(
@@ -249,14 +238,6 @@ def _write_chipmunk(point: Point, h: Fraction) -> tuple[str, ...]:
     return (f"{error_bias:.17g}",)  # all digits: for a small beta_hat it is next to one
 
 
-def _chipmunk_default(h: Fraction) -> Point:
-    return _read_chipmunk(h, Fraction("0.9") ** 60)
-
-
-def _chipmunk_step(iterations: int, h: Fraction, error_bias: Fraction) -> SweptStep:
-    return hard_velocity_step(_read_chipmunk(h, error_bias)[1], iterations, kept=1.0)  # its order of moves is the same
-
-
 CHIPMUNK = Engine(
     name="chipmunk",
     level="velocity",
@@ -265,13 +246,15 @@ CHIPMUNK = Engine(
     units=("- (per second)",),
     read=_read_chipmunk,
     write=_write_chipmunk,
-    marks=(("Chipmunk: errorBias = 0.9^60", _chipmunk_default),),
-    curve=_hard,
+    marks=(("Chipmunk: errorBias = 0.9^60", lambda h: _read_chipmunk(h, Fraction("0.9") ** 60)),),
+    curve=hard,
     sweeps=True,
     source="Chipmunk source, cpConstraint.c, cpPivotJoint.c, cpSpaceStep.c (pymunk: error_bias)",
     excludes="maxBias and maxForce (infinite unless set); warm starts and the error of iterations; damped springs",
     sweeping=Sweeping(
-        _chipmunk_step,
+        lambda iterations, h, error_bias: hard_velocity_step(  # its order of moves is the same
+            _read_chipmunk(h, error_bias)[1], iterations, kept=1.0
+        ),
         iterations=10,
         word="iterations",
         source="Chipmunk source, cpSpaceStep.c (cached impulses, then sweeps), cpSpace.c, cpPivotJoint.c",
@@ -340,14 +323,6 @@ def _box2d_step(iterations: int, h: Fraction, hertz: Fraction, damping_ratio: Fr
     return SweptStep(1.0, (solved, Move(), Pass("velocity", 1)))
 
 
-def _box2d_joints(share: Any) -> tuple[Any, Any]:
-    return 1.0, LARGEST_SHARE * share
-
-
-def _box2d_default(h: Fraction) -> Point:
-    return _apply_box2d(h, Fraction(60), Fraction(2)).point
-
-
 BOX2D = Engine(
     name="box2d",
     level="velocity",
@@ -357,8 +332,8 @@ BOX2D = Engine(
     read=_read_box2d,
     write=_write_box2d,
     apply=_apply_box2d,
-    marks=(("Box2D joints: 60 Hz, 2", _box2d_default),),
-    curve=_box2d_joints,
+    marks=(("Box2D joints: 60 Hz, 2", lambda h: _apply_box2d(h, Fraction(60), Fraction(2)).point),),
+    curve=lambda share: (1.0, LARGEST_SHARE * share),
     sweeps=True,
     source="Box2D v3 source, solver.h: b2MakeSoft; joint.c; revolute_joint.c (solved, then relaxed without bias)",
     excludes="h is the substep's; contacts, joint springs, warm starts and the error of Gauss-Seidel sweeps",
@@ -398,20 +373,11 @@ def _write_rapier(point: Point, h: Fraction) -> tuple[str, ...]:
     return f"{natural_frequency:.17g}", f"{zeta:.17g}"  # all digits: 1 - scale may be small
 
 
-def _rapier_joints(share: Any) -> tuple[Any, Any]:
-    double_pole = (1 - math.sqrt(1 - STIFFEST)) ** 2  # the largest beta_hat, where the damping ratio is 0
-    return STIFFEST, STIFFEST * double_pole * share
-
-
 def _rapier_step(iterations: int, h: Fraction, natural_frequency: Fraction, damping_ratio: Fraction) -> SweptStep:
     # its softness is the square of (1 / e - 1) over 4 zeta^2 / e: the same as Box2D's
     share, softness = _soft_terms(h, natural_frequency, damping_ratio)
     solved, relaxed = Pass("velocity", iterations, share, softness), Pass("velocity", 1, 0.0, softness)
     return SweptStep(0.0, (solved, Move(), relaxed))
-
-
-def _rapier_default(h: Fraction) -> Point:
-    return _read_rapier(h, Fraction(1_000_000), ONE)
 
 
 RAPIER = Engine(
@@ -422,8 +388,8 @@ RAPIER = Engine(
     units=("Hz", "-"),
     read=_read_rapier,
     write=_write_rapier,
-    marks=(("Rapier joints: 1e6 Hz, 1", _rapier_default),),
-    curve=_rapier_joints,
+    marks=(("Rapier joints: 1e6 Hz, 1", lambda h: _read_rapier(h, Fraction(1_000_000), ONE)),),
+    curve=lambda share: (STIFFEST, STIFFEST * DOUBLE_POLE * share),
     sweeps=True,
     source="Rapier source, integration_parameters.rs, solve.rs in staged_island_solver, joint_velocity_constraint.rs",
     excludes="h is the substep's, dt / num_solver_iterations; limits' largest corrective speed; warmstart_joints",
@@ -492,14 +458,6 @@ def _write_sap(point: Point, h: Fraction) -> tuple[str, ...]:
     return f"{stiffness:.17g}", f"{relaxation_time:.17g}", "1"  # all digits: tau may be next to 0
 
 
-def _paste_sap(k: str = "inf", tau: str | None = None, w: str | None = None) -> str:
-    return f"k = {k}" if tau is None else f"k = {k}, tau = {tau}, w = {w}"
-
-
-def _sap_constraints(share: Any) -> tuple[Any, Any]:
-    return STIFFEST, STIFFEST * share
-
-
 DRAKE_SAP = Engine(
     name="drake-sap",
     level="velocity",
@@ -509,8 +467,8 @@ DRAKE_SAP = Engine(
     units=("N/m", "s", "1/kg"),
     read=_read_sap,
     write=_write_sap,
-    paste=_paste_sap,
-    curve=_sap_constraints,
+    paste="k = inf",
+    curve=lambda share: (STIFFEST, STIFFEST * share),
     apply=_apply_sap,
     marks=(("Drake SAP: near rigid", _read_sap),),
     source="Drake source, sap_holonomic_constraint.h and .cc; sap_ball_constraint.cc",
@@ -523,10 +481,6 @@ DRAKE_SAP = Engine(
 # after them velocity iterations without error. One constraint alone keeps 0 of an error, or (1 - 1 / sqrt(n))^n.
 
 TGS_ITERATIONS = 4
-
-
-def _physx_step(iterations: int, h: Fraction) -> SweptStep:
-    return SweptStep(0.0, (Pass("velocity", iterations, 1.0), Move(), Pass("velocity", 1)))
 
 
 def _physx_tgs_step(iterations: int, h: Fraction) -> SweptStep:
@@ -543,7 +497,7 @@ PHYSX = engine_without_parameters(
     excludes=f"TGS, which is physx-tgs; {PHYSX_JOINTS}",
     sweeps=True,
     sweeping=Sweeping(
-        _physx_step,
+        lambda iterations, h: SweptStep(0.0, (Pass("velocity", iterations, 1.0), Move(), Pass("velocity", 1))),
         iterations=4,
         word="minPositionIters",
         source="PhysX source, DySolverControl.cpp, DySolverConstraint1D.h (appliedForce = 0), PxvDynamics.h (4 and 1)",

@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, Literal
 
@@ -57,8 +57,8 @@ class Sweep:
     steps, which changes nothing but their time. With a `projection` there is no feedback.
     """
 
-    method: Method = field(repr=False)
-    scene: Scene = field(repr=False)
+    method: Method
+    scene: Scene
     steps: tuple[float, ...]
     duration: float
     point: tuple[float, float] | None
@@ -89,24 +89,24 @@ class Run:
     evaluation, and those of projections.
     """
 
-    method: Method = field(repr=False)
+    method: Method
     h: float
-    alpha_hat: float = field(repr=False)
-    beta_hat: float = field(repr=False)
+    alpha_hat: float
+    beta_hat: float
     z_abs: float | None
     trajectory_error: float | None
     c_max: float
     measured_error: float | None
     predicted_error: float | None
-    c_rms: float = field(repr=False)
-    cdot_max: float = field(repr=False)
-    cdot_rms: float = field(repr=False)
-    energy_drift: float = field(repr=False)
+    c_rms: float
+    cdot_max: float
+    cdot_rms: float
+    energy_drift: float
     evaluations: int
     factorizations: int
     seconds: float
-    seconds_min: float = field(repr=False)
-    seconds_max: float = field(repr=False)
+    seconds_min: float
+    seconds_max: float
     failure: str | None
     order: float | None
     stabilise: Stabilise = "baumgarte"
@@ -132,7 +132,7 @@ class SweptRuns:
     `against` what they are counted in.
     """
 
-    runs: tuple[Run, ...] = field(repr=False)
+    runs: tuple[Run, ...]
     trajectory_front: tuple[int, ...]
     constraint_front: tuple[int, ...]
     reference_error: float
@@ -204,7 +204,7 @@ def _measured_run(sweep: Sweep, h: float, point: tuple[float, float]) -> dict[st
     gains = feedback_gains(*point, h)
     run, seconds = _timed_run(sweep, h, gains)
     seen = observe(mechanism, run.t, run.q, run.v, *gains)
-    trajectory_error = np.nan if run.failure else float(np.abs(run.q - sweep.reference.at(run.t)).max())
+    trajectory_error = np.nan if run.failure else float(np.abs(run.q - sweep.reference.along.at(run.t)[0]).max())
     z_abs = float(spectral_radius(method, *point)) if sweep.stabilise == "baumgarte" else np.nan
     return {
         "alpha_hat": point[0],

@@ -14,7 +14,7 @@ out beyond the stretch that is compared.
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -64,7 +64,7 @@ class ForcedMotion:
     `measured` is nan where the run broke down: `failure` says when and why.
     """
 
-    method: Method = field(repr=False)
+    method: Method
     h: float
     alpha_hat: float
     beta_hat: float
@@ -150,17 +150,7 @@ def forced_motions(
     found = []
     for point, predicted in zip(points, predicted_errors(mechanism, method, h, points, duration), strict=True):
         measured, failure = _measured(mechanism, method, h, point, duration)
-        found.append(
-            ForcedMotion(
-                method=method,
-                h=h,
-                alpha_hat=point[0],
-                beta_hat=point[1],
-                predicted=predicted,
-                measured=measured,
-                failure=failure,
-            )
-        )
+        found.append(ForcedMotion(method, h, *point, predicted, measured, failure))
     return found
 
 

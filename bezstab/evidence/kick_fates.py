@@ -31,16 +31,14 @@ not enough: where steps are coarse, feedback may turn truncation errors into mil
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bezstab.evidence.linear_prediction import NEGLIGIBLE
 from bezstab.evidence.measured_poles import APART, AT_ONCE, GROWN, LINEAR
-from bezstab.stability import FloatArray
-
-BoolArray = NDArray[np.bool_]
+from bezstab.stability import BoolArray, FloatArray
 
 WINDOW = 10
 """Steps: an oscillation so slow that it is below NEGLIGIBLE in all of them passes no zero within thousands of steps."""
@@ -62,10 +60,10 @@ class Followed:
     range, which holds for so many steps, shape (points,). `thrown_apart`: c is beyond APART AT_ONCE, shape (points,).
     """
 
-    error: FloatArray = field(repr=False)
-    moved: FloatArray = field(repr=False)
-    linear_steps: NDArray[np.int_] = field(repr=False)
-    thrown_apart: BoolArray = field(repr=False)
+    error: FloatArray
+    moved: FloatArray
+    linear_steps: NDArray[np.int_]
+    thrown_apart: BoolArray
 
 
 def follow(blocks: Iterator[tuple[FloatArray, FloatArray]], masses: FloatArray, kick: float, run: int) -> Followed:

@@ -38,7 +38,8 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
+from bezstab.stability import FloatArray
+
 InexactArray = NDArray[np.inexact[Any]]
 
 ABOVE_FORCED = (1e2, 1e3, 1e4, 1e5, 1e6)

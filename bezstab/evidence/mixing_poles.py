@@ -94,14 +94,7 @@ def nearest_poles(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray) -
     beta_hat = np.where(met, beta_hat * (1 + 3 * MOVED_APART), beta_hat)  # not along a curve on which poles stay double
     z[met] = poles(method, alpha_hat[met], beta_hat[met])
     at = alpha_hat[:, np.newaxis], beta_hat[:, np.newaxis], z
-    return in_pairs(z_abs, z, turning_shift(method, *at), own_feedback_root(method, *at))
-
-
-def in_pairs(z_abs: FloatArray, z: ComplexArray, shift: ComplexArray, mu: ComplexArray) -> NearestPoles:
-    """Return each pole with the nearest to it, from the poles, their first-order shifts z chi and whose mu they are.
-
-    All of shape (points, poles) but `z_abs`, the largest modulus, of shape (points,).
-    """
+    shift, mu = turning_shift(method, *at), own_feedback_root(method, *at)
     gaps = _gaps(z)
     gap = gaps.min(axis=2)
     other = gaps.argmin(axis=2)

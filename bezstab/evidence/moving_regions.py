@@ -38,16 +38,14 @@ HOPELESS = 10.0  # of ln|z| a step: nothing is chosen there, and `choose` can st
 
 @dataclass(frozen=True, eq=False, repr=False)
 class MovingRegion(ReadOnlyArrays):
-    """The region at rest and that of the moving mechanism, dimensionless; `h` (s) is the step.
+    """The region of the moving mechanism, dimensionless; `h` (s) is the step.
 
-    `area_at_rest`, `area`: of both, over the quadrant that the window shows. `alpha_hat` and `beta_hat` are the axes of
-    a grid, `growth` ln|z| a step on it over the motion, `excluded` where the law does not hold; both of shape
-    (beta_hat.size, alpha_hat.size).
+    `area`: over the quadrant that the window shows. `alpha_hat` and `beta_hat` are the axes of a grid, `growth` ln|z| a
+    step on it over the motion, `excluded` where the law does not hold; both of shape (beta_hat.size, alpha_hat.size).
     """
 
     method: Method
     h: float
-    area_at_rest: float | None
     area: float
     alpha_hat: FloatArray
     beta_hat: FloatArray
@@ -114,7 +112,6 @@ def moving_region(method: Method, turning: TurningNormals, h: float, points: int
     return MovingRegion(
         method=method,
         h=h,
-        area_at_rest=at_rest.area,
         area=float((beta_high - beta_low) / 2 * weights @ lengths),
         alpha_hat=alpha_hat,
         beta_hat=beta_hat,

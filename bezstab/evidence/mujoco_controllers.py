@@ -10,7 +10,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from math import ceil, floor
+from math import ceil
 
 import numpy as np
 
@@ -76,14 +76,8 @@ def lifted_step(step: FloatArray, forces: FloatArray, controlled: Sequence[Contr
     """
     dofs, motors = len(step) // 2, len(controlled)
     arms = np.array([each.motor.direction for each in controlled])
-    kp, kd, force_gain = (
-        np.array([[float(number)] for number in numbers])
-        for numbers in (
-            [each.kp for each in controlled],
-            [each.kd for each in controlled],
-            [each.motor.gain for each in controlled],
-        )
-    )
+    gains = np.array([[each.kp, each.kd, each.motor.gain] for each in controlled], float)
+    kp, kd, force_gain = gains.T[:, :, np.newaxis]
     timing = controlled[0].timing
     pending = max(ceil(each.timing.late / timing.every) for each in controlled)
     pending += any(each.timing.late % 1 for each in controlled)  # one more, of which a step keeps its share
@@ -99,17 +93,10 @@ def lifted_step(step: FloatArray, forces: FloatArray, controlled: Sequence[Contr
     controls = [-kp * lengths - kd * velocities, *rest[filters:].reshape(pending, motors, size)]
     for number in range(timing.every):
         applied = np.array(
-            [_applied(each.timing, number, [c[row] for c in controls]) for row, each in enumerate(controlled)]
+            [
+                sum(float(share) * controls[back][row] for back, share in each.timing.applied(number))
+                for row, each in enumerate(controlled)
+            ]
         )
         moving = step @ moving + forces @ (force_gain * applied)
     return np.vstack([moving, *([velocities] if filters else []), *controls[:pending]])
-
-
-def _applied(timing: Timing, number: int, controls: Sequence[FloatArray]) -> FloatArray:
-    """Return the control that a motor has in a step after the latest computation: a row of coefficients."""
-    whole = floor(timing.late)
-    left = float(timing.late - whole)  # of a step, which the control before keeps
-    begun = max(0, ceil(Fraction(whole - number, timing.every)))
-    if left and number == whole - begun * timing.every:
-        return (1 - left) * controls[begun] + left * controls[begun + 1]
-    return controls[begun]

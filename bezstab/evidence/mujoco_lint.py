@@ -18,7 +18,7 @@ IMEX-Euler where all damping is implicit, RK4 under RK4, else symplectic Euler, 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import cache, cached_property
+from functools import cache, cached_property, partial
 from itertools import accumulate
 
 import numpy as np
@@ -46,8 +46,8 @@ FRESH = Timing()
 Point = tuple[Fraction, Fraction]
 """alpha_hat and beta_hat."""
 
-Points = Callable[[FloatArray], tuple[FloatArray, FloatArray]]
-"""Of factors on the step, shape (factors,): alpha_hat and beta_hat of each point, shape (factors, points)."""
+Points = Callable[[FloatArray], FloatArray]
+"""Of factors on the step, shape (factors,): alpha_hat and beta_hat of each point, shape (2, factors, points)."""
 
 Shares = Callable[[float, FloatArray], FloatArray]
 """Of impedance and steps (s): the least and the largest share of its reference that a constraint gets, (steps, 2)."""
@@ -57,6 +57,9 @@ DEFAULT_SOLREF = (0.02, 1.0)
 
 DIGITS = 12
 """Of a share: what linear algebra in float64 leaves of small matrices."""
+
+AS_IT_IS = Fraction(1)
+"""Factor on the step: the model's own."""
 
 FURTHEST = 1e3
 """Factor on the step beyond which nobody asks, and its inverse."""
@@ -256,6 +259,12 @@ def _moduli(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray) -> Floa
     return moduli
 
 
+def _points(point_at: Callable[[Fraction], Point], factors: FloatArray) -> FloatArray:
+    """Return the point that an element has at each factor on the step, in float64; shape (2, factors, 1)."""
+    points = [point_at(exact(factor)) for factor in factors.tolist()]
+    return np.array(points, float).T[:, :, np.newaxis]
+
+
 def _h_factor(unstable: Callable[[FloatArray], BoolArray]) -> float | None:
     """Return the factor on the step at which stability ends, or, where it is lost already, begins; None for neither."""
     if unstable(np.ones(1))[0]:
@@ -302,16 +311,10 @@ class _Pull:
     beta_hat: Fraction
     held_from: Fraction
 
-    @property
-    def point(self) -> Point:
-        """The point at the model's step."""
-        reached = min(Fraction(1), self.held_from)
+    def at(self, factor: Fraction) -> Point:
+        """Return the point at a factor on the step."""
+        reached = min(factor, self.held_from)
         return self.alpha_hat * reached, self.beta_hat * reached**2
-
-    def at(self, factors: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return the point at factors on the step, in float64."""
-        reached = np.minimum(factors, float(self.held_from))
-        return float(self.alpha_hat) * reached, float(self.beta_hat) * reached**2
 
 
 def _pulls(plant: _Plant, constraint: Constraint, solref: tuple[float, float]) -> list[_Pull]:
@@ -337,12 +340,9 @@ def _linted_constraint(plant: _Plant, constraint: Constraint) -> Linted:
     points = _constraint_points(plant, constraint, shares, constraint.solref)
     point, verdict, z_abs = _worst(method, points)
 
-    def points_at(factors: FloatArray) -> tuple[FloatArray, FloatArray]:
-        taken = [shares(pull.impedance, plant.model.h * factors) for pull in pulls]
-        whole = [pull.at(factors[:, np.newaxis]) for pull in pulls]
-        alpha_hats = [alpha_hat * share for (alpha_hat, _), share in zip(whole, taken, strict=True)]
-        beta_hats = [beta_hat * share for (_, beta_hat), share in zip(whole, taken, strict=True)]
-        return np.hstack(alpha_hats), np.hstack(beta_hats)
+    def points_at(factors: FloatArray) -> FloatArray:
+        h = plant.model.h * factors
+        return np.dstack([_points(pull.at, factors) * shares(pull.impedance, h) for pull in pulls])
 
     return Linted(
         element=constraint.element,
@@ -369,7 +369,8 @@ def _constraint_points(
         for share in of_directions:
             rounded = exact(round(share, DIGITS))
             why = f"d = {pull.impedance:g} {pull.where}{_share_text(constraint, share, pull.impedance)}"
-            found.setdefault((pull.point[0] * rounded, pull.point[1] * rounded), why)
+            alpha_hat, beta_hat = pull.at(AS_IT_IS)
+            found.setdefault((alpha_hat * rounded, beta_hat * rounded), why)
     return found
 
 
@@ -493,9 +494,9 @@ class _Drive:
 
 def _linted_drive(plant: _Plant, group: Sequence[Feedback]) -> Linted:
     drive = _drive(plant, group)
-    own = _drive_map(plant, drive)
-    point, verdict, z_abs = _worst(own.method, [own.point])
-    end = _end_of(own.points, own.method)
+    method = _drive_method(plant, drive)
+    point, verdict, z_abs = _worst(method, [_drive_point(plant, drive)])
+    end = _end_of(partial(_points, partial(_drive_point, plant, drive)), method)
     setting = f"kp {float(drive.stiffness):.6g}, kv {float(drive.damping):.6g}, inertia {float(drive.inertia):.6g}"
     return Linted(
         element=", ".join(dict.fromkeys(feedback.element for feedback in group)),
@@ -504,7 +505,7 @@ def _linted_drive(plant: _Plant, group: Sequence[Feedback]) -> Linted:
         judged=f"{setting} with all other joints free",
         alpha_hat=float(point[0]),
         beta_hat=float(point[1]),
-        map=own.method.name,
+        map=method.name,
         verdict=verdict,
         z_abs=z_abs,
         h_factor=end,
@@ -526,37 +527,18 @@ def _drive(plant: _Plant, group: Sequence[Feedback]) -> _Drive:
     return _Drive(exact(stiffness), exact(damping[False]), exact(damping[True]), plant.inertia_along(direction))
 
 
-@dataclass(frozen=True)
-class _DriveMap:
-    """The method that the integrator is for a drive, and its point: at the model's step, exact.
-
-    At a factor f on the step it is (alpha_hat f, beta_hat f^2) / (1 + divisor f).
-    """
-
-    method: Method
-    alpha_hat: Fraction
-    beta_hat: Fraction
-    divisor: Fraction
-
-    @property
-    def point(self) -> Point:
-        """The point at the model's step."""
-        return self.alpha_hat / (1 + self.divisor), self.beta_hat / (1 + self.divisor)
-
-    def points(self, factors: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return the one point at factors on the step, in float64; shape (factors, 1) each."""
-        f = factors[:, np.newaxis]
-        divided = f / (1 + float(self.divisor) * f)
-        return float(self.alpha_hat) * divided, float(self.beta_hat) * f * divided
+def _drive_method(plant: _Plant, drive: _Drive) -> Method:
+    """Return the method that the integrator is for a drive."""
+    return lookup("imex-euler") if drive.implicit_damping and not drive.explicit_damping else plant.method
 
 
-def _drive_map(plant: _Plant, drive: _Drive) -> _DriveMap:
-    """Return the method that the integrator is for a drive, and its point."""
-    h = plant.h
-    alpha_hat, beta_hat = drive.damping * h / drive.inertia, drive.stiffness * h**2 / drive.inertia
-    if drive.implicit_damping and not drive.explicit_damping:
-        return _DriveMap(lookup("imex-euler"), alpha_hat, beta_hat, divisor=Fraction(0))
-    return _DriveMap(plant.method, alpha_hat, beta_hat, divisor=drive.implicit_damping * h / drive.inertia)
+def _drive_point(plant: _Plant, drive: _Drive, factor: Fraction = AS_IT_IS) -> Point:
+    """Return the point of a drive under that method, at a factor on the step."""
+    h = plant.h * factor
+    inertia = drive.inertia
+    if drive.explicit_damping:  # else the method itself has what is implicit
+        inertia += drive.implicit_damping * h
+    return drive.damping * h / inertia, drive.stiffness * h**2 / inertia
 
 
 def _drive_kind(group: Sequence[Feedback], drive: _Drive) -> str:
@@ -574,8 +556,9 @@ def _drive_advice(plant: _Plant, drive: _Drive, verdict: Verdict, end: float | N
     if verdict == "converges":
         return ""
     used = _used_up(plant, drive)
-    all_implicit = _drive_map(plant, replace(drive, explicit_damping=Fraction(0), implicit_damping=drive.damping))
-    if drive.explicit_damping and _verdict(all_implicit.method, all_implicit.point) == "converges":
+    all_implicit = replace(drive, explicit_damping=Fraction(0), implicit_damping=drive.damping)
+    safe_then = _verdict(_drive_method(plant, all_implicit), _drive_point(plant, all_implicit)) == "converges"
+    if drive.explicit_damping and safe_then:
         return f'{used}write integrator="implicitfast"'
     return f"{used}{_smaller_step(plant, end)}"
 
@@ -726,7 +709,7 @@ class _Together:
         for constraint, pull in zip(self.constraints, pulls, strict=True):
             assert constraint.jacobian is not None
             assert constraint.diagonal is not None
-            alpha_hat, beta_hat = pull.at(np.array(factor))
+            alpha_hat, beta_hat = map(float, pull.at(exact(factor)))
             jacobians.append(constraint.jacobian)
             softenings.append(_softening(constraint.diagonal, pull.impedance))
             wanted.append(-np.hstack([beta_hat / h**2 * constraint.jacobian, alpha_hat / h * constraint.jacobian]))

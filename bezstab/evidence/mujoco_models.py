@@ -8,7 +8,7 @@ has them registered already. Everything is read at the model's own configuration
 import types
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations_with_replacement, islice
 from pathlib import Path
 from typing import Any, Literal
@@ -276,50 +276,42 @@ def _equalities(loaded: _Loaded) -> Iterator[Constraint]:
 def _limits(loaded: _Loaded) -> Iterator[Constraint]:
     model = loaded.model
     for joint in np.flatnonzero(model.jnt_limited).tolist():
-        dof = model.jnt_dofadr[joint]
-        kind = loaded.mujoco.mjtJoint(model.jnt_type[joint])
-        ball = kind == loaded.mujoco.mjtJoint.mjJNT_BALL  # whose axis depends on the configuration
-        yield Constraint(
-            element=loaded.named("joint", joint),
-            kind="joint limit",
-            solref=_solref(model.jnt_solref[joint]),
-            solimp=_solimp(model.jnt_solimp[joint]),
-            jacobian=None if ball else loaded.joints[[dof]],
-            diagonal=None if ball else model.dof_invweight0[[dof]].copy(),
-        )
+        solref, solimp = model.jnt_solref[joint], model.jnt_solimp[joint]
+        limit = _along_one(loaded, "joint", "limit", joint, model.jnt_dofadr[joint], solref, solimp)
+        ball = model.jnt_type[joint] == loaded.mujoco.mjtJoint.mjJNT_BALL  # whose axis depends on the configuration
+        yield replace(limit, jacobian=None, diagonal=None) if ball else limit
     for tendon in np.flatnonzero(model.tendon_limited).tolist():
-        yield Constraint(
-            element=loaded.named("tendon", tendon),
-            kind="tendon limit",
-            solref=_solref(model.tendon_solref_lim[tendon]),
-            solimp=_solimp(model.tendon_solimp_lim[tendon]),
-            jacobian=loaded.tendons[[tendon]],
-            diagonal=model.tendon_invweight0[[tendon]].copy(),
-        )
+        solref, solimp = model.tendon_solref_lim[tendon], model.tendon_solimp_lim[tendon]
+        yield _along_one(loaded, "tendon", "limit", tendon, tendon, solref, solimp)
 
 
 def _friction_losses(loaded: _Loaded) -> Iterator[Constraint]:
     model = loaded.model
     for dof in np.flatnonzero(model.dof_frictionloss > 0).tolist():
-        yield Constraint(
-            element=loaded.named("joint", model.dof_jntid[dof]),
-            kind="joint friction",
-            solref=_solref(model.dof_solref[dof]),
-            solimp=_solimp(model.dof_solimp[dof]),
-            jacobian=loaded.joints[[dof]],
-            diagonal=model.dof_invweight0[[dof]].copy(),
-            positional=False,
-        )
+        joint, solref, solimp = model.dof_jntid[dof], model.dof_solref[dof], model.dof_solimp[dof]
+        yield _along_one(loaded, "joint", "friction", joint, dof, solref, solimp)
     for tendon in np.flatnonzero(model.tendon_frictionloss > 0).tolist():
-        yield Constraint(
-            element=loaded.named("tendon", tendon),
-            kind="tendon friction",
-            solref=_solref(model.tendon_solref_fri[tendon]),
-            solimp=_solimp(model.tendon_solimp_fri[tendon]),
-            jacobian=loaded.tendons[[tendon]],
-            diagonal=model.tendon_invweight0[[tendon]].copy(),
-            positional=False,
-        )
+        solref, solimp = model.tendon_solref_fri[tendon], model.tendon_solimp_fri[tendon]
+        yield _along_one(loaded, "tendon", "friction", tendon, tendon, solref, solimp)
+
+
+def _along_one(
+    loaded: _Loaded, kind: str, what: str, number: int, place: int, solref: FloatArray, solimp: FloatArray
+) -> Constraint:
+    """Return the limit or the friction of a joint or tendon; `place` is that of its direction among all."""
+    model = loaded.model
+    directions, weights = loaded.joints, model.dof_invweight0
+    if kind == "tendon":
+        directions, weights = loaded.tendons, model.tendon_invweight0
+    return Constraint(
+        element=loaded.named(kind, number),
+        kind=f"{kind} {what}",
+        solref=_solref(solref),
+        solimp=_solimp(solimp),
+        jacobian=directions[[place]],
+        diagonal=weights[[place]].copy(),
+        positional=what == "limit",
+    )
 
 
 def _contacts(loaded: _Loaded) -> Iterator[Constraint]:

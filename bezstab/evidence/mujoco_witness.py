@@ -10,16 +10,14 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bezstab.errors import InputError
 from bezstab.evidence.mujoco_models import MOST_IMPEDANCE, mujoco_module
 from bezstab.mechanism import GROUND, Body, Mechanism, Revolute, Scene, constraint_errors, perturbed_state
 from bezstab.methods import Method, lookup
-from bezstab.stability import FloatArray, first_where, region, spectral_radius
+from bezstab.stability import BoolArray, FloatArray, first_where, region, spectral_radius
 from bezstab.units import feedback_gains
 
-BoolArray = NDArray[np.bool_]
 Outcome = Literal["converges", "diverges", "neither"]
 
 INTEGRATORS = {"Euler": "SYM", "RK4": "RK4"}

@@ -22,8 +22,8 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
-from bezstab.evidence.linear_prediction import NEGLIGIBLE, SAMPLES, STANDARD_ERRORS, TIMES_FARTHEST, FloatArray
-from bezstab.stability import EPS, ComplexArray
+from bezstab.evidence.linear_prediction import NEGLIGIBLE, SAMPLES, STANDARD_ERRORS, TIMES_FARTHEST
+from bezstab.stability import EPS, ComplexArray, FloatArray
 
 FREEDOM = 24
 """Samples more than unknowns, at least: of fewer nobody can tell whether what is left over is white."""

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 
 from bezstab.evidence.accuracy_costs import ABOVE_REFERENCE, Cost, Run
 from bezstab.evidence.sweep_summaries import cost_for
-from bezstab.methods import Method
 
 COSTS: tuple[Cost, Cost] = ("projection", "time")
 """Factorizations, then seconds."""
@@ -17,20 +16,16 @@ class Comparison:
 
     Both come to within `error` (m, rad) of the trajectory. `factorizations` and `seconds` say how many times as many
     projection takes for that, or, if `at_most`, takes at most: then it is as near at its largest step already, as on a
-    mechanism that is driven throughout. `drift` and `projected_drift` are energies (J) at the smallest step,
-    `constraint` and `projected_constraint` the largest |c| (m, rad) there.
+    mechanism that is driven throughout. `held` and `projected` are the runs with feedback and with projection at the
+    smallest step.
     """
 
-    method: Method
-    advised: bool
+    held: Run
+    projected: Run
     error: float
     factorizations: float
     seconds: float
     at_most: bool
-    constraint: float
-    projected_constraint: float
-    drift: float
-    projected_drift: float
 
 
 def comparisons(runs: Sequence[Run], reference_error: float) -> Iterator[Comparison]:
@@ -64,19 +59,7 @@ def _compared(held: Sequence[Run], projected: Sequence[Run], known: float) -> Co
         if by_feedback is None or by_projection is None:
             return None
         ratios.append(by_projection / by_feedback)
-    last, last_projected = held[-1], ended[-1]
-    return Comparison(
-        method=last.method,
-        advised=last.advised,
-        error=error,
-        factorizations=ratios[0],
-        seconds=ratios[1],
-        at_most=at_most,
-        constraint=last.c_max,
-        projected_constraint=last_projected.c_max,
-        drift=abs(last.energy_drift),
-        projected_drift=abs(last_projected.energy_drift),
-    )
+    return Comparison(held[-1], ended[-1], error, factorizations=ratios[0], seconds=ratios[1], at_most=at_most)
 
 
 def _costs(runs: Sequence[Run], against: Cost) -> list[tuple[float, float]]:
@@ -87,12 +70,13 @@ def projection_sentences(runs: Sequence[Run], reference_error: float) -> list[st
     """Return a sentence for each method and point: what projection costs for the same error of the trajectory."""
     sentences = []
     for each in comparisons(runs, reference_error):
+        held, projected = each.held, each.projected
         most = "at most " if each.at_most else ""
-        points = "the advised points" if each.advised else "the given point"
+        points = "the advised points" if held.advised else "the given point"
         sentences.append(
-            f"{each.method.name}: for a trajectory error of {each.error:.1e} projection takes {most}"
+            f"{held.method.name}: for a trajectory error of {each.error:.1e} projection takes {most}"
             f"{each.factorizations:.2g} times the factorizations and {each.seconds:.2g} times the time of feedback at "
-            f"{points}; at the smallest step |c| is {each.projected_constraint:.0e} and not {each.constraint:.0e}, the "
-            f"energy's drift {each.projected_drift:.0e} J and not {each.drift:.0e} J."
+            f"{points}; at the smallest step |c| is {projected.c_max:.0e} and not {held.c_max:.0e}, the energy's drift "
+            f"{abs(projected.energy_drift):.0e} J and not {abs(held.energy_drift):.0e} J."
         )
     return sentences

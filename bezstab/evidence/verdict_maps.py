@@ -1,7 +1,7 @@
 """Maps of simulated verdicts: a run at every cell of the plane, diverging or not, against |z_p| from the polynomial."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,9 +12,7 @@ from bezstab.evidence.measured_poles import kicked_motions, nothing_happens_with
 from bezstab.mechanism import Scene, compiled_mechanism, runs_compiled, turning_normals
 from bezstab.methods import Method, evaluations
 from bezstab.read_only import ReadOnlyArrays
-from bezstab.stability import FloatArray, pole_map, poles, region, turning_shift, useful_window
-
-BoolArray = NDArray[np.bool_]
+from bezstab.stability import BoolArray, FloatArray, pole_map, poles, region, turning_shift, useful_window
 
 MAP_RUN = 2000
 """Steps after the kick."""
@@ -30,7 +28,7 @@ TOO_CLOSE = 10.0
 """Over the number of steps: with | |z_p| - 1 | below this growth or decay may not show in a run."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class VerdictMap(ReadOnlyArrays):
     """Predicted |z_p| and what `run` simulated steps of h (s) did; masks of shape (beta_hat.size, alpha_hat.size).
 
@@ -39,16 +37,16 @@ class VerdictMap(ReadOnlyArrays):
     shape.
     """
 
-    scene: Scene = field(repr=False)
-    method: Method = field(repr=False)
+    scene: Scene
+    method: Method
     h: float
     run: int
-    alpha_hat: FloatArray = field(repr=False)
-    beta_hat: FloatArray = field(repr=False)
-    z_abs: FloatArray = field(repr=False)
-    diverges: BoolArray = field(repr=False)
-    undecided: BoolArray = field(repr=False)
-    moved: FloatArray = field(repr=False)
+    alpha_hat: FloatArray
+    beta_hat: FloatArray
+    z_abs: FloatArray
+    diverges: BoolArray
+    undecided: BoolArray
+    moved: FloatArray
 
     @property
     def disagrees(self) -> BoolArray:
@@ -108,11 +106,11 @@ class VerdictMap(ReadOnlyArrays):
 class MapRows:
     """Some rows of a map of simulated verdicts, to be run as one batch; h in s."""
 
-    scene: Scene = field(repr=False)
-    method: Method = field(repr=False)
+    scene: Scene
+    method: Method
     h: float
-    alpha_hat: FloatArray = field(repr=False)
-    beta_hat: FloatArray = field(repr=False)
+    alpha_hat: FloatArray
+    beta_hat: FloatArray
     compiled: bool = False
 
 

@@ -12,7 +12,7 @@ from bezstab.mechanism.constraint_normals import TurningNormals, turned_across, 
 from bezstab.mechanism.energies import energy_balance
 from bezstab.mechanism.equations import Equations, T, equations_of_motion
 from bezstab.mechanism.linearized import linearized_acceleration
-from bezstab.mechanism.motions import Motion, motion, regular_motion, revolution_period
+from bezstab.mechanism.motions import Motion, motion, motion_over, regular_motion, revolution_period
 from bezstab.mechanism.observation import Observation, observe, singular_passages
 from bezstab.mechanism.projection import Projection, Stabilise, check_projected
 from bezstab.mechanism.runner import (

@@ -80,13 +80,13 @@ def motion(mechanism: Mechanism, duration: float) -> Motion:
     """
     period = revolution_period(mechanism)
     if period is None:
-        return _motion_over(mechanism, duration, STEPS)
-    along = _motion_over(mechanism, period, STEPS * _turns_of_the_fastest(mechanism))
+        return motion_over(mechanism, duration, STEPS)
+    along = motion_over(mechanism, period, STEPS * _turns_of_the_fastest(mechanism))
     off = _what_is_off(mechanism, along.q[0], along.q[-1])
     if off is None:
         return replace(along, closed=True)
     if _oscillates(mechanism):
-        return _motion_over(mechanism, duration, STEPS)
+        return motion_over(mechanism, duration, STEPS)
     name, apart = off
     raise InputError(
         f"{mechanism.scene.name}: {name} is off by {apart:.3g} after one revolution ({period:.6g} s): "
@@ -94,7 +94,7 @@ def motion(mechanism: Mechanism, duration: float) -> Motion:
     )
 
 
-def _motion_over(mechanism: Mechanism, span: float, steps: int) -> Motion:
+def motion_over(mechanism: Mechanism, span: float, steps: int) -> Motion:
     """Return the motion from the scene's start over a span (s) in so many steps, as a run."""
     run = simulate(mechanism, lookup("RK4"), span / steps, span, FREE)
     if run.failure:

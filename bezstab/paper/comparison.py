@@ -90,6 +90,15 @@ def by_case(runs: Sequence[Experiment]) -> list[CaseRuns]:
     ]
 
 
+def beside_printed(runs: Sequence[Experiment]) -> list[tuple[PrintedCase, Experiment, PrintedPole]]:
+    """Return every run with its case of Table 5 and the pole that the paper prints for it."""
+    return [
+        (case, run, case.poles[name])
+        for case, case_runs in zip(TABLE_5, by_case(runs), strict=True)
+        for name, run in case_runs.items()
+    ]
+
+
 def pole_table(runs: Sequence[Experiment]) -> str:
     """Return Table 5 as Markdown."""
     caption = (
@@ -97,11 +106,7 @@ def pole_table(runs: Sequence[Experiment]) -> str:
         "others are marked with *), and what is left of c₁ in the simulation (h = 1 ms, RK4 at 5 ms, consistent "
         "initial state; 0: below 1e-13 m, which is rounding)."
     )
-    rows = [
-        pole_row(run, case.poles[name])
-        for case, case_runs in zip(TABLE_5, by_case(runs), strict=True)
-        for name, run in case_runs.items()
-    ]
+    rows = [pole_row(run, printed) for _, run, printed in beside_printed(runs)]
     return captioned_table(caption, rows, PRINTED_POLES)
 
 
@@ -150,11 +155,10 @@ def findings(runs: Sequence[Experiment]) -> list[Finding]:
 def poles_as_printed(runs: Sequence[Experiment]) -> Finding:
     """Return which of the printed poles are not ours."""
     misprinted = []
-    for case, case_runs in zip(TABLE_5, by_case(runs), strict=True):
-        for name, run in case_runs.items():
-            wrong = [words for words in misprints(case.poles[name], run.pole) if words]
-            if wrong:
-                misprinted.append(f"{name} at ({case.alpha_hat}, {case.beta_hat}): {', '.join(wrong)}")
+    for case, run, printed in beside_printed(runs):
+        wrong = [words for words in misprints(printed, run.pole) if words]
+        if wrong:
+            misprinted.append(f"{run.method.name} at ({case.alpha_hat}, {case.beta_hat}): {', '.join(wrong)}")
     return finding(
         where="Table 5",
         claim="dominant poles of four methods at three points",
@@ -166,12 +170,7 @@ def poles_as_printed(runs: Sequence[Experiment]) -> Finding:
 
 def matching_numbers(runs: Sequence[Experiment]) -> str:
     """Return in words how many of the printed numbers are those of our poles, rounded to as many digits."""
-    right = [
-        wrong is None
-        for case, case_runs in zip(TABLE_5, by_case(runs), strict=True)
-        for name, run in case_runs.items()
-        for wrong in misprints(case.poles[name], run.pole)
-    ]
+    right = [wrong is None for _, run, printed in beside_printed(runs) for wrong in misprints(printed, run.pole)]
     return f"{sum(right)} of {len(right)} numbers match"
 
 

@@ -3,42 +3,24 @@
 from bezstab.paper.findings import Finding, finding
 from bezstab.paper.printed import NOT_HERE
 
+LOST = (
+    (
+        "Table 6",
+        "seconds of processor time",
+        "8.34 to 8.63 s",
+        "its machine and program are not here; Table 6 has ours beside them",
+    ),
+    ("Table 4", "the six parameters and their poles", "lost in the scan", "ours fit what the text says"),
+    ("Figs 1 to 3, 5 to 9", "the curves themselves", "lost in the scan", "only sentences about them remain"),
+    ("Section 5.2", "initial angle of the crank", "not stated", "45 degrees here"),
+)
+"""Where, the claim, what the paper says, and what is here instead."""
+
 
 def findings() -> list[Finding]:
     """Return what cannot be tested, and why."""
+    missing = [("Introduction", name, f"“{sentence}”", "not in bezstab: nothing to run") for name, sentence in NOT_HERE]
     return [
-        finding(
-            where="Table 6",
-            claim="seconds of processor time",
-            paper="8.34 to 8.63 s",
-            here="its machine and program are not here; Table 6 has ours beside them",
-            holds=[],
-        ),
-        finding(
-            where="Table 4",
-            claim="the six parameters and their poles",
-            paper="lost in the scan",
-            here="ours fit what the text says",
-            holds=[],
-        ),
-        finding(
-            where="Figs 1 to 3, 5 to 9",
-            claim="the curves themselves",
-            paper="lost in the scan",
-            here="only sentences about them remain",
-            holds=[],
-        ),
-        finding(
-            where="Section 5.2",
-            claim="initial angle of the crank",
-            paper="not stated",
-            here="45 degrees here",
-            holds=[],
-        ),
-        *(
-            finding(
-                where="Introduction", claim=name, paper=f"“{sentence}”", here="not in bezstab: nothing to run", holds=[]
-            )
-            for name, sentence in NOT_HERE
-        ),
+        finding(where=where, claim=claim, paper=paper, here=here, holds=[])
+        for where, claim, paper, here in (*LOST, *missing)
     ]

@@ -57,6 +57,19 @@ class Timing:
         if self.filter_steps < 0:
             raise InputError(f"--filter {float(self.filter_steps):g} steps: expected 0 or more")
 
+    def applied(self, step: int) -> list[tuple[int, Fraction]]:
+        """Return what acts in a step after the latest computation: how far back it was computed, and its share.
+
+        What was computed i times `every` steps ago is applied from the step whole - i every on; in that very step the
+        one before it keeps the share of `late` beyond whole steps.
+        """
+        whole = floor(self.late)
+        left = self.late - whole
+        begun = max(0, ceil(Fraction(whole - step, self.every)))
+        if left and step == whole - begun * self.every:
+            return [(begun, 1 - left), (begun + 1, left)]
+        return [(begun, Fraction(1))]
+
 
 @dataclass(frozen=True)
 class _Seen:
@@ -161,15 +174,8 @@ def _steps_matrix(seen: _Seen, alpha_hat: Numbers, beta_hat: Numbers, timing: Ti
     torques: list[Numbers] = [np.zeros_like(x), *state[2 + filters :]]  # latest first; the new one's place is kept
 
     def applied(step: int) -> Numbers:
-        """Return the torque applied in a step after the latest computation.
-
-        The torque computed i times `every` steps ago is applied from the step whole - i every on; in that very step
-        the one before it keeps the share of `late` beyond whole steps.
-        """
-        begun = max(0, ceil(Fraction(whole - step, timing.every)))
-        if left and step == whole - begun * timing.every:
-            return np.asarray(number(1 - left) * torques[begun] + number(left) * torques[begun + 1])
-        return torques[begun]
+        """Return the torque applied in a step after the latest computation."""
+        return np.asarray(sum(number(share) * torques[back] for back, share in timing.applied(step)))
 
     # u = -b (x + x_by_velocity v + x_by_torque p) - a w,   w = filtered + gain (v + v_by_torque p - filtered),
     # p = share u + rest, the torque applied in the step that computes u

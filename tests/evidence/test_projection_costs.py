@@ -40,13 +40,13 @@ def test_costs_at_equal_error_are_those_of_the_power_laws() -> None:
     advised, given = power_law("baumgarte", True, 1.0, 1), power_law("baumgarte", False, 4.0, 1)
     projected = power_law("projection", False, 0.5, 2)
     by_advised, by_given = compared([*advised, *given, *projected])
-    assert (by_advised.advised, by_given.advised) == (True, False)
+    assert (by_advised.held.advised, by_given.held.advised) == (True, False)
     assert by_advised.error == pytest.approx(1.0 / 400**2)
     assert by_advised.factorizations == pytest.approx(2 / 2**0.5)
     assert by_advised.seconds == pytest.approx(4 / 2**0.5)
     assert by_given.factorizations == pytest.approx(2 / 8**0.5)
     assert not by_advised.at_most
-    assert (by_advised.constraint, by_advised.projected_constraint) == (1e-5, 1e-13)
+    assert (by_advised.held.c_max, by_advised.projected.c_max) == (1e-5, 1e-13)
 
 
 def test_a_projection_that_is_nearer_from_the_first_takes_at_most_so_much() -> None:
@@ -93,5 +93,5 @@ def test_on_a_free_mechanism_feedback_is_cheaper_and_projection_nearer_to_the_co
     assert sym.factorizations > 3
     assert 1 < rk4.factorizations < 2
     for each in (sym, rk4):
-        assert each.method in (lookup("SYM"), lookup("RK4"))
-        assert each.projected_constraint < 4e-12 < each.constraint
+        assert each.held.method in (lookup("SYM"), lookup("RK4"))
+        assert each.projected.c_max < 4e-12 < each.held.c_max
