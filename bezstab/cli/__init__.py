@@ -1,7 +1,7 @@
 """The command line: parse, ask, show, save, exit status.
 
-One file for each group of commands that `bezstab --help` shows; commands with a subject of their own (verify, with its
-three ways to measure, lint, probe, schema) have one each beside it.
+One file for each command. It names the options that it takes (`options` has those that several commands share), asks a
+question (`asking`), and shows the answers (`output`). It returns whether what it judges is safe, or an exit status.
 """
 
 from bezstab.cli.command_group import main

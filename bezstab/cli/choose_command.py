@@ -98,7 +98,7 @@ def choose(goal: Goal | None, equal: str | None, bandwidth: Fraction | None, **t
             _say_trades(chosen)
     show_below(question, chosen)
     for line in map(alone_words, chosen):
-        if line and for_reading():
+        if line:
             show_text(f"\n{line}")
     return all(answer.safe for answer in chosen)
 

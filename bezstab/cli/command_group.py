@@ -46,10 +46,11 @@ DEFECT = 70
 class BezstabGroup(click.Group):
     """A group that lists its commands under headings, loads a command when it is called, and ends errors in one line.
 
-    Exit status 2 for a user's mistake and for what the system refuses (a full disk, a closed standard output), 3 for
-    numerical trouble, 70 for a defect of this program. A signal that ends a run is 128 + its number, as a shell has it:
-    130 after Ctrl-C, 143 after TERM, 129 when the terminal is gone (bezstab.stopping), 141 where nobody reads the
-    answer any more (`| head`).
+    A command returns nothing, or whether what it judges is safe (exit status 0 or 1), or an exit status. The status is
+    2 for a user's mistake and for what the system refuses (a full disk, a closed standard output), 3 for numerical
+    trouble, 70 for a defect of this program. A signal that ends a run is 128 + its number, as a shell has it: 130 after
+    Ctrl-C, 143 after TERM, 129 when the terminal is gone (bezstab.stopping), 141 where nobody reads the answer any more
+    (`| head`).
     """
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
@@ -98,6 +99,9 @@ class BezstabGroup(click.Group):
         except (InputError, NumericalError) as error:
             _complain(str(error))
             sys.exit(2 if isinstance(error, InputError) else NUMERICAL_TROUBLE)
+        except click.Abort:  # Ctrl-C in a process that is not ours: ours ends by bezstab.stopping
+            _complain("interrupted")
+            sys.exit(130)
         except OSError as error:
             _give_up_output()
             _complain(f"{error.filename}: {error.strerror}" if error.filename else error.strerror or str(error))

@@ -52,7 +52,7 @@ def verify(
     work: Work,
     files: Files,
     **typed: Any,
-) -> int:
+) -> bool | int:
     """Compare predicted poles with poles measured in a simulation.
 
     Two runs start with opposite kicks. The dominant pole is fitted to their difference. If no pole can be measured, the
@@ -92,8 +92,8 @@ def _show_witnesses(question: "VerifyQuestion") -> None:
     show_rows(WITNESSED, [WITNESSED.row(each, scene=question.mechanism.scene.name) for each in witnesses])
 
 
-def _show_forced_errors(question: "VerifyQuestion") -> int:
-    """Print predicted and measured errors at shares of a point's gains, and return the exit status."""
+def _show_forced_errors(question: "VerifyQuestion") -> bool | int:
+    """Print predicted and measured errors at shares of a point's gains; return whether all hold, or an exit status."""
     from bezstab import evidence, show
 
     by_method = {
@@ -105,9 +105,7 @@ def _show_forced_errors(question: "VerifyQuestion") -> int:
     show_rows(FORCED, [row for pair in every_pair for row in show.forced_rows(scene, pair)])
     show_text("\n" + "\n".join(show.forced_words(name, pairs) for name, pairs in by_method.items()))
     outcomes = {pair.holds for pair in every_pair}
-    if None in outcomes:
-        return NUMERICAL_TROUBLE
-    return 0 if outcomes == {True} else 1
+    return NUMERICAL_TROUBLE if None in outcomes else outcomes == {True}
 
 
 def _show_measurements(question: "VerifyQuestion") -> None:

@@ -1,11 +1,8 @@
 """What the shell offers after a press of the tab key."""
 
-import os
-import subprocess
-import sys
-
 import pytest
 from click.shell_completion import CompletionItem, ShellComplete
+from click.testing import CliRunner
 
 from bezstab.cli import main
 from bezstab.cli.completion import QuotingBash, offered
@@ -48,6 +45,4 @@ def test_every_method_is_offered_and_is_one_and_files_where_no_name_fits() -> No
 def test_bash_is_offered_what_it_can_read() -> None:
     assert QuotingBash(main, {}, "bezstab", "x").format_completion(CompletionItem("hht(-1/20)")) == "plain,'hht(-1/20)'"
     asked = {"_BEZSTAB_COMPLETE": "bash_complete", "COMP_WORDS": "bezstab methods newm", "COMP_CWORD": "2"}
-    code = "import sys; sys.argv = ['bezstab']; from bezstab.__main__ import run; run()"
-    shell = subprocess.run([sys.executable, "-c", code], env={**os.environ, **asked}, capture_output=True, check=True)
-    assert shell.stdout.split() == [b"plain,'newmark(1/4,1/2)'"]
+    assert CliRunner().invoke(main, prog_name="bezstab", env=asked).stdout.split() == ["plain,'newmark(1/4,1/2)'"]

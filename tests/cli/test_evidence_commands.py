@@ -28,10 +28,6 @@ def test_a_run_that_fails_is_status_three_with_its_time_and_keeps_the_history(tm
     assert "blow-up" in json.loads(result.stdout)[0]["failure"]
     assert "at t = 0.1" in result.stderr.splitlines()[-1]
     assert sorted(path.suffix for path in tmp_path.iterdir()) == [".csv", ".png"]
-    options = "--scene four_bar --method trapezoid --h 0.5 --time 50 --physical --alpha 10 --beta 10"
-    result = run("simulate", *options.split(), *NOTHING)
-    assert result.exit_code == 3
-    assert "at t = 0.5 s: Newton's method did not converge in" in result.stderr.splitlines()[-1]
 
 
 def test_simulate_says_where_it_goes_through_singular_configurations() -> None:
@@ -54,20 +50,6 @@ def test_tradeoff_writes_a_table_without_times_and_two_figures_and_the_same_agai
     assert all(float(str(row["seconds"])) > 0 for row in found)
     assert run(*command.split(), "1").exit_code == 0
     assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == written
-
-
-@pytest.mark.slow
-def test_tradeoff_holds_feedback_against_projection(tmp_path: Path) -> None:
-    command = "--scene pendulum --method SYM --h 0.01 --h 0.02 --time 0.1 --repeats 1 --workers 1"
-    found = rows(*f"tradeoff {command} --against projection --alpha 0.5 --beta 0.1".split())
-    assert [(row["stabilise"], row["advised"]) for row in found] == [
-        *[("baumgarte", True)] * 2,
-        *[("baumgarte", False)] * 2,
-        *[("projection", False)] * 2,
-    ]
-    assert {path.name for path in tmp_path.iterdir()} == {"tradeoff_pendulum.csv", "tradeoff_pendulum_projection.png"}
-    (*_, last) = rows(*f"tradeoff {command} --stabilise none".split(), *NOTHING)
-    assert (last["stabilise"], last["alpha_hat"], last["z_abs"]) == ("none", 0, None)
 
 
 @pytest.mark.parametrize("command", ["simulate", "paper"])

@@ -49,19 +49,3 @@ def test_beyond_the_law_choose_calls_nothing_safe() -> None:
     result = run("choose", "--method", "AB4", "--goal", "robust", "--h", "0.02", *FOUR_BAR[:2], "--speed", "1.8")
     assert "turn by κh = 0.12 a step: beyond 0.1 the law fails" in result.stderr
     assert (result.stdout[:8], result.exit_code) == ("Not safe", 1)
-
-
-@pytest.mark.slow
-def test_region_prints_the_area_that_is_left_at_each_speed_and_levels_at_rest() -> None:
-    speeds = ("--speed", "1", "--speed", "3", "--level", "0.9", "--figure", "none", "--table", "none")
-    slow, fast, level = rows("region", *FOUR_BAR, *speeds)
-    assert [row["speed"] for row in (slow, fast, level)] == [1, 3, None]
-    assert fast["area_moving"] < slow["area_moving"] < slow["area"]  # type: ignore[operator]
-    assert (level["z_abs_below"], level["area_moving"]) == (0.9, None)
-
-
-@pytest.mark.slow
-def test_a_scene_is_looked_at_for_as_long_as_it_says() -> None:
-    """Andrews' mechanism speeds up all the time; over the 0.03 s of its benchmark kappa is 281 1/s."""
-    (row,) = rows("poles", "--alpha", "0.1", "--beta", "0.01", "--method", "AB4", "--scene", "andrews", "--h", "1e-5")
-    assert row["kappa"] == pytest.approx(281, rel=0.01)

@@ -37,8 +37,6 @@ def test_omega_times_h_is_taken_exactly_as_typed_and_h_alone_makes_no_unit() -> 
     assert row["omega_h"] == 1 / 20
     (usual,) = rows(*point)
     assert (usual["alpha_hat"], usual["z_abs"]) == (row["alpha_hat"], row["z_abs"])
-    (at_rest,) = rows(*point, "--scene", str(DATA / "plumb.toml"), "--h", "0.01", "--omega", "2")
-    assert (at_rest["omega_h"], at_rest["kappa"]) == (0.02, 0)
 
 
 def test_an_engines_clamps_are_applied_unless_told_not_to() -> None:

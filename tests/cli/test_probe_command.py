@@ -4,7 +4,6 @@ import doctest
 import json
 import re
 import shlex
-from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
@@ -14,10 +13,7 @@ from click.testing import CliRunner
 from numpy.typing import NDArray
 
 from bezstab.cli import main
-from bezstab.evidence import Likeness, model_xml
-from bezstab.mechanism import compiled_mechanism, constraint_errors, load_scene, perturbed_state
 from bezstab.methods import REGISTRY, lookup
-from bezstab.show import likeness_sentence
 from bezstab.stability import FloatArray, poles
 from tests.cli.running import rows, run
 from tests.reference.sampled_responses import of_poles
@@ -60,22 +56,6 @@ def test_a_row_for_each_fit_and_for_each_method_in_order() -> None:
         assert [row["method"] for row in methods if row["fits"]] == ([true] if true else [])
 
 
-def test_sentences_in_full() -> None:
-    def like(name: str, distance: float, same_as: str = "") -> Likeness:
-        return Likeness(lookup(name), 0.5 + 0j, distance, 1e-6, 1e-3, True, same_as)
-
-    point = (Fraction(1), Fraction(1, 4))
-    found = [like("B2", 2e-6, "AB2"), like("AB2", 2e-6, "B2"), like("heun", 1e-4), like("RK4", 0.1)]
-    assert likeness_sentence(found, point) == (
-        "this behaves like B2 at (1, 0.25) to 2e-06; AB2 has the same poles there; heun cannot be told from it; "
-        "RK4 is excluded."
-    )
-    assert likeness_sentence([like("B4", 2e-3)], point) == (
-        "what this is at (1, 0.25) cannot be told: the nearest is B4, 0.002 off where 0.001 is allowed, and it would "
-        "fit if the mechanism turned up to 3 times as fast as is allowed for (--turning)."
-    )
-
-
 def test_standard_input_is_read_for_a_dash_and_columns_are_fitted_jointly_if_asked_for() -> None:
     c = response("B4", 0.5, 0.1)
     text = "\n".join(f"{value:.9g}" for value in c)
@@ -96,31 +76,9 @@ def test_what_tells_no_pole_or_fits_nothing_is_status_three_with_its_reason() ->
     assert (result.exit_code, [row["z_abs"] for row in json.loads(result.stdout)]) == (3, [None, None])
     assert "no pole can be told: noisy: " in result.stderr
     assert "rounded: rounded to 1e-05" in result.stderr
-    write("log.csv", c=response("SYM", 0.5, 0.25, 8))
-    assert "no pole can be told: c: 8 samples: at least 12 are needed" in run("probe", "log.csv", *point).stderr
     write("log.csv", noisy=noisy, clean=clean)
     assert [row["z_abs"] is None for row in rows("probe", "log.csv")] == [True, False]
     wrong = run("probe", "log.csv", "--alpha", "0.3", *point[2:], "--column", "clean")
     assert (wrong.exit_code, wrong.stderr) == (3, "bezstab: nothing fits clean\n")
     assert "nothing fits at (0.3, 0.1)" in wrong.stdout
     assert run("probe", "log.csv", *point).exit_code == 0
-
-
-def test_a_log_that_mujoco_made_behaves_like_symplectic_euler() -> None:
-    """The slider-crank in MuJoCo's Euler integrator, kicked and not, as a user would log it."""
-    mujoco: Any = pytest.importorskip("mujoco")
-    h, alpha_hat, beta_hat = 1e-3, 0.6, 0.25
-    mechanism = compiled_mechanism(load_scene("slider_crank"))
-    model = mujoco.MjModel.from_xml_string(model_xml(mechanism.scene, "Euler", h, alpha_hat, beta_hat))
-    for name, kick in (("kicked.csv", 1e-4), ("unkicked.csv", 0.0)):
-        data = mujoco.MjData(model)
-        data.qpos[:], data.qvel[:] = perturbed_state(mechanism, kick)
-        c = []
-        for _ in range(200):
-            c.append(float(constraint_errors(mechanism, 0.0, list(data.qpos))[0]))
-            mujoco.mj_step(model, data)
-        write(name, time=h * np.arange(200.0), c=np.array(c))
-    answer = rows(*shlex.split("probe kicked.csv --minus unkicked.csv --h 0.001 --alpha 0.6 --beta 0.25"))
-    assert (answer[1]["fits"], {answer[1]["method"], answer[1]["same_as"]}) == (True, {"SYM", "verlet-half"})
-    fitting = {row["method"] for row in answer[1:] if row["fits"]}
-    assert not fitting & {"RK4", "B4", "AB2", "AB4", "SIE", "implicit-euler"}

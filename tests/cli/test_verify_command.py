@@ -13,17 +13,6 @@ def test_what_is_thrown_apart_at_once_diverges_and_seconds_are_understood() -> N
     assert in_seconds["floquet_z_abs"] is None  # nothing exact is computed unless it is asked for
 
 
-@pytest.mark.slow
-def test_verify_tells_what_the_motion_does_to_a_prediction() -> None:
-    """The driven four-bar at omega h = 0.063: AB4 converges by the map, diverges by the law and by exact rates."""
-    point = ("--method", "AB4", "--alpha", "0.5", "--beta", "0.1", "--h", "0.01")
-    (row,) = rows("verify", "--scene", "driven_four_bar", *point, "--floquet")
-    at_rest, law, exact = (float(str(row[key])) for key in ("predicted_z_abs", "law_z_abs", "floquet_z_abs"))
-    assert at_rest < 1 < law
-    assert abs(law - exact) < 0.2 * abs(at_rest - exact)
-    assert (row["measured_verdict"], row["right"]) == ("diverges", "law, exact")
-
-
 @pytest.mark.promise("Rates where drivers turn and oscillate")
 @pytest.mark.parametrize(
     ("scene", "method", "said"),

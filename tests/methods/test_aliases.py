@@ -21,23 +21,11 @@ def refusal(text: str) -> str:
     return message
 
 
-def answer(text: str) -> str:
-    """Return the name of the method that is found, or what is said instead."""
-    try:
-        return lookup(text).name
-    except InputError as error:
-        return str(error)
-
-
 SAME = {
     "Symplectic-Euler": "SYM",
-    "semi-explicit euler": "SYM",
     "rk45": "dopri5",
-    "RK23": "bs3",
-    "ode4": "RK4",
     "crank nicolson": "trapezoid",
     "Backward_Euler@2": "implicit-euler@2",
-    "explicit-midpoint-rule": "RK2",
     "Newmark β": "newmark(1/4,1/2)",
     "Generalized-α(4/5)": "generalized-alpha(4/5)",
     "HHT-α": "hht",
@@ -56,14 +44,10 @@ ANSWERED: dict[str, tuple[str, ...]] = {
         "which velocity does your feedback use?",
         *(f"verlet-{v}" for v in ("half", "old", "implicit", "kdk")),
     ),
-    "Leap-Frog": ("verlet-predicted",),
     "euler": ("RK1", "SYM", "implicit-euler", "imex-euler"),
     "Störmer-Verlet": ("central-difference", "SYM"),
     "bdf7": ("unstable", "bdf6"),
     "rk78": ("not built in", "order is 5", ".toml"),
-    "CVODE": ("am2 to am6", "bdf1 to bdf6"),
-    "Wilson-θ": ("not built in", "generalized-alpha", ".toml"),
-    "coordinate_projection": ("it has no alpha, beta",),
     "GGL": ("it has no alpha, beta",),
 }
 
@@ -133,17 +117,10 @@ def test_no_name_is_answered_with_one_whose_letters_are_near_or_which_is_its_con
 
 MEANT = {
     "leepfrog": ("leapfrog",),
-    "velocty-verlet": ("which velocity",),
-    "crank-nicholson": ("trapezoid",),
     "generalized-alfa": ("generalized-alpha",),
-    "symplectc-euler": ("SYM",),
     "newmrk(1/4,1/2)": ("newmark",),
     "forrest-ruth": ("forest-ruth",),
-    "dopri6": ("dopri5",),
     "BFD2": ("bdf2",),
-    "AMB": ("ABM",),
-    "IMEX2": ("imex-euler",),
-    "BDF9": ("bdf6",),
     "AB9": ("AB8",),
     "emplicit-euler": ("explicit-euler (RK1)", "implicit-euler"),  # equally near: both are offered
 }
@@ -154,11 +131,3 @@ def test_a_long_word_may_be_misspelt(typed: str) -> None:
     message = refusal(typed)
     assert "did you mean" in message
     assert all(meant in message for meant in MEANT[typed])
-
-
-@pytest.mark.parametrize("implicit", ["implicit-euler", "implicit-midpoint", "verlet-implicit", "semi-implicit-euler"])
-def test_a_letter_missing_does_not_turn_an_implicit_method_into_an_explicit_one(implicit: str) -> None:
-    expected = {"semi-implicit-euler": "SYM"}.get(implicit, implicit)
-    for place in range(len(implicit)):
-        typed = implicit[:place] + implicit[place + 1 :]
-        assert expected in answer(typed)

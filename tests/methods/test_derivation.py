@@ -24,8 +24,7 @@ from bezstab.methods import (
     mapping_equations,
     steps,
 )
-from tests.methods import kinds
-from tests.methods.kinds import EXPLICIT, FEW, SAMPLE, SOLVED, sampled
+from tests.methods.kinds import EXPLICIT, FEW, sampled
 from tests.reference.closed_loops import polynomial_in_z, sympy_rational
 from tests.reference.steppers import State, trajectory
 
@@ -91,14 +90,6 @@ def test_closed_loop_is_the_minimal_recursion_of_the_stabilised_constraint(name:
     # the stepper's two unknowns at its n points obey no shorter recursion: the Hankel matrix is regular
     hankel = [[sympy_rational(c[n + i + j]) for j in range(n)] for i in range(n)]
     assert DomainMatrix.from_Matrix(sp.Matrix(hankel)).to_field().rank() == n
-
-
-@pytest.mark.parametrize("name", sampled(kinds.MU_METHODS, quick=[*SAMPLE, *SOLVED]))
-def test_closed_loop_is_the_product_of_pi_over_both_mu(name: str) -> None:
-    method, first, second = lookup(name), Fraction(-2, 3), Fraction(-1, 5)
-    p = closed_loop_at(method, -(first + second), first * second)
-    factors = (characteristic_polynomial(method).eval(MU, sympy_rational(mu)) for mu in (first, second))
-    assert same(polynomial_in_z(p), sp.prod(factor.as_expr() for factor in factors))
 
 
 @pytest.mark.parametrize("name", [*FEW, "bdf2", "sdirk2", "verlet-kdk", "newmark(1/6,1/2)"])

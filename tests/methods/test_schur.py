@@ -3,7 +3,6 @@
 from fractions import Fraction
 
 import pytest
-import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -61,18 +60,6 @@ def test_a_constant_converges_and_the_zero_polynomial_has_no_verdict() -> None:
     for length in (1, 5):
         with pytest.raises(ZeroDivisionError):
             recursion_verdict([Fraction(0)] * length)
-
-
-@pytest.mark.parametrize("n", range(1, 25))
-def test_cyclotomic_polynomials_are_marginal_and_share_roots_only_with_themselves(n: int) -> None:
-    z = sp.Symbol("z")
-    this, following = (
-        tuple(map(Fraction, map(int, sp.cyclotomic_poly(k, z, polys=True).all_coeffs()[::-1]))) for k in (n, n + 1)
-    )
-    assert recursion_verdict(this) == "marginal"
-    assert not is_schur(this)
-    assert recursion_verdict(product([this, following])) == "marginal"
-    assert recursion_verdict(product([this, following, this])) == "diverges"
 
 
 def test_lehmers_polynomial_diverges_by_the_smallest_known_salem_number() -> None:

@@ -1,7 +1,7 @@
 from fractions import Fraction
 
 from bezstab.methods import recipe
-from bezstab.methods.second_order_formulas import LONGEST_PART, is_long, second_order_text
+from bezstab.methods.second_order_formulas import second_order_text
 
 
 def written(equations: dict[str, str], multiple: str = "1", latex: bool = False) -> str:
@@ -30,8 +30,3 @@ def test_a_helper_has_its_step_and_the_least_derivative_of_its_sum() -> None:
     smoothed = {"a0": "acceleration(x0, v0)", "w_m": "1/2 w_m[0] + 1/2 a0", "v1": "v0 + w_m", "x1": "x0 + v1"}
     assert "w_m_{k+1} = 1/2 w_m_k + 1/2 a_k" in written(smoothed)
     assert r"\mathrm{w\_m}_{k+1} = \frac{1}{2} \mathrm{w\_m}_k + \frac{1}{2} a_k" in written(smoothed, latex=True)
-
-
-def test_a_fraction_is_shown_as_one_up_to_the_longest() -> None:
-    assert not is_long(Fraction(1, LONGEST_PART))
-    assert is_long(Fraction(1, LONGEST_PART + 1))

@@ -14,6 +14,7 @@ from bezstab.methods import (
     without_shared_factor,
 )
 from tests.methods.random_recipes import VERLET
+from tests.reference.random_methods import product
 
 F = Fraction
 
@@ -22,14 +23,8 @@ def with_factor(*factor: Fraction) -> Method:
     """AB2 with rho and sigma multiplied by one polynomial."""
     scheme = lookup("AB2").scheme
     assert isinstance(scheme, LinearMultistep)
-    parts = []
-    for polynomial in (scheme.rho, scheme.sigma):
-        product = [F(0)] * (len(polynomial) + len(factor) - 1)
-        for i, a in enumerate(polynomial):
-            for k, b in enumerate(factor):
-                product[i + k] += a * b
-        parts.append(tuple(product))
-    return Method("shared", LinearMultistep(parts[0], parts[1]), "")
+    rho, sigma = (tuple(product(list(polynomial), list(factor))) for polynomial in (scheme.rho, scheme.sigma))
+    return Method("shared", LinearMultistep(rho, sigma), "")
 
 
 @pytest.mark.parametrize("name", REGISTRY)

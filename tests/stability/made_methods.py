@@ -10,10 +10,11 @@ def multistep(name: str, rho: str, sigma: str) -> Method:
 
 
 def runge_kutta(name: str, rows: str, weights: str) -> Method:
-    """Return a Runge-Kutta method; the rows of A below the first, and the weights b."""
+    """Return a Runge-Kutta method; all rows of A or those below the first, and the weights b."""
     b = tuple(map(rational, weights.split()))
-    below = [[], *(row.split() for row in rows.split(";"))]
-    tableau = tuple(tuple(map(rational, [*row, *["0"] * (len(b) - len(row))])) for row in below)
+    given = [row.split() for row in rows.split(";")]
+    all_rows = given if len(given) == len(b) else [[], *given]
+    tableau = tuple(tuple(map(rational, [*row, *["0"] * (len(b) - len(row))])) for row in all_rows)
     return Method(name, RungeKutta(tableau, b), "")
 
 
@@ -22,3 +23,9 @@ CLOSE_BRANCHES = runge_kutta("close", "6/47;0 94/735;0 0 49/136;0 0 0 17/63;0 0 
 
 FAR_INTERVAL = runge_kutta("far", "23/24;0 7/30;0 0 5/9;0 0 0 7/8;0 0 0 0 1/27", "-1 -3/5 1/11 1/13 7122/3575 11/25")
 """A real zero of R at -122.2, around which S_r is an interval of 4e-8."""
+
+
+def composed(steps: int) -> Method:
+    """Return implicit Euler steps composed: z = (1 - mu / n)^-n."""
+    row = f"1/{steps} " * steps
+    return runge_kutta("composed", ";".join(f"1/{steps} " * (k + 1) for k in range(steps)), row)

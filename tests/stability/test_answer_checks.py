@@ -1,6 +1,6 @@
 """Deliberately wrong best points, choices and margins: each is a NumericalError."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import nullcontext
 from dataclasses import replace
 from fractions import Fraction
@@ -78,28 +78,36 @@ def test_a_deadbeat_point_that_is_none_is_no_answer(name: str, monkeypatch: pyte
         best_point(lookup(name))
 
 
+def off_by(factor: float, search: Callable[..., tuple[float, float]]) -> Callable[..., tuple[float, float]]:
+    """Return a search that ends beside its place, however fine it is."""
+
+    def beside(*arguments: Any, **options: Any) -> tuple[float, float]:
+        alpha_hat, beta_hat = search(*arguments, **options)
+        return factor * alpha_hat, factor**2 * beta_hat
+
+    return beside
+
+
+BESIDE: list[tuple[str, str, Goal, float, str]] = [
+    ("_least", "RK4", "robust", 0.99, "the point chosen"),
+    ("_least", "RK4", "fastest", 0.99, "the point chosen"),
+    ("_least", "B4", "robust", 0.99, "the point chosen"),
+    *(("_critical_point", "RK4", "critical", off, "critical point") for off in (0.99, 1.01)),
+    *(("_critical_point", "B4", "critical", off, "critical point") for off in (0.99, 1.01)),
+    ("_critical_point", "generalized-alpha", "critical", 1 - 1e-4, "critical point"),  # on a slope, not flat
+    *(("_gentle", name, "gentle", off, "gentle") for name in ("B4", "RK4", "bdf2") for off in (1 - 1e-5, 1 + 1e-4)),
+]
+
+
 @pytest.mark.promise("Every region, best point, choice and margin")
-@pytest.mark.parametrize(
-    ("name", "goal", "equal"),
-    [
-        pytest.param("B4", "robust", False, marks=pytest.mark.slow),
-        pytest.param("B4", "robust", True, marks=pytest.mark.slow),
-        ("RK4", "robust", True),
-        ("RK4", "fastest", True),
-    ],
-)
-def test_a_choice_that_a_neighbour_betters_is_no_answer(
-    name: str, goal: Goal, equal: bool, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize(("search", "name", "goal", "off", "said"), BESIDE)
+@pytest.mark.slow_except("_least-RK4", "_critical_point-RK4", "_gentle")
+def test_a_choice_beside_its_place_is_no_answer(
+    search: str, name: str, goal: Goal, off: float, said: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    least = choices._least
-
-    def beside(extent: Any, objective: Any, equal: bool, cut: bool, finer: int) -> tuple[float, float]:
-        alpha_hat, beta_hat = least(extent, objective, equal, cut, 1)
-        return 0.99 * alpha_hat, 0.99**2 * beta_hat
-
-    monkeypatch.setattr(choices, "_least", beside)
-    with pytest.raises(NumericalError, match="the point chosen"):
-        choose(lookup(name), goal, equal=equal)
+    monkeypatch.setattr(choices, search, off_by(off, getattr(choices, search)))
+    with pytest.raises(NumericalError, match=said):
+        choose(lookup(name), goal, equal=search == "_least", rate=0.9 if goal == "gentle" else None)
 
 
 @pytest.mark.slow
@@ -113,9 +121,8 @@ def test_what_fails_at_first_is_searched_more_finely(monkeypatch: pytest.MonkeyP
     def another(chart: Chart) -> tuple[float, Least | None]:
         return least_on(chart) if len(chart.axes[0]) > SPACINGS + 1 else beside_the_least(chart)
 
-    def beside(extent: Any, objective: Any, equal: bool, cut: bool, finer: int) -> tuple[float, float]:
-        alpha_hat, beta_hat = least(extent, objective, equal, cut, finer)
-        return (alpha_hat, beta_hat) if finer > 1 else (0.99 * alpha_hat, 0.99**2 * beta_hat)
+    def beside(*arguments: Any) -> tuple[float, float]:
+        return (least if arguments[-1] > 1 else off_by(0.99, least))(*arguments)
 
     monkeypatch.setattr(best_points, "least_on", another)
     monkeypatch.setattr(choices, "_least", beside)
@@ -125,41 +132,6 @@ def test_what_fails_at_first_is_searched_more_finely(monkeypatch: pytest.MonkeyP
     assert found.z_abs == pytest.approx(right_best.z_abs, rel=1e-12)
     # an objective that is flat to rounding near its least value says no more of the place
     assert choose(method, "fastest", equal=True).alpha_hat == pytest.approx(right_choice.alpha_hat, rel=1e-7)
-
-
-@pytest.mark.parametrize(
-    ("name", "off"),
-    [
-        *((name, off) for name in ("RK4", "generalized-alpha") for off in (0.99, 1.01)),
-        *(pytest.param("B4", off, marks=pytest.mark.slow) for off in (0.99, 1.01)),
-        ("generalized-alpha", 1 - 1e-4),  # on a slope; the others' |z_p| is flat about their point
-    ],
-)
-@pytest.mark.slow_except("RK4")
-def test_a_critical_point_beside_its_place_is_no_answer(name: str, off: float, monkeypatch: pytest.MonkeyPatch) -> None:
-    critical_point = choices._critical_point
-
-    def beside(method: Any, box: Any) -> tuple[float, float]:
-        alpha_hat, beta_hat = critical_point(method, box)
-        return off * alpha_hat, off**2 * beta_hat
-
-    monkeypatch.setattr(choices, "_critical_point", beside)
-    with pytest.raises(NumericalError, match="critical point"):
-        choose(lookup(name), "critical")
-
-
-@pytest.mark.parametrize("name", ["B4", "RK4", "bdf2"])
-@pytest.mark.parametrize("off", [1 - 1e-5, 1 + 1e-4])
-def test_a_gentle_point_beside_its_place_is_no_answer(name: str, off: float, monkeypatch: pytest.MonkeyPatch) -> None:
-    gentle = choices._gentle
-
-    def beside(method: Any, modulus: Any, box: Any, rate: float) -> tuple[float, float]:
-        alpha_hat, beta_hat = gentle(method, modulus, box, rate)
-        return off * alpha_hat, off**2 * beta_hat
-
-    monkeypatch.setattr(choices, "_gentle", beside)
-    with pytest.raises(NumericalError, match="gentle"):
-        choose(lookup(name), "gentle", rate=0.9)
 
 
 @pytest.mark.parametrize("rate", [0.99, 0.9, 0.7])

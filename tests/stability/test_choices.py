@@ -15,7 +15,6 @@ from bezstab.stability import (
 )
 from tests.methods.kinds import sampled
 from tests.reference.robust_decay import worst_decay
-from tests.reference.second_order_methods import as_second_order
 from tests.stability.made_methods import multistep
 
 METHODS = ["B2", "B4", "AB4", "ABM3", "RK1", "RK4", "SIE", "SYM"]
@@ -177,15 +176,3 @@ def test_a_step_of_two_h_is_searched_to_half_the_feedback() -> None:
     once, twice = choose(lookup("implicit-euler"), "fastest"), choose(lookup("implicit-euler@2"), "fastest")
     assert twice.alpha_hat == pytest.approx(once.alpha_hat / 2)
     assert twice.beta_hat == pytest.approx(once.beta_hat / 4)
-
-
-@pytest.mark.parametrize("goal", ["robust", "fastest", "critical"])
-@pytest.mark.parametrize(
-    ("recipe", "name"), [("verlet-half", "SYM"), pytest.param(None, "AB3", marks=pytest.mark.slow)]
-)
-def test_a_recipe_that_spells_out_a_method_is_given_its_choice(recipe: str | None, name: str, goal: Goal) -> None:
-    of_recipe = choose(lookup(recipe) if recipe else as_second_order(name), goal)
-    of_method = choose(lookup(name), goal)
-    assert (of_recipe.alpha_hat, of_recipe.beta_hat) == pytest.approx(
-        (of_method.alpha_hat, of_method.beta_hat), rel=1e-6
-    )

@@ -1,6 +1,5 @@
 """Points of a curve, where what is best can be told by hand."""
 
-import math
 from typing import Any
 
 import numpy as np
@@ -29,11 +28,6 @@ def test_the_least_is_found() -> None:
 def test_of_equal_points_the_mildest_is_taken() -> None:
     point = least_along(one_step, lambda a, b, _: np.maximum(modulus(a, b), 0.5))
     assert point == pytest.approx((1, 0.5), abs=1e-9)  # up to 1.5 all are as good
-
-
-def test_a_valley_narrower_than_the_samples_is_found() -> None:
-    point = least_along(one_step, lambda a, b, _: np.abs(b - math.sqrt(0.5)))
-    assert point == pytest.approx((1, math.sqrt(0.5)), abs=1e-9)
 
 
 def test_a_hole_between_the_samples_is_noticed() -> None:

@@ -3,11 +3,12 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from bezstab.methods import Method, closed_loop_at, lookup, recursion_verdict
+from bezstab.methods import Method, Verdict, closed_loop_at, lookup
 from bezstab.stability import (
     critical_damping_limit,
     exact_critical_damping_limit,
     unconditional_damping_ratio,
+    verdict,
 )
 from tests.reference.companion_poles import radius
 from tests.stability.made_methods import multistep, runge_kutta
@@ -72,9 +73,8 @@ def test_a_limit_at_which_a_root_only_touches_the_circle_is_exact(stages: str, l
     assert critical_damping_limit(chebyshev) == limit
 
 
-def converges(method: Method, damping_ratio: Fraction, beta_step: Fraction) -> bool:
-    polynomial = closed_loop_at(method, 2 * damping_ratio * beta_step, beta_step**2)
-    return bool(polynomial[-1]) and recursion_verdict(polynomial) == "converges"
+def critically_damped(method: Method, beta_step: Fraction) -> Verdict:
+    return verdict(method, 2 * beta_step, beta_step**2)
 
 
 @pytest.mark.parametrize("name", [*LIMITS, "AB6", "ABM3", "dopri5", "yoshida4", "RK4@5"])
@@ -82,8 +82,8 @@ def test_the_verdict_turns_at_the_limit_and_not_before(name: str) -> None:
     method, limit = lookup(name), critical_damping_limit(lookup(name))
     assert limit
     for share in (*(Fraction(k, 12) for k in range(1, 12)), 1 - Fraction(1, 10**9)):
-        assert converges(method, Fraction(1), share * Fraction(limit))
-    assert not converges(method, Fraction(1), (1 + Fraction(1, 10**9)) * Fraction(limit))
+        assert critically_damped(method, share * Fraction(limit)) == "converges"
+    assert critically_damped(method, (1 + Fraction(1, 10**9)) * Fraction(limit)) != "converges"
 
 
 @pytest.mark.parametrize("name", ["bdf2", "bdf6", "gauss4", "hht"])

@@ -72,14 +72,6 @@ def test_it_ends_at_the_least_modulus_and_at_no_rate_that_is_not_reached() -> No
     assert [point.z_abs_below for point in error_front(lookup("B4"), [0.5])] == [best.z_abs]
 
 
-@pytest.mark.slow
-def test_where_modulus_falls_on_without_end_rates_beyond_what_is_looked_at_have_no_point() -> None:
-    front = error_front(lookup("bdf3"), [0.999, 0.1])
-    assert best_point(lookup("bdf3")) is None
-    assert 0.1 not in {point.z_abs_below for point in front}
-    assert front[0].z_abs_below == 0.999
-
-
 @pytest.mark.promise(
     "What strong feedback forces, by kind of method",
     computed="the table of `bezstab/stability/README.md`, twenty methods at ωh = 0.01",
@@ -115,11 +107,6 @@ def test_what_strong_feedback_does_depends_on_the_kind_of_method(
 def test_a_rate_at_which_nothing_decays_is_refused(rate: float) -> None:
     with pytest.raises(InputError, match="expected a number between 0 and 1"):
         error_front(lookup("SYM"), [0.5, rate])
-
-
-def test_a_motion_that_no_step_follows_is_refused() -> None:
-    with pytest.raises(InputError, match="rad a step"):
-        error_front(lookup("SYM"), omega_h=Fraction(1))
 
 
 def test_a_search_that_ends_elsewhere_is_no_answer(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -162,26 +162,27 @@ def test_limits_lie_where_the_verdict_turns() -> None:
     assert held_verdict("SYM", a, b, Timing(4, Fraction(found.late + 1))) != "converges"
 
 
-def test_an_unstable_drive_is_told_the_stretch_nearest_to_it() -> None:
-    """One step late it is stable for b < a (1 - a): at b = 0.09 for a from 0.1 to 0.9."""
-    found = held_limits("SYM", Fraction("0.05"), Fraction("0.09"), Timing(late=Fraction(1)))
-    assert found.kd == pytest.approx((0.1, 0.9), rel=1e-9)
-    assert found.kp == pytest.approx((0, 0.05 * 0.95), rel=1e-9)
-    assert (found.every, found.late) == (None, 0)
+TOLD = [
+    ("0.05", "0.09", Timing(late=Fraction(1)), (0.1, 0.9), (0, 0.05 * 0.95), (None, 0)),  # b < a (1 - a)
+    ("0", "0.01", Timing(every=2), (0.005, 0.995), None, (None, None)),  # b < 2 a and b < 2 - 2 a; fresh: marginal
+    ("-0.1", "0.01", Timing(every=2), (0.005, 0.995), None, (None, None)),
+    ("1.8", "0.8", Timing(every=4), None, None, (None, None)),
+]
 
 
-@pytest.mark.parametrize("a", [Fraction(0), Fraction(-1, 10)])
-def test_a_drive_without_damping_is_told_how_much_it_needs(a: Fraction) -> None:
-    """Held for two steps it needs b < 2 a and b < 2 - 2 a."""
-    found = held_limits("SYM", a, Fraction("0.01"), Timing(every=2))
-    assert found.kd == pytest.approx((0.005, 0.995), rel=1e-9)
-    assert (found.kp, found.late) == (None, None)
-    assert found.every is None  # without damping it is marginal even when it is fresh
-
-
-def test_where_nothing_helps_there_are_no_limits() -> None:
-    found = held_limits("SYM", Fraction("1.8"), Fraction("0.8"), Timing(every=4))
-    assert (found.kp, found.kd, found.every, found.late) == (None, None, None, None)
+@pytest.mark.parametrize(("a", "b", "timing", "kd", "kp", "steps"), TOLD, ids=str)
+def test_an_unstable_drive_is_told_the_stretch_nearest_to_it(
+    a: str,
+    b: str,
+    timing: Timing,
+    kd: tuple[float, float] | None,
+    kp: tuple[float, float] | None,
+    steps: tuple[int | None, int | None],
+) -> None:
+    found = held_limits("SYM", Fraction(a), Fraction(b), timing)
+    for stretch, expected in ((found.kd, kd), (found.kp, kp)):
+        assert stretch == (expected and pytest.approx(expected, rel=1e-9))
+    assert (found.every, found.late) == steps
 
 
 MAPPED = [

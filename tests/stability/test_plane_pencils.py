@@ -50,14 +50,6 @@ def test_where_two_poles_meet_no_digits_are_lost() -> None:
     assert verdict(method, alpha_hat, Fraction(1, 4)) == "converges"
 
 
-def test_where_an_implicit_step_has_no_solution_a_pole_is_infinite() -> None:
-    method = second_order("implicit euler")  # leading coefficient 1 + alpha + beta
-    assert np.isinf(spectral_radius(method, -2.0, 1.0))
-    assert verdict(method, Fraction(-2), Fraction(1)) == "diverges"
-    with pytest.raises(NumericalError, match="no solution"):
-        dominant_pole(method, -2.0, 1.0)
-
-
 def test_the_place_is_named_where_a_pole_leaves_the_range() -> None:
     alpha_hat, beta_hat = np.array([0.5, 1e308, 0.25]), np.array([0.1, 1.5e308, 0.3])
     with pytest.raises(NumericalError, match=r"alpha_hat = 1e\+308, beta_hat = 1.5e\+308 a pole leaves the range"):

@@ -8,10 +8,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from sympy import RR
 
-from bezstab.methods import ALPHA_HAT, BETA_HAT, LinearMultistep, Method, crossing_polynomials, lookup, recipe
+from bezstab.methods import ALPHA_HAT, BETA_HAT, crossing_polynomials, lookup
 from bezstab.stability import stable_for_all
 from bezstab.stability.quadrant_proofs import _positive
 from tests.reference.rationals import rationals
+from tests.stability.made_methods import multistep
 
 PROVEN = [
     *("implicit-euler", "bdf1", "bdf2", "trapezoid", "am2", "implicit-midpoint"),
@@ -38,32 +39,19 @@ def test_what_is_known_to_have_limits_is_refuted(name: str) -> None:
     assert stable_for_all(lookup(name)) == "no"
 
 
-def theta_method(theta: Fraction) -> Method:
-    return Method("theta", LinearMultistep((Fraction(1), Fraction(-1)), (theta, 1 - theta)), "")
-
-
 @pytest.mark.parametrize("theta", [Fraction(2, 5), Fraction(49, 100), Fraction(1, 2), Fraction(3, 5)])
 def test_a_theta_method_is_stable_for_all_from_one_half_on(theta: Fraction) -> None:
-    assert stable_for_all(theta_method(theta)) == ("proven" if theta >= Fraction(1, 2) else "no")
+    assert stable_for_all(multistep("theta", "1 -1", f"{theta} {1 - theta}")) == (
+        "proven" if theta >= Fraction(1, 2) else "no"
+    )
 
 
 @settings(max_examples=10, deadline=None)
 @given(rationals(Fraction(2, 5), 1, max_denominator=20), rationals(Fraction(1, 20), 1, max_denominator=20))
 def test_newmark_is_stable_for_all_where_hughes_says_so(velocity: Fraction, position: Fraction) -> None:
     # T. J. R. Hughes, The Finite Element Method, section 9.1.2: gamma >= 1/2 and 2 beta >= gamma
-    def signed(coefficient: Fraction) -> str:
-        return f"{'-' if coefficient < 0 else '+'} {abs(coefficient)}"
-
-    half = Fraction(1, 2)
-    scheme = recipe(
-        {
-            "x1": f"x0 + v0 {signed(half - position)} a0 {signed(position)} a1",
-            "v1": f"v0 {signed(1 - velocity)} a0 {signed(velocity)} a1",
-            "a1": "acceleration(x1, v1)",
-        }
-    )
-    expected = "proven" if velocity >= half and 2 * position >= velocity else "no"
-    assert stable_for_all(Method("newmark", scheme, "")) == expected
+    expected = "proven" if velocity >= Fraction(1, 2) and 2 * position >= velocity else "no"
+    assert stable_for_all(lookup(f"newmark({position},{velocity})")) == expected
 
 
 @settings(max_examples=50, deadline=None)

@@ -141,15 +141,6 @@ def test_steps_that_commute_need_only_be_stable_alone(name: str) -> None:
     assert (found.varying, found.kind, found.certificate) == ("proven", "commuting", None)
 
 
-def test_held_parameters_bear_what_fixed_ones_do_not() -> None:
-    # central differences, implicit in the velocity: two lengths in turn grow where each decays
-    method, h = lookup("verlet-implicit"), Fraction(1)
-    found = varying_steps(method, Fraction(1, 10), Fraction(1), h=h, h_min=h / 4, h_max=h, hold=True)
-    assert found.varying == "refuted"
-    assert found.sequence
-    assert len(found.sequence) > 1
-
-
 @pytest.mark.parametrize("name", ["verlet-half", "verlet-predicted", "hht", "generalized-alpha"])
 def test_a_state_of_three_is_proven_by_a_form(name: str) -> None:
     h = Fraction(1, 2)
