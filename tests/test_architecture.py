@@ -24,10 +24,8 @@ other; only appointed files see a library.
 """
 
 import ast
-import re
 import subprocess
 import sys
-import tomllib
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
@@ -139,17 +137,6 @@ def test_only_the_appointed_files_see_a_library() -> None:
     for path in FILES:
         for library in {module.split(".")[0] for module, _ in imports(path, with_types=False)} & set(APPOINTED):
             assert path.as_posix() in APPOINTED[library], path
-
-
-def test_every_library_that_is_imported_is_declared() -> None:
-    project = tomllib.loads((PACKAGE.parent / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    extras = project["optional-dependencies"]
-    declared = {
-        re.split(r"\W", requirement)[0]
-        for requirement in [*project["dependencies"], *extras["mujoco"], *extras["dask"], *extras["fast"]]
-    }
-    imported = {module.split(".")[0] for path in FILES for module, _ in imports(path, with_types=False)}
-    assert imported - set(sys.stdlib_module_names) - {"bezstab", "__future__"} <= declared
 
 
 SPEAKING = {"print", "exit", "sys.exit", "warnings.filterwarnings", "warnings.simplefilter", "np.seterr"}

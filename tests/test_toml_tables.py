@@ -2,15 +2,12 @@
 
 import math
 from collections.abc import Callable
-from functools import partial
-from typing import Any
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from bezstab.errors import InputError
-from bezstab.rationals import rational
 from bezstab.toml_tables import TomlTable
 
 
@@ -44,16 +41,11 @@ def test_an_unknown_key_of_a_table_within_is_found_from_outside() -> None:
     assert refusal(top.refuse_unknown_keys) == "body 2: unknown key 'mas': known are mass"
 
 
-def test_what_is_of_another_kind_is_refused_with_what_is_expected() -> None:
-    refused: list[tuple[Callable[[TomlTable], object], str, list[Any]]] = [
-        (lambda table: table.number("x"), "expected a number", [True, "1", None, math.nan, 1e101, 1e-101, 10**400]),
-        (lambda table: table.text("x"), "expected one line of text", ["", " ", "a\nb", "a\u2028b", 4]),
-        (lambda table: table.exact_numbers("x", rational), "expected a list of rational strings", [[1.0], "1"]),
-        (lambda table: table.exact_rows("x", rational), "rational strings", [[["1", 2]], ["1"]]),
-        (lambda table: table.point("x"), "expected two numbers", [[1.0], [1.0, "2"], 1.0, "ab"]),
-        (lambda table: table.tables("x"), "expected a", [[3], {}]),
-        (lambda table: table.table("x"), "expected a table", [3]),
-    ]
-    for ask, expected, values in refused:
-        for value in values:
-            assert expected in refusal(partial(ask, TomlTable({"x": value}))), (expected, value)
+@pytest.mark.parametrize("value", [True, "1", None, math.nan, 1e101, 1e-101, 10**400, [1.0], {}])
+def test_what_is_no_number_of_ordinary_size_is_refused(value: object) -> None:
+    assert "expected a number" in refusal(lambda: TomlTable({"x": value}).number("x"))
+
+
+@pytest.mark.parametrize("value", ["", " ", "a\nb", "a\u2028b", 4])
+def test_what_is_not_one_line_of_text_is_refused(value: object) -> None:
+    assert "expected one line of text" in refusal(lambda: TomlTable({"x": value}).text("x"))

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
@@ -128,14 +129,12 @@ def comparison_figure(
         for place, region in enumerate(regions):
             width = min(WIDEST, THINNEST + STEP_OF_WIDTH * (len(regions) - 1 - place))  # the last lies on top
             plot.region(region, axes, h, linewidth=width, **line_at(place))
+        across, up = (np.array(given or (0, 0), dtype=float) for given in (alpha_range, beta_range))
+        x, y = plane_coordinates(across, up, h)
         if alpha_range:
-            left, _ = plane_coordinates(float(alpha_range[0]), 0.0, h)
-            right, _ = plane_coordinates(float(alpha_range[1]), 0.0, h)
-            axes.set_xlim(left, right)
+            axes.set_xlim(*x)
         if beta_range:
-            _, bottom = plane_coordinates(0.0, float(beta_range[0]), h)
-            _, top = plane_coordinates(0.0, float(beta_range[1]), h)
-            axes.set_ylim(bottom, top)
+            axes.set_ylim(*y)
         for place, region in enumerate(regions):
             plot.open_edges(region, axes, h, inset=EDGE_LINES * (place + 1), **line_at(place))
         if alpha_and_beta:

@@ -32,7 +32,6 @@ from bezstab.show.style import (
     DIVERGES,
     cells,
     column_figure,
-    curves,
     label_plane,
     line_at,
     method_marker,
@@ -41,7 +40,7 @@ from bezstab.show.style import (
     plane_coordinates,
     styled,
 )
-from bezstab.stability import BestPoint, Choice, FloatArray, Member, Region
+from bezstab.stability import BestPoint, Choice, FloatArray, Member, Region, useful_window, window
 from bezstab.stability import spectral_radius as spectral_radius_at
 
 if TYPE_CHECKING:  # so that a picture of the plane does not load what runs mechanisms
@@ -106,13 +105,26 @@ def region(region: Region, axes: Axes | None = None, h: float | None = None, **l
     """Draw the boundary of a region |z_p| < level and return its line: all its curves, nan between them.
 
     By default in colour and dashes that no other line in the axes has, labelled with the method's name, and as
-    unbounded where it is. Of an empty region only the label shows.
+    unbounded where it is. Of an empty region only the label shows. Curves of an unbounded region run far out, and
+    islands may lie there: the axes make room for what is useful alone.
     """
     check_kind(region, Region, "bezstab.region")
     label = region.method.name if region.bounded else f"{region.method.name} (unbounded)"
     axes = _plane(axes, rf"$|z_p| = {region.level:g}$", h)
     style = {"label": label, **next_line(axes), **line}
-    return curves(axes, region, h, **style)
+    gap = np.full((1, 2), np.nan)  # lifts the pen from one closed curve to the next
+    points = np.concatenate([part for curve in region.boundary for part in (curve, gap)] or [gap])
+    x, y = plane_coordinates(points[:, 0], points[:, 1], h)
+    shown = useful_window(region)
+    if region.bounded and shown == window(region):
+        (drawn,) = axes.plot(x, y, **style)
+        return drawn
+    (drawn,) = axes.plot([], [], **style)
+    drawn.set_data(x, y)  # which leaves the limits of the axes alone
+    alpha_range, beta_range = (np.array(ends) for ends in shown)
+    axes.update_datalim(np.stack(plane_coordinates(alpha_range, beta_range, h), axis=-1))
+    axes.autoscale_view()
+    return drawn
 
 
 def moving_region(

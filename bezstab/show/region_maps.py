@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bezstab.show.columns import Row
-from bezstab.show.rows import accuracy_cells, region_row
+from bezstab.show.fields import cells
+from bezstab.show.row_kinds import ACCURACY
+from bezstab.show.rows import region_row
 from bezstab.stability import ComplexArray, region
 
 if TYPE_CHECKING:
@@ -56,7 +58,7 @@ def map_rows(answer: MapAnswer) -> list[Row]:
     """Return a row for the stable region, or for it at each speed of the scene, and one for each level below 1."""
     stable, *faster = [region_row(each) for each in answer.regions]
     if answer.forced:
-        forced = accuracy_cells(answer.forced)
+        forced = cells(ACCURACY, answer.forced)
         return [{**row, **forced} for row in (stable, *faster)]
     if not answer.moving:
         return [stable, *faster]

@@ -676,7 +676,7 @@ NAMED_METHODS = RowKind(
             "the first term in theta = i omega h where alpha_hat and beta_hat are held",
         ),
         text("steady_velocity_error", "The same of the velocity, as a share of that of the motion"),
-        ORDER_LEFT.of("order_left"),
+        ORDER_LEFT,
         *REGIONS.fields[1:],
     ),
     sentence=whole_method_sentence,

@@ -15,7 +15,6 @@ from bezstab.show.cells import LIMITS
 from bezstab.show.columns import Row, Value
 from bezstab.show.fields import cells
 from bezstab.show.row_kinds import (
-    ACCURACY,
     ENGINES_LISTED,
     FORCED,
     FRONTS,
@@ -38,7 +37,7 @@ if TYPE_CHECKING:  # so that a small row does not load what makes the large ones
     from bezstab.engines import Engine
     from bezstab.evidence import HalvedStep, LikePoint, Measurement
     from bezstab.mechanism import Mechanism
-    from bezstab.questions import Answer, ChainMap, ForcedErrors, RegionAnswer
+    from bezstab.questions import Answer, ChainMap, RegionAnswer
     from bezstab.stability import FrontPoint, Limit, Region
 
 
@@ -129,11 +128,6 @@ def region_row(answer: RegionAnswer) -> Row:
     reason = None if inside else f"{NOT_KNOWN}: {answer.trouble}" if answer.trouble else _nowhere(answer)
     where = best_point_words(inside) if inside else reason
     return REGIONS.row(answer, approached=_approached(region), best_where=where, best_reason=reason)
-
-
-def accuracy_cells(forced: ForcedErrors) -> dict[str, Value]:
-    """Return what the best points of both maps force, the fastest and the most accurate."""
-    return cells(ACCURACY, forced)
 
 
 def _approached(region: Region) -> str | None:

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from bezstab.methods import REGISTRY, Method
 from bezstab.show.file_forms import FIGURE_FORMS
-from bezstab.stability import FloatArray, Region, useful_window, window
+from bezstab.stability import FloatArray
 from bezstab.units import feedback_gains
 
 Number = TypeVar("Number", float, NDArray[np.float64])
@@ -137,29 +137,6 @@ def mark_in_alpha_and_beta(axes: Axes) -> None:
     axes.set_xticks([2 * tick for tick in alpha], [f"{tick:g}" for tick in alpha])
     axes.set_yticks([tick**2 for tick in beta], [f"{tick:g}" for tick in beta])
     axes.set(xlabel=r"$\alpha$ (1/s)", ylabel=r"$\beta$ (1/s), even in $\beta^2$")
-
-
-def curves(axes: Axes, region: Region, h: float | None, label: str, **line: Any) -> Line2D:
-    """Draw a region's boundary, all its curves as one line, and return it; of an empty one only the label shows.
-
-    Curves of an unbounded region run far out, and islands may lie there: the axes make room for what is useful alone.
-    """
-    gap = np.full((1, 2), np.nan)  # lifts the pen from one closed curve to the next
-    pieces: list[FloatArray] = []
-    for curve in region.boundary:
-        pieces += [curve, gap]
-    points = np.concatenate(pieces or [gap])
-    x, y = plane_coordinates(points[:, 0], points[:, 1], h)
-    shown = useful_window(region)
-    if region.bounded and shown == window(region):
-        (drawn,) = axes.plot(x, y, label=label, **line)
-        return drawn
-    (drawn,) = axes.plot([], [], label=label, **line)
-    drawn.set_data(x, y)  # which leaves the limits of the axes alone
-    alpha_range, beta_range = (np.array(ends) for ends in shown)
-    axes.update_datalim(np.stack(plane_coordinates(alpha_range, beta_range, h), axis=-1))
-    axes.autoscale_view()
-    return drawn
 
 
 def cells(axes: Axes, x: FloatArray, y: FloatArray, values: "np.ma.MaskedArray[Any, Any]", **colours: Any) -> AxesImage:

@@ -6,6 +6,9 @@ MOST_DIGITS = 17  # of float64: with so many every number other than one is show
 THOUSAND = 1000.0
 PLAIN = 1e7  # a factor from here on has so many zeros that nobody counts them
 GONE = 1e-6  # of |z|: after three steps an error is below rounding; at a double root that is zero |z| comes out as 1e-8
+SETTLED = ("converges", "diverges")
+"""What is known of a mechanism that moves; else what `moving_verdict` says is not."""
+
 UNITS = ((1.0, "s"), (1e-3, "ms"), (1e-6, "µs"))
 """Of times, the largest first: each with its seconds."""
 
@@ -57,23 +60,25 @@ def safety_words(row: Row) -> str:
     safe = "Safe" if row["safe"] else "Not safe"
     if row.get("sweeps"):
         safe = f"One constraint alone: {safe.lower()}"
-    moving = row.get("z_abs_moving")
     at_rest = change_words(row["z_abs"], row["verdict"])
     varying = f" when steps vary ({row['varying']})" if "varying" in row else ""
-    if moving is None:
+    if row.get("z_abs_moving") is None:
         begin = f"With constant steps {at_rest}" if varying else at_rest[0].upper() + at_rest[1:]
         return f"{safe}{varying}. {begin}."
-    if row["moving_verdict"] in ("converges", "diverges"):
-        over_the_motion = change_words(moving, row["moving_verdict"])
-        return f"{safe}{varying}. At rest {at_rest}. Over the motion {over_the_motion}."
-    unsettled = f"{safe}{varying}. At rest {at_rest}. Over the motion it is {row['moving_verdict']}"
-    if row["double_pole"]:
-        worst = f"{row['z_abs_worst']:.3g}"
-        return (
-            f"{unsettled}: two poles nearly meet there, and the motion moves them by as much as (κh)^½; a step "
-            f"multiplies the error by {worst} at worst."
-        )
-    return f"{unsettled}."
+    moves = f"{safe}{varying}. At rest {at_rest}. Over the motion {_over_the_motion(row)}"
+    if row["moving_verdict"] in SETTLED or not row["double_pole"]:
+        return f"{moves}."
+    return (
+        f"{moves}: two poles nearly meet there, and the motion moves them by as much as (κh)^½; a step multiplies the "
+        f"error by {row['z_abs_worst']:.3g} at worst."
+    )
+
+
+def _over_the_motion(row: Row) -> str:
+    """Return what a step does to an error over a motion, or that this is not settled."""
+    if row["moving_verdict"] in SETTLED and row["z_abs_moving"] is not None:
+        return change_words(row["z_abs_moving"], row["moving_verdict"])
+    return f"it is {row['moving_verdict']}"
 
 
 def swept_words(row: Row) -> str:
@@ -89,11 +94,7 @@ def swept_words(row: Row) -> str:
     begin = f"{safe} in {row['swept']}: each" if row["safe"] == (z_abs < 1) else f"{safe}. In {row['swept']} each"
     sentences = [f"{begin} step multiplies the error by {z_abs:.{digits}f} (one constraint alone: {alone:.2f})", enough]
     if "moving_verdict" in row:
-        moving = row["z_abs_moving"]
-        over = f"it is {row['moving_verdict']}"
-        if moving is not None and row["moving_verdict"] in ("converges", "diverges"):
-            over = change_words(moving, row["moving_verdict"])
-        sentences.append(f"Solved exactly, over the motion {over}")
+        sentences.append(f"Solved exactly, over the motion {_over_the_motion(row)}")
     if "varying" in row:
         sentences.append(f"That is with constant steps. Solved exactly, when steps vary: {row['varying']}")
     return f"{'. '.join(sentences)}."
