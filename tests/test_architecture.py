@@ -174,11 +174,12 @@ def test_computation_neither_prints_nor_exits_nor_filters_warnings_and_one_file_
 
 WITHOUT_TESTS_OF_THEIR_OWN = {
     *("paper/lost.py", "paper/reports.py"),  # no logic
+    "mechanism/registers.py",
     *(f"methods/{name}.py" for name in ("step_equations", "determinants", "polynomials")),
     *(f"stability/{name}.py" for name in ("neighbourhoods", "low_degrees", "quadratures", "shapes")),
     *(f"stability/{name}.py" for name in ("charts", "critical_points", "least_modulus", "real_factors")),
 }
-"""Arithmetic whose errors the tests of what uses it show: of schemes, verdicts, maps, areas and best points."""
+"""Arithmetic whose errors the tests of what uses it show: of steps, schemes, verdicts, maps, areas, best points."""
 
 
 def test_the_tests_mirror_the_tree() -> None:

@@ -16,7 +16,7 @@ from bezstab.mechanism import (
     simulate,
     states_needed,
 )
-from bezstab.mechanism.stepping import MOST_ITERATIONS
+from bezstab.mechanism.registers import MOST_ITERATIONS
 from bezstab.methods import REGISTRY, Method, SecondOrder, implicit, lookup, second_order_form, steps
 from bezstab.units import feedback_gains
 from tests.evidence.samples import of_campaign
