@@ -390,8 +390,8 @@ class MachineCode:
 
     accelerations(t, gains, state, found, room) writes all a of all lanes and returns, for a stride of one, the least
     relative pivot of S, and so does corrections(...) with all dq, then all dv; slope(t, gains, state, direction, found,
-    room, lane) writes all da of a lane. gains (2, lanes); state and direction (2, n stride), found (n stride,) or as
-    much for each of the results, lane after lane of each coordinate; the room (size,).
+    room, lanes) writes all da of the lanes that are true. gains (2, lanes); state and direction (2, n stride), found
+    (n stride,) or as much for each of the results, lane after lane of each coordinate; the room (size,).
     """
 
     source: str
@@ -423,7 +423,8 @@ def machine_code(codes: Mapping[str, AccelerationCode], slopes: Sequence[str], s
         for half, name in enumerate("qv"):
             lines += [f"d{name}{i} = direction[{half}, {i * stride} + lane]" for i in coordinates]
         lines += [*slopes, *(f"found[{i * stride} + lane] = da{i}" for i in coordinates)]
-        source += ["def slope(t, gains, state, direction, found, room, lane):", *_indented(lines, 1)]
+        source += ["def slope(t, gains, state, direction, found, room, lanes):", " for lane in range(len(lanes)):"]
+        source += ["  if lanes[lane]:", *_indented(lines, 3)]
     return MachineCode("\n".join(source))
 
 
@@ -493,13 +494,15 @@ def {name}(t, gains, state, found, room):
 """
 
 SLOPE_BY_SHAPES = """
-def slope(t, gains, state, direction, found, room, lane):
- given(t, gains, state, room, lane)
- take_lines({name}_shapes, {name}_places, room)
- for i in range({n}):
-  place = i * {stride} + lane
-  room[{dq0} + i], room[{dq0} + {n} + i] = direction[0, place], direction[1, place]
- take_lines(slope_shapes, slope_places, room)
- for i in range({n}):
-  found[i * {stride} + lane] = room[{da0} + i]
+def slope(t, gains, state, direction, found, room, lanes):
+ for lane in range(len(lanes)):
+  if lanes[lane]:
+   given(t, gains, state, room, lane)
+   take_lines({name}_shapes, {name}_places, room)
+   for i in range({n}):
+    place = i * {stride} + lane
+    room[{dq0} + i], room[{dq0} + {n} + i] = direction[0, place], direction[1, place]
+   take_lines(slope_shapes, slope_places, room)
+   for i in range({n}):
+    found[i * {stride} + lane] = room[{da0} + i]
 """

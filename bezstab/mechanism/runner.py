@@ -10,24 +10,15 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from bezstab.errors import InputError
-from bezstab.mechanism.array_stepping import array_steps
+from bezstab.mechanism.array_stepping import array_steps, float_steps
 from bezstab.mechanism.compiled import SINGULAR, Mechanism, acceleration_function
 from bezstab.mechanism.compiled_stepping import LANES, machine_steps, runs_compiled
 from bezstab.mechanism.programs import program_of
 from bezstab.mechanism.projection import Projection, check_projected
+from bezstab.mechanism.registers import MOST_ITERATIONS, IntArray, Steps, in_lists, room_of, rows_of
 from bezstab.mechanism.second_order_memory import implicit_evaluations, memory
 from bezstab.mechanism.start import initial_state
-from bezstab.mechanism.stepping import (
-    BLOWN_UP,
-    EVALUATIONS,
-    ITERATIONS,
-    MOST_ITERATIONS,
-    PROJECTIONS,
-    IntArray,
-    Steps,
-    room_of,
-    rows_of,
-)
+from bezstab.mechanism.stepping import BLOWN_UP, EVALUATIONS, ITERATIONS, PROJECTIONS
 from bezstab.methods import (
     STEP_FAMILIES,
     Method,
@@ -356,17 +347,20 @@ def steps_in_blocks(
     """
     program = program_of(scheme)
     rows, n, lanes = rows_of(program, projection), mechanism.size, math.prod(batch)
-    stride, variables = lanes, 0
     if compiled:
         stride = 1 if lanes == 1 else max(LANES, lanes)
         take_steps, variables = machine_steps(mechanism, program.implicit, projection is not None, stride)
+        room = room_of(rows, carried.reshape(-1, n, lanes), h, kinds, counts, stride, variables)
+    elif lanes == 1:
+        stride, take_steps = 1, float_steps(mechanism)
+        room = in_lists(room_of(rows, carried.reshape(-1, n, 1), h, kinds, counts, 1))
     else:
-        take_steps = array_steps(mechanism)
-    room = room_of(rows, carried.reshape(-1, n, lanes), h, kinds, counts, stride, variables)
+        stride, take_steps = lanes, array_steps(mechanism)
+        room = room_of(rows, carried.reshape(-1, n, 1, lanes), h, kinds, counts, 1)
     at_once = max(1, min(MOST_STEPS_OF_A_BLOCK, NUMBERS_OF_A_BLOCK // (2 * n * stride)))
     for first in range(0, count, at_once):
         last = min(first + at_once, count)
-        states, pivots = np.empty((last - first, 2, n * stride), carried.dtype), np.empty(last - first)
+        states, pivots = np.empty((last - first, *np.shape(room.state))), np.empty(last - first)
         steps = steps_between(first, last)
         with np.errstate(all="ignore"):  # what runs into infinity is judged by its numbers
             taken, *unsolved = take_steps(rows, steps, room, judged, states, pivots)

@@ -17,10 +17,10 @@ from bezstab.mechanism.compiled_stepping import runs_compiled
 from bezstab.mechanism.energies import energy_balance
 from bezstab.mechanism.observation import observe
 from bezstab.mechanism.projection import Projection
+from bezstab.mechanism.registers import Steps
 from bezstab.mechanism.runner import carried_quantities, checked_start, no_counts, recorded, steps_in_blocks
 from bezstab.mechanism.simulation import Simulation, check_duration
 from bezstab.mechanism.start import perturbed_state
-from bezstab.mechanism.stepping import Steps
 from bezstab.methods import Method, check_one_step, evaluations, second_order_form
 from bezstab.units import feedback_gains
 

@@ -120,11 +120,13 @@ def test_a_long_acceleration_by_its_shapes_is_the_same_to_the_last_bit() -> None
     situation = (0.0, np.array([gains, gains]).T, state)
     functions["accelerations"](*situation, found, room)
     functions["corrections"](*situation, off, room)
+    functions["slope"](*situation, direction, changes, room, np.array([False, True]))
+    assert not changes[::lanes].any()  # of the lane that was not asked for
+    functions["slope"](*situation, direction, changes, room, np.array([True, False]))
     for lane in range(lanes):
         q, v, dq, dv = (part[lane::lanes].tolist() for part in (*state, *direction))
         assert tuple(found[lane::lanes]) == acceleration_function(mechanism, math)(0.0, *gains, q, v)
         assert tuple(off[lane::lanes]) == correction_function(mechanism, math)(0.0, *gains, q, v)[:-1]
-        functions["slope"](*situation, direction, changes, room, lane)
         assert tuple(changes[lane::lanes]) == slope_function(mechanism, math)(0.0, *gains, q, v, dq, dv)
 
 
