@@ -65,7 +65,10 @@ APPOINTED = {
     "mujoco": {"evidence/mujoco_models.py"},
     "distributed": {"evidence/worker_pools.py"},
     "numba": {"compiling.py"},
-    "mpmath": {"evidence/extremes.py", "evidence/root_digits.py", "stability/path_crossings.py"},
+    "mpmath": {
+        *("evidence/extremes.py", "evidence/root_digits.py"),
+        *("stability/forced_errors.py", "stability/path_crossings.py"),
+    },
 }
 """The files that may import a library when they run; for types anybody may."""
 

@@ -123,6 +123,11 @@ class Measurement:
         return self.measured is not None
 
     @property
+    def difference(self) -> complex | None:
+        """The measured pole less the predicted one; None where none was measured."""
+        return None if self.measured is None else self.measured - self.predicted
+
+    @property
     def difference_abs(self) -> float | None:
         """The modulus measured less that predicted."""
         return None if self.measured is None else abs(self.measured) - abs(self.predicted)

@@ -138,10 +138,10 @@ def room_of(
     width = n * stride
     count = rows.table.shape[1] + len(rows.table) - 2 * len(rows.moments)
     of_group, of_jacobian = (most, width), (unknowns, unknowns, lanes)
-    registers = np.zeros((count, n, stride, *number))
+    registers = np.zeros((count, n, stride, *number), carried.dtype)
     registers[:quantities, :, :lanes] = carried
 
-    def zeros(shape: tuple[int, ...], kind: Any = np.float64) -> Any:
+    def zeros(shape: tuple[int, ...], kind: Any = carried.dtype) -> Any:
         return np.zeros((*shape, *number), kind)
 
     return Room(
@@ -158,10 +158,10 @@ def room_of(
         corrections=zeros(of_group),
         guess=zeros(of_group),
         jacobian=zeros(of_jacobian),
-        inverses=np.full((kinds, len(rows.groups), *of_jacobian, *number), math.nan),
-        sizes=zeros((lanes,)),
-        moved=zeros((lanes,)),
-        moved_before=zeros((lanes,)),
+        inverses=np.full((kinds, len(rows.groups), *of_jacobian, *number), math.nan, carried.dtype),
+        sizes=zeros((lanes,), np.float64),
+        moved=zeros((lanes,), np.float64),
+        moved_before=zeros((lanes,), np.float64),
         running=zeros((lanes,), np.bool_),
         settled=zeros((lanes,), np.bool_),
         unsolved=zeros((lanes,), np.bool_),

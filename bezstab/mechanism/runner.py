@@ -360,7 +360,7 @@ def steps_in_blocks(
     at_once = max(1, min(MOST_STEPS_OF_A_BLOCK, NUMBERS_OF_A_BLOCK // (2 * n * stride)))
     for first in range(0, count, at_once):
         last = min(first + at_once, count)
-        states, pivots = np.empty((last - first, *np.shape(room.state))), np.empty(last - first)
+        states, pivots = np.empty((last - first, *np.shape(room.state)), carried.dtype), np.empty(last - first)
         steps = steps_between(first, last)
         with np.errstate(all="ignore"):  # what runs into infinity is judged by its numbers
             taken, *unsolved = take_steps(rows, steps, room, judged, states, pivots)
