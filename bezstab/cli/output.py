@@ -220,5 +220,5 @@ def results_of_chunks(
         with if_stopped(say_how_to_go_on):
             arriving = completed_chunks(compute, chunks, pool, store, say_damaged)
             results = dict(progress(arriving, path.name, len(chunks)))
-        yield [results[number] for number in range(len(chunks))]
+            yield [results[number] for number in range(len(chunks))]
         store.discard()
