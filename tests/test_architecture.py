@@ -24,8 +24,10 @@ other; only appointed files see a library.
 """
 
 import ast
+import re
 import subprocess
 import sys
+import tomllib
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
@@ -156,6 +158,17 @@ def test_computation_neither_prints_nor_exits_nor_filters_warnings_and_one_file_
         if path.as_posix() != "show/explorer.py":  # pyplot is what opens a window
             assert "matplotlib.pyplot" not in modules, path
             assert ("matplotlib", ("pyplot",)) not in set(imports(path)), path
+
+
+def test_every_library_that_is_imported_is_declared() -> None:
+    project = tomllib.loads((PACKAGE.parent / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    extras = project["optional-dependencies"]
+    declared = {
+        re.split(r"\W", requirement)[0]
+        for requirement in [*project["dependencies"], *extras["mujoco"], *extras["dask"], *extras["fast"]]
+    }
+    imported = {module.split(".")[0] for path in FILES for module, _ in imports(path, with_types=False)}
+    assert imported - set(sys.stdlib_module_names) - {"bezstab", "__future__"} <= declared
 
 
 def test_import_and_help_are_light() -> None:

@@ -83,7 +83,7 @@ def accuracy_map_figure(shown: PlaneMap, omega_h: float, error: FloatArray, leve
         shown.draw_points(axes)
         for text in axes.clabel(contours, fmt="$10^{%d}$", fontsize=6, colors="black", inline=False):
             box = {"boxstyle": "round,pad=0.1", "facecolor": "white", "edgecolor": "none"}
-            text.set(rotation=0, bbox=box, zorder=BELOW_MARKERS)
+            text.set(rotation=0, bbox=box, clip_on=False, zorder=BELOW_MARKERS)
         legend_below(figure, facecolor="0.75")
         return figure
 
