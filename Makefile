@@ -81,7 +81,7 @@ lint: .venv/tested  ## style, format and types
 	$(BIN)/mypy
 
 bench: .venv/benched  ## speed, as ratios measured in one run, into figures/bench.md
-	$(BIN)/python tests/bench/bench.py
+	$(BIN)/python -m tests.bench.bench
 
 campaign: .venv/tested  ## areas, extents, best points of 10,000 random methods against independent ones, in hours
 	$(BIN)/python tests/stability/campaign.py
