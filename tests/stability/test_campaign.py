@@ -27,8 +27,11 @@ from tests.stability.campaign import LEVELS, cases_of, compared
         "it is not as exact; four million proven verdicts counted in each have their areas right to 2e-6 and "
         "2e-4, the counting's own error. A sliver that no line of the self-check meets would not show. That run "
         "compared areas alone; since then the campaign compares extents, of regions without end too, and best "
-        "points as well, and asks in rationals where float64 is blind, as at the tip of a sliver: it has not been"
-        " run whole again"
+        "points as well, and asks in rationals where float64 is blind, as at the tip of a sliver. So it ran on the "
+        "code of commit f20d8d1 over five sixths of its methods, 33,416 regions, extents and best points of every "
+        "tenth method: 32,107 areas agree, 1,264 are unbounded, three slivers are undecided, 42 were refused, none "
+        "differs silently. Those 42 were asked again of commit 12e9392: 28 are answered, of which 26 agree, one is an "
+        "undecided sliver and one took too long to integrate; 14 are refused. The last sixth was not run"
     ),
 )
 @pytest.mark.slow
