@@ -117,7 +117,7 @@ CASES = {
     "joint friction": Case("joint friction", SLIDE.format(RUBS), flags=UNSAFE),
     "tendon friction": Case("tendon friction", TWO, TENDON.format(RUBS), UNSAFE),
     "position": drive('<position joint="x" kp="3000" kv="100"/>'),
-    "geared": drive('<position joint="x" kp="90" kv="4" damping="40" gear="5"/>'),
+    "geared": drive('<position joint="x" kp="3000" kv="10" damping="40" gear="2"/>'),
     # one actuator for each gain, on a damped joint with an armature
     "split": drive('<position joint="x" kp="3000"/><velocity joint="x" kv="100"/>', 'damping="50" armature="1"'),
     "velocity": drive('<velocity joint="x" kv="100" gear="2"/>', kind="velocity drive"),
@@ -130,7 +130,15 @@ CASES = {
 }
 INTEGRATORS = ("Euler", "RK4", "implicit", "implicitfast")
 QUICK = {("joint", "Euler"), ("weld", "implicit"), ("joint limit", "implicitfast"), ("position", "implicitfast")}
-QUICK |= {("rope", "Euler"), ("joint friction", "Euler"), ("split", "Euler"), ("tendon", "RK4"), ("explicit", "Euler")}
+QUICK |= {
+    ("rope", "Euler"),
+    ("geared", "Euler"),
+    ("tendon limit", "Euler"),
+    ("joint friction", "Euler"),
+    ("split", "Euler"),
+    ("tendon", "RK4"),
+    ("explicit", "Euler"),
+}
 ALL = list(product(CASES, INTEGRATORS))
 EACH_TIME = of_campaign({*ALL}, {*ALL[::3], *QUICK})
 """Of each kind one integrator or two, by turns."""

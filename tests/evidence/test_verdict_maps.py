@@ -44,7 +44,6 @@ def test_simulated_verdicts_agree_outside_the_band(name: str, scene: str, count:
     assert not verdicts.undecided.any()
     assert (verdicts.farthest_disagreement or 0) < verdicts.band
     assert verdicts.disagreements_beyond_band == 0
-    assert verdicts.agreement == 1 - (verdicts.diverges != (verdicts.z_abs >= 1)).mean()
     cell = (verdicts.alpha_hat[1] - verdicts.alpha_hat[0]) * (verdicts.beta_hat[1] - verdicts.beta_hat[0])
     crossed = 4 * count * cell  # by the boundary, at most
     assert cell * (~verdicts.diverges).sum() == pytest.approx(region(lookup(name)).area, abs=crossed)
@@ -63,6 +62,24 @@ def test_runs_that_break_down_whatever_the_kick_give_no_verdict() -> None:
     assert verdicts.undecided.all()
     assert (verdicts.judged, verdicts.agreement, verdicts.farthest_disagreement) == (0, None, None)
     assert verdicts.disagreements_beyond_band == 0
+
+
+def test_agreement_is_of_what_was_judged_and_beyond_the_band_of_what_the_motion_does_not_move() -> None:
+    made_up = VerdictMap(
+        scene=load_scene("pendulum"),
+        method=lookup("SYM"),
+        h=H,
+        run=2000,
+        alpha_hat=np.arange(6.0),
+        beta_hat=np.ones(1),
+        z_abs=np.array([[0.9, 0.9, 1.1, 1.1, 1.004, 1.02]]),
+        diverges=np.array([[False, True, True, False, False, False]]),
+        undecided=np.array([[False, False, False, True, False, False]]),
+        moved=np.array([[0, 0, 0, 0, 0, 0.03]]),
+    )
+    assert (made_up.judged, made_up.agreeing, made_up.agreement) == (5, 2, 0.4)
+    assert made_up.farthest_disagreement == pytest.approx(0.1)
+    assert (made_up.band, made_up.close_runs, made_up.disagreements_beyond_band) == (0.005, 2, 1)
 
 
 @pytest.mark.parametrize("count", [3, 60])
