@@ -72,7 +72,6 @@ if TYPE_CHECKING:
         StepMatrix,
         StepPolynomial,
         polynomial_determinant,
-        polynomial_product,
         step_matrix,
     )
 

@@ -23,6 +23,7 @@ from bezstab.mechanism import (
 )
 from bezstab.methods import Method, check_one_step
 from bezstab.questions.motions import scene_at_speed
+from bezstab.questions.points import Meant, meant_in_seconds
 
 
 def projection_for(stabilise: Stabilise, iterations: int | None) -> Projection | None:
@@ -73,6 +74,11 @@ class RunQuestion:
             raise InputError("--hold needs --steps: it is about steps that vary")
         if (self.point is None) == (self.stabilise == "baumgarte"):
             raise InputError("--alpha and --beta are those of feedback: they go with --stabilise baumgarte")
+
+    @property
+    def meant_in_seconds(self) -> Meant | None:
+        """Whether the point looks like alpha and beta in 1/s; None with a sequence, which may be to let errors grow."""
+        return None if self.sequence else meant_in_seconds((self.method,), self.point, self.h)
 
     @property
     def projection(self) -> Projection | None:

@@ -33,6 +33,7 @@ from bezstab.evidence import (
 from bezstab.mechanism import Projection, Scene, Stabilise, check_projected
 from bezstab.methods import Method
 from bezstab.questions import motions
+from bezstab.questions.points import Meant, meant_in_seconds
 from bezstab.questions.runs import projection_for
 from bezstab.rationals import exact
 from bezstab.stability import RATES, FrontPoint, error_front
@@ -77,6 +78,11 @@ class TradeQuestion:
         if not longest <= self.duration <= most:
             expected = f"one step ({longest:g} s) to {MOST_SWEPT:g} ({most:g} s)"
             raise InputError(f"--time {float(self.duration):g}: expected {expected}")
+
+    @property
+    def meant_in_seconds(self) -> Meant | None:
+        """Whether the numbers look like alpha and beta in 1/s, where they are not."""
+        return None if self.physical else meant_in_seconds(self.methods, self.numbers, max(self.steps, default=None))
 
     @cached_property
     def step_sizes(self) -> tuple[float, ...]:
