@@ -6,7 +6,7 @@ import pytest
 
 from bezstab.evidence import NO_FEEDBACK, Run, measured_runs, projection_sentences, swept_runs
 from bezstab.evidence.projection_costs import Comparison, comparisons
-from bezstab.mechanism import Projection, Stabilise
+from bezstab.stabilising import Stabilise, after_step
 from tests.evidence.small_sweeps import OMEGA, SOFT, small_sweep, swept
 
 REFERENCE = 1e-12
@@ -79,7 +79,7 @@ def test_on_a_free_mechanism_feedback_is_cheaper_and_projection_nearer_to_the_co
     runs = []
     for name in ("SYM", "RK4"):
         advised = small_sweep(name, (0.004, 0.008))
-        projected = replace(advised, point=NO_FEEDBACK, omega=OMEGA, projection=Projection())
+        projected = replace(advised, point=NO_FEEDBACK, omega=OMEGA, after=after_step("projection"))
         for sweep in (advised, projected):
             runs += swept_runs(sweep, measured_runs(sweep))
     sym, rk4 = compared(runs)
