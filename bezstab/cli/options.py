@@ -17,6 +17,7 @@ from bezstab.errors import InputError
 from bezstab.methods import REGISTRY, lookup
 from bezstab.rationals import rational
 from bezstab.show import FIGURE_FORMS, TABLE_FORMS, Format
+from bezstab.stabilising import STABILISE
 
 if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
@@ -235,9 +236,8 @@ OPTIONS = {
     "duration": option("--time duration", SECONDS, "Duration in s."),
     "stabilise": option(
         "--stabilise",
-        click.Choice(["baumgarte", "projection", "none"]),
-        "How the constraints are held. baumgarte: by feedback with α and β. projection: each new state is moved "
-        "onto the constraints, by the least change in the metric of the masses. none: not at all (α = β = 0).",
+        click.Choice(list(STABILISE)),
+        "How the constraints are held. " + " ".join(f"{name}: {how}." for name, how in STABILISE.items()),
         default="baumgarte",
     ),
     "iterations": option(
