@@ -84,13 +84,14 @@ def _found_together(action: Found) -> Accelerations:
     """Return accelerations that are found together, with what is known of their places apart from what is sought."""
     results = tuple(each.result for each in action.evaluations)
     parts = [part for each in action.evaluations for part in (each.position, each.velocity)]
-    at_state = [[(quantity.name, share) for quantity, share in part.items()] for part in parts] == [[("x", 1)], [("v", 1)]]
+    places = [(quantity.name, float(share)) for part in parts for quantity, share in part.items()]
+    at_state = places == [("x", 1.0), ("v", 1.0)] and len({quantity.step for part in parts for quantity in part}) == 1
     return Accelerations(
         results=results,
         known=tuple({quantity: part[quantity] for quantity in part if quantity not in results} for part in parts),
         sought=np.array([[float(part.get(result, 0)) for result in results] for part in parts]),
         moments=np.array([float(each.moment) for each in action.evaluations]),
-        on_it=action.waiting or (at_state and len({quantity.step for part in parts for quantity in part}) == 1),
+        on_it=action.waiting or at_state,
     )
 
 

@@ -16,6 +16,7 @@ from bezstab.mechanism.motions import Motion, motion, motion_over, regular_motio
 from bezstab.mechanism.observation import Observation, observe, singular_passages
 from bezstab.mechanism.runner import (
     Block,
+    How,
     Start,
     Trajectory,
     march,

@@ -122,4 +122,3 @@ def program_of(scheme: SecondOrder) -> Program:
             for shares, step in zip(remembered.shares, remembered.state_steps, strict=True)
         ),
     )
-
