@@ -41,10 +41,8 @@ FloatArray = NDArray[np.float64]
 Gains = tuple[Any, Any]
 """2 alpha (1/s) and beta^2 (1/s^2), as `units.feedback_gains` returns them: floats, or arrays over a batch."""
 
-NUMBERS_OF_A_BLOCK = 2**16
+NUMBERS_OF_A_BLOCK = 2**15
 """Of all runs, between two looks at what the user wants (Ctrl-C): some tenths of a second in Python."""
-
-MOST_STEPS_OF_A_BLOCK = 4096
 
 
 def no_counts() -> IntArray:
@@ -312,7 +310,7 @@ def steps_in_blocks(
     else:
         stride, take_steps = lanes, array_steps(mechanism, names)
         room = room_of(rows, carried.reshape(-1, n, 1, lanes), h, kinds, how.counts, 1)
-    at_once = max(1, min(MOST_STEPS_OF_A_BLOCK, NUMBERS_OF_A_BLOCK // (2 * n * stride)))
+    at_once = max(1, NUMBERS_OF_A_BLOCK // (2 * n * stride))
     for first in range(0, count, at_once):
         last = min(first + at_once, count)
         states, pivots = np.empty((last - first, 2, *np.shape(room.state)[1:]), carried.dtype), np.empty(last - first)
