@@ -14,6 +14,7 @@ from bezstab.show.answer_rows import (
     costs_words,
     engine_cells,
     largest_step_row,
+    left_out,
     motion_words,
     trade_words,
 )
