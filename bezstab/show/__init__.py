@@ -98,10 +98,9 @@ if TYPE_CHECKING:
     from bezstab.show.chain_figures import chains_figure
     from bezstab.show.explorer import open_explorer
     from bezstab.show.held_figures import held_figure
-    from bezstab.show.histories import history_line
     from bezstab.show.plane_figures import PlaneMap, comparison_figure, family_figure, region_figure, verdict_figure
     from bezstab.show.region_maps import map_figure, map_rows, map_table
-    from bezstab.show.run_figures import history_figure, scene_figure, trade_figures, work_precision_figure
+    from bezstab.show.run_figures import history_figure, trade_figures, work_precision_figure
     from bezstab.show.style import DASHES, column_figure, legend_below, line_at, save, styled
 
 __getattr__ = lazy_names(__name__)
