@@ -7,30 +7,27 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from bezstab.cli.command_group import AS_TYPED
+from bezstab.cli.command_group import AS_TYPED, NUMERICAL_TROUBLE
 from bezstab.cli.options import TypedPoint, left_at_default
-from bezstab.cli.output import for_reading, say, show_command, show_text
+from bezstab.cli.output import for_reading, say, show_command, show_text, worked_out
 from bezstab.engines import Engine, Point
-from bezstab.methods import Method
-from bezstab.show import motion_words
+from bezstab.errors import NumericalError
+from bezstab.show import Row, motion_words
 from bezstab.units import to_dimensionless
 
 if TYPE_CHECKING:
-    from bezstab.questions import Answer, Question
+    from bezstab.questions import Answer, Meant, Question
 
 Asked = TypeVar("Asked")
+Item = TypeVar("Item")
 
 
-def point_at(typed: TypedPoint, methods: Sequence[Method], h: Fraction | None) -> Point | None:
+def point_at(typed: TypedPoint, h: Fraction | None) -> Point | None:
     """Return the point (alpha_hat, beta_hat) that was typed, for a step of h (s); None if none was.
 
-    If it looks like numbers in 1/s, a note says so. UsageError if one of the two numbers is missing, and for numbers in
-    1/s without a step.
+    UsageError if one of the two numbers is missing, and for numbers in 1/s without a step.
     """
-    if typed.numbers is None:
-        return None
-    if not typed.physical:
-        say_if_units_were_mistaken(methods, typed.numbers, h)
+    if typed.numbers is None or not typed.physical:
         return typed.numbers
     if h is None:
         raise click.UsageError("--physical needs --h: α and β in 1/s need the step in s")
@@ -51,13 +48,14 @@ def asked(kind: Callable[..., Asked], **typed: Any) -> Asked:
         typed["methods"] = ()
     if "chain" in typed:
         typed["chain"] = typed_chain(typed["chain"], typed.pop("mass_ratio"))
-    if typed.get("point"):
-        methods = typed["methods"] if "methods" in typed else [typed["method"]]
-        if typed.get("sequence"):  # its point is where errors shall grow: the line that a refutation prints
-            methods = []
+    point = typed.get("point")
+    if point:
         longest = typed["h"] or (typed.get("h_max") if typed.get("h_min") else None)
-        typed["point"] = point_at(typed["point"], methods, longest)
-    return kind(**typed)
+        typed["point"] = point_at(point, longest)
+    question = kind(**typed)
+    if point and not point.physical:
+        say_if_units_were_mistaken(question)
+    return question
 
 
 def asked_of_feedback(**typed: Any) -> "Question":
@@ -65,7 +63,7 @@ def asked_of_feedback(**typed: Any) -> "Question":
     from bezstab.questions import Question
 
     question = asked(Question, **typed)
-    _ = question.turning, question.motion
+    worked_out([lambda: question.turning, lambda: question.motion], typed["scene"])
     say_if_it_turns_too_far(typed["scene"], question.speed, question.h)
     return question
 
@@ -76,6 +74,31 @@ def say_if_it_turns_too_far(scene: str | None, speed: Fraction, h: Fraction | No
 
     if warning := turns_too_far(scene, speed, h):
         say(f"bezstab: {warning}")
+
+
+def of_each(items: Iterable[Item], show: Callable[[Item], Iterable[Row]]) -> tuple[list[Row], int]:
+    """Return the rows of all items, and an exit status: what cannot be found of one withholds no other's.
+
+    Why it cannot be found is said on standard error. NumericalError where that is so of all.
+    """
+    rows: list[Row] = []
+    failed: list[NumericalError] = []
+    for item in items:
+        try:
+            rows += show(item)
+        except NumericalError as error:
+            failed.append(error)
+    if failed and not rows:
+        raise failed[0]
+    for each in failed:
+        say(f"bezstab: {each}")
+    return rows, NUMERICAL_TROUBLE if failed else 0
+
+
+def show_sentences(sentences: Iterable[str | None]) -> None:
+    """Print those that say something, each below an empty line."""
+    for sentence in filter(None, sentences):
+        show_text(f"\n{sentence}")
 
 
 def show_below(question: "Question", found: "Sequence[Answer]", *, motion: bool = True) -> None:
@@ -118,11 +141,10 @@ def say_varying(answers: "Iterable[Answer]") -> None:
                 show_command(line)
 
 
-def say_if_units_were_mistaken(methods: Sequence[Method], point: Point, h: Fraction | None) -> None:
-    """Say on standard error if alpha_hat and beta_hat look like alpha and beta in 1/s, and how to say that they are."""
-    from bezstab.questions import meant_in_seconds
-
-    if (meant := meant_in_seconds(methods, point, h)) is None:
+def say_if_units_were_mistaken(question: Any) -> None:
+    """Say on standard error if the point of a question looks like alpha and beta in 1/s, and how to say that it is."""
+    meant: Meant | None = question.meant_in_seconds
+    if meant is None:
         return
     note = "note: --alpha and --beta were taken as α̂ and β̂, without unit; if they are in 1/s, add --physical"
     if meant == "at this step":

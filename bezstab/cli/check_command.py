@@ -4,8 +4,8 @@ from collections.abc import Iterable, Iterator
 from itertools import groupby
 from typing import TYPE_CHECKING, Any
 
-from bezstab.cli.asking import asked_of_feedback, say_varying, show_below
-from bezstab.cli.held_drives import held_asked, refuse_others, show_held
+from bezstab.cli.asking import asked_of_feedback, say_varying, show_below, show_sentences
+from bezstab.cli.held_drives import held_asked, show_held
 from bezstab.cli.options import TypedPoint, changed, command, typed_options
 from bezstab.cli.output import for_reading, say, show_rows, show_text
 from bezstab.errors import InputError, NumericalError
@@ -64,10 +64,9 @@ def check(**typed: Any) -> bool:
     from bezstab.questions import answers, check_speed
 
     drive = typed["drive"]
-    if held := held_asked(typed):
-        refuse_others("--every, --late and --filter")
+    if held := held_asked(typed, "--every, --late and --filter"):
         return all(answer.safe for answer in show_held(held))
-    if typed["point"].physical and typed_options() <= OF_EVERY_STEP:
+    if typed["point"].physical and typed_options().keys() <= OF_EVERY_STEP:
         check_speed(None, typed["speed"])
         return _check_without_step(typed["methods"], typed["point"])
     question = asked_of_feedback(**typed)
@@ -77,9 +76,7 @@ def check(**typed: Any) -> bool:
         without = left_out(question)
         show_rows(CHECKED, [answer_row(answer) for answer in given], without)
         say_varying(given)
-        for sentence in map(costs_words, given if not drive else ()):
-            if sentence:
-                show_text(f"\n{sentence}")
+        show_sentences(map(costs_words, given if not drive else ()))
         if instead := [answer_row(answer) for answer in found if answer.role == "instead"]:
             show_text("\nWhat `choose` gives instead:\n")
             show_rows(CHECKED, instead, without)

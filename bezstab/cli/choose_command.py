@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from bezstab.cli.asking import asked_of_feedback, say_varying, show_below
-from bezstab.cli.held_drives import held_asked, refuse_others, show_held
+from bezstab.cli.asking import asked_of_feedback, say_varying, show_below, show_sentences
+from bezstab.cli.held_drives import held_asked, show_held
 from bezstab.cli.options import INERTIA, NUMBER, SECONDS, SHARE, changed, command, left_at_default, option
 from bezstab.cli.output import for_reading, progress, show_rows, show_text
 from bezstab.goals import GOALS, Goal
@@ -86,7 +86,8 @@ def choose(goal: Goal | None, equal: str | None, bandwidth: Fraction | None, **t
 
     drive, settle = typed["drive"], typed["settle"]
     gains_asked = bandwidth is not None or (drive is not None and settle is not None and goal is None)
-    if held := held_asked(typed, always=gains_asked):
+    asked_by = "--bandwidth, --settle, --every, --late and --filter"
+    if held := held_asked(typed, asked_by, "--bandwidth", "--settle", always=gains_asked):
         return _choose_held(held, bandwidth, settle)
     goal = goal or usual_goal(typed["engine"], drive)
     question = asked_of_feedback(goal=goal, equal=equal is not None, **typed)
@@ -97,9 +98,7 @@ def choose(goal: Goal | None, equal: str | None, bandwidth: Fraction | None, **t
         if not (drive or question.swept):
             _say_trades(chosen)
     show_below(question, chosen)
-    for line in map(alone_words, chosen):
-        if line:
-            show_text(f"\n{line}")
+    show_sentences(map(alone_words, chosen))
     return all(answer.safe for answer in chosen)
 
 
@@ -118,7 +117,6 @@ def _choose_held(question: "HeldQuestion", bandwidth: Fraction | None, settle: F
     """
     from bezstab.questions import held_gains
 
-    refuse_others("--bandwidth, --settle, --every, --late and --filter", "--bandwidth", "--settle")
     methods = (lookup("SYM"),) if left_at_default("methods") else question.methods
     drive = held_gains(
         question.drive.inertia, question.h, question.timing, bandwidth=bandwidth, settle=settle, methods=methods

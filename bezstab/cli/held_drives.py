@@ -9,12 +9,16 @@ from bezstab.show import HELD, LATE_COMMANDS, NOT_JUDGED, held_row, timing_words
 if TYPE_CHECKING:
     from bezstab.questions import HeldAnswer, HeldQuestion
 
+ABOUT_DRIVES = {"--pd", "--h", "--every", "--late", "--filter", "--method", "--format"}
+"""Options that go with a question about a held or late drive."""
 
-def held_asked(typed: dict[str, Any], *, always: bool = False) -> "HeldQuestion | None":
+
+def held_asked(typed: dict[str, Any], asked: str, *allowed: str, always: bool = False) -> "HeldQuestion | None":
     """Take the timing options out of `typed`. Return the question about such a drive, None if none of them was typed.
 
     With `always` there is a question without these options, too: every step then computes its torque and applies it.
-    Without --method it is about all four ways of applying a drive. Errors as `held_question`.
+    Without --method it is about all four ways of applying a drive. Errors as `held_question`; UsageError, which says
+    what is `asked`, if an option was typed that is neither about drives nor `allowed`.
     """
     from bezstab.questions import held_question
 
@@ -22,16 +26,9 @@ def held_asked(typed: dict[str, Any], *, always: bool = False) -> "HeldQuestion 
     if not always and all(value is None for value in timing.values()):
         return None
     methods = () if left_at_default("methods") else tuple(typed["methods"])
-    return held_question(typed["drive"], typed["h"], methods, **timing)
-
-
-ABOUT_DRIVES = {"--pd", "--h", "--every", "--late", "--filter", "--method", "--format"}
-"""Options that go with a question about a held or late drive."""
-
-
-def refuse_others(asked: str, *allowed: str) -> None:
-    """Raise UsageError if an option was typed that does not go with a question about a held or late drive."""
-    refuse_beside(asked, typed_options() - {*ABOUT_DRIVES, *allowed}, "this answer is about the drive alone")
+    question = held_question(typed["drive"], typed["h"], methods, **timing)
+    refuse_beside(asked, typed_options().keys() - {*ABOUT_DRIVES, *allowed}, "this answer is about the drive alone")
+    return question
 
 
 def show_held(question: "HeldQuestion") -> "list[HeldAnswer]":

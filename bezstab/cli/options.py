@@ -17,6 +17,7 @@ from bezstab.errors import InputError
 from bezstab.methods import REGISTRY, lookup
 from bezstab.rationals import rational
 from bezstab.show import FIGURE_FORMS, TABLE_FORMS, Format
+from bezstab.stabilising import STABILISE
 
 if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
@@ -235,9 +236,8 @@ OPTIONS = {
     "duration": option("--time duration", SECONDS, "Duration in s."),
     "stabilise": option(
         "--stabilise",
-        click.Choice(["baumgarte", "projection", "none"]),
-        "How the constraints are held. baumgarte: by feedback with α and β. projection: each new state is moved "
-        "onto the constraints, by the least change in the metric of the masses. none: not at all (α = β = 0).",
+        click.Choice(list(STABILISE)),
+        "How the constraints are held. " + " ".join(f"{name}: {how}." for name, how in STABILISE.items()),
         default="baumgarte",
     ),
     "iterations": option(
@@ -273,7 +273,10 @@ def changed(name: str, **more: Any) -> Option:
 
 @dataclass(frozen=True)
 class Rule:
-    """Each of some options needs one of some others, and excludes others; `why` is the reason that a message gives."""
+    """Each of some options needs one of some others, and excludes others; `why` is the reason that a message gives.
+
+    The options may be "--stabilise none": with that value alone.
+    """
 
     options: tuple[str, ...]
     why: str
@@ -283,35 +286,32 @@ class Rule:
     def check(self) -> None:
         """Raise UsageError if the options of the running command break this rule."""
         typed = typed_options()
-        for option in filter(typed.__contains__, self.options):
-            if self.needs and not typed & set(self.needs):
+        with_values = {f"{option} {value}" for option, value in typed.items()}
+        for option in self.options:
+            if option not in with_values | typed.keys():
+                continue
+            if self.needs and typed.keys().isdisjoint(self.needs):
                 one_of = "one of " if len(self.needs) > 1 else ""
                 raise click.UsageError(f"{option} needs {one_of}{', '.join(self.needs)}: {self.why}")
             refuse_beside(option, {*self.excludes} - {option}, self.why)
 
 
-def typed_options() -> set[str]:
-    """Return the options that the user gave the running command, each by its long name."""
+def typed_options() -> dict[str, Any]:
+    """Return the values that the user gave the running command, each by the long name of its option."""
     context = click.get_current_context()
-    return {parameter.opts[-1] for parameter in context.command.params if not left_at_default(str(parameter.name))}
+    names = {str(parameter.name): parameter.opts[-1] for parameter in context.command.params}
+    return {option: context.params.get(name) for name, option in names.items() if not left_at_default(name)}
 
 
 def refuse_beside(option: str, others: Collection[str], why: str) -> None:
     """Raise UsageError if one of the others was typed together with that option in the running command."""
-    for other in sorted(typed_options() & set(others)):
+    for other in sorted(typed_options().keys() & set(others)):
         raise click.UsageError(f"{other} does not go with {option}: {why}")
 
 
 def left_at_default(parameter: str) -> bool:
     """Return whether the user has not given that parameter of the running command."""
     return click.get_current_context().get_parameter_source(parameter) != click.core.ParameterSource.COMMANDLINE
-
-
-def refuse_feedback(stabilise: str) -> None:
-    """Raise UsageError if an option about feedback was typed, and there is to be no feedback."""
-    if stabilise != "baumgarte":
-        of_feedback = ("--alpha", "--beta", "--physical", "--hold", "--omega")
-        refuse_beside(f"--stabilise {stabilise}", of_feedback, "it has no feedback")
 
 
 OF_A_CONTROLLER = Rule(
@@ -327,6 +327,14 @@ GROUPS: Mapping[str, tuple[str | Option | Rule, ...]] = {
         Rule(("--engine", "--pd"), "it gives the point itself", excludes=("--alpha", "--beta", "--physical")),
     ),
     "timing": ("every", "late", "filter_seconds", OF_A_CONTROLLER),
+    "holding": (
+        *("stabilise", "iterations"),
+        Rule(
+            ("--stabilise projection", "--stabilise none"),
+            "it has no feedback",
+            excludes=("--alpha", "--beta", "--physical", "--hold", "--omega"),
+        ),
+    ),
     "swept": ("chain", "mass_ratio", "sweeps"),
     "picture": ("output", "figure"),
     "files": ("picture", "table"),

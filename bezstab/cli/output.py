@@ -6,7 +6,6 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from functools import partial
-from operator import length_hint
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO, TypeVar
 
@@ -120,9 +119,10 @@ def say(message: str) -> None:
 
 
 def file_name(name: str) -> str:
-    """Return the name of a method or a scene without characters that a file's name cannot have."""
+    """Return the name of a method or a scene, or of its file, without characters that a file's name cannot have."""
     encoding = sys.getfilesystemencoding()
-    return re.sub(r"[^\w@.+-]", "_", name.encode(encoding, "replace").decode(encoding))
+    named = Path(name).stem if name.endswith(".toml") else name
+    return re.sub(r"[^\w@.+-]", "_", named.encode(encoding, "replace").decode(encoding))
 
 
 def write_file(path: Path, write: Callable[[BinaryIO], object]) -> None:
@@ -149,9 +149,9 @@ class Files:
         if self.wanted:
             output_directory(self.output)
 
-    def path(self, *names: str) -> Path:
-        """Return the path, without an ending, of a file that is named after methods and scenes."""
-        return self.output / "_".join(file_name(name) for name in names)
+    def path(self, *names: str | None) -> Path:
+        """Return the path, without an ending, of a file that is named after what was asked for."""
+        return self.output / "_".join(file_name(name) for name in names if name)
 
     def write(
         self, path: Path, figure: "Callable[[], Figure] | None", table: "Callable[[], Arrays] | None" = None
@@ -181,21 +181,17 @@ class Work:
     resume: bool
 
 
-def progress(
-    items: Iterable[Item], label: str, length: int = 0, size: Callable[[Item], int] = lambda _: 1
-) -> Iterator[Item]:
-    """Yield the items, with a progress bar on standard error where that is a terminal.
-
-    `length` is the sum of their sizes; without it their number.
-    """
-    if not sys.stderr.isatty():
-        yield from items
-        return
-    bar = click.progressbar(length=length or length_hint(items), label=visible(label), file=sys.stderr)
+def progress(items: Iterable[Item], label: str, length: int | None = None) -> Iterator[Item]:
+    """Yield the items, with a progress bar on standard error where that is a terminal; `length` is their number."""
+    hidden = not sys.stderr.isatty()
+    bar = click.progressbar(items, length=length, label=visible(label), hidden=hidden, file=sys.stderr)
     with bar, if_stopped(bar.render_finish):  # which shows the cursor again
-        for item in items:
-            yield item
-            bar.update(size(item))
+        yield from bar
+
+
+def worked_out(works: Sequence[Callable[[], Item]], label: str | None) -> list[Item]:
+    """Return what each of some works finds; a terminal shows meanwhile how many are done, unless there is no label."""
+    return [work() for work in (progress(works, label) if label else works)]
 
 
 @contextmanager
@@ -212,12 +208,10 @@ def results_of_chunks(
     def say_damaged(file: Path) -> None:
         say(f"bezstab: {file} is damaged: computed again")
 
-    def say_how_to_go_on() -> None:
-        say(f"bezstab: what is finished lies in {store.path}: --resume goes on from there")
-
     kept_in = path.with_name(f"{path.name}.chunks")
+    kept = f"bezstab: what is finished lies in {kept_in}: --resume goes on from there"
     with worker_pool(work.workers, work.scheduler) as pool, chunk_store(kept_in, job, work.resume) as store:
-        with if_stopped(say_how_to_go_on):
+        with if_stopped(partial(say, kept)):
             arriving = completed_chunks(compute, chunks, pool, store, say_damaged)
             results = dict(progress(arriving, path.name, len(chunks)))
             yield [results[number] for number in range(len(chunks))]

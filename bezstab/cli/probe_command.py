@@ -1,34 +1,21 @@
 """The command that tells from a log which integrator and which feedback made it: probe."""
 
 import sys
-from collections.abc import Sequence
 from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from bezstab.cli.asking import point_at
-from bezstab.cli.options import ParsedType, TypedPoint, changed, command, flag, option
-from bezstab.cli.output import for_reading, show_rows, show_text
+from bezstab.cli.asking import asked, show_sentences
+from bezstab.cli.options import NUMBER, changed, command, flag, option
+from bezstab.cli.output import for_reading, show_rows
 from bezstab.errors import InputError
-from bezstab.methods import lookup
-from bezstab.rationals import rational
-from bezstab.show import PROBED
+from bezstab.show import LIKENESS, PROBED, cells, like_point_row, likeness_sentence, nearest_rows
 
 if TYPE_CHECKING:
     from bezstab.evidence import Log
-    from bezstab.questions import ColumnAnswer
-
-USUAL = "SYM"
-"""Of simulators, the method by which it is judged whether alpha and beta were typed in another unit."""
-
-
-def _turning(text: str) -> Fraction:
-    number = rational(text)
-    if number < 0:
-        raise InputError(f"{text}: expected 0 or more, in 1/s")
-    return number
+    from bezstab.questions import LogQuestion
 
 
 @command(
@@ -49,13 +36,13 @@ def _turning(text: str) -> Fraction:
     ),
     option(
         "--turning",
-        ParsedType("number", _turning),
+        NUMBER,
         "How fast the directions of the constraints turn, in 1/s: about the angular speed; 0 at rest.",
     ),
     "form",
 )
 @click.argument("log", type=click.Path(path_type=Path, allow_dash=True))
-def probe(log: Path, minus: Path | None, point: TypedPoint, h: Fraction | None, **typed: Any) -> None:
+def probe(**typed: Any) -> None:
     """Tell from a simulator's log which integrator made it.
 
     LOG is a CSV file, or - for standard input, with a row for each step from the kick on. Prints the pole with
@@ -68,41 +55,32 @@ def probe(log: Path, minus: Path | None, point: TypedPoint, h: Fraction | None, 
 
     Example: bezstab probe log.csv --minus unkicked.csv --alpha 1 --beta 0.25
     """
-    from bezstab.questions import LogQuestion, check_told, log_answers
+    from bezstab.questions import check_told, log_answers
 
-    at = point_at(point, typed["methods"] or [lookup(USUAL)], h)
-    question = LogQuestion(
-        log=_read(log),
-        minus=None if minus is None else _read(minus),
-        point=at,
-        h=None if h is None else float(h),
-        **typed,
-    )
-    found = list(log_answers(question))
-    _show(found)
-    check_told(found)
-
-
-def _show(found: "Sequence[ColumnAnswer]") -> None:
-    """Print all rows; for reading in a table of each kind, with the sentences below."""
-    from bezstab.show import LIKENESS, cells, like_point_row, likeness_sentence, nearest_rows
-
+    found = list(log_answers(asked(_question, **typed)))
     fits = [PROBED.row(answer.found, column=answer.column) for answer in found]
     likenesses = [{"column": answer.column, **cells(LIKENESS, one)} for answer in found for one in answer.likenesses]
     points = [like_point_row(answer.column, one, answer.question.h) for answer in found for one in answer.points]
-    if not for_reading():
-        show_rows(PROBED, [*fits, *likenesses, *points])
-        return
-    show_rows(PROBED, fits)
-    for rows in (nearest_rows(likenesses), points):
-        if rows:
+    if for_reading():
+        show_rows(PROBED, fits)
+        for rows in filter(None, (nearest_rows(likenesses), points)):
             click.echo()
             show_rows(PROBED, rows, ("reason",))
-    for answer in found:
-        point = answer.question.point
-        said = [likeness_sentence(answer.likenesses, point)] if answer.likenesses and point else answer.remarks
-        for sentence in said:
-            show_text(f"\n{answer.column}: {sentence}")
+        for answer in found:
+            point = answer.question.point
+            said = [likeness_sentence(answer.likenesses, point)] if answer.likenesses and point else answer.remarks
+            show_sentences(f"{answer.column}: {sentence}" for sentence in said)
+    else:
+        show_rows(PROBED, [*fits, *likenesses, *points])
+    check_told(found)
+
+
+def _question(log: Path, minus: Path | None, h: Fraction | None, **typed: Any) -> "LogQuestion":
+    """Return the question about logs in files."""
+    from bezstab.questions import LogQuestion
+
+    kicked, other = _read(log), None if minus is None else _read(minus)
+    return LogQuestion(log=kicked, minus=other, h=None if h is None else float(h), **typed)
 
 
 def _read(path: Path) -> "Log":

@@ -1,24 +1,20 @@
 """The command that draws where a method is stable: region."""
 
 from functools import partial
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 import numpy as np
 
-from bezstab.cli.asking import asked, say_if_it_turns_too_far
+from bezstab.cli.asking import asked, of_each, say_if_it_turns_too_far
 from bezstab.cli.command_group import NUMERICAL_TROUBLE
-from bezstab.cli.held_drives import held_asked, refuse_others, show_held
+from bezstab.cli.held_drives import held_asked, show_held
 from bezstab.cli.options import NUMBER, POSITIVE, SPEED, Rule, changed, command, flag, option
-from bezstab.cli.output import Files, progress, say, show_rows, show_text
-from bezstab.errors import NumericalError
+from bezstab.cli.output import Files, progress, say, show_rows, show_text, worked_out
 from bezstab.show import NOT_KNOWN, REGIONS, Row, combined_words, region_row
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-    from bezstab.questions import HeldAnswer, HeldQuestion, MapAnswer, MapQuestion
+    from bezstab.questions import MapAnswer, MapQuestion
 
 
 @command(
@@ -59,7 +55,7 @@ if TYPE_CHECKING:
     Rule(("--accuracy",), "its axes are α̂ and β̂", excludes=("--alpha-beta",)),
     Rule(("--omega",), "it is the motion that the errors are about", needs=("--accuracy",)),
 )
-def region(quality: str, grid: int | None, alpha_beta: bool, files: Files, **typed: Any) -> int:
+def region(quality: str, grid: int | None, files: Files, **typed: Any) -> int:
     """Draw where each method is stable, and |z_p| there.
 
     Prints how far the exact region reaches, its area, the smallest |z_p| and where that is. Writes region_METHOD.png.
@@ -72,83 +68,53 @@ def region(quality: str, grid: int | None, alpha_beta: bool, files: Files, **typ
 
     Example: bezstab region --method B4
     """
+    from bezstab import show
     from bezstab.questions import MapQuestion, map_answer
     from bezstab.stability import QUALITY
 
     points = grid or QUALITY[quality]
-    if held := held_asked(typed, always=typed["drive"] is not None):
-        _show_held(held, points, files)
+    drawn = ("--quality", "--grid", "--output", "--figure")
+    if held := held_asked(typed, "--pd", *drawn, always=typed["drive"] is not None):
+        files.check_output()
+        for of_drive in show_held(held):
+            path = files.path("region", of_drive.method.name, "held")
+            files.write(path, partial(show.held_figure, of_drive, points))
         return 0
     del typed["drive"]
     question = asked(MapQuestion, points=points, **typed)
+    worked_out([lambda: question.motion, lambda: question.turnings], typed["scene"])
     for speed in () if question.motion else question.speeds:
         say_if_it_turns_too_far(question.scene, speed, question.h)
     files.check_output()
-    rows: list[Row] = []
-    failed: list[NumericalError] = []
     if question.compare:
-        rows = _show_boundaries(question, alpha_beta, files)
+        rows, status = _write_boundaries(question, files), 0
     else:
-        for method in question.methods:
-            try:
-                rows += _show_map(map_answer(question, method), alpha_beta, files)
-            except NumericalError as error:
-                failed.append(error)
-        if not rows:
-            raise failed[0]
-    for each in failed:
-        say(f"bezstab: {each}")
+        rows, status = of_each(question.methods, lambda method: _write_map(map_answer(question, method), files))
     show_rows(REGIONS, rows, () if question.levels else ("z_abs_below",))
     if question.motion:
         show_text(combined_words(question.motion))
-    if failed or any((row["best_reason"] or "").startswith(NOT_KNOWN) for row in rows):
-        return NUMERICAL_TROUBLE
-    return 0
+    return NUMERICAL_TROUBLE if any((row["best_reason"] or "").startswith(NOT_KNOWN) for row in rows) else status
 
 
-def _show_map(answer: "MapAnswer", alpha_beta: bool, files: Files) -> list[Row]:
+def _write_map(answer: "MapAnswer", files: Files) -> list[Row]:
     """Write the map of one method; return its rows."""
     from bezstab import show
 
     if answer.forced and answer.forced.reason:
         say(f"bezstab: {answer.forced.reason}")
     if files.wanted:
-        rows_of_map = len(answer.axes[1])
-        z = np.concatenate(list(progress(answer.dominant_poles(), answer.method.name, rows_of_map, len)))
-        of_what = ["accuracy"] if answer.forced else [Path(answer.question.scene).stem] if answer.question.scene else []
-        files.write(
-            files.path("region", answer.method.name, *of_what),
-            lambda: show.map_figure(answer, z, alpha_and_beta=alpha_beta),
-            lambda: show.map_table(answer, z),
-        )
+        z = np.array(list(progress(answer.dominant_poles(), answer.method.name, len(answer.axes[1]))))
+        of_what = "accuracy" if answer.forced else answer.question.scene
+        path = files.path("region", answer.method.name, of_what)
+        files.write(path, lambda: show.map_figure(answer, z), lambda: show.map_table(answer, z))
     return show.map_rows(answer)
 
 
-def _show_boundaries(question: "MapQuestion", alpha_beta: bool, files: Files) -> list[Row]:
+def _write_boundaries(question: "MapQuestion", files: Files) -> list[Row]:
     """Write the boundaries of all methods into one table and one figure; return a row for each."""
     from bezstab import show
-    from bezstab.questions import region_answer
 
-    h = None if question.h is None else float(question.h)
-    answers = [region_answer(method, *map(float, question.levels)) for method in question.methods]
-    regions = [answer.region for answer in answers]
-    files.write(
-        files.path("compare", *(method.name for method in question.methods)),
-        lambda: show.comparison_figure(regions, question.alpha_range, question.beta_range, h, alpha_beta),
-        lambda: show.boundary_arrays(regions, h),
-    )
-    return [region_row(answer) for answer in answers]
-
-
-def _show_held(question: "HeldQuestion", points: int, files: Files) -> None:
-    """Print what `check` prints of a held drive, and write the map of each way of applying it over kd and kp."""
-    from bezstab import show
-
-    refuse_others("--pd", "--quality", "--grid", "--output", "--figure")
-    files.check_output()
-
-    def draw(answer: "HeldAnswer") -> "Figure":
-        return show.held_figure(answer, answer.map(points))
-
-    for answer in show_held(question):
-        files.write(files.path("region", answer.method.name, "held"), partial(draw, answer))
+    regions = [answer.region for answer in question.compared]
+    path = files.path("compare", *(method.name for method in question.methods))
+    files.write(path, lambda: show.compared_figure(question, regions), lambda: show.compared_table(question, regions))
+    return [region_row(answer) for answer in question.compared]

@@ -1,13 +1,12 @@
 """The command that runs a mechanism: simulate."""
 
-from pathlib import Path
 from typing import Any
 
 import click
 
 from bezstab.cli.asking import asked
-from bezstab.cli.options import NUMBER, SEQUENCE, changed, command, option, refuse_feedback
-from bezstab.cli.output import Files, say, show_rows
+from bezstab.cli.options import NUMBER, SEQUENCE, changed, command, option
+from bezstab.cli.output import Files, say, show_rows, worked_out
 from bezstab.errors import NumericalError
 from bezstab.show import SIMULATIONS, passages_words
 
@@ -18,7 +17,7 @@ from bezstab.show import SIMULATIONS, passages_words
     changed("method", default="B4"),
     changed("alpha", default="0.5"),
     changed("beta", default="0.1"),
-    *("physical", "stabilise", "iterations"),
+    *("physical", "holding"),
     changed("h", default="0.001"),
     option(
         "--steps sequence",
@@ -60,14 +59,14 @@ def simulate(files: Files, **typed: Any) -> None:
     from bezstab import show
     from bezstab.questions import RunQuestion, run_answer
 
-    refuse_feedback(typed["stabilise"])
     if typed["stabilise"] != "baumgarte":
         typed["point"] = None
     question = asked(RunQuestion, **typed)
     files.check_output()
-    run = run_answer(question)
+    worked_out([lambda: question.mechanism], typed["scene"])
+    (run,) = worked_out([lambda: run_answer(question)], question.method.name)
     files.write(
-        files.path("simulate", Path(typed["scene"]).stem, question.method.name),
+        files.path("simulate", typed["scene"], question.method.name),
         lambda: show.history_figure(run),
         lambda: show.history_arrays(run),
     )

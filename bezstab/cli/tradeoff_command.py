@@ -1,38 +1,23 @@
 """The command that measures what accuracy costs: tradeoff."""
 
-from collections.abc import Sequence
 from fractions import Fraction
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from bezstab.cli.asking import say_if_units_were_mistaken
-from bezstab.cli.options import (
-    POSITIVE,
-    SECONDS,
-    Rule,
-    TypedPoint,
-    changed,
-    command,
-    flag,
-    left_at_default,
-    option,
-    refuse_beside,
-    refuse_feedback,
-    typed_options,
-)
-from bezstab.cli.output import Files, Work, progress, results_of_chunks, show_rows, show_text
+from bezstab.cli.options import POSITIVE, SECONDS, Rule, TypedPoint, changed, command, flag, left_at_default, option
+from bezstab.cli.output import Files, Work, progress, results_of_chunks, show_rows, show_text, worked_out
 from bezstab.show import FRONTS, SWEPT, combined_words, front_row
 
 if TYPE_CHECKING:
     from bezstab.questions import FrontQuestion
 
-PREDICTED = {
-    *("--predicted", "--scene", "--speed", "--method", "--h", "--omega", "--level"),
-    *("--output", "--figure", "--table", "--format"),
-}
-"""Options of tradeoff that go with --predicted."""
+OF_RUNS = (
+    *("--alpha", "--beta", "--physical", "--stabilise", "--iterations", "--time", "--tolerance", "--repeats"),
+    *("--against", "--compiled", "--workers", "--scheduler", "--resume"),
+)
+"""Options that say what is simulated."""
 
 
 @command(
@@ -41,7 +26,7 @@ PREDICTED = {
     changed("methods", default=("B2", "B3", "B4", "AB2", "AB4", "ABM4", "RK4", "SIE", "SYM")),
     option("--h steps", SECONDS, "Step size in s. Repeatable [ten from 0.0001 to 0.02].", multiple=True),
     changed("duration", default="2"),
-    *("point", "omega", "stabilise", "iterations"),
+    *("point", "omega", "holding"),
     flag(
         "--predicted",
         "Simulate nothing; print the least error that each method's feedback makes, for each speed of decay.",
@@ -67,16 +52,10 @@ PREDICTED = {
     changed("table", default="csv"),
     "form",
     Rule(("--level",), "it says how fast errors must decay", needs=("--predicted",)),
+    Rule(("--against projection",), "it has runs with and without feedback", excludes=("--stabilise",)),
+    Rule(("--predicted",), "it simulates nothing", excludes=OF_RUNS),
 )
-def tradeoff(
-    point: TypedPoint,
-    predicted: bool,
-    levels: Sequence[Fraction],
-    tolerance: Fraction,
-    work: Work,
-    files: Files,
-    **typed: Any,
-) -> None:
+def tradeoff(predicted: bool, point: TypedPoint, tolerance: Fraction, work: Work, files: Files, **typed: Any) -> None:
     """Measure what accuracy costs, by method and step.
 
     Each run is compared with a reference of known accuracy. Prints errors, evaluations, processor time (median and
@@ -102,20 +81,17 @@ def tradeoff(
     from bezstab import evidence, show
     from bezstab.questions import FrontQuestion, TradeQuestion
 
+    levels = typed.pop("levels")
     if predicted:
-        refuse_beside("--predicted", typed_options() - PREDICTED, "it simulates nothing")
         scene = None if left_at_default("scene") else typed["scene"]
         of_fronts = {name: typed[name] for name in ("methods", "omega", "speed", "steps")}
         _show_fronts(FrontQuestion(**of_fronts, scene=scene, levels=levels), files)
         return
-    refuse_feedback(typed["stabilise"])
-    if typed["against"] == "projection":
-        refuse_beside("--against projection", ["--stabilise"], "it has runs with and without feedback")
     question = TradeQuestion(numbers=point.numbers, physical=point.physical, **typed)
-    if question.numbers and question.steps and not question.physical:
-        say_if_units_were_mistaken(question.methods, question.numbers, max(question.steps))
-    path = files.path("tradeoff", Path(typed["scene"]).stem)
+    say_if_units_were_mistaken(question)
+    path = files.path("tradeoff", typed["scene"])
     job = f"{question.methods} {question}"
+    worked_out([lambda: question.rate, lambda: question.reference], typed["scene"])
     with results_of_chunks(evidence.measured_runs, question.sweeps, path, job, work) as results:
         swept = question.swept(results)
         rows = [SWEPT.row(run, front=front) for run, front in zip(swept.runs, swept.front_labels, strict=True)]

@@ -1,18 +1,18 @@
 """The command that holds predicted poles against measured ones: verify."""
 
 from functools import partial
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from bezstab.cli.asking import asked
+from bezstab.cli.asking import asked, of_each
 from bezstab.cli.command_group import NUMERICAL_TROUBLE
 from bezstab.cli.options import Rule, changed, command, flag, option
-from bezstab.cli.output import Files, Work, for_reading, progress, results_of_chunks, show_rows, show_text
-from bezstab.show import FORCED, MEASUREMENTS, SUMMARIES, VERDICT_MAPS, WITNESSED
+from bezstab.cli.output import Files, Work, for_reading, progress, results_of_chunks, show_rows, show_text, worked_out
+from bezstab.show import FORCED, MEASUREMENTS, SUMMARIES, VERDICT_MAPS, WITNESSED, Row
 
 if TYPE_CHECKING:
+    from bezstab.methods import Method
     from bezstab.questions import VerifyQuestion
 
 WHICH_POINTS = ("--alpha", "--points", "--map", "--witness")
@@ -32,7 +32,7 @@ OVER_THE_MOTION = ("followed", "map_error", "law_error", "floquet_error", "wrong
         click.IntRange(1, 1000),
         "Verify so many points, spread over the region and around it, instead of one at --alpha and --beta [20].",
     ),
-    option("--map cells_across", click.IntRange(2, 10000), "Simulate N×N points, and draw their verdicts."),
+    option("--map across", click.IntRange(2, 10000), "Simulate N×N points, and draw their verdicts."),
     flag("--floquet", "Also predict exactly, for a motion that repeats itself, by linearising its steps."),
     flag("--accuracy", "Compare predicted and measured errors that the feedback makes."),
     option("--witness", click.Choice(["mujoco"]), "Run the scene in this engine, with its own integrators."),
@@ -45,14 +45,7 @@ OVER_THE_MOTION = ("followed", "map_error", "law_error", "floquet_error", "wrong
     Rule(("--accuracy",), "it compares one point", excludes=("--points", "--map", "--witness", "--floquet")),
     Rule(WHICH_POINTS, "each says which points are verified", excludes=WHICH_POINTS),
 )
-def verify(
-    cells_across: int | None,
-    accuracy: bool,
-    witness: str | None,
-    work: Work,
-    files: Files,
-    **typed: Any,
-) -> bool | int:
+def verify(across: int | None, accuracy: bool, witness: str | None, work: Work, files: Files, **typed: Any) -> int:
     """Compare predicted poles with poles measured in a simulation.
 
     Two runs start with opposite kicks. The dominant pole is fitted to their difference. If no pole can be measured, the
@@ -70,29 +63,27 @@ def verify(
 
     Example: bezstab verify --method AB4 --points 20
     """
+    from bezstab import evidence
     from bezstab.questions import VerifyQuestion
 
     question = asked(VerifyQuestion, **typed)
+    worked_out([lambda: question.mechanism], typed["scene"])
     if accuracy:
         return _show_forced_errors(question)
     if witness:
-        _show_witnesses(question)
-    elif cells_across:
-        _show_map(question, cells_across, work, files)
+        witnesses = evidence.mujoco_witnesses(question.mechanism, float(question.h))
+        runs = progress(witnesses, "MuJoCo", evidence.witness_count())
+        show_rows(WITNESSED, [WITNESSED.row(run, scene=question.mechanism.scene.name) for run in runs])
+    elif across:
+        rows, status = of_each(question.methods, lambda method: [_write_map(question, method, across, work, files)])
+        show_rows(VERDICT_MAPS, rows)
+        return status
     else:
         _show_measurements(question)
     return 0
 
 
-def _show_witnesses(question: "VerifyQuestion") -> None:
-    """Print a row for each run of MuJoCo's integrators."""
-    from bezstab.evidence import mujoco_witnesses, witness_count
-
-    witnesses = progress(mujoco_witnesses(question.mechanism, float(question.h)), "MuJoCo", witness_count())
-    show_rows(WITNESSED, [WITNESSED.row(each, scene=question.mechanism.scene.name) for each in witnesses])
-
-
-def _show_forced_errors(question: "VerifyQuestion") -> bool | int:
+def _show_forced_errors(question: "VerifyQuestion") -> int:
     """Print predicted and measured errors at shares of a point's gains; return whether all hold, or an exit status."""
     from bezstab import evidence, show
 
@@ -126,20 +117,16 @@ def _show_measurements(question: "VerifyQuestion") -> None:
         show_rows(SUMMARIES, summaries, () if floquet else OVER_THE_MOTION)
 
 
-def _show_map(question: "VerifyQuestion", across: int, work: Work, files: Files) -> None:
-    """Simulate across x across runs of each method, write their verdicts as table and figure, print how many agree."""
+def _write_map(question: "VerifyQuestion", method: "Method", across: int, work: Work, files: Files) -> Row:
+    """Simulate across x across runs of a method, write their verdicts as table and figure, return how many agree."""
     from bezstab import evidence, show
     from bezstab.stability import region
 
-    rows = []
     scene, h = question.mechanism.scene, float(question.h)
-    for method in question.methods:
-        path = files.path("verify", Path(str(question.scene)).stem, method.name)
-        chunks = evidence.map_rows(scene, method, h, across)
-        job = f"--map {across} --h {h} {method} {scene}"
-        with results_of_chunks(evidence.simulated_verdicts, chunks, path, job, work) as results:
-            verdicts = evidence.verdict_map(chunks, results)
-            draw = partial(show.verdict_figure, verdicts, region(method))
-            files.write(path, draw, partial(show.verdict_arrays, verdicts))
-        rows.append(VERDICT_MAPS.row(verdicts))
-    show_rows(VERDICT_MAPS, rows)
+    path = files.path("verify", str(question.scene), method.name)
+    chunks = evidence.map_rows(scene, method, h, across)
+    job = f"--map {across} --h {h} {method} {scene}"
+    with results_of_chunks(evidence.simulated_verdicts, chunks, path, job, work) as results:
+        verdicts = evidence.verdict_map(chunks, results)
+        files.write(path, lambda: show.verdict_figure(verdicts, region(method)), lambda: show.verdict_arrays(verdicts))
+    return VERDICT_MAPS.row(verdicts)

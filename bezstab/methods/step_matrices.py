@@ -131,15 +131,6 @@ def _ends_with_its_acceleration(scheme: SecondOrder) -> bool:
     return Evaluation(Quantity(ACCELERATION, 1), *at_end) in scheme.equations
 
 
-def polynomial_product(first: StepPolynomial, second: StepPolynomial) -> StepPolynomial:
-    """Return the product of two polynomials in s, exact, coefficients ascending."""
-    product = [ZERO] * (len(first) + len(second) - 1)
-    for i, a in enumerate(first):
-        for j, b in enumerate(second):
-            product[i + j] += a * b
-    return tuple(product)
-
-
 def polynomial_determinant(rows: list[list[StepPolynomial]]) -> StepPolynomial:
     """Return the determinant of a matrix of polynomials in s, exact, coefficients ascending."""
     in_ring = [

@@ -11,7 +11,7 @@ from bezstab.questions.growing_runs import growing_run
 from bezstab.questions.held_drives import HeldAnswer, HeldQuestion, UsedUp, held_answers, held_gains, held_question
 from bezstab.questions.log_probes import ColumnAnswer, LogQuestion, check_told, log_answers
 from bezstab.questions.motions import ReferenceMotion, check_speed, motion_of, turns_too_far
-from bezstab.questions.points import meant_in_seconds
+from bezstab.questions.points import Meant
 from bezstab.questions.question import Question, methods_for, usual_goal
 from bezstab.questions.regions import (
     ForcedErrors,
@@ -24,6 +24,6 @@ from bezstab.questions.regions import (
     region_answer,
     region_answers,
 )
-from bezstab.questions.runs import RunQuestion, projection_for, run_answer
+from bezstab.questions.runs import RunQuestion, run_answer
 from bezstab.questions.trades import FrontQuestion, TradeQuestion
 from bezstab.questions.verifications import VerifyQuestion

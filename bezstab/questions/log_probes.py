@@ -24,10 +24,15 @@ from bezstab.evidence import (
     time_column,
 )
 from bezstab.methods import REGISTRY, Method, lookup
+from bezstab.questions.points import Meant, meant_in_seconds
 from bezstab.stability import FloatArray
 
 SAME_STEP = 1e-3
 """The times between rows of two runs may differ by this share, as times in logs are rounded."""
+
+
+USUAL = "SYM"
+"""The method of most engines."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -66,6 +71,11 @@ class LogQuestion:
         if self.every is not None and round(row / self.h) != self.every:
             raise InputError(f"--every {self.every}: {apart}, {row / self.h:.4g} times --h {self.h:g}")
 
+    @property
+    def meant_in_seconds(self) -> Meant | None:
+        """Whether the point looks like alpha and beta in 1/s: for the methods, without any for what engines have."""
+        return meant_in_seconds(self.methods or (lookup(USUAL),), self.point, self.h)
+
     @cached_property
     def groups(self) -> list[list[int]]:
         """The places of the columns to each of which, or to all of which jointly, a pole is fitted."""
@@ -93,6 +103,8 @@ class LogQuestion:
         """How far the constraints turn in a step, kappa h; None without a rate."""
         if self.turning is None:
             return None
+        if self.turning < 0:
+            raise InputError(f"--turning {float(self.turning):g}: expected 0 or more, in 1/s")
         if self.h is not None:
             return float(self.turning) * self.h
         if self.row_step is None:

@@ -77,17 +77,19 @@ LARGE = 10
 """From this alpha_hat or beta_hat on, 1/s was probably meant: as alpha_hat it leaves e^-5 of an error after a step."""
 
 
-def meant_in_seconds(
-    methods: Sequence[Method], point: Point, h: Fraction | None
-) -> Literal["at this step", "at another step"] | None:
+Meant = Literal["at this step", "at another step"]
+"""At which step (s) numbers are stable if they are alpha and beta in 1/s."""
+
+
+def meant_in_seconds(methods: Sequence[Method], point: Point | None, h: float | Fraction | None) -> Meant | None:
     """Return whether numbers that were given as alpha_hat and beta_hat look like alpha and beta in 1/s.
 
     They do if no method is stable there, and all methods are stable at alpha and beta in 1/s for the step h (s). They
     also do if no method is stable and one of the numbers is LARGE.
     """
-    if not methods or max(point) < 1 or any(verdict(method, *point) == "converges" for method in methods):
+    if point is None or max(point) < 1 or any(verdict(method, *point) == "converges" for method in methods):
         return None
-    if h is not None and _all_stable(methods, point, h):
+    if h is not None and _all_stable(methods, point, Fraction(h)):
         return "at this step"
     return "at another step" if max(point) > LARGE else None
 

@@ -14,7 +14,7 @@ from bezstab.mechanism import Scene, TurningNormals
 from bezstab.methods import Method, check_one_step, lookup
 from bezstab.questions.chains import Chain, Constraints, check_sweeps, constraints_of
 from bezstab.questions.motions import ReferenceMotion, check_speed, motion_of, turning_of
-from bezstab.questions.points import GivenPoint, engine_holds, point_of_drive, point_of_engine
+from bezstab.questions.points import GivenPoint, Meant, engine_holds, meant_in_seconds, point_of_drive, point_of_engine
 from bezstab.units import check_step
 
 WHICH_METHOD = (
@@ -143,6 +143,11 @@ class Question:
             return point_of_drive(self.drive, self.h)
         assert self.point
         return GivenPoint(self.point)
+
+    @property
+    def meant_in_seconds(self) -> Meant | None:
+        """Whether the point looks like alpha and beta in 1/s."""
+        return meant_in_seconds(self.methods, self.point, self.h)
 
     @cached_property
     def steps(self) -> StepRange | None:

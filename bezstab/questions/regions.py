@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
+from itertools import chain
 
 import numpy as np
 
@@ -189,8 +190,8 @@ class MapQuestion:
     `beta_range` are in alpha_hat and beta_hat; without them a window holds the region. Axes have so many `points`. With
     a step `h` (s) an `engine` gives points to mark, and the region of a `scene` is asked about as it moves, at `speeds`
     times its own speed. With `accuracy` the error is asked about that feedback forces, on a motion of rate `omega`
-    (1/s) or on that of the scene. With `compare` boundaries are compared, at one level. InputError for what does not
-    go together.
+    (1/s) or on that of the scene. With `compare` boundaries are compared, at one level. Axes may be marked in alpha and
+    beta (1/s). InputError for what does not go together.
     """
 
     methods: tuple[Method, ...] = ()
@@ -205,6 +206,7 @@ class MapQuestion:
     accuracy: bool = False
     omega: Fraction | None = None
     compare: bool = False
+    alpha_beta: bool = False
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "methods", methods_for(self.methods, self.engine, None))
@@ -239,6 +241,11 @@ class MapQuestion:
         """How the constraints of the scene turn, by speed; none where nothing moves is asked about."""
         found = {} if self.accuracy else {speed: turning_of(self.scene, speed, self.h) for speed in self.speeds}
         return {speed: turning for speed, turning in found.items() if turning}
+
+    @cached_property
+    def compared(self) -> list[RegionAnswer]:
+        """The regions whose boundaries are compared, one of each method; errors as `region`."""
+        return [region_answer(method, *map(float, self.levels)) for method in self.methods]
 
     @property
     def scene_name(self) -> str:
@@ -310,8 +317,8 @@ class MapAnswer:
         return alpha_hat, beta_hat
 
     def dominant_poles(self) -> Iterator[ComplexArray]:
-        """Yield the dominant poles over both axes, a block of rows (constant beta_hat) at a time, as `pole_map`."""
-        return pole_map(self.method, *self.axes)
+        """Yield the dominant poles over both axes, a row (constant beta_hat) at a time; errors as `pole_map`."""
+        return chain.from_iterable(pole_map(self.method, *self.axes))
 
     def errors(self, z: ComplexArray) -> FloatArray:
         """Return the error that is forced over both axes, a share of the motion; nan where |z| is not below 1."""

@@ -15,6 +15,7 @@ from bezstab.evidence import HalvedStep, Measurement, halved_steps, measure_pole
 from bezstab.mechanism import Mechanism, Scene, compiled_mechanism
 from bezstab.methods import Method
 from bezstab.questions.motions import scene_at_speed
+from bezstab.questions.points import Meant, meant_in_seconds
 from bezstab.stability import choose
 from bezstab.units import check_step
 
@@ -40,6 +41,14 @@ class VerifyQuestion:
 
     def __post_init__(self) -> None:
         check_step(self.h)
+
+    @property
+    def meant_in_seconds(self) -> Meant | None:
+        """Whether the point looks like alpha and beta in 1/s; None where there is not one exact point."""
+        if self.point is None:
+            return None
+        exact = [each for each in self.point if isinstance(each, Fraction)]
+        return meant_in_seconds(self.methods, (exact[0], exact[1]), self.h) if len(exact) == 2 else None
 
     @cached_property
     def mechanism(self) -> Mechanism:

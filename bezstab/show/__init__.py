@@ -89,7 +89,6 @@ if TYPE_CHECKING:
     from bezstab.show import plot
     from bezstab.show.accuracy_figures import error_front_figure
     from bezstab.show.arrays import (
-        boundary_arrays,
         history_arrays,
         untimed_arrays,
         verdict_arrays,
@@ -99,7 +98,7 @@ if TYPE_CHECKING:
     from bezstab.show.explorer import open_explorer
     from bezstab.show.held_figures import held_figure
     from bezstab.show.plane_figures import PlaneMap, comparison_figure, family_figure, region_figure, verdict_figure
-    from bezstab.show.region_maps import map_figure, map_rows, map_table
+    from bezstab.show.region_maps import compared_figure, compared_table, map_figure, map_rows, map_table
     from bezstab.show.run_figures import history_figure, trade_figures, work_precision_figure
     from bezstab.show.style import DASHES, column_figure, legend_below, line_at, save, styled
 

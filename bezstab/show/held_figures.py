@@ -16,15 +16,15 @@ from bezstab.show.style import ABOVE_THE_AXES, ACCENT, cells, legend_below, new_
 
 if TYPE_CHECKING:
     from bezstab.questions import HeldAnswer
-    from bezstab.stability import HeldMap
 
 
-def held_figure(answer: HeldAnswer, found: HeldMap) -> Figure:
+def held_figure(answer: HeldAnswer, points: int) -> Figure:
     """Return |z_p| of one way of applying a drive over kd and kp (SI units), its edge, and the drive's own gains.
 
-    The axes opposite show alpha_hat and beta_hat. Where the edge has a closed form, that is drawn over it.
+    Each axis has so many points. The axes opposite show alpha_hat and beta_hat. Where the edge has a closed form, that
+    is drawn over it.
     """
-    question = answer.question
+    question, found = answer.question, answer.map(points)
     h = float(question.h)
     kp_of_one, kd_of_one = question.drive.gains(1.0, 1.0, h)
     kd, kp = kd_of_one * found.alpha_hat, kp_of_one * found.beta_hat

@@ -7,10 +7,12 @@ M = N / d the leading minors of X d^2 - N^T X N are polynomials in s, which must
 
 import math
 from fractions import Fraction
+from itertools import product
 
 import numpy as np
+from numpy.polynomial.polynomial import polymul, polysub
 
-from bezstab.methods import StepMatrix, StepPolynomial, polynomial_determinant, polynomial_product
+from bezstab.methods import StepMatrix, StepPolynomial, polynomial_determinant
 from bezstab.stability.arrays import SAME, SLOW, FloatArray
 from bezstab.stability.positive_polynomials import positivity, whole_rows
 
@@ -101,18 +103,14 @@ def proves_decay(form: Form, matrix: StepMatrix, shortest: Fraction) -> bool:
     """Return whether X > 0 and every step from `shortest` to 1 makes x^T X x smaller: exact."""
     size = range(len(form))
     constant: list[list[StepPolynomial]] = [[(entry,) for entry in row] for row in form]
-    square = polynomial_product(matrix.denominator, matrix.denominator)
+    square = polymul(matrix.denominator, matrix.denominator)
 
     def lost(i: int, j: int) -> StepPolynomial:
         """Return an entry of X d^2 - N^T X N."""
-        before = [form[i][j] * coefficient for coefficient in square]
-        for k in size:
-            for m in size:
-                after = polynomial_product(matrix.entries[k][i], matrix.entries[m][j])
-                before += [Fraction(0)] * (len(after) - len(before))
-                for power, coefficient in enumerate(after):
-                    before[power] -= form[k][m] * coefficient
-        return tuple(before)
+        left = form[i][j] * square
+        for k, m in product(size, size):
+            left = polysub(left, form[k][m] * polymul(matrix.entries[k][i], matrix.entries[m][j]))
+        return tuple(left)
 
     left = [[lost(i, j) for j in size] for i in size]
     minors = [matrix.denominator]

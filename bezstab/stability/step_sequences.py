@@ -18,14 +18,13 @@ from fractions import Fraction
 from typing import Literal
 
 import numpy as np
+from numpy.polynomial.polynomial import polyadd, polymul, polysub
 
 from bezstab.errors import InputError
 from bezstab.methods import (
     Method,
     StepMatrix,
-    StepPolynomial,
     characteristic,
-    polynomial_product,
     recursion_verdict,
     step_matrix,
 )
@@ -138,8 +137,8 @@ def _single_step(matrix: StepMatrix, shortest: Fraction) -> Fraction | bool:
     circle if and only if its values at 1 and -1 and d^2 - D are positive (Jury). A state of three is tested in samples:
     what proves sequences proves single steps, too.
     """
-    square = polynomial_product(matrix.denominator, matrix.denominator)
-    without_solution = positivity(whole_rows([square]), shortest, Fraction(1)).exception
+    square = polymul(matrix.denominator, matrix.denominator)
+    without_solution = positivity(whole_rows([square.tolist()]), shortest, Fraction(1)).exception
     if without_solution is not None:
         return without_solution
     if matrix.size != 2:
@@ -148,22 +147,12 @@ def _single_step(matrix: StepMatrix, shortest: Fraction) -> Fraction | bool:
                 return length
         return True
     (a, b), (c, d) = matrix.entries
-    trace = polynomial_product(_combined(1, a, 1, d), matrix.denominator)
-    determinant = _combined(1, polynomial_product(a, d), -1, polynomial_product(b, c))
-    conditions = [
-        _combined(1, _combined(1, square, 1, determinant), -1, trace),
-        _combined(1, _combined(1, square, 1, determinant), 1, trace),
-        _combined(1, square, -1, determinant),
-    ]
-    found = positivity(whole_rows(conditions), shortest, Fraction(1))
+    trace = polymul(polyadd(a, d), matrix.denominator)
+    determinant = polysub(polymul(a, d), polymul(b, c))
+    both = polyadd(square, determinant)
+    conditions = [polysub(both, trace), polyadd(both, trace), polysub(square, determinant)]
+    found = positivity(whole_rows([each.tolist() for each in conditions]), shortest, Fraction(1))
     return found.proven if found.exception is None else found.exception
-
-
-def _combined(factor: int, first: StepPolynomial, other_factor: int, second: StepPolynomial) -> StepPolynomial:
-    """Return the sum of two multiples of polynomials."""
-    length = max(len(first), len(second))
-    filled = [(*each, *[Fraction(0)] * (length - len(each))) for each in (first, second)]
-    return tuple(factor * a + other_factor * b for a, b in zip(*filled, strict=True))
 
 
 def _samples(shortest: Fraction, down: bool) -> list[Fraction]:

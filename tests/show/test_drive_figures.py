@@ -11,7 +11,7 @@ from bezstab.engines import ENGINES, Drive
 from bezstab.methods import lookup
 from bezstab.questions import HeldQuestion, chain_map, held_answers
 from bezstab.show import chains_figure, held_figure
-from bezstab.stability import Timing, held_map, held_verdict
+from bezstab.stability import Timing, held_verdict
 
 H = Fraction("0.002")
 DRIVE = Drive(Fraction(200), Fraction(5), Fraction("0.1"))
@@ -19,8 +19,7 @@ DRIVE = Drive(Fraction(200), Fraction(5), Fraction("0.1"))
 
 def drawn(timing: Timing, drive: Drive = DRIVE) -> Figure:
     (answer,) = held_answers(HeldQuestion(drive=drive, h=H, timing=timing, methods=(lookup("SYM"),)))
-    alpha_hat, beta_hat = drive.point(H)
-    return held_figure(answer, held_map("SYM", timing, 40, (float(alpha_hat), float(beta_hat))))
+    return held_figure(answer, 40)
 
 
 def test_the_edge_parts_what_is_proven_stable_from_what_is_not() -> None:
