@@ -37,6 +37,6 @@ def show_held(question: "HeldQuestion") -> "list[HeldAnswer]":
 
     found = list(held_answers(question))
     heading = timing_words(question.timing, float(question.h))
-    show_rows(HELD, [held_row(answer) for answer in found], heading=heading)
+    show_rows(HELD, map(held_row, found), heading=heading)
     show_text(f"\n{LATE_COMMANDS} {NOT_JUDGED}")
     return found
