@@ -25,6 +25,7 @@ from bezstab.goals import Goal
 from bezstab.mechanism import Scene, Simulation
 from bezstab.methods import REGISTRY, Method, Verdict, lookup
 from bezstab.rationals import exact, rational, within_float64
+from bezstab.stabilising import Stabilise
 from bezstab.units import to_dimensionless
 
 FloatArray = NDArray[np.float64]
@@ -426,7 +427,7 @@ def simulate(
     beta: float | None = None,
     start: mechanism.Start = "rk4",
     perturb: float = 0.0,
-    stabilise: mechanism.Stabilise = "baumgarte",
+    stabilise: Stabilise = "baumgarte",
     iterations: int | None = None,
 ) -> Simulation:
     """Return a run of a mechanism with a method and a feedback, as arrays in SI units.

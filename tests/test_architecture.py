@@ -20,7 +20,8 @@ other; only appointed files see a library.
       |
     engines                what others call the feedback
       |
-    errors, rationals, files, toml_tables, units, stopping, lazy, compiling, read_only, linear_equations
+    errors, rationals, files, toml_tables, units, stopping, lazy, compiling, read_only, goals, stabilising,
+    linear_equations
 """
 
 import ast
@@ -36,7 +37,7 @@ from tests.pages import PACKAGE, ROOMS, tree_of
 
 FOUNDATIONS = (
     *("lazy", "stopping", "errors", "rationals", "files", "toml_tables", "units", "compiling", "read_only", "goals"),
-    "linear_equations",
+    *("stabilising", "linear_equations"),
 )
 """Beside the rooms, each importing only from those before it."""
 

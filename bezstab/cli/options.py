@@ -17,6 +17,7 @@ from bezstab.errors import InputError
 from bezstab.methods import REGISTRY, lookup
 from bezstab.rationals import rational
 from bezstab.show import FIGURE_FORMS, TABLE_FORMS, Format
+from bezstab.stabilising import STABILISE
 from bezstab.units import to_dimensionless
 
 if TYPE_CHECKING:
@@ -226,9 +227,8 @@ OPTIONS = {
     "duration": option("--time duration", SECONDS, "Duration in s."),
     "stabilise": option(
         "--stabilise",
-        click.Choice(["baumgarte", "projection", "none"]),
-        "How the constraints are held. baumgarte: by feedback with α and β. projection: each new state is moved "
-        "onto the constraints, by the least change in the metric of the masses. none: not at all (α = β = 0).",
+        click.Choice(list(STABILISE)),
+        "How the constraints are held. " + " ".join(f"{name}: {how}." for name, how in STABILISE.items()),
         default="baumgarte",
     ),
     "iterations": option(
@@ -321,7 +321,7 @@ GROUPS: Mapping[str, tuple[str | Option | Rule, ...]] = {
     "holding": (
         *("stabilise", "iterations"),
         Rule(
-            ("--stabilise projection", "--stabilise none"),
+            tuple(f"--stabilise {word}" for word in STABILISE if word != "baumgarte"),
             "it has no feedback",
             excludes=("--alpha", "--beta", "--physical", "--hold", "--omega"),
         ),

@@ -14,9 +14,7 @@ from bezstab.evidence.forced_runs import COMPARED, predicted_errors
 from bezstab.evidence.pareto import pareto_front
 from bezstab.evidence.reference_motions import ReferenceMotion
 from bezstab.mechanism import (
-    Projection,
     Scene,
-    Stabilise,
     Trajectory,
     compiled_mechanism,
     energy_balance,
@@ -26,6 +24,7 @@ from bezstab.mechanism import (
 )
 from bezstab.methods import Method, evaluations, steps
 from bezstab.rationals import exact
+from bezstab.stabilising import NOTHING, AfterStep, Stabilise, held_by
 from bezstab.stability import choose, spectral_radius
 from bezstab.units import feedback_gains, to_dimensionless
 
@@ -54,7 +53,7 @@ class Sweep:
 
     `point` holds alpha_hat and beta_hat, or with `physical` alpha and beta in 1/s; without one the goal accurate of
     `choose` finds one at each step, for a motion of rate `omega` (1/s). `compiled` says whether machine code takes the
-    steps, which changes nothing but their time. With a `projection` there is no feedback.
+    steps, which changes nothing but their time. Where something is done `after` each step there is no feedback.
     """
 
     method: Method
@@ -67,14 +66,12 @@ class Sweep:
     reference: ReferenceMotion
     omega: Fraction | None = None
     compiled: bool = False
-    projection: Projection | None = None
+    after: AfterStep = NOTHING
 
     @property
     def stabilise(self) -> Stabilise:
         """What holds the constraints."""
-        if self.projection:
-            return "projection"
-        return "none" if self.point == NO_FEEDBACK else "baumgarte"
+        return held_by(self.after, feedback=self.point != NO_FEEDBACK)
 
 
 @dataclass(frozen=True)
@@ -153,19 +150,17 @@ def sweep_compiled(
     step_sizes: Sequence[float],
     duration: float,
     repeats: int,
-    projecting: bool = False,
+    after: AfterStep = NOTHING,
 ) -> bool:
     """Return whether the runs of a sweep are compiled: all or none, so that their times can be compared.
 
-    `runs_compiled` says so for each method's runs together, step sizes and duration in s, `projecting` or not. By
-    default none are where one is not. InputError as `runs_compiled`.
+    `runs_compiled` says so for each method's runs together, step sizes and duration in s, with this `after` each step.
+    By default none are where one is not. InputError as `runs_compiled`.
     """
     mechanism = compiled_mechanism(scene)
     user_steps = repeats * sum(duration / h for h in step_sizes)
     wanted = [
-        runs_compiled(
-            mechanism, method, round(user_steps / float(method.step_multiple)) * evaluations(method), projecting
-        )
+        runs_compiled(mechanism, method, round(user_steps / float(method.step_multiple)) * evaluations(method), after)
         for method in methods
     ]
     return all(wanted)
@@ -240,7 +235,7 @@ def _timed_run(sweep: Sweep, h: float, gains: tuple[float, float]) -> tuple[Traj
     """Return a run and the processor time (s) of each of its repeats, without what has to be compiled first."""
     mechanism, method = compiled_mechanism(sweep.scene), sweep.method
     one_step_of_its_own = (steps(method) + 1) * h * float(method.step_multiple)
-    how: dict[str, Any] = {"compiled": sweep.compiled, "projection": sweep.projection}
+    how: dict[str, Any] = {"compiled": sweep.compiled, "after": sweep.after}
     simulate(mechanism, method, h, one_step_of_its_own, gains, **how)  # compiles the method and what starts it
     seconds = []
     for _ in range(sweep.repeats):

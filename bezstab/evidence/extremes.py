@@ -21,11 +21,11 @@ from bezstab.mechanism import (
     initial_state,
     load_scene,
     march,
-    observation_function,
     observe,
     perturbed_state,
     runs_compiled,
     simulate,
+    state_function,
 )
 from bezstab.methods import LinearMultistep, Method, PredictorCorrector, evaluations, lookup, steps
 from bezstab.stability import EPS, FloatArray, describe_point, poles, region, spectral_radius, verdict
@@ -307,7 +307,7 @@ def _masses(ratio: float) -> Check:
     two_alpha, beta_squared = feedback_gains(*POINT, H)
     q, v = initial_state(mechanism)
     state = np.concatenate((q, v)).tolist()
-    elimination, m = observation_function(mechanism, mp.mp), mechanism.constraints
+    elimination, m = state_function(mechanism, "observations", mp.mp), mechanism.constraints
 
     def precise_multipliers(entries: Sequence[mp.mpf]) -> Sequence[mp.mpf]:
         precise = [mp.mpf(entry) for entry in entries]

@@ -5,7 +5,7 @@
 Units are SI and rad.
 """
 
-from bezstab.mechanism.compiled import Mechanism, acceleration_function, compiled_mechanism, observation_function
+from bezstab.mechanism.compiled import Mechanism, acceleration_function, compiled_mechanism, state_function
 from bezstab.mechanism.compiled_stepping import runs_compiled
 from bezstab.mechanism.constraint_motions import ConstraintMotion, along_normals, constraint_motion
 from bezstab.mechanism.constraint_normals import TurningNormals, turned_across, turning_normals
@@ -14,7 +14,6 @@ from bezstab.mechanism.equations import Equations, T, equations_of_motion
 from bezstab.mechanism.linearized import linearized_acceleration
 from bezstab.mechanism.motions import Motion, motion, motion_over, regular_motion, revolution_period
 from bezstab.mechanism.observation import Observation, observe, singular_passages
-from bezstab.mechanism.projection import Projection, Stabilise, check_projected
 from bezstab.mechanism.runner import (
     Block,
     Start,
@@ -27,7 +26,7 @@ from bezstab.mechanism.runner import (
 )
 from bezstab.mechanism.scene_files import load_scene, parse_scene, read_scene, shipped_scenes
 from bezstab.mechanism.scenes import COORDINATES, GROUND, Body, Driver, Force, Revolute, Scene, at_speed
-from bezstab.mechanism.second_order_memory import Memory, memory
+from bezstab.mechanism.second_order_memory import Memory, check_after_step, memory
 from bezstab.mechanism.second_order_turns import Assigned, Evaluated, Solved, turn
 from bezstab.mechanism.simulation import MOST_STEPS, Simulation, simulated
 from bezstab.mechanism.start import constraint_errors, constraint_jacobian, initial_state, perturbed_state

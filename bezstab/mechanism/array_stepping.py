@@ -9,14 +9,8 @@ from typing import Any
 import numpy as np
 
 from bezstab.linear_equations import inverses
-from bezstab.mechanism.compiled import (
-    Mechanism,
-    StateFunction,
-    acceleration_function,
-    correction_function,
-    judged_acceleration_function,
-    slope_function,
-)
+from bezstab.mechanism.compiled import Mechanism, StateFunction, state_function
+from bezstab.mechanism.generated_code import CODES
 from bezstab.mechanism.registers import BoolArray, FloatArray, Room, Rows, Steps, in_lists
 from bezstab.mechanism.stepping import TakeSteps, read
 
@@ -24,25 +18,19 @@ from bezstab.mechanism.stepping import TakeSteps, read
 
 
 @cache
-def float_steps(mechanism: Mechanism) -> TakeSteps:
-    """Return the function that takes the steps of one run; its room is `in_lists`."""
+def float_steps(mechanism: Mechanism, names: tuple[str, ...]) -> TakeSteps:
+    """Return the function that takes the steps of one run, with these functions of a state; its room is `in_lists`."""
     n = mechanism.size
-    judged, corrected, changed = (
-        _on_floats(function, mechanism)
-        for function in (judged_acceleration_function, correction_function, slope_function)
-    )
 
-    def writing(function: StateFunction) -> Callable[..., float]:
-        def write(t: float, gains: Any, state: Any, found: Any, _variables: Any) -> float:
+    def writing(name: str) -> Callable[..., float]:
+        function, rows = _on_floats(mechanism, name), len(CODES[name](mechanism.equations).given)
+
+        def write(t: float, gains: Any, state: Any, found: Any, *_others: Any) -> float:
             (two_alpha,), (beta_squared,) = gains
-            *found[:], pivot = function(t, two_alpha, beta_squared, *state)
+            *found[:], pivot = function(t, two_alpha, beta_squared, *state[:rows])
             return float(pivot)
 
         return write
-
-    def slope(t: float, gains: Any, state: Any, direction: Any, found: Any, *_others: Any) -> None:
-        (two_alpha,), (beta_squared,) = gains
-        found[:] = changed(t, two_alpha, beta_squared, *state, *direction)
 
     def copy(source: list[float], into: list[float]) -> None:
         into[:] = source
@@ -59,9 +47,8 @@ def float_steps(mechanism: Mechanism) -> TakeSteps:
     def invert(matrices: FloatArray, size: int, _lanes: Any, found: FloatArray) -> None:
         found[:size, :size] = inverses(matrices[:size, :size])
 
-    own: dict[str, Any] = {"accelerations": writing(judged), "corrections": writing(corrected), "slope": slope}
-    own |= {"N": n, "WIDTH": n, "copy": copy, "add_sizes": add_sizes, "multiply": multiply, "invert": invert}
-    take_steps = read(own)
+    own: dict[str, Any] = {name: writing(name) for name in names} | {"N": n, "WIDTH": n}
+    take_steps = read(own | {"copy": copy, "add_sizes": add_sizes, "multiply": multiply, "invert": invert})
 
     def take(
         rows: Rows, steps: Steps, room: Room, judged: bool, states: FloatArray, pivots: FloatArray
@@ -74,14 +61,15 @@ def float_steps(mechanism: Mechanism) -> TakeSteps:
     return take
 
 
-def _on_floats(function_of: Callable[[Mechanism, Any], StateFunction], mechanism: Mechanism) -> StateFunction:
+def _on_floats(mechanism: Mechanism, name: str) -> StateFunction:
     """Return a mechanism's function on floats. What Python refuses is infinite, or no number, as with arrays."""
-    of_floats, of_arrays = function_of(mechanism, math), function_of(mechanism, np)
+    of_floats = state_function(mechanism, name, math, judged=True)
 
     def found(*given: Any) -> tuple[float, ...]:
         try:
             return of_floats(*given)
         except (ArithmeticError, ValueError):
+            of_arrays = state_function(mechanism, name, np, judged=True)
             return tuple(float(each) for each in of_arrays(*(np.array(each, np.float64) for each in given)))
 
     return found
@@ -91,28 +79,29 @@ def _on_floats(function_of: Callable[[Mechanism, Any], StateFunction], mechanism
 
 
 @cache
-def array_steps(mechanism: Mechanism) -> TakeSteps:
-    """Return the function that takes the steps of many runs."""
-    n = mechanism.size
-    changed = slope_function(mechanism, np)
+def array_steps(mechanism: Mechanism, names: tuple[str, ...]) -> TakeSteps:
+    """Return the function that takes the steps of many runs, with these functions of a state."""
 
-    def writing(function: StateFunction) -> Callable[..., float]:
-        def write(t: float, gains: FloatArray, state: FloatArray, found: FloatArray, _variables: Any) -> float:
-            for place, each in zip(range(len(found)), function(t, *gains, *state), strict=False):  # less a pivot
+    def writing(name: str) -> Callable[..., float]:
+        function, rows = state_function(mechanism, name, np), len(CODES[name](mechanism.equations).given)
+
+        def write(t: float, gains: FloatArray, state: FloatArray, found: FloatArray, *_others: Any) -> float:
+            for place, each in enumerate(function(t, *gains, *state[:rows])):
                 found[place] = each
             return 1.0
 
         return write
 
-    def slope(
-        t: float, gains: FloatArray, state: Any, direction: Any, found: Any, _variables: Any, lanes: BoolArray
-    ) -> None:
+    def slope(t: float, gains: FloatArray, state: Any, found: Any, _variables: Any, lanes: BoolArray) -> float:
         some = lanes[0]
-        for place, each in enumerate(changed(t, *gains[:, some], *state[..., some], *direction[..., :1])):
+        # all runs have the same direction
+        changes = state_function(mechanism, "slope", np)(t, *gains[:, some], *state[:2, ..., some], *state[2:, ..., :1])
+        for place, each in enumerate(changes):
             found[place, some] = each
+        return 1.0
 
-    own: dict[str, Any] = {"accelerations": writing(acceleration_function(mechanism, np)), "slope": slope}
-    own |= {"corrections": writing(correction_function(mechanism, np)), "N": n, "WIDTH": n, "ALONE": False}
+    own: dict[str, Any] = {name: slope if name == "slope" else writing(name) for name in names}
+    own |= {"N": mechanism.size, "WIDTH": mechanism.size, "ALONE": False}
     own |= {
         function.__name__: function for function in (every, combine, copy, take, add_sizes, any_of, multiply, invert)
     }

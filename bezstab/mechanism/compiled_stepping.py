@@ -13,12 +13,13 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from bezstab import compiling
+from bezstab import compiling, stabilising
 from bezstab.compiling import INNER, check_numba, compiled_choice, compiler, numba_is_installed
-from bezstab.mechanism.compiled import Mechanism, corrections_of
-from bezstab.mechanism.generated_code import TAKE, MachineCode, compiled_source, machine_code, slope_lines
+from bezstab.mechanism.compiled import Mechanism
+from bezstab.mechanism.generated_code import CODES, TAKE, MachineCode, compiled_source, machine_code
 from bezstab.mechanism.stepping import TakeSteps, read
 from bezstab.methods import Method, implicit
+from bezstab.stabilising import NOTHING, AfterStep
 
 WORTH_COMPILING = 3 * 10**5
 """Evaluations of a run: Python takes as long for so many as numba takes to be loaded and to compile the scene.
@@ -37,12 +38,17 @@ CHEAPER_TOGETHER = 20
 LANES = 32
 """Runs side by side: what they remember stays in the fastest memory."""
 
-_compiled: set[tuple[Mechanism, bool, bool, int]] = set()
-"""What this process has compiled or loaded: for implicit methods, with projection, and for how many runs together."""
+_compiled: set[tuple[Mechanism, tuple[str, ...], int]] = set()
+"""What this process has compiled or loaded: with which functions of a state, and for how many runs together."""
+
+
+def functions_called(solving: bool, after: AfterStep) -> tuple[str, ...]:
+    """Return the functions of a state that steps call: if equations are solved, and with this after each step."""
+    return ("accelerations", *(("slope",) if solving else ()), *after.calls)
 
 
 def runs_compiled(
-    mechanism: Mechanism, method: Method, evaluations: int, projecting: bool = False, together: bool = False
+    mechanism: Mechanism, method: Method, evaluations: int, after: AfterStep = NOTHING, together: bool = False
 ) -> bool:
     """Return whether a run, or runs together, of so many evaluations are to be compiled. InputError if that cannot be.
 
@@ -60,7 +66,8 @@ def runs_compiled(
         return False
     solving = implicit(method)
     stride = LANES if together else 1
-    if (mechanism, solving, projecting, stride) in _compiled:
+    names = functions_called(solving, after)
+    if (mechanism, names, stride) in _compiled:
         return True
     if together:
         evaluations //= CHEAPER_TOGETHER
@@ -68,26 +75,23 @@ def runs_compiled(
         evaluations *= ITERATIONS_OF_A_SOLUTION
     if evaluations < WORTH_LOADING:
         return False
-    return evaluations >= WORTH_COMPILING or _is_kept(_kept_file(mechanism, solving, projecting, stride))
+    return evaluations >= WORTH_COMPILING or _is_kept(_kept_file(mechanism, names, stride))
 
 
-CALLED_OFTEN = (
-    *("take_lines", "given", "accelerations", "corrections", "slope", "combine", "arguments", "copy", "take"),
-    *("add_sizes", "invert_one", "correct", "shift"),
-)
-"""What machine code calls from several places, or is long."""
+CALLED_OFTEN = ("combine", "arguments", "copy", "take", "add_sizes", "invert_one", "correct", "shift")
+"""What the loop calls from several places, besides the functions of a state, which are long."""
 
 
 @cache
-def machine_steps(mechanism: Mechanism, solving: bool, projecting: bool, stride: int) -> tuple[TakeSteps, int]:
+def machine_steps(mechanism: Mechanism, names: tuple[str, ...], stride: int) -> tuple[TakeSteps, int]:
     """Return the function that takes a mechanism's steps as machine code, and how large a room its variables need.
 
-    `solving`: whether programs have equations to solve; `projecting`: whether states are projected; `stride`: for how
-    many runs side by side. What is compiled is kept for the next process. InputError without numba.
+    `names`: with which functions of a state; `stride`: for how many runs side by side. What is compiled is kept for the
+    next process. InputError without numba.
     """
     numba = compiler()
-    code = _code(mechanism, solving, projecting, stride)
-    file = _kept_file(mechanism, solving, projecting, stride)
+    code = _code(mechanism, names, stride)
+    file = _kept_file(mechanism, names, stride)
     n = mechanism.size
 
     def made(function: Any) -> Any:
@@ -96,41 +100,36 @@ def machine_steps(mechanism: Mechanism, solving: bool, projecting: bool, stride:
         Code from disk is linked by its names: two scenes must not share any. What is called from one place becomes a
         part of what calls it, and so is compiled once.
         """
-        inline = "never" if function.__name__ in CALLED_OFTEN else "always"
+        inline = "never" if function.__name__ in (*CALLED_OFTEN, *code.names) else "always"
         function.__name__ = function.__qualname__ = f"{function.__name__}_{file.parent.name}"
         # where nothing allocates, nothing need count references to arrays: that takes longer than most operations
         return numba.njit(error_model="numpy", _nrt=False, inline=inline, **INNER)(function)
 
-    own: dict[str, Any] = {"N": n, "STRIDE": stride, "WIDTH": n * stride}
-    own |= {"ALONE": stride == 1, "SOLVING": solving, "PROJECTING": projecting}
+    own: dict[str, Any] = {"N": n, "STRIDE": stride, "WIDTH": n * stride, "ALONE": stride == 1}
     generated = compiled_source(code.source, math, code.tables)
-    for name in ("take_lines", "given", "accelerations", "corrections", "slope"):
-        if name in generated:
-            own[name] = generated[name] = made(generated[name])
+    for name in code.names:
+        own[name] = generated[name] = made(generated[name])
     # numba keeps what is called from a text with a file, if it has nothing but that text from around it
     take = compiled_source(TAKE, math, {"take_steps": read(own, made)}, str(file))["take"]
     take.__name__ = take.__qualname__ = f"take_{file.parent.name}"
     steps = numba.njit(error_model="numpy", _nrt=False, no_cfunc_wrapper=True, cache=_keep(file))(take)
-    _compiled.add((mechanism, solving, projecting, stride))
+    _compiled.add((mechanism, names, stride))
     return steps, code.size
 
 
 @cache
-def _code(mechanism: Mechanism, solving: bool, projecting: bool, stride: int) -> MachineCode:
+def _code(mechanism: Mechanism, names: tuple[str, ...], stride: int) -> MachineCode:
     """Return the text of a mechanism's own functions."""
-    codes = {"accelerations": mechanism.acceleration_code}
-    if projecting:
-        codes["corrections"] = corrections_of(mechanism)
-    return machine_code(codes, slope_lines(mechanism.equations) if solving else (), stride)
+    return machine_code({name: CODES[name](mechanism.equations) for name in names}, stride)
 
 
 @cache
-def _kept_file(mechanism: Mechanism, solving: bool, projecting: bool, stride: int) -> Path:
+def _kept_file(mechanism: Mechanism, names: tuple[str, ...], stride: int) -> Path:
     """Return the file beside which numba keeps a scene's code: its name stands for all that makes it."""
-    code = _code(mechanism, solving, projecting, stride)
+    code = _code(mechanism, names, stride)
     # every file of this room, so that no number that one of them lends can be forgotten, and the options of numba
     room = sorted(Path(__file__).parent.glob("*.py"))
-    made_from = [file.read_bytes() for file in (*room, Path(compiling.__file__))]
+    made_from = [file.read_bytes() for file in (*room, Path(compiling.__file__), Path(stabilising.__file__))]
     made_from += [code.source.encode(), *(table.tobytes() for table in code.tables.values())]
     made_from += [each.encode() for each in (sys.version, version("numba"), version("llvmlite"))]
     name = hashlib.sha256(b"\0".join(made_from)).hexdigest()

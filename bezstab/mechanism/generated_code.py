@@ -6,8 +6,8 @@ does with them is no text: `programs` and `stepping` have it. From its top to it
     compiled_source                        text becomes functions
     accelerations and multipliers          the assignments that solve paper Eq. 9
     corrections                            what brings a state back to its constraints, by the same factors
-    functions of a state                   what is assigned on the way, of one state or of many
     slopes of the acceleration             its derivatives along a direction of positions and velocities
+    functions of a state                   all of these by name, each as a function of one state or of many
     machine code                           the same for lanes side by side, and by shapes where they are long
 
 All of it is plain arithmetic on numbered variables, one assignment a line, with `sin`, `cos`, `sqrt` and `least` as the
@@ -25,8 +25,9 @@ and these names; least of all the names that a user gave to bodies.
 
 import math
 import re
-from collections.abc import Container, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Container, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cache
 from itertools import groupby
 from typing import Any
 
@@ -87,17 +88,17 @@ def _least_of_arrays(*values: Any) -> Any:
 
 
 @dataclass(frozen=True)
-class AccelerationCode:
-    """Assignments that compute a_i = qddot_i and l_j = lambda_j from t, q_i, v_i, two_alpha and beta_squared.
+class StateCode:
+    """Assignments that compute the variables `results` from t, two_alpha, beta_squared and what is `given` of a state.
 
-    On the way c_j and cdot_j get their values. `results` are the names of the a_i, or of what else it is that is
-    computed so: the corrections of a state.
+    That is q_i and v_i, and for slopes dq_i and dv_i, the direction in which the state changes.
     """
 
     coordinates: int
     constraints: int
     lines: tuple[str, ...]
     results: tuple[str, ...]
+    given: tuple[str, ...] = ("q", "v")
 
     @property
     def pivots(self) -> list[str]:
@@ -109,9 +110,18 @@ class AccelerationCode:
         """The text of the least relative pivot, or 1 without any."""
         return f"least(1.0, {', '.join(self.pivots)})" if self.constraints else "1.0"
 
+    @property
+    def of_some_lanes(self) -> bool:
+        """Whether machine code is told for which runs to compute it: slopes, which cost most, are seldom needed."""
+        return len(self.given) > 2
 
-def acceleration_code(equations: Equations) -> AccelerationCode:
-    """Return the assignments that solve paper Eq. 9 by an unrolled L D L^T without its structural zeros."""
+
+@cache
+def acceleration_code(equations: Equations) -> StateCode:
+    """Return what solves paper Eq. 9 for a_i = qddot_i, by an unrolled L D L^T without its structural zeros.
+
+    On the way l_j = lambda_j, c_j and cdot_j get their values.
+    """
     coordinates = len(equations.q)
     constraints = len(equations.constraints)
     entries = _nonzero_entries(equations)
@@ -126,7 +136,7 @@ def acceleration_code(equations: Equations) -> AccelerationCode:
         *_acceleration_lines(columns_of_row, inverse_masses, entries),
     ]
     results = tuple(variable_names("a", coordinates))
-    return AccelerationCode(coordinates, constraints, tuple(lines), results)
+    return StateCode(coordinates, constraints, tuple(lines), results)
 
 
 def _columns_of_row(equations: Equations) -> list[list[int]]:
@@ -261,14 +271,22 @@ def _acceleration_lines(
     return lines
 
 
+def observation_code(equations: Equations) -> StateCode:
+    """Return the same for all c, all cdot, then all l: multipliers in N along a constraint whose c is in m."""
+    code = acceleration_code(equations)
+    names = [name for prefix in ("c", "cdot", "l") for name in variable_names(prefix, code.constraints)]
+    return replace(code, results=tuple(names))
+
+
 # Corrections
 #
-# What brings a state back to its constraints, in the metric of the masses (`projection`), takes the same S:
+# What brings a state back to its constraints, in the metric of the masses (`stabilising`), takes the same S:
 #
 #     dq = -M^-1 C_q^T S^-1 c,      dv = -M^-1 C_q^T S^-1 cdot
 
 
-def correction_code(equations: Equations) -> AccelerationCode:
+@cache
+def correction_code(equations: Equations) -> StateCode:
     """Return the assignments that compute dq_i and dv_i from t, q_i and v_i; S is factored as for accelerations."""
     coordinates, constraints = len(equations.q), len(equations.constraints)
     entries = {name: entry for name, entry in _nonzero_entries(equations).items() if name.startswith(("C", "c"))}
@@ -285,32 +303,7 @@ def correction_code(equations: Equations) -> AccelerationCode:
         lines += _acceleration_lines(columns_of_row, inverse_masses, ())  # without forces, what l alone accelerates
         lines += [f"{correction}{k} = a{k}" for k in range(coordinates)]
     results = (*variable_names("dq", coordinates), *variable_names("dv", coordinates))
-    return AccelerationCode(coordinates, constraints, tuple(lines), results)
-
-
-# Functions of a state
-
-
-def state_source(
-    code: AccelerationCode, results: Iterable[str], given: Sequence[str] = ("q", "v"), more: Iterable[str] = ()
-) -> str:
-    """Return the source of found(t, two_alpha, beta_squared, q, v): some of the variables that the code assigns.
-
-    `given` names what else is handed over, a number for each coordinate, and `more` are lines after those of the code.
-    """
-    lines = [f"{_tuple_text(variable_names(name, code.coordinates))} = {name}" for name in given]
-    lines += [*code.lines, *more, f"return {_tuple_text(results)}"]
-    return "\n".join([f"def found(t, two_alpha, beta_squared, {', '.join(given)}):", *_indented(lines, 1)])
-
-
-def _tuple_text(entries: Iterable[str]) -> str:
-    """Return the text of a tuple."""
-    return f"({', '.join(entries)},)"
-
-
-def _indented(lines: Iterable[str], depth: int) -> list[str]:
-    """Return lines of source so many blocks deep."""
-    return [" " * depth + line for line in lines]
+    return StateCode(coordinates, constraints, tuple(lines), results)
 
 
 # Slopes of the acceleration
@@ -324,8 +317,10 @@ def _indented(lines: Iterable[str], depth: int) -> list[str]:
 # dlambda. A Jacobian is taken so, along one unknown after the other, or along all at once where directions are arrays.
 
 
-def slope_lines(equations: Equations) -> list[str]:
-    """Return the assignments to da, the change of a along dq and dv, after those of the acceleration code."""
+@cache
+def slope_code(equations: Equations) -> StateCode:
+    """Return the assignments to da, the change of a along dq and dv, after those to a."""
+    acceleration = acceleration_code(equations)
     columns_of_row, inverse_masses = _columns_of_row(equations), _inverse_masses(equations)
     coordinates, constraints = range(len(equations.q)), range(len(equations.constraints))
     entries = _nonzero_differentials(equations)
@@ -347,7 +342,12 @@ def slope_lines(equations: Equations) -> list[str]:
     for k in coordinates:
         reactions = "".join(f" - C{i}_{k} * l{i}" for i, columns in enumerate(columns_of_row) if k in columns)
         lines.append(f"da{k} = (G{k}{reactions}) * {inverse_masses[k]}")
-    return lines
+    return replace(
+        acceleration,
+        lines=(*acceleration.lines, *lines),
+        results=tuple(variable_names("da", len(equations.q))),
+        given=("q", "v", "dq", "dv"),
+    )
 
 
 def _difference_text(name: str, there: Container[str], taken: Iterable[str]) -> str:
@@ -363,6 +363,34 @@ def _nonzero_differentials(equations: Equations) -> dict[str, sp.Expr]:
         for name, entry in _nonzero_entries(equations).items()
         if name.startswith(("C", "gamma", "ct", "g")) and (moving := entry.free_symbols & changes.keys())
     }
+
+
+# Functions of a state
+
+CODES: Mapping[str, Callable[[Equations], StateCode]] = {
+    "accelerations": acceleration_code,
+    "observations": observation_code,
+    "corrections": correction_code,
+    "slope": slope_code,
+}
+"""All that is generated of a scene, by name. Whoever asks for a name gets it in Python or as machine code."""
+
+
+def state_source(code: StateCode, results: Iterable[str]) -> str:
+    """Return the source of found(t, two_alpha, beta_squared, q, v, ...): some of the variables that a code assigns."""
+    lines = [f"{_tuple_text(variable_names(name, code.coordinates))} = {name}" for name in code.given]
+    lines += [*code.lines, f"return {_tuple_text(results)}"]
+    return "\n".join([f"def found(t, two_alpha, beta_squared, {', '.join(code.given)}):", *_indented(lines, 1)])
+
+
+def _tuple_text(entries: Iterable[str]) -> str:
+    """Return the text of a tuple."""
+    return f"({', '.join(entries)},)"
+
+
+def _indented(lines: Iterable[str], depth: int) -> list[str]:
+    """Return lines of source so many blocks deep."""
+    return [" " * depth + line for line in lines]
 
 
 # Machine code
@@ -386,62 +414,58 @@ OPERAND = re.compile(r"\b(?!(?:sin|cos|sqrt)\b)[A-Za-z_]\w*|\b\d+(?:\.\d*)?(?:e[
 
 @dataclass(frozen=True)
 class MachineCode:
-    """The source of the functions of a mechanism that machine code calls, and the tables that they name.
+    """The source of the functions of a mechanism that machine code calls, their names, and the tables that they name.
 
-    accelerations(t, gains, state, found, room) writes all a of all lanes and returns, for a stride of one, the least
-    relative pivot of S, and so does corrections(...) with all dq, then all dv; slope(t, gains, state, direction, found,
-    room, lanes) writes all da of the lanes that are true. gains (2, lanes); state and direction (2, n stride), found
-    (n stride,) or as much for each of the results, lane after lane of each coordinate; the room (size,).
+    Each is NAME(t, gains, state, found, room) and writes the results of the code of that name for all lanes. For a
+    stride of one it returns the least relative pivot of S. gains (2, lanes); state (2 or 4, n stride): q, v, and for
+    slopes dq, dv; found (n stride,) or as much for each of the results, lane after lane of each coordinate; the room
+    (size,). A slope is told, last, for which lanes.
     """
 
     source: str
+    names: tuple[str, ...]
     tables: dict[str, NDArray[Any]] = field(default_factory=dict)
     size: int = 0
 
 
-def machine_code(codes: Mapping[str, AccelerationCode], slopes: Sequence[str], stride: int) -> MachineCode:
-    """Return the machine code's source for so many lanes: a function of each of the codes, by its name, and the slope.
-
-    The first code is that of accelerations. Where there are no lines for slopes there is no function of them.
-    """
-    acceleration = next(iter(codes.values()))
-    if len(acceleration.lines) > LONG:
-        return _code_by_shapes(codes, slopes, stride)
-    coordinates = range(acceleration.coordinates)
-    given = ["two_alpha = gains[0, lane]", "beta_squared = gains[1, lane]"]
-    given += [f"{name}{i} = state[{half}, {i * stride} + lane]" for half, name in enumerate("qv") for i in coordinates]
+def machine_code(codes: Mapping[str, StateCode], stride: int) -> MachineCode:
+    """Return the source for so many lanes of a function of each of the codes, by its name; accelerations among them."""
+    if len(codes["accelerations"].lines) > LONG:
+        return _code_by_shapes(codes, stride)
     source = []
     for name, code in codes.items():
-        lines = [*given, *code.lines]
+        lines = ["two_alpha = gains[0, lane]", "beta_squared = gains[1, lane]"]
+        for row, given in enumerate(code.given):
+            lines += [f"{given}{i} = state[{row}, {i * stride} + lane]" for i in range(code.coordinates)]
+        lines += [*code.lines]
         lines += [f"found[{place * stride} + lane] = {result}" for place, result in enumerate(code.results)]
-        least = ["pivot = 1.0", *(f"pivot = min(pivot, {each})" for each in code.pivots), "return pivot"]
-        alone = ["lane = 0", *lines, *least]
-        together = ["for lane in range(gains.shape[1]):", *_indented(lines, 1), "return 1.0"]
-        source += [f"def {name}(t, gains, state, found, room):", *_indented(alone if stride == 1 else together, 1)]
-    if slopes:
-        lines = [*given, *acceleration.lines]
-        for half, name in enumerate("qv"):
-            lines += [f"d{name}{i} = direction[{half}, {i * stride} + lane]" for i in coordinates]
-        lines += [*slopes, *(f"found[{i * stride} + lane] = da{i}" for i in coordinates)]
-        source += ["def slope(t, gains, state, direction, found, room, lanes):", " for lane in range(len(lanes)):"]
-        source += ["  if lanes[lane]:", *_indented(lines, 3)]
-    return MachineCode("\n".join(source))
+        if stride == 1:
+            lines = ["lane = 0", *lines, "pivot = 1.0", *(f"pivot = min(pivot, {each})" for each in code.pivots)]
+            lines.append("return pivot")
+        else:
+            wanted = ["if lanes[lane]:", *_indented(lines, 1)] if code.of_some_lanes else lines
+            lines = ["for lane in range(gains.shape[1]):", *_indented(wanted, 1), "return 1.0"]
+        source += [_head(name, code), *_indented(lines, 1)]
+    return MachineCode("\n".join(source), tuple(codes))
 
 
-def _code_by_shapes(codes: Mapping[str, AccelerationCode], slopes: Sequence[str], stride: int) -> MachineCode:
+def _head(name: str, code: StateCode) -> str:
+    """Return the first line of a function's source."""
+    return f"def {name}(t, gains, state, found, room{', lanes' if code.of_some_lanes else ''}):"
+
+
+def _code_by_shapes(codes: Mapping[str, StateCode], stride: int) -> MachineCode:
     """Return the same where the lines are taken by their shapes, lane after lane."""
-    acceleration = next(iter(codes.values()))
-    n, m = acceleration.coordinates, acceleration.constraints
+    n, m = codes["accelerations"].coordinates, codes["accelerations"].constraints
     names = ["t", "two_alpha", "beta_squared"]
     for name, count in (("q", n), ("v", n), ("dq", n), ("dv", n), ("a", n), ("da", n), ("S", m), ("D", m)):
         names += variable_names(name, count)
     places = {name: place for place, name in enumerate(names)}
-    firsts = {f"{name}0": places[f"{name}0"] for name in ("q", "dq", "da", "S", "D")}
     shapes: dict[str, int] = {}
     tables: dict[str, NDArray[Any]] = {}
-    for name, lines in ({name: code.lines for name, code in codes.items()} | {"slope": tuple(slopes)}).items():
-        of_lines = [shapes.setdefault(OPERAND.sub("#", line), len(shapes)) for line in lines]
-        operands = [operand for line in lines for operand in OPERAND.findall(line)]
+    for name, code in codes.items():
+        of_lines = [shapes.setdefault(OPERAND.sub("#", line), len(shapes)) for line in code.lines]
+        operands = [operand for line in code.lines for operand in OPERAND.findall(line)]
         tables[f"{name}_shapes"] = np.array([(shape, len(list(some))) for shape, some in groupby(of_lines)], np.int64)
         # without a sign: numba need not ask whether they count from the end
         tables[f"{name}_places"] = np.array([places.setdefault(each, len(places)) for each in operands], np.uint32)
@@ -456,13 +480,17 @@ def _code_by_shapes(codes: Mapping[str, AccelerationCode], slopes: Sequence[str]
             f"  {shape.replace('#', '{}').format(*operands)}",
             f"  p += {len(operands)}",
         ]
-    source = [SHAPES_TAKEN.format(cases="\n".join(_indented(cases, 2)), stride=stride, n=n, **firsts)]
+    first_places = {f"{name}0": places[f"{name}0"] for name in ("q", "S", "D")}
+    source = [SHAPES_TAKEN.format(cases="\n".join(_indented(cases, 2)), stride=stride, n=n, **first_places)]
     for name, code in codes.items():
-        first, count = places[code.results[0]], len(code.results)
-        source.append(FOUND_BY_SHAPES.format(name=name, first=first, count=count, stride=stride, m=m, **firsts))
-    if slopes:
-        source.append(SLOPE_BY_SHAPES.format(name=next(iter(codes)), stride=stride, n=n, **firsts))
-    return MachineCode("".join(source), tables, len(places))
+        about: dict[str, Any] = {
+            "name": name,
+            "head": _head(name, code),
+            "wanted": "lanes[lane]" if code.of_some_lanes else "True",
+        }
+        about |= {"first": places[code.results[0]], "count": len(code.results), "stride": stride, "m": m}
+        source.append(FOUND_BY_SHAPES.format(**about, **first_places))
+    return MachineCode("".join(source), ("take_lines", "given", *codes), tables, len(places))
 
 
 SHAPES_TAKEN = """
@@ -475,34 +503,22 @@ def given(t, gains, state, room, lane):
  room[0], room[1], room[2] = t, gains[0, lane], gains[1, lane]
  for k in range(len(numbers)):
   room[number_places[k]] = numbers[k]
- for i in range({n}):
-  room[{q0} + i], room[{q0} + {n} + i] = state[0, i * {stride} + lane], state[1, i * {stride} + lane]
+ for half in range(len(state)):
+  for i in range({n}):
+   room[{q0} + half * {n} + i] = state[half, i * {stride} + lane]
 """
 
 FOUND_BY_SHAPES = """
-def {name}(t, gains, state, found, room):
+{head}
  for lane in range(gains.shape[1]):
-  given(t, gains, state, room, lane)
-  take_lines({name}_shapes, {name}_places, room)
-  for i in range({count}):
-   found[i * {stride} + lane] = room[{first} + i]
+  if {wanted}:
+   given(t, gains, state, room, lane)
+   take_lines({name}_shapes, {name}_places, room)
+   for i in range({count}):
+    found[i * {stride} + lane] = room[{first} + i]
  pivot = 1.0
  if {stride} == 1:
   for j in range({m}):
    pivot = min(pivot, room[{D0} + j] / room[{S0} + j])
  return pivot
-"""
-
-SLOPE_BY_SHAPES = """
-def slope(t, gains, state, direction, found, room, lanes):
- for lane in range(len(lanes)):
-  if lanes[lane]:
-   given(t, gains, state, room, lane)
-   take_lines({name}_shapes, {name}_places, room)
-   for i in range({n}):
-    place = i * {stride} + lane
-    room[{dq0} + i], room[{dq0} + {n} + i] = direction[0, place], direction[1, place]
-   take_lines(slope_shapes, slope_places, room)
-   for i in range({n}):
-    found[i * {stride} + lane] = room[{da0} + i]
 """

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from bezstab.mechanism.compiled import Mechanism, acceleration_function, slope_function
+from bezstab.mechanism.compiled import Mechanism, acceleration_function, state_function
 
 FloatArray = NDArray[np.float64]
 
@@ -20,7 +20,7 @@ def linearized_acceleration(
     against (...).
     """
     size = mechanism.size
-    acceleration, slope = acceleration_function(mechanism, np), slope_function(mechanism, np)
+    acceleration, slope = acceleration_function(mechanism, np), state_function(mechanism, "slope", np)
     directions = np.split(np.eye(2 * size)[:, :, np.newaxis], 2)
     shape = np.broadcast_shapes(q.shape[:-1], *map(np.shape, (t, two_alpha, beta_squared)))
     scalars = [np.broadcast_to(each, shape).ravel() for each in (t, two_alpha, beta_squared)]

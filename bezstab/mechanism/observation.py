@@ -8,7 +8,7 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
-from bezstab.mechanism.compiled import Mechanism, observation_function
+from bezstab.mechanism.compiled import Mechanism, state_function
 from bezstab.mechanism.equations import T
 from bezstab.read_only import ReadOnlyArrays
 
@@ -66,7 +66,8 @@ def observe(
     q_columns = np.ascontiguousarray(q.T)
     v_columns = np.ascontiguousarray(v.T)
     with np.errstate(all="ignore"):  # of a broken-down run's last states
-        values = observation_function(mechanism, np)(t, two_alpha, beta_squared, q_columns, v_columns)
+        observed = state_function(mechanism, "observations", np, judged=True)
+        values = observed(t, two_alpha, beta_squared, q_columns, v_columns)
     # what depends on nothing that varies is a number: it holds at every time
     *columns, pivots = [np.broadcast_to(value, t.shape) for value in values]
     c, cdot, multipliers = (

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bezstab.mechanism.programs import Program
-from bezstab.mechanism.projection import Projection
+from bezstab.stabilising import NOTHING, AfterStep
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -31,8 +31,7 @@ class Rows(NamedTuple):
     """A program in float64. `table` has the rows of position and velocity of each evaluation, then the combined ones.
 
     What is not zero in it, row after row: `starts` says where each row begins among the `shares` and the registers,
-    `sources`, that they are of. `projected` is how many iterations a projection may take, 0 where there is none, and
-    `settles` whether a run ends where they do not settle.
+    `sources`, that they are of. `after` is what is done to the new state.
     """
 
     powers: IntArray
@@ -47,27 +46,25 @@ class Rows(NamedTuple):
     moved_to: IntArray
     state: IntArray
     corrected: FloatArray
-    projected: int
-    settles: bool
+    after: AfterStep
 
 
 class Room(NamedTuple):
     """What is made once, to compute in: of all steps, of an evaluation, then what Newton's method knows of each lane.
 
     registers (registers, width), in units of the step before[0] (s), the last one's; counts of what implicit steps and
-    projections take; state and direction (2, width), found (width,), and off, by which a projection corrects position
-    and velocity, (2 width,); variables, of machine code that needs them; residuals, those at the guess, corrections and
-    guess (evaluations of a group, width); Jacobians, and the inverses of the last of each kind of step, nan at first,
-    (kinds, groups, unknowns, unknowns, lanes); of each lane the sizes of what it computes with, how far this correction
-    moves it and the one before did, and whether it is running, settled, unsolved, to be renewed, has its inverse
-    Jacobian from an earlier step, and starts again.
+    projections take; a state with the direction of a slope (4, width), what is found (width,), and off, by which a
+    projection corrects position and velocity, (2 width,); variables, of machine code that needs them; residuals, those
+    at the guess, corrections and guess (evaluations of a group, width); Jacobians, and the inverses of the last of each
+    kind of step, nan at first, (kinds, groups, unknowns, unknowns, lanes); of each lane the sizes of what it computes
+    with, how far this correction moves it and the one before did, and whether it is running, settled, unsolved, to be
+    renewed, has its inverse Jacobian from an earlier step, and starts again.
     """
 
     registers: FloatArray
     before: FloatArray
     counts: IntArray
     state: FloatArray
-    direction: FloatArray
     found: FloatArray
     off: FloatArray
     variables: FloatArray
@@ -100,9 +97,8 @@ class Steps(NamedTuple):
     gains: FloatArray
 
 
-def rows_of(program: Program, projection: Projection | None = None) -> Rows:
-    """Return a program in float64."""
-    most_projected = (projection.iterations or MOST_ITERATIONS) if projection else 0
+def rows_of(program: Program, after: AfterStep = NOTHING) -> Rows:
+    """Return a program in float64, with what is done after each step."""
     arguments = [row for each in program.evaluations for row in (each.position, each.velocity)]
     table = np.array([*arguments, *program.combined], np.float64)
     of_rows, sources = table.nonzero()
@@ -119,8 +115,7 @@ def rows_of(program: Program, projection: Projection | None = None) -> Rows:
         moved_to=np.array([end for _, end in program.moves], np.int64),
         state=np.array(program.state, np.int64),
         corrected=np.array([list(map(float, shares)) for shares in program.corrected]),
-        projected=most_projected,
-        settles=projection is not None and projection.iterations is None,
+        after=after,
     )
 
 
@@ -148,8 +143,7 @@ def room_of(
         registers=registers.reshape(count, width, *number),
         before=np.array([h]),
         counts=counts,
-        state=zeros((2, width)),
-        direction=zeros((2, width)),
+        state=zeros((4, width)),
         found=zeros((width,)),
         off=zeros((2 * width,)),
         variables=np.zeros(variables),

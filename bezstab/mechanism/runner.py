@@ -12,11 +12,10 @@ from numpy.typing import ArrayLike, NDArray
 from bezstab.errors import InputError
 from bezstab.mechanism.array_stepping import array_steps, float_steps
 from bezstab.mechanism.compiled import SINGULAR, Mechanism, acceleration_function
-from bezstab.mechanism.compiled_stepping import LANES, machine_steps, runs_compiled
+from bezstab.mechanism.compiled_stepping import LANES, functions_called, machine_steps, runs_compiled
 from bezstab.mechanism.programs import program_of
-from bezstab.mechanism.projection import Projection, check_projected
 from bezstab.mechanism.registers import MOST_ITERATIONS, IntArray, Steps, in_lists, room_of, rows_of
-from bezstab.mechanism.second_order_memory import implicit_evaluations, memory
+from bezstab.mechanism.second_order_memory import check_after_step, implicit_evaluations, memory
 from bezstab.mechanism.start import initial_state
 from bezstab.mechanism.stepping import BLOWN_UP, EVALUATIONS, ITERATIONS, PROJECTIONS
 from bezstab.methods import (
@@ -30,6 +29,7 @@ from bezstab.methods import (
     second_order_form,
 )
 from bezstab.read_only import ReadOnlyArrays
+from bezstab.stabilising import NOTHING, AfterStep
 
 Start = Literal["rk4", "ramp", "euler"]
 """Where a multistep method's first values come from: RK4, its family's members of fewer steps, or explicit Euler.
@@ -73,8 +73,8 @@ class Trajectory(ReadOnlyArrays):
     """A run: t (s, shape (steps + 1,)), q and v (shape (steps + 1, n), SI), and why it ended early, if it did.
 
     `evaluations` counts right-hand sides, and `iterations` those of Newton's method, None for an explicit method; each
-    iteration evaluates once, and a Jacobian once for each unknown, a slope. `projections` counts how often a projection
-    has computed corrections of a state, which costs about as much as an evaluation; None without projection.
+    iteration evaluates once, and a Jacobian once for each unknown, a slope. `after` is what was done to each new state,
+    and `projections` counts how often it has computed corrections of one, which costs about as much as an evaluation.
     `failure` says when and why in one line; the history ends before it.
     `least_pivot` is the least relative pivot of S = C_q M^-1 C_q^T that was met, in the step from `pivot_time` (s):
     where it is small a singular configuration is near, and multipliers have lost about that factor of their digits.
@@ -90,12 +90,13 @@ class Trajectory(ReadOnlyArrays):
     least_pivot: float
     pivot_time: float
     iterations: int | None = None
-    projections: int | None = None
+    projections: int = 0
+    after: AfterStep = NOTHING
 
     @property
     def factorizations(self) -> int:
         """How often S = C_q M^-1 C_q^T was factored: once for each evaluation, and once for each of `projections`."""
-        return self.evaluations + (self.projections or 0)
+        return self.evaluations + self.projections
 
     def __repr__(self) -> str:
         failed = ", failed" if self.failure else ""
@@ -112,7 +113,7 @@ def simulate(
     state: tuple[FloatArray, FloatArray] | None = None,
     start: Start = "rk4",
     compiled: bool | None = None,
-    projection: Projection | None = None,
+    after: AfterStep = NOTHING,
 ) -> Trajectory:
     """Return the run over `duration` (s) from `state` (q, v, shape (n,) each; default the scene's initial one).
 
@@ -120,18 +121,16 @@ def simulate(
     The first values of a multistep method come from RK4, from its family's members of fewer steps ("ramp") or from
     explicit Euler. A blow-up, a singular S, a number that is not finite or an implicit step that Newton's method does
     not solve ends the run, and `failure` says so. `compiled` says whether machine code takes the steps; by default that
-    is as BEZSTAB_COMPILED says, or where it pays. With a `projection` each new state, those of the start too, is
-    brought back to the constraints.
-    InputError for a start that has blown up before, where numba is asked for and missing, and for a method whose states
-    cannot be projected.
+    is as BEZSTAB_COMPILED says, or where it pays. What is done `after` a step is done to each new state,
+    those of the start too.
+    InputError for a start that has blown up before, where numba is asked for and missing, and as `check_after_step`.
     """
-    if projection:
-        check_projected(method)
+    check_after_step(method, after)
     whole_step = h * float(method.step_multiple)
     count = round(duration / whole_step)
     first = checked_start(initial_state(mechanism) if state is None else state)
     if compiled is None:
-        compiled = runs_compiled(mechanism, method, count * evaluations(method), projection is not None)
+        compiled = runs_compiled(mechanism, method, count * evaluations(method), after)
     counts = no_counts()
     blocks = march(
         mechanism,
@@ -144,10 +143,10 @@ def simulate(
         compiled=compiled,
         counts=counts,
         judged=True,
-        projection=projection,
+        after=after,
     )
     times = np.arange(count + 1, dtype=np.float64) * whole_step
-    return recorded(mechanism, method, first, times, blocks, start, counts, projection)
+    return recorded(mechanism, method, first, times, blocks, start, counts, after)
 
 
 def checked_start(state: tuple[FloatArray, FloatArray]) -> FloatArray:
@@ -167,7 +166,7 @@ def recorded(
     blocks: Iterable[Block],
     start: Start,
     counts: IntArray,
-    projection: Projection | None = None,
+    after: AfterStep = NOTHING,
 ) -> Trajectory:
     """Return a run from its blocks, the times (s) of whose states are given, the first state's included."""
     parts, pivots, cause = [first[np.newaxis]], [np.ones(0)], None
@@ -193,7 +192,8 @@ def recorded(
         least_pivot=1.0 if lowest is None else float(least[lowest]),
         pivot_time=0.0 if lowest is None else float(times[lowest]),
         iterations=int(counts[ITERATIONS]) if implicit(method) else None,
-        projections=int(counts[PROJECTIONS]) if projection else None,
+        projections=int(counts[PROJECTIONS]),
+        after=after,
     )
 
 
@@ -209,7 +209,7 @@ def march(
     compiled: bool = False,
     counts: IntArray | None = None,
     judged: bool = False,
-    projection: Projection | None = None,
+    after: AfterStep = NOTHING,
 ) -> Iterator[Block]:
     """Yield `count` steps from a state (q then v, shape (2n, *batch)) at t = 0 on, in blocks.
 
@@ -218,7 +218,7 @@ def march(
     it breaks down; else what goes wrong shows in the numbers. `counts` grow by what is taken.
     InputError where steps are to be `compiled` without numba.
     """
-    options: dict[str, Any] = {"counts": counts, "judged": judged, "projection": projection}
+    options: dict[str, Any] = {"counts": counts, "judged": judged, "after": after}
     history = [np.asarray(state)]
     for starter, step_count in _starters(method, start):
         some = min(step_count, count - len(history) + 1)
@@ -243,7 +243,7 @@ def resume(
     compiled: bool = False,
     counts: IntArray | None = None,
     judged: bool = False,
-    projection: Projection | None = None,
+    after: AfterStep = NOTHING,
 ) -> Iterator[Block]:
     """Yield `count` steps after `history`, as `march` does; its last state may have been tampered with: kicked.
 
@@ -275,7 +275,7 @@ def resume(
         compiled,
         judged,
         counts,
-        projection=projection,
+        after=after,
     )
     # of turns whose states are in the history already only what they give beyond them matters: the next needs it
     for block in blocks:
@@ -338,7 +338,7 @@ def steps_in_blocks(
     judged: bool,
     counts: IntArray,
     kinds: int = 1,
-    projection: Projection | None = None,
+    after: AfterStep = NOTHING,
 ) -> Iterator[Block]:
     """Yield `count` steps in blocks, from what is carried into the first: shape (quantities, n lanes).
 
@@ -346,21 +346,22 @@ def steps_in_blocks(
     units of h (s). There are so many `kinds` of steps. The lanes are those of the batch, one after the other.
     """
     program = program_of(scheme)
-    rows, n, lanes = rows_of(program, projection), mechanism.size, math.prod(batch)
+    rows, n, lanes = rows_of(program, after), mechanism.size, math.prod(batch)
+    names = functions_called(program.implicit, after)
     if compiled:
         stride = 1 if lanes == 1 else max(LANES, lanes)
-        take_steps, variables = machine_steps(mechanism, program.implicit, projection is not None, stride)
+        take_steps, variables = machine_steps(mechanism, names, stride)
         room = room_of(rows, carried.reshape(-1, n, lanes), h, kinds, counts, stride, variables)
     elif lanes == 1:
-        stride, take_steps = 1, float_steps(mechanism)
+        stride, take_steps = 1, float_steps(mechanism, names)
         room = in_lists(room_of(rows, carried.reshape(-1, n, 1), h, kinds, counts, 1))
     else:
-        stride, take_steps = lanes, array_steps(mechanism)
+        stride, take_steps = lanes, array_steps(mechanism, names)
         room = room_of(rows, carried.reshape(-1, n, 1, lanes), h, kinds, counts, 1)
     at_once = max(1, min(MOST_STEPS_OF_A_BLOCK, NUMBERS_OF_A_BLOCK // (2 * n * stride)))
     for first in range(0, count, at_once):
         last = min(first + at_once, count)
-        states, pivots = np.empty((last - first, *np.shape(room.state)), carried.dtype), np.empty(last - first)
+        states, pivots = np.empty((last - first, 2, *np.shape(room.state)[1:]), carried.dtype), np.empty(last - first)
         steps = steps_between(first, last)
         with np.errstate(all="ignore"):  # what runs into infinity is judged by its numbers
             taken, *unsolved = take_steps(rows, steps, room, judged, states, pivots)

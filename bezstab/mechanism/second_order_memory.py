@@ -15,19 +15,23 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
 
+from bezstab.errors import InputError
 from bezstab.methods import (
     ACCELERATED,
     AT_REST,
     STEADY,
     Assignment,
     Evaluation,
+    Method,
     Motions,
     Quantity,
     SecondOrder,
     evaluation_times,
     exact_motions,
+    second_order_form,
     value_at_start,
 )
+from bezstab.stabilising import NOTHING, AfterStep, held_by
 
 POSITION, VELOCITY, ACCELERATION = "x", "v", "a"
 Equation = Assignment | Evaluation
@@ -75,6 +79,15 @@ def memory(scheme: SecondOrder) -> Memory:
         state_steps=state_steps,
         moments=evaluation_times(scheme),
     )
+
+
+def check_after_step(method: Method, after: AfterStep) -> None:
+    """Raise InputError where something is to be done after a step, and no turn of the method ends with a state."""
+    if after != NOTHING and memory(second_order_form(method.scheme)).newest:
+        raise InputError(
+            f"{held_by(after, feedback=False)}: {method.name} has its position a step ahead of its velocity: "
+            "expected a method that has both at once"
+        )
 
 
 def _carried(scheme: SecondOrder) -> list[Quantity]:

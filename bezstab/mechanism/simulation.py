@@ -8,10 +8,10 @@ from bezstab.errors import InputError
 from bezstab.mechanism.compiled import Mechanism
 from bezstab.mechanism.energies import EnergyBalance, energy_balance
 from bezstab.mechanism.observation import FloatArray, Observation, observe, singular_passages
-from bezstab.mechanism.projection import Projection, Stabilise
 from bezstab.mechanism.runner import Start, Trajectory, simulate
 from bezstab.mechanism.start import perturbed_state
 from bezstab.methods import Method
+from bezstab.stabilising import NOTHING, AfterStep, Stabilise, held_by
 from bezstab.units import check_step, feedback_gains
 
 MOST_STEPS = 10**8
@@ -91,10 +91,8 @@ class Simulation:
 
     @property
     def stabilise(self) -> Stabilise:
-        """What holds the constraints: feedback, projection, or nothing."""
-        if self.trajectory.projections is not None:
-            return "projection"
-        return "baumgarte" if self.alpha_hat or self.beta_hat else "none"
+        """What holds the constraints."""
+        return held_by(self.trajectory.after, feedback=bool(self.alpha_hat or self.beta_hat))
 
     @property
     def failure(self) -> str | None:
@@ -126,15 +124,14 @@ def simulated(
     beta_hat: float,
     perturb: float = 0.0,
     start: Start = "rk4",
-    projection: Projection | None = None,
+    after: AfterStep = NOTHING,
 ) -> Simulation:
     """Return a run over `duration` (s) from the scene's initial state, its first constraint off by `perturb` (m).
 
-    h (s) is the user's step, a method's own is its step multiple of that. With a `projection`, which goes with
-    alpha_hat = beta_hat = 0, each state is brought back to the constraints. InputError for a scene that cannot start,
-    an h outside 1e-100 to 1e100 s, a duration below a step or above 1e8 of them, another `start`, and a method whose
-    states cannot be projected; NumericalError where the scene cannot be perturbed; what goes wrong on the way is the
-    run's `failure`. Paper Eqs 6 to 9.
+    h (s) is the user's step, a method's own is its step multiple of that. What is done `after` each step goes with
+    alpha_hat = beta_hat = 0. InputError for a scene that cannot start, an h outside 1e-100 to 1e100 s, a duration below
+    a step or above 1e8 of them, another `start`, and as `check_after_step`; NumericalError where the scene cannot be
+    perturbed; what goes wrong on the way is the run's `failure`. Paper Eqs 6 to 9.
     """
     check_step(h)
     if start not in get_args(Start):
@@ -142,7 +139,7 @@ def simulated(
     check_duration(duration, h * float(method.step_multiple))
     gains = feedback_gains(alpha_hat, beta_hat, h)
     state = perturbed_state(mechanism, perturb)
-    trajectory = simulate(mechanism, method, h, duration, gains, state, start, projection=projection)
+    trajectory = simulate(mechanism, method, h, duration, gains, state, start, after=after)
     two_alpha, beta_squared = gains
     observation = observe(mechanism, trajectory.t, trajectory.q, trajectory.v, two_alpha, beta_squared)
     balance = energy_balance(observation, h * float(method.step_multiple))

@@ -16,7 +16,8 @@ earlier step's Jacobian that did not serve, all it did is undone: the lane start
 with one correction more after one within some hundred roundings of what it corrects: what is left then is far below
 rounding, and so does not add up over thousands of steps, to all of which it might have the same sign.
 
-A projection (`projection`) is one action more, at the end of a step: the new state moves, and with it what is carried.
+What is done after a step (`stabilising`) is one action more: a projection moves the new state, and with it what is
+carried.
 """
 
 import math
@@ -46,11 +47,14 @@ N, STRIDE, WIDTH = 1, 1, 1
 Machine code is compiled for its own numbers, so that it knows how long its loops are.
 """
 
-ALONE, SOLVING, PROJECTING = True, True, True
-"""Whether there is one run, whose states are judged; whether programs have equations to solve; and projections.
+ALONE = True
+"""Whether there is one run, whose states are judged."""
 
-What is not is left out of machine code.
-"""
+SOLVING, PROJECTING = True, True
+"""Whether programs have equations to solve; and projections. What is not is left out of machine code."""
+
+PARTS = {"SOLVING": "slope", "PROJECTING": "corrections"}
+"""The generated function that tells by being there whether these parts of a step are."""
 
 every = range
 """The places of a register, so many: one after the other or, of arrays over runs, all at once."""
@@ -67,14 +71,8 @@ def corrections(t: float, gains: FloatArray, state: FloatArray, found: FloatArra
 
 
 def slope(
-    t: float,
-    gains: FloatArray,
-    state: FloatArray,
-    direction: FloatArray,
-    found: FloatArray,
-    variables: FloatArray,
-    lanes: BoolArray,
-) -> None:
+    t: float, gains: FloatArray, state: FloatArray, found: FloatArray, variables: FloatArray, lanes: BoolArray
+) -> float:
     """Stand for the generated function that writes how accelerations of some lanes change along a direction."""
     raise NotImplementedError
 
@@ -276,7 +274,7 @@ def renew(
     for evaluation in range(count):
         take(room.again, room.guess[evaluation], room.registers[carried + group[0] + evaluation])
         take(room.again, room.at_guess[evaluation], room.residuals[evaluation])
-    position, velocity = room.direction[0], room.direction[1]
+    position, velocity = room.state[2], room.state[3]  # of the direction
     for evaluation in range(count):
         number = group[0] + evaluation
         arguments(rows, number, h, room)
@@ -286,7 +284,7 @@ def renew(
             for lane in range(lanes):
                 position[first + lane] = rows.table[2 * number, source]
                 velocity[first + lane] = rows.table[2 * number + 1, source] / h
-            slope(moment, gains, room.state, room.direction, room.found, room.variables, room.renewed)
+            slope(moment, gains, room.state, room.found, room.variables, room.renewed)
             for lane in range(lanes):
                 position[first + lane], velocity[first + lane] = 0.0, 0.0
             for i in range(N):
@@ -397,17 +395,18 @@ def project(
     Return the least pivot, the size of the last correction where it should have settled and did not, and the size
     of the state.
     """
-    pivot, left = 1.0, 0.0
-    for iteration in range(rows.projected + 1):
+    pivot, left, settling = 1.0, 0.0, rows.after.iterations == 0
+    most = MOST_ITERATIONS if settling else rows.after.iterations
+    for iteration in range(most + 1):
         pivot = min(pivot, corrections(time, gains, state, room.off, room.variables))
         room.counts[PROJECTIONS] += 1
         left = distance(state, room)
         # the velocity takes what was found last: at a position that needs no correction, or gets none any more
-        if iteration == rows.projected or left == 0 or pivot <= SINGULAR:
+        if iteration == most or left == 0 or pivot <= SINGULAR:
             break
         shift(rows, 0, h, state, room)
     shift(rows, 1, h, state, room)
-    return pivot, left if rows.settles and pivot > SINGULAR else 0.0, size_of(state)
+    return pivot, left if settling and pivot > SINGULAR else 0.0, size_of(state)
 
 
 def take_steps(
@@ -435,7 +434,7 @@ def take_steps(
                 worst = evaluate(rows, group[0], time, h, gains, room)
             pivot = min(pivot, worst)
         size = finish(rows, h, room, states[k])
-        if PROJECTING and rows.projected > 0 and size < BLOWN_UP:
+        if PROJECTING and rows.after.projecting and size < BLOWN_UP:
             worst, unsettled, size = project(rows, time + h, h, gains, room, states[k])
             pivot = min(pivot, worst)
         pivots[k] = pivot
@@ -456,7 +455,7 @@ def read(names: Mapping[str, Any], made: Callable[[Any], Any] = lambda function:
 
     `made` makes machine code of each of its functions, or leaves it.
     """
-    namespace = globals() | dict(names)
+    namespace = globals() | {part: function in names for part, function in PARTS.items()} | dict(names)
     for function in TEXT:
         name = function.__name__
         if name not in names:

@@ -16,12 +16,12 @@ from bezstab.mechanism.compiled import Mechanism
 from bezstab.mechanism.compiled_stepping import runs_compiled
 from bezstab.mechanism.energies import energy_balance
 from bezstab.mechanism.observation import observe
-from bezstab.mechanism.projection import Projection
 from bezstab.mechanism.registers import Steps
 from bezstab.mechanism.runner import carried_quantities, checked_start, no_counts, recorded, steps_in_blocks
 from bezstab.mechanism.simulation import Simulation, check_duration
 from bezstab.mechanism.start import perturbed_state
 from bezstab.methods import Method, check_one_step, evaluations, second_order_form
+from bezstab.stabilising import NOTHING, AfterStep
 from bezstab.units import feedback_gains
 
 FloatArray = NDArray[np.float64]
@@ -40,13 +40,13 @@ def simulated_with_steps(
     beta_hat: float,
     hold: bool = False,
     perturb: float = 0.0,
-    projection: Projection | None = None,
+    after: AfterStep = NOTHING,
 ) -> Simulation:
     """Return a run over `duration` (s) or a little more, by steps of the lengths in `sequence` (s), over and over.
 
     alpha_hat and beta_hat belong to a step of h (s), and the alpha and beta that they are stay as they are; with `hold`
     alpha_hat and beta_hat stay, and alpha and beta follow the steps. The first constraint is off by `perturb` (m) at
-    the start. With a `projection` each state is brought back to the constraints. Work and drift of energy are
+    the start. `after` is done to each state. Work and drift of energy are
     integrated by the trapezoidal rule. InputError for a method of several steps, and as `simulated`.
     """
     check_one_step(method)
@@ -73,13 +73,13 @@ def simulated_with_steps(
         carried,
         batch=(),
         count=len(steps.lengths),
-        compiled=runs_compiled(mechanism, method, len(steps.lengths) * evaluations(method), projection is not None),
+        compiled=runs_compiled(mechanism, method, len(steps.lengths) * evaluations(method), after),
         judged=True,
         counts=counts,
         kinds=len(lengths),
-        projection=projection,
+        after=after,
     )
-    trajectory = recorded(mechanism, method, first, steps.times, blocks, "rk4", counts, projection)
+    trajectory = recorded(mechanism, method, first, steps.times, blocks, "rk4", counts, after)
     times = trajectory.t
     # at each time the gains of the step that begins there; at the last, those of the step that led to it
     at_times = np.minimum(np.arange(len(times)), len(steps.lengths) - 1)

@@ -24,6 +24,6 @@ from bezstab.questions.regions import (
     region_answer,
     region_answers,
 )
-from bezstab.questions.runs import RunQuestion, projection_for, run_answer
+from bezstab.questions.runs import RunQuestion, run_answer
 from bezstab.questions.trades import FrontQuestion, TradeQuestion
 from bezstab.questions.verifications import VerifyQuestion

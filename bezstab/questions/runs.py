@@ -6,17 +6,15 @@ scene, method, steps, feedback or projection   →   RunQuestion   →   run_ans
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any, get_args
+from typing import Any
 
 from bezstab.engines import Point
 from bezstab.errors import InputError
 from bezstab.mechanism import (
-    Projection,
     Scene,
     Simulation,
-    Stabilise,
     Start,
-    check_projected,
+    check_after_step,
     compiled_mechanism,
     simulated,
     simulated_with_steps,
@@ -24,20 +22,7 @@ from bezstab.mechanism import (
 from bezstab.methods import Method, check_one_step
 from bezstab.questions.motions import scene_at_speed
 from bezstab.questions.points import Meant, meant_in_seconds
-
-
-def projection_for(stabilise: Stabilise, iterations: int | None) -> Projection | None:
-    """Return the projection that holds the constraints, of so many iterations at most; None where it does not.
-
-    InputError for another word than those of `Stabilise`, and for iterations without a projection.
-    """
-    if stabilise not in get_args(Stabilise):
-        raise InputError(f"--stabilise {stabilise!r}: expected {', '.join(get_args(Stabilise))}")
-    if stabilise == "projection":
-        return Projection(iterations)
-    if iterations is not None:
-        raise InputError("--iterations needs --stabilise projection: they are its iterations")
-    return None
+from bezstab.stabilising import AfterStep, Stabilise, after_step
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -66,8 +51,7 @@ class RunQuestion:
     start: Start = "rk4"
 
     def __post_init__(self) -> None:
-        if self.projection:
-            check_projected(self.method)
+        check_after_step(self.method, self.after)
         if self.sequence:
             check_one_step(self.method)
         elif self.hold:
@@ -81,9 +65,9 @@ class RunQuestion:
         return None if self.sequence else meant_in_seconds((self.method,), self.point, self.h)
 
     @property
-    def projection(self) -> Projection | None:
-        """The projection; None without one."""
-        return projection_for(self.stabilise, self.iterations)
+    def after(self) -> AfterStep:
+        """What is done to each new state."""
+        return after_step(self.stabilise, self.iterations)
 
 
 def run_answer(question: RunQuestion) -> Simulation:
@@ -96,7 +80,7 @@ def run_answer(question: RunQuestion) -> Simulation:
         "alpha_hat": alpha_hat,
         "beta_hat": beta_hat,
         "perturb": float(question.perturb),
-        "projection": question.projection,
+        "after": question.after,
     }
     if not question.sequence:
         return simulated(mechanism, question.method, start=question.start, **of_both)

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from itertools import chain
+from itertools import chain, product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,12 +30,12 @@ from bezstab.evidence import (
     swept_runs,
     with_fronts,
 )
-from bezstab.mechanism import Projection, Scene, Stabilise, check_projected
+from bezstab.mechanism import Scene, check_after_step
 from bezstab.methods import Method
 from bezstab.questions import motions
 from bezstab.questions.points import Meant, meant_in_seconds
-from bezstab.questions.runs import projection_for
 from bezstab.rationals import exact
+from bezstab.stabilising import NOTHING, AfterStep, Stabilise, after_step
 from bezstab.stability import RATES, FrontPoint, error_front
 
 MOST_SWEPT = 10**6
@@ -70,9 +70,8 @@ class TradeQuestion:
     def __post_init__(self) -> None:
         if self.omega is not None and self.numbers and self.against != "projection":
             raise InputError("--omega does not go with --alpha and --beta: points are chosen for that motion")
-        if any(projection for _, projection in self.treatments):
-            for method in self.methods:
-                check_projected(method)
+        for (_, after), method in product(self.treatments, self.methods):
+            check_after_step(method, after)
         longest = self.step_sizes[-1] * float(max(method.step_multiple for method in self.methods))
         most = MOST_SWEPT * self.step_sizes[0]
         if not longest <= self.duration <= most:
@@ -90,14 +89,14 @@ class TradeQuestion:
         return tuple(sorted({float(step) for step in self.steps or STEPS}))
 
     @cached_property
-    def treatments(self) -> list[tuple[tuple[float, float] | None, Projection | None]]:
-        """What holds the constraints: points of feedback, None for the advised one, and projections."""
+    def treatments(self) -> list[tuple[tuple[float, float] | None, AfterStep]]:
+        """What holds the constraints: points of feedback, None for the advised one; what is done after each step."""
         point = None if self.numbers is None else (float(self.numbers[0]), float(self.numbers[1]))
         if self.against == "projection":
-            given = [(point, None)] if point else []
-            return [(None, None), *given, (NO_FEEDBACK, projection_for("projection", self.iterations))]
-        projection = projection_for(self.stabilise, self.iterations)
-        return [(point, None) if self.stabilise == "baumgarte" else (NO_FEEDBACK, projection)]
+            given = [(point, NOTHING)] if point else []
+            return [(None, NOTHING), *given, (NO_FEEDBACK, after_step("projection", self.iterations))]
+        after = after_step(self.stabilise, self.iterations)
+        return [(point if self.stabilise == "baumgarte" else NO_FEEDBACK, after)]
 
     @cached_property
     def rate(self) -> Fraction | None:
@@ -124,13 +123,12 @@ class TradeQuestion:
         rate, of_all = self.rate, (self.moving, self.step_sizes, float(self.duration))
         reference = self.reference
         compiled = all(
-            sweep_compiled(self.moving, self.methods, *of_all[1:], self.repeats, projection is not None)
-            for _, projection in self.treatments
+            sweep_compiled(self.moving, self.methods, *of_all[1:], self.repeats, after) for _, after in self.treatments
         )
         return [
-            Sweep(method, *of_all, point, self.physical, self.repeats, reference, rate, compiled, projection)
+            Sweep(method, *of_all, point, self.physical, self.repeats, reference, rate, compiled, after)
             for method in dict.fromkeys(self.methods)
-            for point, projection in self.treatments
+            for point, after in self.treatments
         ]
 
     def swept(self, measured: Sequence[Mapping[str, NDArray[np.generic]]]) -> SweptRuns:

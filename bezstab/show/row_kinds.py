@@ -250,7 +250,7 @@ FACTORIZATIONS = integer(
     "Factorizations of C_q M^-1 C_q^T in the whole run: one for each evaluation, and those of projections",
     "factorizations",
 )
-STABILISE = text("stabilise", "What holds the constraints", "held by", values_of=("mechanism.Stabilise",))
+STABILISE = text("stabilise", "What holds the constraints", "held by", values_of=("stabilising.Stabilise",))
 C_MAX = number("c_max", "Largest constraint error", "largest |c| (m, rad)", ".3e", unit="m or rad")
 CDOT_MAX = number(
     "cdot_max", "Largest rate of the constraint error", "largest |ċ| (m/s, rad/s)", ".3e", unit="m/s or rad/s"

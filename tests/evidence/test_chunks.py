@@ -14,6 +14,7 @@ import pytest
 
 from bezstab.errors import InputError, NumericalError
 from bezstab.evidence import ATTEMPTS, Arrays, chunk_store, completed_chunks, worker_pool
+from bezstab.evidence.worker_pools import WorkerPool
 
 
 @dataclass(frozen=True)
@@ -29,6 +30,8 @@ def square(job: Job) -> Arrays:
         if not death.exists():
             death.touch()
             os.kill(os.getpid(), signal.SIGKILL)
+    if job.number < 0:
+        raise InputError(f"at {job.number}")
     return {"square": np.array(job.number**2), "by": np.array(os.getpid())}
 
 
@@ -36,58 +39,59 @@ def squares(found: dict[int, Arrays]) -> list[int]:
     return [int(found[number]["square"]) for number in sorted(found)]
 
 
+def arrived(jobs: list[Job], workers: WorkerPool, folder: Path) -> dict[int, Arrays]:
+    """Return what all chunks of a job in this folder give, those that are there already included."""
+    with chunk_store(folder / "job", "squares", resume=True) as store:
+        found = list(completed_chunks(square, jobs, workers, store))
+        assert all(store.has(number) for number in range(len(jobs)))
+    assert sorted(number for number, _ in found) == list(range(len(jobs)))  # each done once
+    return dict(found)
+
+
 def test_a_resumed_job_does_only_what_is_missing(tmp_path: Path) -> None:
     with chunk_store(tmp_path / "job", "squares", resume=False) as store:
         store.save(1, {"square": np.array(-1)})
         store.save(3, {"square": np.array(-9)})  # one more than there are jobs
-    with worker_pool(1) as workers, chunk_store(tmp_path / "job", "squares", resume=True) as store:
-        arrived = dict(completed_chunks(square, [Job(number) for number in range(3)], workers, store))
-    assert squares(arrived) == [0, -1, 4]  # the second was not done again
+    with worker_pool(1) as workers:
+        found = arrived([Job(number) for number in range(3)], workers, tmp_path)
+    assert squares(found) == [0, -1, 4]  # the second was not done again
 
 
 @pytest.mark.slow
-def test_a_lost_worker_costs_its_chunk_alone(tmp_path: Path) -> None:
-    jobs = [Job(number, (tmp_path / "died",) if number == 2 else ()) for number in range(5)]
-    with worker_pool(2) as workers, chunk_store(tmp_path / "job", "squares", resume=False) as store:
-        arrived = list(completed_chunks(square, jobs, workers, store))
-        assert all(store.has(number) for number in range(5))
-    assert sorted(number for number, _ in arrived) == list(range(5))  # each done once
-    assert squares(dict(arrived)) == [0, 1, 4, 9, 16]
-    assert os.getpid() not in {int(arrays["by"]) for _, arrays in arrived}
-    assert (tmp_path / "died").exists()
-
-
-@pytest.mark.slow
-def test_a_chunk_that_kills_every_worker_is_reported(tmp_path: Path) -> None:
-    deaths = tuple(tmp_path / f"death {number}" for number in range(ATTEMPTS))
-    with worker_pool(1) as workers, chunk_store(tmp_path / "job", "squares", resume=False) as store:
+def test_a_lost_worker_costs_its_chunk_alone_and_one_that_kills_every_worker_is_reported(tmp_path: Path) -> None:
+    deaths = tuple(tmp_path / f"death {number}" for number in range(1 + ATTEMPTS))
+    with worker_pool(2) as workers:
+        found = arrived([Job(number, deaths[:1] * (number == 2)) for number in range(5)], workers, tmp_path)
+    assert squares(found) == [0, 1, 4, 9, 16]
+    assert os.getpid() not in {int(arrays["by"]) for arrays in found.values()}
+    assert deaths[0].exists()
+    with worker_pool(1) as workers, chunk_store(tmp_path / "other", "squares", resume=False) as store:
         with pytest.raises(NumericalError, match="chunk 1 lost its worker 3 times"):
             list(completed_chunks(square, [Job(0), Job(1, deaths)], workers, store))
         assert store.has(0)
 
 
-def refuse(job: Job) -> Arrays:
-    raise InputError(f"at {job.number}")
-
-
 def test_what_a_worker_raises_is_raised_here(tmp_path: Path) -> None:
-    with worker_pool(1) as workers, chunk_store(tmp_path / "job", "refused", resume=False) as store:
-        arriving = completed_chunks(refuse, [Job(0)], workers, store)
-        with pytest.raises(InputError, match="at 0"):
-            list(arriving)
+    with worker_pool(1) as workers, pytest.raises(InputError, match="at -1"):
+        arrived([Job(-1)], workers, tmp_path)
 
 
 @pytest.fixture
 def cluster() -> Iterator[str]:
     """Run a real scheduler and two workers, each a process of its own, on loopback."""
-    python = [sys.executable, "-m"]
-    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
     environment = os.environ | {"PYTHONPATH": str(Path(__file__).parent.parent.parent)}  # where workers find this file
     port = 20000 + os.getpid() % 20000
     address = f"tcp://127.0.0.1:{port}"
-    serve = [*python, "distributed.cli.dask_scheduler", "--host", "127.0.0.1", "--port", str(port), "--no-dashboard"]
-    work = [*python, "distributed.cli.dask_worker", address, "--nworkers", "2", "--nthreads", "1", "--no-dashboard"]
-    running = [subprocess.Popen(command, env=environment, **quiet) for command in (serve, work)]  # type: ignore[call-overload]
+    commands = f"scheduler --host 127.0.0.1 --port {port}", f"worker {address} --nworkers 2 --nthreads 1"
+    running = [
+        subprocess.Popen(
+            [sys.executable, "-m", *f"distributed.cli.dask_{command} --no-dashboard".split()],
+            env=environment,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
+        for command in commands
+    ]
     try:
         yield address
     finally:
@@ -98,13 +102,13 @@ def cluster() -> Iterator[str]:
 
 @pytest.mark.slow
 def test_a_cluster_does_the_same_work(cluster: str, tmp_path: Path) -> None:
-    jobs = [Job(number, (tmp_path / "died",) if number == 2 else ()) for number in range(6)]
+    death = tmp_path / "died"
+    jobs = [Job(number, (death,) * (number == 2)) for number in range(6)]
     deadline = time.monotonic() + 60
     while True:
         with worker_pool(scheduler=cluster) as workers:
             if workers.count == 2:
-                with chunk_store(tmp_path / "job", "squares", resume=False) as store:
-                    arrived = dict(completed_chunks(square, jobs, workers, store))
+                found = arrived(jobs, workers, tmp_path)
                 break
         assert time.monotonic() < deadline, "the workers did not come up"
         time.sleep(0.2)
@@ -114,9 +118,9 @@ def test_a_cluster_does_the_same_work(cluster: str, tmp_path: Path) -> None:
         subprocess.run([*command, "-o", name, *more], cwd=tmp_path, check=True, capture_output=True, timeout=120)
         maps[name] = (tmp_path / name / "verify_pendulum_SYM.csv").read_bytes()
     assert maps["here"] == maps["there"]
-    assert squares(arrived) == [number**2 for number in range(6)]
-    assert (tmp_path / "died").exists()  # one worker was lost, and replaced, on the way
-    assert os.getpid() not in {int(arrays["by"]) for arrays in arrived.values()}
+    assert squares(found) == [number**2 for number in range(6)]
+    assert death.exists()  # one worker was lost, and replaced, on the way
+    assert os.getpid() not in {int(arrays["by"]) for arrays in found.values()}
 
 
 @pytest.mark.slow

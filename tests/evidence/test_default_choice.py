@@ -2,7 +2,6 @@
 
 import pytest
 
-from bezstab.methods import RungeKutta, lookup
 from tests.evidence.gain_grids import METHODS, SCENES, grid
 from tests.evidence.samples import of_campaign
 
@@ -32,12 +31,3 @@ def test_no_stable_point_is_three_times_better_in_both_errors_at_once(name: str,
     found = grid(scene, name, ("accurate",))
     assert len(found.points) >= 18  # of 24: what is left out is not stable
     assert found.beaten("accurate") < 3
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", of_campaign(["RK4", "dopri5", "bs3"], ["dopri5"]))
-def test_the_fastest_feedback_of_an_explicit_runge_kutta_method_is_beaten_by_far(name: str) -> None:
-    """The advice that this goal has taken the place of."""
-    assert isinstance(lookup(name).scheme, RungeKutta)
-    for scene in ("slider_crank_light", "driven_four_bar"):
-        assert grid(scene, name, ("robust",)).beaten("robust") > (20 if name == "bs3" else 1000)

@@ -3,15 +3,19 @@
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
+from types import ModuleType
 from typing import Any
 
+import numpy as np
 import pytest
 
-from bezstab.evidence import Check, extreme_checks, extremes
+from bezstab.evidence import Check, extreme_checks, extremes, root_digits
 from bezstab.mechanism import Observation, observe
-from bezstab.stability import Choice, describe_point
+from bezstab.methods import lookup
+from bezstab.stability import Choice, describe_point, poles
 from tests.evidence.samples import of_campaign
 
+SIZES = partial(extremes._sizes, lookup("B4"), (1.0,))
 SHORT = list(extreme_checks(full=False))
 STATED = {
     "_boundary-B4": ("B4", "|z_p| = 1 to 1e-07"),
@@ -73,27 +77,31 @@ def test_a_part_of_all_of_it_holds() -> None:
     assert [found for check in some if not (found := check()).held] == []
 
 
-def test_the_run_that_would_not_decay_does_not_hold(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(extremes, "POINT", (0.5, 0.101))  # AB4 diverges there, slowly
-    assert not extremes._long_run("AB4", 10**4, stabilized=True).held
+def longer(*arguments: Any) -> Choice:
+    choice = describe_point(*arguments)
+    assert choice.margins
+    return replace(choice, margins=replace(choice.margins, h=1.3 * choice.margins.h))
 
 
-def test_a_step_taken_for_stable_that_is_not_does_not_hold(monkeypatch: pytest.MonkeyPatch) -> None:
-    def longer(*arguments: Any) -> Choice:
-        choice = describe_point(*arguments)
-        assert choice.margins
-        return replace(choice, margins=replace(choice.margins, h=1.3 * choice.margins.h))
-
-    assert extremes._step("SYM", 0.9).held
-    monkeypatch.setattr(extremes, "describe_point", longer)
-    assert not extremes._step("SYM", 0.9).held
+def off(*arguments: Any) -> Observation:
+    seen = observe(*arguments)
+    return replace(seen, multipliers=seen.multipliers * (1 + 1e-8))
 
 
-def test_multipliers_that_are_off_by_1e_8_do_not_hold(monkeypatch: pytest.MonkeyPatch) -> None:
-    def off(*arguments: Any) -> Observation:
-        seen = observe(*arguments)
-        return replace(seen, multipliers=seen.multipliers * (1 + 1e-8))
-
-    assert extremes._masses(1.0).held
-    monkeypatch.setattr(extremes, "observe", off)
-    assert not extremes._masses(1.0).held
+@pytest.mark.parametrize(
+    ("check", "of", "what", "wrong"),
+    [
+        # AB4 diverges there, slowly
+        (partial(extremes._long_run, "AB4", 10**4, stabilized=True), extremes, "POINT", (0.5, 0.101)),
+        (partial(extremes._step, "SYM", 0.9), extremes, "describe_point", longer),
+        (partial(extremes._masses, 1.0), extremes, "observe", off),
+        (SIZES, root_digits, "poles", lambda *arguments: poles(*arguments) * (1 + 1e-11)),
+        (SIZES, root_digits, "poles", lambda *_: np.full(8, 0.5 + 0.1j)),  # some poles are missing
+    ],
+)
+def test_a_fault_that_is_put_in_makes_a_check_fail(
+    check: Callable[[], Check], of: ModuleType, what: str, wrong: object, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert check().held
+    monkeypatch.setattr(of, what, wrong)
+    assert not check().held

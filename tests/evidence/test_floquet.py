@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from bezstab.mechanism import compiled_mechanism, load_scene
-from bezstab.methods import Method, lookup, second_order_form
+from bezstab.methods import lookup
 from bezstab.stability import spectral_radius
 from tests.evidence.driven_four_bar import four_bar, swinging_four_bar
 from tests.evidence.exact_rates import floquet_rates
@@ -51,15 +51,6 @@ def test_a_mechanism_that_hardly_moves_has_the_poles_at_rest(name: str) -> None:
         np.abs(floquet_rates(four_bar(), method, h, alpha_hat, beta_hat, 1.0) - at_rest).max() for h in (2e-2, 2e-3)
     ]
     assert moved[1] < 0.2 * moved[0] < 0.2 * 2e-2
-
-
-@pytest.mark.parametrize("name", ["B3", "SIE", "trapezoid", "bdf2"])
-def test_a_method_and_its_second_order_form_have_the_same_rate(name: str) -> None:
-    method = lookup(name)
-    written_out = Method(name, second_order_form(method.scheme), "")
-    point = np.array([0.4]), np.array([0.12])
-    rates = [floquet_rates(four_bar(), each, 0.01, *point, 1.0) for each in (method, written_out)]
-    assert rates[0] == pytest.approx(rates[1], rel=1e-12)
 
 
 def test_a_run_without_a_driver_has_the_rate_of_its_constraint_errors() -> None:

@@ -6,12 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bezstab.evidence import LINEAR, SPREAD, Fit, Refusal, fit_dominant_pole
-from bezstab.evidence.linear_prediction import (
-    SAMPLES,
-    fit_window,
-    response_windows,
-)
-from tests.reference.sampled_responses import for_every_kick, geometric, two_poles
+from bezstab.evidence.linear_prediction import SAMPLES, fit_window
+from tests.reference.sampled_responses import for_every_kick, two_poles
 
 root = st.tuples(st.floats(0.4, 0.999), st.floats(0, np.pi))
 
@@ -61,14 +57,3 @@ def test_what_cannot_be_measured_is_said() -> None:
 @pytest.mark.parametrize("response", [np.zeros(50), np.full(50, np.nan), np.ones(2), np.zeros(0)])
 def test_silence_gaps_and_too_few_samples_are_refused(response: np.ndarray[tuple[int], np.dtype[np.float64]]) -> None:
     assert isinstance(fit_dominant_pole(response[:, np.newaxis], order=2), Refusal)
-
-
-def test_windows_end_where_the_range_is_left_and_before_what_is_forced() -> None:
-    growing = geometric(1001, 1.05) * 1e-8
-    for window in response_windows(growing, growing, (1e-3,)):
-        assert growing[window].max() < 1e-3
-    forced = 1e-9
-    decaying = geometric(1001, 0.97) + forced
-    for window in response_windows(decaying, decaying, (np.inf,)):
-        assert decaying[window].min() > 90 * forced
-        assert window.stop - window.start <= SAMPLES

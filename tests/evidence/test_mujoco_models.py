@@ -1,10 +1,10 @@
 """What is read of a MuJoCo model is what MuJoCo itself makes of it, and what it refuses is one line."""
 
 import sys
+from itertools import product
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
 
 from bezstab.errors import InputError
@@ -51,15 +51,6 @@ def solrefs(robot: ModelData, kind: str) -> dict[str, tuple[float, float]]:
     return {each.element: each.solref for each in robot.constraints if each.kind == kind}
 
 
-def test_defaults_and_classes_are_resolved(robot: ModelData) -> None:
-    assert solrefs(robot, "connect equality") == {"equality 'pin'": (0.03, 0.8)}
-    assert solrefs(robot, "weld equality") == {"equality 1": (-100, -20)}
-    assert solrefs(robot, "joint limit") == {"joint 'slide'": (0.05, 2)}
-    assert {each.solimp for each in robot.constraints if each.kind.endswith("equality")} == {(0.8, 0.99, 0.002)}
-    assert [each.active for each in robot.constraints if each.kind.endswith("equality")] == [1, 1, 0]
-    assert (robot.h, robot.integrator, robot.refsafe, robot.euler_damping) == (0.002, "Euler", True, True)
-
-
 def test_mixtures_of_contacts_are_mujocos_own(robot: ModelData) -> None:
     """Where two geoms touch in a model of their own, MuJoCo's contact has the same solref."""
     contacts = solrefs(robot, "contact")
@@ -67,19 +58,21 @@ def test_mixtures_of_contacts_are_mujocos_own(robot: ModelData) -> None:
     assert contacts["geom 'floor' and geom 'd'"] == (-900, -40)  # direct: the smaller
     assert contacts["geom 'floor' and geom 'e'"] == (0.07, 1)  # by priority
     assert solrefs(robot, "contact pair") == {"geom 'b' and geom 'd'": (0.008, 1.5)}
-    standard = (("0.03 1", "0.01 1"), ("0.03 0", "0.01 1"), ("0 0", "0.01 1"))
-    for first, second in (*standard, ("0.03 1", "-900 -40"), ("-500 -60", "-900 -40")):
-        for mixes in ((2, 1), (0, 1), (0, 0), (1, 0)):
-            touching = mujoco.MjModel.from_xml_string(
-                f"""<mujoco><worldbody><geom type="plane" size="1 1 .1" solref="{first}" solmix="{mixes[0]}"/>
-                <body pos="0 0 .09"><freejoint/><geom size=".1" solref="{second}" solmix="{mixes[1]}"/></body>
-                </worldbody></mujoco>"""
-            )
-            data = mujoco.MjData(touching)
-            mujoco.mj_forward(touching, data)
-            (contact,) = (each for each in model_data(mujoco, touching).constraints if each.kind == "contact")
-            assert contact.solref == pytest.approx(tuple(data.contact[0].solref))
-            assert contact.solimp == pytest.approx(tuple(data.contact[0].solimp[:3]))
+    solrefs_of_both = (
+        *(("0.03 1", "0.01 1"), ("0.03 0", "0.01 1"), ("0 0", "0.01 1")),
+        *(("0.03 1", "-900 -40"), ("-500 -60", "-900 -40")),
+    )
+    for (first, second), (mix, other) in product(solrefs_of_both, ((2, 1), (0, 1), (0, 0), (1, 0))):
+        touching = mujoco.MjModel.from_xml_string(
+            f"""<mujoco><worldbody><geom type="plane" size="1 1 .1" solref="{first}" solmix="{mix}"/>
+            <body pos="0 0 .09"><freejoint/><geom size=".1" solref="{second}" solmix="{other}"/></body>
+            </worldbody></mujoco>"""
+        )
+        data = mujoco.MjData(touching)
+        mujoco.mj_forward(touching, data)
+        (contact,) = model_data(mujoco, touching).constraints
+        assert contact.solref == pytest.approx(tuple(data.contact[0].solref))
+        assert contact.solimp == pytest.approx(tuple(data.contact[0].solimp[:3]))
 
 
 def test_geoms_that_cannot_touch_make_no_contact(robot: ModelData) -> None:
@@ -88,19 +81,13 @@ def test_geoms_that_cannot_touch_make_no_contact(robot: ModelData) -> None:
     assert not pairs & {"geom 'a' and geom 'b'", "geom 'a' and geom 'c'", "geom 'b' and geom 'c'"}
 
 
-def test_masses_and_directions_are_mujocos_own(robot: ModelData) -> None:
-    assert robot.mass[0, 0] > 0.2  # the armature
-    assert np.linalg.eigvalsh(robot.mass).min() > 0
-    by_element = {each.element: each for each in robot.feedbacks}
-    motor = by_element["actuator 'motor'"]
-    assert (motor.stiffness, motor.damping, motor.direction[0]) == (10, 2, 3)
-    spring = by_element["tendon 'pull'"]
-    assert spring.direction[:2].tolist() == [2, -1]
-    assert (by_element["joint 'swing'"].stiffness, by_element["joint 'swing'"].damping) == (3, 0.1)
-    assert "actuator 2" not in by_element  # no gain on position or velocity
+def read(option: str, robot: str = ROBOT) -> ModelData:
+    """Return what is read of the robot with an option."""
+    return model_data(mujoco, mujoco.MjModel.from_xml_string(robot.replace("<default>", f"{option}<default>", 1)))
 
 
-def test_what_is_switched_off_is_left_out() -> None:
+def test_options_hold_for_all_that_is_read() -> None:
+    """What is switched off is left out, actuators of a group too, and an override holds for every contact."""
     flags = "".join(
         f' {flag}="disable"' for flag in ("equality", "limit", "frictionloss", "contact", "spring", "damper")
     )
@@ -108,22 +95,9 @@ def test_what_is_switched_off_is_left_out() -> None:
     assert not found.constraints
     assert {each.kind for each in found.feedbacks} == {"drive"}
     assert (found.refsafe, found.euler_damping) == (False, False)
-
-
-def read(option: str, **changes: str) -> ModelData:
-    """Return what is read of the robot with an option, and with some of its texts replaced."""
-    text = ROBOT.replace("<default>", f"{option}<default>", 1)
-    for old, new in changes.items():
-        text = text.replace(f'name="{old}"', f'name="{old}" {new}')
-    return model_data(mujoco, mujoco.MjModel.from_xml_string(text))
-
-
-def test_actuators_of_a_group_that_is_switched_off_are_left_out() -> None:
-    found = read('<option actuatorgroupdisable="2"/>', motor='group="2"')
+    grouped = ROBOT.replace('name="motor"', 'name="motor" group="2"')
+    found = read('<option actuatorgroupdisable="2"/>', grouped)
     assert [each.element for each in found.feedbacks if each.kind == "drive"] == ["actuator 1"]
-
-
-def test_an_override_holds_for_every_contact() -> None:
     found = read('<option o_solref="0.2 1"><flag override="enable"/></option>')
     assert {each.solref for each in found.constraints if each.kind.startswith("contact")} == {(0.2, 1)}
 

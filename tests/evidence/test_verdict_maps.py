@@ -10,7 +10,6 @@ from bezstab.mechanism import load_scene
 from bezstab.methods import lookup
 from bezstab.stability import region
 from tests.evidence.samples import of_campaign
-from tests.reference.verdict_counts import count_cell_by_cell
 
 H = 1e-3  # s
 
@@ -43,8 +42,7 @@ def whole_map(scene: str, name: str, h: float, count: int) -> VerdictMap:
 def test_simulated_verdicts_agree_outside_the_band(name: str, scene: str, count: int) -> None:
     verdicts = whole_map(scene, name, H, count)
     assert not verdicts.undecided.any()
-    distance = np.abs(verdicts.z_abs - 1)[verdicts.disagrees]
-    assert distance.max(initial=0) < verdicts.band
+    assert (verdicts.farthest_disagreement or 0) < verdicts.band
     assert verdicts.disagreements_beyond_band == 0
     cell = (verdicts.alpha_hat[1] - verdicts.alpha_hat[0]) * (verdicts.beta_hat[1] - verdicts.beta_hat[0])
     crossed = 4 * count * cell  # by the boundary, at most
@@ -62,33 +60,26 @@ def test_runs_that_break_down_whatever_the_kick_give_no_verdict() -> None:
     # a hundredth of a second is too coarse for the four-bar: the truncation error alone leaves the linear range
     verdicts = whole_map("four_bar", "SYM", 1e-2, 6)
     assert verdicts.undecided.all()
-    assert not verdicts.disagrees.any()
-    assert verdicts.judged == 0
-    assert verdicts.agreement is None
-    assert verdicts.farthest_disagreement is None
+    assert (verdicts.judged, verdicts.agreement, verdicts.farthest_disagreement) == (0, None, None)
     assert verdicts.disagreements_beyond_band == 0
 
 
-def test_agreement_is_what_a_count_cell_by_cell_gives() -> None:
-    random = np.random.default_rng(5)
-    shape = (7, 9)
-    made_up = replace(
-        whole_map("pendulum", "SYM", H, 4),
-        alpha_hat=np.linspace(0, 2, 9),
-        beta_hat=np.linspace(0, 4, 7),
-        z_abs=random.uniform(0.98, 1.02, shape),
-        moved=np.zeros(shape),
-        diverges=random.random(shape) < 0.5,
-        undecided=random.random(shape) < 0.2,
+def test_agreement_is_of_what_was_judged_and_beyond_the_band_of_what_the_motion_does_not_move() -> None:
+    made_up = VerdictMap(
+        scene=load_scene("pendulum"),
+        method=lookup("SYM"),
+        h=H,
+        run=2000,
+        alpha_hat=np.arange(6.0),
+        beta_hat=np.ones(1),
+        z_abs=np.array([[0.9, 0.9, 1.1, 1.1, 1.004, 1.02]]),
+        diverges=np.array([[False, True, True, False, False, False]]),
+        undecided=np.array([[False, False, False, True, False, False]]),
+        moved=np.array([[0, 0, 0, 0, 0, 0.03]]),
     )
-    counted = count_cell_by_cell(made_up)
-    assert 0 < counted.agreeing < counted.judged < made_up.undecided.size
-    assert made_up.judged == counted.judged
-    assert made_up.agreement == pytest.approx(counted.agreeing / counted.judged)
-    assert made_up.farthest_disagreement == max(counted.distances_of_the_others)
-    beyond = [distance for distance in counted.distances_of_the_others if distance > made_up.band]
-    assert made_up.agreeing == counted.agreeing
-    assert made_up.disagreements_beyond_band == len(beyond) > 0
+    assert (made_up.judged, made_up.agreeing, made_up.agreement) == (5, 2, 0.4)
+    assert made_up.farthest_disagreement == pytest.approx(0.1)
+    assert (made_up.band, made_up.close_runs, made_up.disagreements_beyond_band) == (0.005, 2, 1)
 
 
 @pytest.mark.parametrize("count", [3, 60])

@@ -65,7 +65,7 @@ for scene in sys.argv[1:]:
     mechanism = compiled_mechanism(load_scene(scene))
     runs = [simulate(mechanism, lookup("SYM"), 1e-3, 0.1, (20.0, 100.0), compiled=each) for each in (False, True)]
     assert abs(runs[0].q - runs[1].q).max() < 1e-12
-    hits += sum(machine_steps(mechanism, False, False, 1)[0].stats.cache_hits.values())
+    hits += sum(machine_steps(mechanism, ("accelerations",), 1)[0].stats.cache_hits.values())
 print(hits)
 """
 
@@ -91,5 +91,5 @@ def test_a_further_method_on_a_compiled_scene_compiles_nothing() -> None:
     mechanism = compiled_mechanism(load_scene("pendulum"))
     for name in ("B2", "dopri5"):
         both(mechanism, name, 20, (20.0, 100.0))
-    steps, _ = module.machine_steps(mechanism, False, False, 1)
+    steps, _ = module.machine_steps(mechanism, ("accelerations",), 1)
     assert len(steps.signatures) == 1  # type: ignore[attr-defined]

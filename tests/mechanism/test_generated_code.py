@@ -11,19 +11,13 @@ import pytest
 
 from bezstab.mechanism import (
     Mechanism,
-    acceleration_function,
     compiled_mechanism,
     initial_state,
     load_scene,
     parse_scene,
+    state_function,
 )
-from bezstab.mechanism.compiled import (
-    correction_function,
-    corrections_of,
-    judged_acceleration_function,
-    slope_function,
-)
-from bezstab.mechanism.generated_code import compiled_source, machine_code, slope_lines, state_source
+from bezstab.mechanism.generated_code import CODES, acceleration_code, compiled_source, machine_code, state_source
 from bezstab.methods import REGISTRY, accuracy, lookup, steps
 from tests.evidence.samples import of_campaign
 from tests.mechanism.test_scenes import pendulum
@@ -76,13 +70,15 @@ def test_the_least_pivot_is_that_of_the_factored_matrix() -> None:
     jacobian = np.array(mechanism.equations.jacobian.subs(symbols), float)
     effective = jacobian @ np.diag(1 / np.array(mechanism.equations.mass, float)) @ jacobian.T
     pivots = np.diag(np.linalg.cholesky(effective)) ** 2
-    *_, least_pivot = judged_acceleration_function(mechanism, math)(0.0, 0.0, 0.0, q.tolist(), v.tolist())
+    *_, least_pivot = state_function(mechanism, "accelerations", math, judged=True)(
+        0.0, 0.0, 0.0, q.tolist(), v.tolist()
+    )
     assert least_pivot == pytest.approx((pivots / np.diag(effective)).min(), rel=1e-13)
 
 
 def test_generated_source_is_plain_assignments() -> None:
     """Arithmetic on named variables only: no calls but sin, cos and least, no containers but those handed out."""
-    code = compiled_mechanism(load_scene("slider_crank")).acceleration_code
+    code = acceleration_code(compiled_mechanism(load_scene("slider_crank")).equations)
     called = set(CALL.findall(state_source(code, [*code.results, code.least_pivot]))) - {"found"}
     assert called <= {"sin", "cos", "least"}
 
@@ -96,7 +92,7 @@ def test_names_never_reach_the_generated_code() -> None:
     }
     changes = {"body__name": hostile, "joint__bodies": ["ground", hostile], "initial": initial}
     mechanism = compiled_mechanism(parse_scene(pendulum(**changes)))
-    assert not any("import" in line for line in mechanism.acceleration_code.lines)
+    assert not any("import" in line for line in acceleration_code(mechanism.equations).lines)
     assert initial_state(mechanism)[0] == pytest.approx([0.6, 0.8])
 
 
@@ -112,29 +108,29 @@ def test_a_long_acceleration_by_its_shapes_is_the_same_to_the_last_bit() -> None
     """And so are its slopes and corrections; here as Python, two lanes side by side."""
     mechanism, lanes, gains = chain(12), 2, (3.0, 4.0)
     n = mechanism.size
-    codes = {"accelerations": mechanism.acceleration_code, "corrections": corrections_of(mechanism)}
-    code = machine_code(codes, slope_lines(mechanism.equations), stride=lanes)
+    codes = {name: CODES[name](mechanism.equations) for name in ("accelerations", "corrections", "slope")}
+    code = machine_code(codes, stride=lanes)
     functions = compiled_source(code.source, math, code.tables)
-    state, direction = (0.1 * np.sin(7.0 * np.arange(2 * n * lanes) + first).reshape(2, -1) for first in (0, 1))
+    state = 0.1 * np.sin(7.0 * np.arange(4 * n * lanes)).reshape(4, -1)
     found, off, changes, room = np.zeros(n * lanes), np.zeros(2 * n * lanes), np.zeros(n * lanes), np.zeros(code.size)
     situation = (0.0, np.array([gains, gains]).T, state)
     functions["accelerations"](*situation, found, room)
     functions["corrections"](*situation, off, room)
-    functions["slope"](*situation, direction, changes, room, np.array([False, True]))
+    functions["slope"](*situation, changes, room, np.array([False, True]))
     assert not changes[::lanes].any()  # of the lane that was not asked for
-    functions["slope"](*situation, direction, changes, room, np.array([True, False]))
+    functions["slope"](*situation, changes, room, np.array([True, False]))
     for lane in range(lanes):
-        q, v, dq, dv = (part[lane::lanes].tolist() for part in (*state, *direction))
-        assert tuple(found[lane::lanes]) == acceleration_function(mechanism, math)(0.0, *gains, q, v)
-        assert tuple(off[lane::lanes]) == correction_function(mechanism, math)(0.0, *gains, q, v)[:-1]
-        assert tuple(changes[lane::lanes]) == slope_function(mechanism, math)(0.0, *gains, q, v, dq, dv)
+        of_lane = state[:, lane::lanes].tolist()
+        for name, results in (("accelerations", found), ("corrections", off), ("slope", changes)):
+            given = of_lane[: len(codes[name].given)]
+            assert tuple(results[lane::lanes]) == state_function(mechanism, name, math)(0.0, *gains, *given)
 
 
 @pytest.mark.slow
 def test_a_chain_twice_as_long_takes_twice_the_arithmetic_and_no_more_shapes() -> None:
     """Its matrices are banded: entries that are zero are not computed."""
-    short, long = (chain(count).acceleration_code for count in (12, 24))
+    short, long = (acceleration_code(chain(count).equations) for count in (12, 24))
     assert len(long.lines) < 2.2 * len(short.lines)
-    of_short, of_long = (machine_code({"accelerations": code}, (), 1) for code in (short, long))
+    of_short, of_long = (machine_code({"accelerations": code}, 1) for code in (short, long))
     assert len(of_long.source) <= 1.1 * len(of_short.source)
     assert len(of_long.tables["accelerations_places"]) > 1.9 * len(of_short.tables["accelerations_places"])

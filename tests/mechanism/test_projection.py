@@ -9,7 +9,7 @@ import pytest
 from bezstab.errors import InputError
 from bezstab.mechanism import (
     Mechanism,
-    Projection,
+    check_after_step,
     compiled_mechanism,
     constraint_jacobian,
     initial_state,
@@ -18,10 +18,10 @@ from bezstab.mechanism import (
     simulate,
     simulated,
     simulated_with_steps,
+    state_function,
 )
-from bezstab.mechanism.compiled import correction_function
-from bezstab.mechanism.projection import check_projected
 from bezstab.methods import Method, evaluations, implicit, lookup, steps
+from bezstab.stabilising import NOTHING, after_step
 from tests.evidence.samples import of_campaign
 from tests.mechanism.test_runner import measured_order
 from tests.mechanism.test_second_order_memory import LEAPFROG, STOERMER
@@ -31,6 +31,7 @@ from tests.reference.plain_projection import saddle_solution
 from tests.reference.plain_runs import plain_run
 
 H = 1e-3  # s
+PROJECTED, ONCE, TWICE = (after_step("projection", iterations) for iterations in (None, 1, 2))
 WITHIN = 4e-12  # m, m/s: corrections of up to 1e-12 in sum are left, and constraints weigh a coordinate by some units
 
 
@@ -44,7 +45,7 @@ def scene(name: str) -> Mechanism:
 @pytest.mark.slow_except("ABM2-slider_crank")
 def test_after_each_step_the_constraints_hold(name: str, method: str) -> None:
     mechanism, h = scene(name), step_for(name)
-    run = simulate(mechanism, lookup(method), h, 50 * h, (0.0, 0.0), projection=Projection())
+    run = simulate(mechanism, lookup(method), h, 50 * h, (0.0, 0.0), after=PROJECTED)
     seen = observe(mechanism, run.t, run.q, run.v, 0.0, 0.0)
     assert run.failure is None
     assert abs(seen.c).max() <= WITHIN
@@ -70,8 +71,8 @@ def test_after_each_step_the_constraints_hold(name: str, method: str) -> None:
 def test_the_order_of_accuracy_stays(name: str, order: int) -> None:
     """Against the motion in the crank's angle alone, by quadrature; RK4 loses half of its order by strong feedback."""
     count = 400 if not implicit(lookup(name)) else 200
-    assert measured_order(name, count, lambda _: (0.0, 0.0), Projection()) == pytest.approx(order, abs=0.1)
-    assert measured_order(name, count, lambda _: (0.0, 0.0), Projection(1)) == pytest.approx(order, abs=0.1)
+    for after in (PROJECTED, ONCE):
+        assert measured_order(name, count, lambda _: (0.0, 0.0), after) == pytest.approx(order, abs=0.1)
 
 
 def test_what_is_carried_of_a_velocity_is_projected_with_it() -> None:
@@ -80,7 +81,7 @@ def test_what_is_carried_of_a_velocity_is_projected_with_it() -> None:
     mechanism, errors = scene("slider_crank_light"), []
     fine = simulate(mechanism, lookup("RK4"), 1e-4, 0.2, (0.0, 0.0))
     for h in (2e-3, 1e-3):
-        run = simulate(mechanism, method, h, 0.2, (0.0, 0.0), projection=Projection())
+        run = simulate(mechanism, method, h, 0.2, (0.0, 0.0), after=PROJECTED)
         seen = observe(mechanism, run.t, run.q, run.v, 0.0, 0.0)
         assert max(abs(seen.c).max(), abs(seen.cdot).max()) <= 1e-11
         errors.append(abs(run.q[-1] - fine.q[-1]).max())
@@ -92,7 +93,7 @@ def test_what_is_carried_of_a_velocity_is_projected_with_it() -> None:
 def test_steps_are_the_plain_ones(name: str) -> None:
     """Of methods that remember no acceleration: that would be one of the state before it was projected."""
     mechanism, method, count = scene("slider_crank"), lookup(name), 100
-    run = simulate(mechanism, method, H, count * H, (0.0, 0.0), projection=Projection(1), compiled=False)
+    run = simulate(mechanism, method, H, count * H, (0.0, 0.0), after=ONCE, compiled=False)
     states = np.concatenate([run.q, run.v], axis=1)
     first = steps(method)
     expected = plain_run(mechanism, method, H, (0.0, 0.0), states[:first], count + 1 - first, iterations=1)
@@ -105,7 +106,7 @@ def test_steps_are_the_plain_ones(name: str) -> None:
 def test_compiled_projection_is_that_of_numpy(name: str) -> None:
     for method in KINDS:
         by_numpy, compiled = (
-            simulate(scene(name), lookup(method), H, 100 * H, (0.0, 0.0), projection=Projection(2), compiled=each)
+            simulate(scene(name), lookup(method), H, 100 * H, (0.0, 0.0), after=TWICE, compiled=each)
             for each in (False, True)
         )
         assert_alike(by_numpy, compiled)
@@ -119,7 +120,7 @@ def test_corrections_are_the_least_ones_in_the_metric_of_the_masses(name: str) -
     n = mechanism.size
     state = np.concatenate(initial_state(mechanism))
     q, v = np.split(state + np.repeat([1e-3, 1.0], n) * generator.standard_normal(2 * n), 2)
-    *found, _ = correction_function(mechanism, math)(t, 0.0, 0.0, q.tolist(), v.tolist())
+    found = state_function(mechanism, "corrections", math)(t, 0.0, 0.0, q.tolist(), v.tolist())
     seen = observe(mechanism, np.array([t]), q[np.newaxis], v[np.newaxis], 0.0, 0.0)
     jacobian = constraint_jacobian(mechanism, t, q)
     for correction, error in ((np.array(found[:n]), seen.c[0]), (np.array(found[n:]), seen.cdot[0])):
@@ -131,22 +132,22 @@ def test_the_cost_is_counted() -> None:
     """A projection that moves the state computes a correction twice: the second says that it is enough."""
     mechanism, count = scene("driven_four_bar"), 40
     for name in ("SYM", "RK2", "hht"):
-        run = simulate(mechanism, lookup(name), H, count * H, (0.0, 0.0), projection=Projection(1))
+        run = simulate(mechanism, lookup(name), H, count * H, (0.0, 0.0), after=ONCE)
         assert run.projections == 2 * count
         assert run.factorizations == run.evaluations + 2 * count
         if name in ("SYM", "RK2"):
             assert run.evaluations == count * evaluations(lookup(name))
     plain = simulate(mechanism, lookup("SYM"), H, count * H, (0.0, 0.0))
-    assert (plain.projections, plain.factorizations) == (None, plain.evaluations)
-    ab4 = simulate(mechanism, lookup("AB4"), H, count * H, (0.0, 0.0), projection=Projection())
-    assert 2 * (count - 3) <= (ab4.projections or 0) <= 2 * count  # those of its start are counted, too
+    assert (plain.projections, plain.factorizations) == (0, plain.evaluations)
+    ab4 = simulate(mechanism, lookup("AB4"), H, count * H, (0.0, 0.0), after=PROJECTED)
+    assert 2 * (count - 3) <= ab4.projections <= 2 * count  # those of its start are counted, too
 
 
 def test_more_iterations_come_closer() -> None:
     """Each iteration of Newton's method squares what is left."""
     mechanism, errors = scene("driven_four_bar"), []
     for iterations in (1, 2, 3):
-        run = simulate(mechanism, lookup("SYM"), 0.02, 1.0, (0.0, 0.0), projection=Projection(iterations))
+        run = simulate(mechanism, lookup("SYM"), 0.02, 1.0, (0.0, 0.0), after=after_step("projection", iterations))
         errors.append(abs(observe(mechanism, run.t, run.q, run.v, 0.0, 0.0).c).max())
     assert errors[0] > 1e-7
     assert errors[1] < errors[0] ** 1.5
@@ -162,7 +163,7 @@ def test_steps_of_different_lengths_are_projected_too() -> None:
         duration=0.2,
         alpha_hat=0.0,
         beta_hat=0.0,
-        projection=Projection(),
+        after=PROJECTED,
     )
     assert run.stabilise == "projection"
     assert max(abs(run.c).max(), abs(run.cdot).max() / 10) <= WITHIN
@@ -176,7 +177,7 @@ def test_a_singular_configuration_ends_a_run_and_says_when(compiled: bool) -> No
     turned = {"crank.theta": math.pi / 2 - before}
     mechanism = compiled_mechanism(replace(shipped, position=turned, velocity={"crank.theta": rate}))
     h = before / rate
-    run = simulate(mechanism, lookup("RK1"), h, 10 * h, (0.0, 0.0), projection=Projection(), compiled=compiled)
+    run = simulate(mechanism, lookup("RK1"), h, 10 * h, (0.0, 0.0), after=PROJECTED, compiled=compiled)
     assert len(run.t) == 1
     assert "at t = 5e-05 s: singular configuration: C_q M^-1 C_q^T has lost its rank" in str(run.failure)
     assert simulate(mechanism, lookup("RK1"), h, h, (0.0, 0.0), compiled=compiled).failure is None
@@ -185,17 +186,17 @@ def test_a_singular_configuration_ends_a_run_and_says_when(compiled: bool) -> No
 def test_a_position_from_which_newtons_method_finds_none_ends_a_run() -> None:
     """The crank is driven half a revolution on in a step; so many iterations as are asked for are no promise."""
     mechanism = scene("driven_four_bar")
-    run = simulate(mechanism, lookup("RK1"), 0.5, 20.0, (0.0, 0.0), projection=Projection())
+    run = simulate(mechanism, lookup("RK1"), 0.5, 20.0, (0.0, 0.0), after=PROJECTED)
     assert "at t = 1.5 s: projection: Newton's method for the position did not converge in 25 iterations" in str(
         run.failure
     )
-    given_up = simulate(mechanism, lookup("RK1"), 0.5, 1.5, (0.0, 0.0), projection=Projection(2))
+    given_up = simulate(mechanism, lookup("RK1"), 0.5, 1.5, (0.0, 0.0), after=TWICE)
     assert given_up.failure is None
     assert abs(observe(mechanism, given_up.t, given_up.q, given_up.v, 0.0, 0.0).c).max() > 1e-3
 
 
 def test_a_run_says_what_held_its_constraints() -> None:
-    for gain, projection, held in ((0.1, None, "baumgarte"), (0.0, None, "none"), (0.0, Projection(), "projection")):
+    for gain, after, held in ((0.1, NOTHING, "baumgarte"), (0.0, NOTHING, "none"), (0.0, PROJECTED, "projection")):
         run = simulated(
             scene("pendulum"),
             lookup("SYM"),
@@ -203,13 +204,13 @@ def test_a_run_says_what_held_its_constraints() -> None:
             duration=5 * H,
             alpha_hat=gain,
             beta_hat=gain,
-            projection=projection,
+            after=after,
         )
         assert run.stabilise == held
 
 
 def test_bad_input_is_refused() -> None:
     with pytest.raises(InputError, match="iterations 0: expected at least 1"):
-        Projection(0)
+        after_step("projection", 0)
     with pytest.raises(InputError, match="stoermer has its position a step ahead of its velocity"):
-        check_projected(Method("stoermer", STOERMER, source=""))
+        check_after_step(Method("stoermer", STOERMER, source=""), PROJECTED)

@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from bezstab.errors import InputError
 from bezstab.mechanism import (
-    Projection,
     Start,
     compiled_mechanism,
     initial_state,
@@ -20,6 +19,7 @@ from bezstab.mechanism import (
     simulated,
 )
 from bezstab.methods import REGISTRY, Method, accuracy, evaluations, lookup, steps
+from bezstab.stabilising import NOTHING, AfterStep
 from bezstab.units import feedback_gains
 from tests.evidence.samples import of_campaign
 from tests.mechanism.test_scenes import four_bars
@@ -44,7 +44,7 @@ def order(name: str) -> int:
 
 
 def measured_order(
-    name: str, count: int, gains: Callable[[float], tuple[float, float]], projection: Projection | None = None
+    name: str, count: int, gains: Callable[[float], tuple[float, float]], after: AfterStep = NOTHING
 ) -> float:
     """Return the order that `simulate` shows from count to 2 count steps over 0.2 s, the light crank at 60 rpm."""
     scene, rate, duration = load_scene("slider_crank_light"), 2 * np.pi, 0.2
@@ -53,7 +53,7 @@ def measured_order(
     errors = []
     for step_count in (count, 2 * count):
         h = duration / step_count
-        run = simulate(mechanism, lookup(name), h, duration, gains(h), projection=projection)
+        run = simulate(mechanism, lookup(name), h, duration, gains(h), after=after)
         assert not run.failure
         errors.append(distance(run.q[:, 0].tolist(), reference))
     return shown_order(errors)

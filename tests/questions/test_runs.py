@@ -6,7 +6,7 @@ import pytest
 
 from bezstab.errors import InputError
 from bezstab.methods import lookup
-from bezstab.questions import RunQuestion, projection_for, run_answer
+from bezstab.questions import RunQuestion, run_answer
 
 QUESTION = RunQuestion(
     scene="pendulum",
@@ -34,6 +34,6 @@ def test_what_does_not_go_together_is_refused() -> None:
         with pytest.raises(InputError, match="--stabilise baumgarte"):
             replace(QUESTION, **changed)
     with pytest.raises(InputError, match="--iterations needs --stabilise projection"):
-        projection_for("none", 2)
+        replace(QUESTION, point=None, stabilise="none", iterations=2)
     with pytest.raises(InputError, match="several steps"):
         replace(QUESTION, method=lookup("B4"), sequence=(Fraction("0.01"),))

@@ -7,6 +7,7 @@ from bezstab.errors import InputError
 from bezstab.evidence import NO_FEEDBACK, measured_runs
 from bezstab.methods import lookup
 from bezstab.questions import FrontQuestion, TradeQuestion
+from bezstab.stabilising import NOTHING, after_step
 from bezstab.stability import spectral_radius
 
 SYM = lookup("SYM")
@@ -21,11 +22,10 @@ QUESTION = TradeQuestion(
 
 
 def test_against_projection_each_method_runs_with_feedback_and_with_projection() -> None:
-    assert QUESTION.treatments == [((1, 0.5), None)]
+    assert QUESTION.treatments == [((1, 0.5), NOTHING)]
     (advised, given, projected) = replace(QUESTION, against="projection").treatments
-    assert (advised, given) == ((None, None), ((1, 0.5), None))
-    assert projected[0] == NO_FEEDBACK
-    assert projected[1]
+    assert (advised, given) == ((None, NOTHING), ((1, 0.5), NOTHING))
+    assert projected == (NO_FEEDBACK, after_step("projection"))
     assert QUESTION.rate is None  # no point is advised
 
 

@@ -15,9 +15,10 @@ from bezstab.evidence import (
     swept_runs,
     with_fronts,
 )
-from bezstab.mechanism import Projection, compiled_mechanism, load_scene, simulated
+from bezstab.mechanism import compiled_mechanism, load_scene, simulated
 from bezstab.methods import lookup
 from bezstab.show.run_figures import history_figure, projection_figure, work_precision_figure
+from bezstab.stabilising import NOTHING, AfterStep, after_step
 
 
 @pytest.mark.slow
@@ -52,12 +53,12 @@ def test_the_projection_figure_shows_all_three_errors_of_every_way_to_hold_the_c
     """A line for each method and way in each axes."""
     scene, steps = load_scene("slider_crank_light"), (0.008, 0.004)
     true = reference_motion(scene, min(steps), 1.0)
-    ways: list[tuple[tuple[float, float] | None, Projection | None]]
-    ways = [(None, None), ((0.5, 0.1), None), (NO_FEEDBACK, Projection())]
+    ways: list[tuple[tuple[float, float] | None, AfterStep]]
+    ways = [(None, NOTHING), ((0.5, 0.1), NOTHING), (NO_FEEDBACK, after_step("projection"))]
     sweeps = [
-        Sweep(lookup(name), scene, steps, 1.0, point, False, 1, true, Fraction(14), projection=projection)
+        Sweep(lookup(name), scene, steps, 1.0, point, False, 1, true, Fraction(14), after=after)
         for name in ("B2", "SYM")
-        for point, projection in ways
+        for point, after in ways
     ]
     swept = [run for sweep in sweeps for run in swept_runs(sweep, measured_runs(sweep))]
     figure = projection_figure(with_fronts(swept, true.error, "projection"), scene.name, 0.0)
