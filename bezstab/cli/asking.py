@@ -9,7 +9,7 @@ import click
 
 from bezstab.cli.command_group import AS_TYPED, NUMERICAL_TROUBLE
 from bezstab.cli.options import left_at_default
-from bezstab.cli.output import for_reading, say, show_command, show_text
+from bezstab.cli.output import for_reading, say, show_command, show_text, worked_out
 from bezstab.engines import Engine
 from bezstab.errors import NumericalError
 from bezstab.show import Row, motion_words
@@ -49,7 +49,7 @@ def asked_of_feedback(**typed: Any) -> "Question":
     from bezstab.questions import Question
 
     question = asked(Question, **typed)
-    _ = question.turning, question.motion
+    worked_out([lambda: question.turning, lambda: question.motion], typed["scene"])
     say_if_it_turns_too_far(typed["scene"], question.speed, question.h)
     return question
 

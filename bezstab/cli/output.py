@@ -185,6 +185,11 @@ def progress(items: Iterable[Item], label: str, length: int | None = None) -> It
         yield from bar
 
 
+def worked_out(works: Sequence[Callable[[], Item]], label: str | None) -> list[Item]:
+    """Return what each of some works finds; a terminal shows meanwhile how many are done, unless there is no label."""
+    return [work() for work in (progress(works, label) if label else works)]
+
+
 @contextmanager
 def results_of_chunks(
     compute: "Callable[[Any], Arrays]", chunks: Sequence[Any], path: Path, job: str, work: Work

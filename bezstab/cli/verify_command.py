@@ -8,7 +8,7 @@ import click
 from bezstab.cli.asking import asked, of_each
 from bezstab.cli.command_group import NUMERICAL_TROUBLE
 from bezstab.cli.options import Rule, changed, command, flag, option
-from bezstab.cli.output import Files, Work, for_reading, progress, results_of_chunks, show_rows, show_text
+from bezstab.cli.output import Files, Work, for_reading, progress, results_of_chunks, show_rows, show_text, worked_out
 from bezstab.show import FORCED, MEASUREMENTS, SUMMARIES, VERDICT_MAPS, WITNESSED, Row
 
 if TYPE_CHECKING:
@@ -67,6 +67,7 @@ def verify(across: int | None, accuracy: bool, witness: str | None, work: Work, 
     from bezstab.questions import VerifyQuestion
 
     question = asked(VerifyQuestion, **typed)
+    worked_out([lambda: question.mechanism], typed["scene"])
     if accuracy:
         return _show_forced_errors(question)
     if witness:
