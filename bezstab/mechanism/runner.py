@@ -41,7 +41,7 @@ FloatArray = NDArray[np.float64]
 Gains = tuple[Any, Any]
 """2 alpha (1/s) and beta^2 (1/s^2), as `units.feedback_gains` returns them: floats, or arrays over a batch."""
 
-NUMBERS_OF_A_BLOCK = 2**15
+NUMBERS_OF_A_BLOCK = 2**16
 """Of all runs, between two looks at what the user wants (Ctrl-C): some tenths of a second in Python."""
 
 
