@@ -74,7 +74,12 @@ def test_a_run_keeps_its_methods_order_up_to_that_of_its_start(name: str) -> Non
 
 SHOWN_ORDERS = {
     **{name: order(name) for name in ("B4", "AB4", "ABM3")},
-    **{"verlet-half": 2, "hht": 2, "trapezoid": 2, "bdf3": 3, "am3": 3, "implicit-euler": 1},
+    "verlet-half": 2,
+    "hht": 2,
+    "trapezoid": 2,
+    "bdf3": 3,
+    "am3": 3,
+    "implicit-euler": 1,
     # lower than on a free motion, for what happens between the ends of a step leaves the constraints
     **dict.fromkeys(("RK2", "SIE", "ssprk3", "dirk3"), 1),
     **dict.fromkeys(("RK4", "dopri5", "yoshida4"), 2),
