@@ -212,7 +212,7 @@ def _accelerations_on_it(
 
 def _times(course: Course, group: Accelerations) -> FloatArray:
     """Return when the accelerations of each step take place (s), shape (steps, c)."""
-    return np.asarray(course.step * np.add.outer(np.arange(course.steps), group.moments))
+    return course.step * np.add.outer(np.arange(course.steps), group.moments)
 
 
 def _linearized(

@@ -256,7 +256,7 @@ def _signal_vectors(samples: FloatArray) -> FloatArray:
     """Return the singular vectors of the Hankel matrices of samples, those of the largest values first."""
     rows = len(samples) // 2
     hankel = np.concatenate([sliding_window_view(column, len(samples) - rows + 1).T for column in samples.T], axis=1)
-    return np.asarray(np.linalg.svd(hankel.T, full_matrices=False)[2].T)
+    return np.linalg.svd(hankel.T, full_matrices=False)[2].T
 
 
 def _shifting_poles(vectors: FloatArray) -> ComplexArray:

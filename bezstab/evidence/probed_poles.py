@@ -376,10 +376,10 @@ def likenesses(
     }
     found = []
     for method, recursion in recursions.items():
-        alike = [other.name for other, its in recursions.items() if its == recursion and other is not method]
+        alike = ", ".join(other.name for other, its in recursions.items() if its == recursion and other is not method)
         with suppress(NumericalError):
-            one = _likeness(probed, method, own_steps[method], (float(alpha_hat), float(beta_hat)), turned)
-            found.append(replace(one, same_as=", ".join(alike)))
+            point = float(alpha_hat), float(beta_hat)
+            found.append(_likeness(probed, method, own_steps[method], point, turned, alike))
     return sorted(found, key=lambda one: one.distance)
 
 
@@ -435,7 +435,7 @@ def _polynomial_without_zeros(method: Method, alpha_hat: Fraction, beta_hat: Fra
 
 
 def _likeness(
-    probed: ProbedPole, method: Method, between: int, point: tuple[float, float], turned: float | None
+    probed: ProbedPole, method: Method, between: int, point: tuple[float, float], turned: float | None, same_as: str
 ) -> Likeness:
     assert probed.pole is not None
     assert probed.uncertainty is not None
@@ -458,7 +458,7 @@ def _likeness(
         error=probed.uncertainty,
         allowed=probed.uncertainty + moved,
         dominant=bool(leading[nearest]),
-        same_as="",
+        same_as=same_as,
     )
 
 
