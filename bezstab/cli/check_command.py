@@ -74,14 +74,14 @@ def check(**typed: Any) -> bool:
     given = [answer for answer in found if answer.role == "given"]
     if for_reading():
         without = left_out(question)
-        show_rows(CHECKED, [answer_row(answer) for answer in given], without)
+        show_rows(CHECKED, map(answer_row, given), without)
         say_varying(given)
         show_sentences(map(costs_words, given if not drive else ()))
-        if instead := [answer_row(answer) for answer in found if answer.role == "instead"]:
+        if instead := [answer for answer in found if answer.role == "instead"]:
             show_text("\nWhat `choose` gives instead:\n")
-            show_rows(CHECKED, instead, without)
+            show_rows(CHECKED, map(answer_row, instead), without)
     else:
-        show_rows(CHECKED, [answer_row(answer) for answer in found])
+        show_rows(CHECKED, map(answer_row, found))
     show_below(question, found)
     return all(answer.safe for answer in given)
 
@@ -103,5 +103,5 @@ def _check_without_step(methods: tuple[Method, ...], point: TypedPoint) -> bool:
 
     assert point.numbers
     found = [largest_step(method, *point.numbers) for method in methods_for(methods, None, None)]
-    show_rows(LARGEST_STEPS, [largest_step_row(each) for each in found])
+    show_rows(LARGEST_STEPS, map(largest_step_row, found))
     return all(each.safe for each in found)

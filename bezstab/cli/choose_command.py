@@ -92,7 +92,7 @@ def choose(goal: Goal | None, equal: str | None, bandwidth: Fraction | None, **t
     goal = goal or usual_goal(typed["engine"], drive)
     question = asked_of_feedback(goal=goal, equal=equal is not None, **typed)
     chosen = list(progress(answers(question), goal, len(question.methods)))
-    show_rows(CHOICES, [answer_row(answer) for answer in chosen], left_out(question))
+    show_rows(CHOICES, map(answer_row, chosen), left_out(question))
     if for_reading():
         say_varying(chosen)
         if not (drive or question.swept):

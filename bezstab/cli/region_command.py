@@ -10,7 +10,7 @@ from bezstab.cli.asking import asked, of_each, say_if_it_turns_too_far
 from bezstab.cli.command_group import NUMERICAL_TROUBLE
 from bezstab.cli.held_drives import held_asked, show_held
 from bezstab.cli.options import NUMBER, POSITIVE, SPEED, Rule, changed, command, flag, option
-from bezstab.cli.output import Files, progress, say, show_rows, show_text
+from bezstab.cli.output import Files, progress, say, show_rows, show_text, worked_out
 from bezstab.show import NOT_KNOWN, REGIONS, Row, combined_words, region_row
 
 if TYPE_CHECKING:
@@ -82,6 +82,7 @@ def region(quality: str, grid: int | None, files: Files, **typed: Any) -> int:
         return 0
     del typed["drive"]
     question = asked(MapQuestion, points=points, **typed)
+    worked_out([lambda: question.motion, lambda: question.turnings], typed["scene"])
     for speed in () if question.motion else question.speeds:
         say_if_it_turns_too_far(question.scene, speed, question.h)
     files.check_output()

@@ -6,7 +6,7 @@ import click
 
 from bezstab.cli.asking import asked
 from bezstab.cli.options import NUMBER, SEQUENCE, changed, command, option
-from bezstab.cli.output import Files, say, show_rows
+from bezstab.cli.output import Files, say, show_rows, worked_out
 from bezstab.errors import NumericalError
 from bezstab.show import SIMULATIONS, passages_words
 
@@ -63,7 +63,8 @@ def simulate(files: Files, **typed: Any) -> None:
         typed["point"] = None
     question = asked(RunQuestion, **typed)
     files.check_output()
-    run = run_answer(question)
+    worked_out([lambda: question.mechanism], typed["scene"])
+    (run,) = worked_out([lambda: run_answer(question)], question.method.name)
     files.write(
         files.path("simulate", typed["scene"], question.method.name),
         lambda: show.history_figure(run),

@@ -7,7 +7,7 @@ import click
 
 from bezstab.cli.asking import say_if_units_were_mistaken
 from bezstab.cli.options import POSITIVE, SECONDS, Rule, TypedPoint, changed, command, flag, left_at_default, option
-from bezstab.cli.output import Files, Work, progress, results_of_chunks, show_rows, show_text
+from bezstab.cli.output import Files, Work, progress, results_of_chunks, show_rows, show_text, worked_out
 from bezstab.show import FRONTS, SWEPT, combined_words, front_row
 
 if TYPE_CHECKING:
@@ -91,6 +91,7 @@ def tradeoff(predicted: bool, point: TypedPoint, tolerance: Fraction, work: Work
     say_if_units_were_mistaken(question)
     path = files.path("tradeoff", typed["scene"])
     job = f"{question.methods} {question}"
+    worked_out([lambda: question.rate, lambda: question.reference], typed["scene"])
     with results_of_chunks(evidence.measured_runs, question.sweeps, path, job, work) as results:
         swept = question.swept(results)
         rows = [SWEPT.row(run, front=front) for run, front in zip(swept.runs, swept.front_labels, strict=True)]

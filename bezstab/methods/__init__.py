@@ -46,12 +46,12 @@ if TYPE_CHECKING:
         S,
         Z,
         branch_polynomial,
-        characteristic_polynomial,
         closed_loop_at,
         closed_loop_polynomial,
         closed_loop_table,
         coefficient_table,
         mapping_equations,
+        rational_feedback_roots,
     )
     from bezstab.methods.determinants import characteristic
     from bezstab.methods.formulas import characteristic_text, mapping_text, recursion_text, steady_error_text

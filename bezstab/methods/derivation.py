@@ -3,6 +3,7 @@
 Each kind of scheme gives both (schemes.py); here they are taken to the user's h, and to sympy's expressions.
 """
 
+from collections.abc import Sequence
 from fractions import Fraction
 from functools import cache
 from math import lcm
@@ -24,6 +25,17 @@ def coefficient_table(method: Method) -> MuTable:
     TypeError for a second-order scheme, which treats position and velocity differently and has no mu.
     """
     return method.scheme.mu_table
+
+
+def rho_and_sigma(method: Method) -> tuple[Sequence[Fraction], Sequence[Fraction]] | None:
+    """Return rho and sigma, ascending, where pi(z, mu) = rho(z) - mu sigma(z): of a linear multistep method, at least.
+
+    None of other methods.
+    """
+    if not method.has_mu or len(coefficient_table(method)[0]) != 2:
+        return None
+    rho, minus_sigma = zip(*coefficient_table(method), strict=True)
+    return rho, [-c for c in minus_sigma]
 
 
 @cache
@@ -97,14 +109,20 @@ def branch_polynomial(method: Method) -> tuple[Fraction, ...]:
 
     Exact. TypeError for a second-order scheme, as `coefficient_table`.
     """
-    if len(coefficient_table(method)[0]) == 2:  # pi = A + mu B: the resultant is A B' - A' B
-        parts = zip(*coefficient_table(method), strict=True)
-        A, B = (sp.Poly([in_field(c) for c in reversed(part)], Z, domain=sp.QQ) for part in parts)
-        meeting = A * B.diff(Z) - A.diff(Z) * B
+    if mapping := rho_and_sigma(method):
+        rho, sigma = (sp.Poly([in_field(c) for c in reversed(part)], Z, domain=sp.QQ) for part in mapping)
+        meeting = rho.diff(Z) * sigma - rho * sigma.diff(Z)
     else:
         pi = characteristic_polynomial(method).reorder(MU, Z)  # its first symbol is the one that is eliminated
         meeting = pi.resultant(pi.diff(Z))
     return tuple(as_fraction(c) for c in reversed(meeting.rep.to_list()))
+
+
+def rational_feedback_roots(method: Method, z: int) -> list[Fraction]:
+    """Return the rational mu at which pi(., mu) has a root at z, exact; none of a second-order scheme."""
+    if not method.has_mu:
+        return []
+    return [Fraction(int(mu.p), int(mu.q)) for mu in characteristic_polynomial(method).eval(Z, z).ground_roots()]
 
 
 def mapping_equations(method: Method) -> list[sp.Equality]:

@@ -20,7 +20,7 @@ from math import isqrt
 import sympy as sp
 from sympy.polys.rings import PolyElement
 
-from bezstab.methods.derivation import coefficient_table
+from bezstab.methods.derivation import rho_and_sigma
 from bezstab.methods.determinants import as_fraction, in_field
 from bezstab.methods.plane_edges import crossing_polynomials
 from bezstab.methods.root_isolation import BITS, positive_roots, whole_coefficients
@@ -43,9 +43,9 @@ def turning_factors(method: Method, alpha_hat: Fraction, beta_hat: Fraction, pow
     coefficients = _along_path(method, alpha_hat, beta_hat, powers)
     edges = crossing_polynomials(coefficients, RING, pairs=False)
     found: list[Fraction] = []
-    if method.has_mu and len(coefficient_table(method)[0]) == 2:  # linear in mu
+    if mapping := rho_and_sigma(method):
         m = method.step_multiple
-        found = _factors_on_the_circle(method, m * alpha_hat, m**2 * beta_hat, powers)
+        found = _factors_on_the_circle(*mapping, m * alpha_hat, m**2 * beta_hat, powers)
     elif len(coefficients) > 2:
         edges.append(_edge_of_pairs(coefficients))
     return sorted({*found, *(root for edge in edges for root in _positive_roots(edge))} - {ZERO})
@@ -102,11 +102,13 @@ def _value(polynomial: PolyElement, x: Fraction) -> Fraction:
 
 
 def _factors_on_the_circle(
-    method: Method, alpha_hat: Fraction, beta_hat: Fraction, powers: tuple[int, int]
+    rho: Sequence[Fraction],
+    sigma: Sequence[Fraction],
+    alpha_hat: Fraction,
+    beta_hat: Fraction,
+    powers: tuple[int, int],
 ) -> list[Fraction]:
     """Return the factors at which a linear multistep method has a pair of roots on the circle, in steps of its own."""
-    rho, minus_sigma = zip(*coefficient_table(method), strict=True)
-    sigma = [-c for c in minus_sigma]
     rho_rho, sigma_sigma = (_real_part(each, each) for each in (rho, sigma))
     rho_sigma = _real_part(rho, sigma)
     a, b = _number(alpha_hat), _number(beta_hat)

@@ -13,7 +13,6 @@ from bezstab.methods.derivation import Z, closed_loop_table, coefficient_table
 from bezstab.methods.determinants import in_field
 from bezstab.methods.polynomials import MuTable, PlaneTable, polynomial_gcd, quotient_and_remainder, trimmed
 from bezstab.methods.schemes import Method
-from bezstab.rationals import ONE
 
 
 @cache
@@ -46,8 +45,8 @@ def reduced_table(method: Method) -> PlaneTable:
 
     Exact, of the same layout; dimensionless.
     """
-    table = closed_loop_table(method)
-    factor = (ONE,) if method.has_mu else shared_factor(method)
+    method = without_shared_factor(method)
+    table, factor = closed_loop_table(method), shared_factor(method)
     if len(factor) == 1:
         return table
     quotients = [

@@ -6,11 +6,13 @@ scene, method, steps, feedback or projection   →   RunQuestion   →   run_ans
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cached_property
 from typing import Any
 
 from bezstab.engines import Point
 from bezstab.errors import InputError
 from bezstab.mechanism import (
+    Mechanism,
     Scene,
     Simulation,
     Start,
@@ -64,6 +66,11 @@ class RunQuestion:
         """Whether the point looks like alpha and beta in 1/s; None with a sequence, which may be to let errors grow."""
         return None if self.sequence else meant_in_seconds((self.method,), self.point, self.h)
 
+    @cached_property
+    def mechanism(self) -> Mechanism:
+        """The mechanism of the scene; errors as `scene_at_speed`."""
+        return compiled_mechanism(scene_at_speed(self.scene, self.speed))
+
     @property
     def after(self) -> AfterStep:
         """What is done to each new state."""
@@ -72,7 +79,7 @@ class RunQuestion:
 
 def run_answer(question: RunQuestion) -> Simulation:
     """Return the run; what goes wrong on the way is its `failure`. Errors as `simulated` and `scene_at_speed`."""
-    mechanism = compiled_mechanism(scene_at_speed(question.scene, question.speed))
+    mechanism = question.mechanism
     alpha_hat, beta_hat = map(float, question.point or (0, 0))
     of_both: dict[str, Any] = {
         "h": float(question.h),

@@ -29,7 +29,6 @@ from bezstab.stability.gain_margins import GainLimits, gain_limits
 from bezstab.stability.grid_maps import QUALITY, pole_map
 from bezstab.stability.kick_responses import kick_response
 from bezstab.stability.margins import Margins, largest_stable_step, stability_margins, stable_up_to
-from bezstab.stability.pencils import Pencil, pencil_of, roots_in_z
 from bezstab.stability.regions import Region, pole_place, region, useful_window, window
 from bezstab.stability.searches import bisected, first_where
 from bezstab.stability.step_families import Limit, Member, bezier_limit, family_members

@@ -20,9 +20,10 @@ from bezstab.stability.arrays import (
     FloatArray,
     even_points,
 )
-from bezstab.stability.closed_loop import AnyPencil, any_pencil_of, converges, largest_modulus, largest_pole
+from bezstab.stability.charts import NEAR
+from bezstab.stability.closed_loop import converges, largest_modulus, largest_pole
 from bezstab.stability.path_crossings import Path
-from bezstab.stability.pencils import Pencil
+from bezstab.stability.pencils import Pencil, pencil_of
 from bezstab.stability.searches import bisected
 
 Modulus = Callable[[FloatArray, FloatArray], FloatArray]
@@ -36,7 +37,6 @@ RINGS: FloatArray = np.array([1e-1, 1e-2, 1e-3, 1e-4, 1e-5])  # radii, as shares
 CLOSE_RINGS: FloatArray = RINGS[1:]  # as shares of a point's own coordinates
 PARTED = 4.0  # times what rounding of a point does to |z_p|: it is found from poles of the same rounding
 ROOT_OF_ROUNDING = 1e-7  # a double pole at zero, as far as float64 tells it
-NEAR = (8.0, 64.0)  # alpha_hat, beta_hat: corners of a region may lie a thousandfold further out, least values do not
 FURTHEST = (1e-8, 1e8)  # factors on the way to which |z_p| is looked at where there is no end
 ONE = Fraction(1)
 
@@ -57,17 +57,8 @@ def sampled_points(extent: Extent, alpha_hat: float, beta_hat: float) -> tuple[F
     )
 
 
-def check_deadbeat(pencil: Pencil, alpha_hat: float, beta_hat: float) -> None:
-    """Raise NumericalError unless every pole of a one-step method is zero, to rounding, at its best point."""
-    mu_abs = pencil.multiple * np.sqrt(abs(beta_hat))
-    size = float(np.abs(pencil.table[0]) @ mu_abs ** np.arange(pencil.table.shape[1]))
-    z_abs = float(largest_modulus(pencil, alpha_hat, beta_hat))
-    if z_abs > 100 * np.sqrt(EPS) * size:  # a double mu splits by the root of rounding
-        raise NumericalError(f"{pencil.method.name}: |z_p| = {z_abs:.6g} where all poles were to be zero")
-
-
 def check_best_point(
-    pencil: AnyPencil, z_abs: float, alpha_hat: float, beta_hat: float, view: Extent, anywhere: bool
+    pencil: Pencil, z_abs: float, alpha_hat: float, beta_hat: float, view: Extent, anywhere: bool
 ) -> None:
     """Raise NumericalError unless |z_p| at the point is as said, and smaller at no sampled point.
 
@@ -116,7 +107,7 @@ def check_least(
         raise NumericalError(f"{method.name}: the point chosen has {here:.9g}, but {place} has {values[least]:.9g}")
 
 
-def check_critical(pencil: AnyPencil, alpha_hat: float, beta_hat: float, extent: Extent, cut: bool = False) -> None:
+def check_critical(pencil: Pencil, alpha_hat: float, beta_hat: float, extent: Extent, cut: bool = False) -> None:
     r"""Raise NumericalError unless the dominant pole is real and positive at a point, and smaller at no neighbour.
 
     Neighbours are where the dominant pole is double, real and positive, too (cut: and within the extent). Bisection
@@ -195,7 +186,7 @@ def check_margin(path: Path, ends: tuple[float, float]) -> None:
     again.
     """
     name = path.method.name
-    pencil = any_pencil_of(path.method)
+    pencil = pencil_of(path.method)
     for outwards, end, furthest in zip((-1, 1), ends, FURTHEST, strict=True):
         finite = 0 < end < np.inf
         factors = np.geomspace(1, end if finite else furthest, SAMPLES // 4)[1:-1]

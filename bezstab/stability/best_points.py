@@ -13,24 +13,17 @@ from functools import cache
 from itertools import count
 
 import numpy as np
-from numpy.polynomial.polynomial import polyroots
 
 from bezstab.errors import NumericalError
-from bezstab.methods import Method, fixed_poles, implicit
-from bezstab.stability.answer_checks import check_best_point, check_deadbeat
-from bezstab.stability.arrays import DOUBLE, EPS, SAME, ComplexArray, FloatArray
-from bezstab.stability.charts import chart_of
-from bezstab.stability.closed_loop import AnyPencil, free_pencil_of, largest_modulus
-from bezstab.stability.far_limits import FarLimit, least_far_limit
+from bezstab.methods import Method, fixed_poles
+from bezstab.stability.answer_checks import check_best_point
+from bezstab.stability.arrays import DOUBLE, EPS, SAME, ComplexArray
+from bezstab.stability.closed_loop import largest_modulus
+from bezstab.stability.far_limits import FarLimit
 from bezstab.stability.least_modulus import least_on
-from bezstab.stability.pencils import Pencil, all_inside, deadbeat_mu, roots_in_mu
+from bezstab.stability.pencils import Pencil, pencil_of
 from bezstab.stability.regions import Region, region
-from bezstab.stability.searches import checked, zoom_on_minimum
-
-REACH = np.finfo(float).max ** 0.5  # of mu, whose square is beta_hat; one zero of R is within its degree
-ARC_SAMPLES = 513  # of theta, where a curve of equal |z_p| is looked for, a tenth of them at least
-ARC_SHARE = 1 / 10  # of the samples lie on such a curve, if there is one; a kink shows at isolated theta only
-ARC_ZOOM_POINTS, ARC_ZOOMS = 65, 7  # each by 1/32: the curve's end, to rounding
+from bezstab.stability.searches import checked
 
 
 @dataclass(frozen=True, repr=False)
@@ -91,10 +84,12 @@ def best_point_or_reason(method: Method) -> tuple[BestPoint | None, str | None]:
 
 @cache
 def _best_or_limit(method: Method) -> BestPoint | FarLimit | None:
-    pencil = free_pencil_of(method)
+    pencil = pencil_of(method, free=True)
     found: BestPoint | FarLimit | None = None
-    if isinstance(pencil, Pencil) and pencil.steps == 1:
-        found = _deadbeat(pencil)
+    if deadbeat := pencil.deadbeat_points():
+        (alpha_hat, beta_hat), *elsewhere = deadbeat
+        double = beta_hat == alpha_hat**2 / 4
+        found = BestPoint(method, 0.0, alpha_hat, beta_hat, (0j,), double, tuple(elsewhere), arc=False)
     stuck = fixed_poles(method)
     if found is None or stuck:
         stable = region(method)
@@ -104,75 +99,36 @@ def _best_or_limit(method: Method) -> BestPoint | FarLimit | None:
     return _beside_a_fixed_pole(method, stuck[0], found) if stuck else found
 
 
-def _deadbeat(pencil: Pencil) -> BestPoint | None:
-    """Return the zeros of R, as z = R(mu), the most damped first; of an implicit method those where Re mu <= 0."""
-    zeros: list[complex] = []
-    for root in np.sort_complex(deadbeat_mu(pencil)):
-        mu = complex(root.real, abs(root.imag) if abs(root.imag) > SAME * abs(root) else 0)
-        if implicit(pencil.method):
-            if mu.real > SAME * abs(mu):
-                continue
-            mu = complex(min(mu.real, 0.0), mu.imag)
-        if abs(mu) < REACH and all(abs(mu - other) > DOUBLE * abs(mu) for other in zeros):
-            zeros.append(mu)
-    if not zeros:
-        return None
-    (alpha_hat, beta_hat), *elsewhere = [_user_point(pencil, mu) for mu in zeros]
-    check_deadbeat(pencil, alpha_hat, beta_hat)
-    double = zeros[0].imag == 0
-    return BestPoint(pencil.method, 0.0, alpha_hat, beta_hat, (0j,), double, tuple(elsewhere), arc=False)
-
-
-def _user_point(pencil: Pencil, mu: complex) -> tuple[float, float]:
-    alpha_hat, beta_hat = pencil.user_points(mu, mu.conjugate())
-    return float(alpha_hat), float(beta_hat)
-
-
-def _searched(pencil: AnyPencil, stable: Region) -> BestPoint | FarLimit:
+def _searched(pencil: Pencil, stable: Region) -> BestPoint | FarLimit:
     """Return the best point, or the value |z_p| falls towards, from the first search that passes its check."""
-    limit = _far_limit(pencil)
+    limit = pencil.far_limit()
     if limit.z_abs == 0:
         return limit
     return checked(lambda finer: _from_grid(pencil, stable, limit, finer))
 
 
-def _far_limit(pencil: AnyPencil) -> FarLimit:
-    """Return the least value that |z_p| tends to as parameters grow; infinite where a pole does.
-
-    With a mu that is the largest root of pi(., mu) as mu grows: both mu grow as beta_hat does, at any alpha_hat. From P
-    it would be known to half the digits, as all its roots are double there.
-    """
-    if not isinstance(pencil, Pencil):
-        return least_far_limit(pencil)
-    polynomial = np.trim_zeros(pencil.table[:, -1], "b")
-    z_abs = math.inf if len(polynomial) < len(pencil.table) else float(np.abs(polyroots(polynomial)).max())
-    return FarLimit(z_abs, direction=(0, 1))
-
-
-def _from_grid(pencil: AnyPencil, stable: Region, limit: FarLimit, finer: int) -> BestPoint | FarLimit:
+def _from_grid(pencil: Pencil, stable: Region, limit: FarLimit, finer: int) -> BestPoint | FarLimit:
     """Return the same from one search; NumericalError if it fails its check."""
-    chart = chart_of(pencil, stable, finer)
+    assert stable.view
+    chart = pencil.chart(stable.view, stable.boundary if stable.bounded else (), finer)
     sampled, least = least_on(chart)
     if limit.z_abs < min(sampled, least.z_abs if least else math.inf) * (1 - DOUBLE):
         return limit
     if least is None or least.z_abs > sampled * (1 + SAME) + EPS**0.5 * (sampled < EPS**0.25):
         raise NumericalError(f"{chart.name}: |z_p| = {sampled:.6g} was sampled, but no kink as low could be solved for")
     alpha_hat, beta_hat = chart.user_point(least.place)
-    has_mu = isinstance(pencil, Pencil)
-    end = _other_end(pencil, least.z_abs, complex(*least.place)) if isinstance(pencil, Pencil) else None
-    anywhere = isinstance(pencil, Pencil) and not pencil.implicit
-    assert stable.view
-    check_best_point(pencil, least.z_abs, alpha_hat, beta_hat, stable.view, anywhere)
+    end = chart.other_end(least.z_abs, least.place)
+    check_best_point(pencil, least.z_abs, alpha_hat, beta_hat, stable.view, chart.anywhere)
     return BestPoint(
         method=stable.method,
         z_abs=least.z_abs,
         alpha_hat=alpha_hat,
         beta_hat=beta_hat,
         meeting=_different(least.z, least.z_abs),
-        double=has_mu and least.place[1] == 0,
-        elsewhere=() if end is None else (chart.user_point((end.real, end.imag)),),
+        double=not chart.real and least.place[1] == 0,
+        elsewhere=() if end is None else (chart.user_point(end),),
         arc=end is not None,
-        multiplicity=1 if has_mu else least.multiplicity,
+        multiplicity=least.multiplicity if chart.real else 1,
     )
 
 
@@ -195,40 +151,7 @@ def _beside_a_fixed_pole(method: Method, fixed: complex, others: BestPoint | Far
         return replace(others, method=method, fixed=fixed) if isinstance(others, BestPoint) else others
     if isinstance(others, BestPoint):
         return replace(others, method=method, fixed=fixed, z_abs=abs(fixed), meeting=(fixed,), elsewhere=(), arc=False)
-    pencil = free_pencil_of(method)
+    pencil = pencil_of(method, free=True)
     t = next(t for t in (2.0**k for k in count()) if largest_modulus(pencil, *others.point(t)) < abs(fixed))
     alpha_hat, beta_hat = others.point(t)
     return BestPoint(method, abs(fixed), alpha_hat, beta_hat, (fixed,), False, (), arc=False, fixed=fixed)
-
-
-# B2 and AB2 are as fast along a whole curve of mu: two roots of equal modulus, the least value, all along it. That
-# curve is a piece of the boundary locus at the level z_abs on which no other root lies outside. A kink touches the
-# locus of its level in isolated points, so only a curve shows at many theta. Its far end is where the distance from
-# the solved end is largest.
-
-
-def _other_end(pencil: Pencil, z_abs: float, mu: complex) -> complex | None:
-    """Return the far end of the curve through mu on which f has its least value; None if that is a point."""
-
-    def distances(theta: FloatArray) -> tuple[ComplexArray, FloatArray]:
-        """Return the locus at the level, and its distances from mu; -1 where f is larger."""
-        locus = roots_in_mu(pencil, z_abs * np.exp(1j * theta))
-        equal = np.isfinite(locus) & (locus.imag >= 0)
-        equal[equal] = all_inside(pencil, locus[equal], z_abs * (1 + SAME))
-        return locus, np.where(equal, np.abs(locus - mu), -1)
-
-    theta = np.linspace(-np.pi, np.pi, ARC_SAMPLES)
-    _, sampled = distances(theta)
-    if (sampled >= 0).sum() < ARC_SHARE * theta.size:
-        return None
-    furthest = theta[np.argmax(sampled.max(axis=0))]
-    end, _ = zoom_on_minimum(
-        lambda points: -distances(points[:, 0])[1].max(axis=0),
-        np.array([furthest]),
-        np.array([theta[1] - theta[0]]),
-        points=ARC_ZOOM_POINTS,
-        shrink=2 / (ARC_ZOOM_POINTS - 1),
-        rounds=ARC_ZOOMS,
-    )
-    locus, distance = distances(end)
-    return complex(locus[np.argmax(distance[:, 0]), 0])

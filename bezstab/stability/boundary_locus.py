@@ -38,7 +38,7 @@ from numpy.polynomial.polynomial import polyval2d
 
 from bezstab.stability.arrays import DOUBLE, ROUNDING, SAME, BoolArray, ComplexArray, FloatArray
 from bezstab.stability.locus_tracks import Track, sampled_angles, tracks
-from bezstab.stability.pencils import Pencil, moduli_in_z, roots_in_mu
+from bezstab.stability.mu_pencils import MuPencil, moduli_in_z, roots_in_mu
 from bezstab.stability.quadratures import integrals
 from bezstab.stability.root_finding import roots_of_table
 from bezstab.stability.searches import AT_ONCE, bisected, least_between
@@ -124,7 +124,7 @@ class Bounds:
 
 
 @cache
-def bounds_of(pencil: Pencil, level: float, finer: int = 1, radius: float = inf) -> Bounds:
+def bounds_of(pencil: MuPencil, level: float, finer: int = 1, radius: float = inf) -> Bounds:
     """Return what bounds S_r for r = level, 0 < level <= 1, within |mu| < radius.
 
     `finer` divides the steps along the locus. NumericalError if two branches of the locus could not be told apart.
@@ -136,7 +136,7 @@ def bounds_of(pencil: Pencil, level: float, finer: int = 1, radius: float = inf)
     return Bounds(tuple(arcs), tuple(intervals), radius, _rim_inside(pencil, level, arcs, radius))
 
 
-def rim_radius(pencil: Pencil, level: float) -> float:
+def rim_radius(pencil: MuPencil, level: float) -> float:
     """Return the radius of the rim of an implicit method: RIM times that of the disc that holds every feature.
 
     Features are all finite mu with a root at z = +-level, with an infinite root, with a double root, with a root at
@@ -150,7 +150,7 @@ def rim_radius(pencil: Pencil, level: float) -> float:
     return RIM * float(sizes[sizes < AT_INFINITY].max(initial=1.0))
 
 
-def _rim_inside(pencil: Pencil, level: float, arcs: list[Arc], radius: float) -> float:
+def _rim_inside(pencil: MuPencil, level: float, arcs: list[Arc], radius: float) -> float:
     """Return the angle of the rim's upper half in S_r: between two places where an arc meets it all or nothing is."""
     if not isfinite(radius):
         return 0.0
@@ -161,7 +161,7 @@ def _rim_inside(pencil: Pencil, level: float, arcs: list[Arc], radius: float) ->
     return float(np.diff(places)[_all_within(pencil, middles, level)].sum())
 
 
-def _all_within(pencil: Pencil, mu: ComplexArray, level: float) -> BoolArray:
+def _all_within(pencil: MuPencil, mu: ComplexArray, level: float) -> BoolArray:
     """Return whether all roots at each of a row of mu have |z| < level; False where one is infinite."""
     within: BoolArray = moduli_in_z(pencil, mu).max(axis=0) < level
     return within
@@ -274,7 +274,7 @@ def _with_dips(values_at: Callable[[FloatArray], FloatArray], theta: FloatArray)
     return theta, values_at(theta)  # all in one go: dips judged alone may be noise, and would pass for changes
 
 
-def _real_intervals(pencil: Pencil, level: float, arcs: list[Arc], radius: float) -> list[Interval]:
+def _real_intervals(pencil: MuPencil, level: float, arcs: list[Arc], radius: float) -> list[Interval]:
     """Return the open intervals that S_r cuts from the real axis within |mu| < radius, ascending.
 
     Their ends have a root at z = level or -level, or a conjugate pair on the circle, where an arc meets the axis. So
@@ -296,7 +296,7 @@ def _real_intervals(pencil: Pencil, level: float, arcs: list[Arc], radius: float
     return merged
 
 
-def _ends_on_the_axis(pencil: Pencil, level: float, arcs: list[Arc]) -> FloatArray:
+def _ends_on_the_axis(pencil: MuPencil, level: float, arcs: list[Arc]) -> FloatArray:
     """Return all mu where an interval of the axis may end, ascending, of those that coincide one.
 
     A mu with a root at +-level is solved for, good to rounding: far out, at a zero of R, S_r may be as narrow as 1e-10

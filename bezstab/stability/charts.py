@@ -10,25 +10,28 @@ degree, loses digits: mu has neither. Any other method has alpha_hat and beta_ha
             +==x=====+---- Re mu                             +------------- alpha_hat
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import product
 
 import numpy as np
-from numpy.polynomial.polynomial import polyder, polyval2d
+from numpy.polynomial.polynomial import polyval2d
 
-from bezstab.stability.answer_checks import NEAR
-from bezstab.stability.arrays import ComplexArray, FloatArray
-from bezstab.stability.closed_loop import AnyPencil, largest_modulus
-from bezstab.stability.pencils import Pencil, largest_root_in_z
-from bezstab.stability.plane_pencils import PlanePencil
-from bezstab.stability.regions import Region
+from bezstab.stability.arrays import SAME, ComplexArray, Extent, FloatArray
+from bezstab.stability.mu_pencils import MuPencil, all_inside, largest_root_in_z, roots_in_mu
+from bezstab.stability.plane_pencils import PlanePencil, largest_plane_root
+from bezstab.stability.searches import zoom_on_minimum
 
 Place = tuple[float, float]
 """Both parameters of a chart."""
 
 SPACINGS = 120  # of a grid along either axis: every valley is seen
 FAR = (1e4, 1e2)  # alpha_hat, sqrt(beta_hat) where a region goes on: a damping of infinity by 1e-4 moves least values
+NEAR = (8.0, 64.0)  # alpha_hat, beta_hat: corners of a region may lie a thousandfold further out, least values do not
+ARC_SAMPLES = 513  # of theta, where a curve of equal |z_p| is looked for, a tenth of them at least
+ARC_SHARE = 1 / 10  # of the samples lie on such a curve, if there is one; a kink shows at isolated theta only
+ARC_ZOOM_POINTS, ARC_ZOOMS = 65, 7  # each by 1/32: the curve's end, to rounding
 
 
 @dataclass(frozen=True)
@@ -39,7 +42,9 @@ class Chart:
     either parameter; shape (3, degree + 1). `modulus` returns the largest |z| over points of shape (..., 2), `fold`
     such points moved to where least values are looked for, `user_point` alpha_hat and beta_hat of a place. `edges` are
     the numbers, 0 or 1, of the parameters that may be zero at a least value. `real`: whether the coefficients are, so
-    that poles come in conjugate pairs; else they are on the edge where the second parameter is zero.
+    that poles come in conjugate pairs; else they are on the edge where the second parameter is zero. `anywhere`:
+    whether alpha_hat < 0 is looked at. `other_end` returns from a least value and its place the far end of a curve
+    through it along which the value is the same, None if it is a point.
     """
 
     name: str
@@ -50,21 +55,20 @@ class Chart:
     axes: tuple[FloatArray, FloatArray]
     edges: tuple[int, ...]
     real: bool
+    anywhere: bool
+    other_end: Callable[[float, Place], Place | None]
 
 
-def chart_of(pencil: AnyPencil, stable: Region, finer: int = 1) -> Chart:
-    """Return the chart of a method that is stable somewhere; `finer`: so many times the points of its grid."""
-    if isinstance(pencil, PlanePencil):
-        return _plane_chart(pencil, stable, finer * SPACINGS + 1)
-    return _mu_chart(pencil, stable, finer * SPACINGS + 1)
+def mu_chart(pencil: MuPencil, view: Extent, curves: Sequence[FloatArray], finer: int) -> Chart:
+    """Return the chart of a method with a mu, from what there is to see of its region, whose curves close if given.
 
-
-def _mu_chart(pencil: Pencil, stable: Region, points: int) -> Chart:
-    assert stable.view
-    seen = np.concatenate(stable.boundary) if stable.bounded else np.array(list(product(*stable.view)))
+    finer: so many times the points of its grid.
+    """
+    seen = np.concatenate(curves) if curves else np.array(list(product(*view)))
     corners = np.abs(seen * [pencil.multiple, pencil.multiple**2])
     reach = float(np.max(corners[:, 0] + np.sqrt(corners[:, 1])))  # of both roots of the feedback
     rightmost = 0.0 if pencil.implicit else reach / 4
+    points = finer * SPACINGS + 1
 
     def coefficients(x: float, y: float) -> ComplexArray:
         powers = complex(x, y) ** np.arange(pencil.table.shape[1])
@@ -83,27 +87,49 @@ def _mu_chart(pencil: Pencil, stable: Region, points: int) -> Chart:
         alpha_hat, beta_hat = pencil.user_points(complex(*place), complex(*place).conjugate())
         return float(alpha_hat), float(beta_hat)
 
-    axes = np.linspace(-reach, rightmost, points), np.linspace(0, reach, points)
-    edges = (0, 1) if pencil.implicit else (1,)
-    return Chart(pencil.method.name, coefficients, modulus, fold, user_point, axes, edges, real=False)
+    return Chart(
+        name=pencil.method.name,
+        coefficients=coefficients,
+        modulus=modulus,
+        fold=fold,
+        user_point=user_point,
+        axes=(np.linspace(-reach, rightmost, points), np.linspace(0, reach, points)),
+        edges=(0, 1) if pencil.implicit else (1,),
+        real=False,
+        anywhere=not pencil.implicit,
+        other_end=partial(_other_end, pencil),
+    )
 
 
-def _plane_chart(pencil: PlanePencil, stable: Region, points: int) -> Chart:
-    assert stable.view
-    high = np.array([max(stable.view[0][1], 0.0), np.sqrt(max(stable.view[1][1], 0.0))])
-    if not stable.bounded:
+def plane_chart(pencil: PlanePencil, view: Extent, curves: Sequence[FloatArray], finer: int) -> Chart:
+    """Return the chart of any other method, in the same way."""
+    high = np.array([max(view[0][1], 0.0), np.sqrt(max(view[1][1], 0.0))])
+    if not curves:
         high = np.maximum(high, FAR)
-    slopes = (polyder(pencil.table, axis=axis) for axis in (1, 2))
-    tables = [np.moveaxis(each, 0, -1) for each in (pencil.table, *slopes)]
+    points = finer * SPACINGS + 1
+    tables = [np.moveaxis(each, 0, -1) for each in (pencil.table, *pencil.slopes[1:])]
 
     def coefficients(x: float, y: float) -> ComplexArray:
         return np.array([polyval2d(x, y, each) for each in tables], complex)
 
     def modulus(points: FloatArray) -> FloatArray:
-        return largest_modulus(pencil, *points.reshape(-1, 2).T).reshape(points.shape[:-1])
+        alpha_hat, beta_hat = points.reshape(-1, 2).T
+        z = np.empty(alpha_hat.size, complex)
+        largest_plane_root(pencil, alpha_hat, beta_hat, (1, alpha_hat.size), into=z)
+        return np.abs(z).reshape(points.shape[:-1])
 
-    axes = _axis(high[0], NEAR[0], points), _axis(high[1], NEAR[1] ** 0.5, points) ** 2
-    return Chart(pencil.method.name, coefficients, modulus, np.abs, lambda place: place, axes, (0,), real=True)
+    return Chart(
+        name=pencil.method.name,
+        coefficients=coefficients,
+        modulus=modulus,
+        fold=np.abs,
+        user_point=lambda place: place,
+        axes=(_axis(high[0], NEAR[0], points), _axis(high[1], NEAR[1] ** 0.5, points) ** 2),
+        edges=(0,),
+        real=True,
+        anywhere=False,
+        other_end=lambda z_abs, place: None,  # no curve of equal |z_p| is known of these
+    )
 
 
 def _axis(end: float, near: float, count: int) -> FloatArray:
@@ -112,3 +138,38 @@ def _axis(end: float, near: float, count: int) -> FloatArray:
         return np.linspace(0, end, count)
     beyond = count // 3
     return np.concatenate([np.linspace(0, near, count - beyond), np.geomspace(near, end, beyond + 1)[1:]])
+
+
+# B2 and AB2 are as fast along a whole curve of mu: two roots of equal modulus, the least value, all along it. That
+# curve is a piece of the boundary locus at the level z_abs on which no other root lies outside. A kink touches the
+# locus of its level in isolated points, so only a curve shows at many theta. Its far end is where the distance from
+# the solved end is largest.
+
+
+def _other_end(pencil: MuPencil, z_abs: float, place: Place) -> Place | None:
+    """Return the far end of the curve through a place on which f has its least value; None if that is a point."""
+    mu = complex(*place)
+
+    def distances(theta: FloatArray) -> tuple[ComplexArray, FloatArray]:
+        """Return the locus at the level, and its distances from mu; -1 where f is larger."""
+        locus = roots_in_mu(pencil, z_abs * np.exp(1j * theta))
+        equal = np.isfinite(locus) & (locus.imag >= 0)
+        equal[equal] = all_inside(pencil, locus[equal], z_abs * (1 + SAME))
+        return locus, np.where(equal, np.abs(locus - mu), -1)
+
+    theta = np.linspace(-np.pi, np.pi, ARC_SAMPLES)
+    _, sampled = distances(theta)
+    if (sampled >= 0).sum() < ARC_SHARE * theta.size:
+        return None
+    furthest = theta[np.argmax(sampled.max(axis=0))]
+    end, _ = zoom_on_minimum(
+        lambda points: -distances(points[:, 0])[1].max(axis=0),
+        np.array([furthest]),
+        np.array([theta[1] - theta[0]]),
+        points=ARC_ZOOM_POINTS,
+        shrink=2 / (ARC_ZOOM_POINTS - 1),
+        rounds=ARC_ZOOMS,
+    )
+    locus, distance = distances(end)
+    far = complex(locus[np.argmax(distance[:, 0]), 0])
+    return far.real, far.imag

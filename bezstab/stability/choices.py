@@ -24,19 +24,12 @@ from bezstab.stability.answer_checks import (
 )
 from bezstab.stability.arrays import DOUBLE, SLOW, BoolArray, Extent, FloatArray
 from bezstab.stability.best_points import best_point
-from bezstab.stability.charts import chart_of
-from bezstab.stability.closed_loop import (
-    AnyPencil,
-    any_pencil_of,
-    free_pencil_of,
-    largest_modulus,
-    largest_pole,
-    verdict,
-)
+from bezstab.stability.closed_loop import largest_modulus, largest_pole, verdict
 from bezstab.stability.critical_points import critical_place
 from bezstab.stability.curve_choices import Curve, least_along, mildest_along
 from bezstab.stability.forced_errors import OMEGA_H
 from bezstab.stability.margins import Margins, stability_margins
+from bezstab.stability.pencils import Pencil, pencil_of
 from bezstab.stability.regions import Region, pole_place, region
 from bezstab.stability.root_finding import TOLD
 from bezstab.stability.searches import checked, first_where, zoom_on_minimum
@@ -135,7 +128,7 @@ def choose(
         raise InputError(f"goal {goal!r}: expected {', '.join(get_args(Goal))}")
     _check_spread(spread)
     box, cut = search_box(region(method))
-    pencil = free_pencil_of(method)  # a pole that no parameters move must not hide the others
+    pencil = pencil_of(method, free=True)  # a pole that no parameters move must not hide the others
     at_rest = modulus is None
     modulus = modulus or partial(largest_modulus, pencil)
     within = pencil.all_within if at_rest else partial(_below, modulus)
@@ -144,7 +137,7 @@ def choose(
     elif goal == "accurate":
         point = _accurate(method, box, modulus, within, omega_h=omega_h, rate=rate, spread=spread, equal=equal)
     elif goal == "gentle":
-        of_all = partial(largest_modulus, any_pencil_of(method)) if at_rest else modulus
+        of_all = partial(largest_modulus, pencil_of(method)) if at_rest else modulus
         rate = 0.0 if rate is None else rate
         point, cut = _gentle(method, of_all, box, rate), False
         check_gentle(method, of_all, point[0], rate)
@@ -332,7 +325,7 @@ def describe_point(
     17) leaves the range of float64; InputError for a spread outside 0 to 1.
     """
     _check_spread(spread)
-    pencil = any_pencil_of(method)
+    pencil = pencil_of(method)
     a, b = float(alpha_hat), float(beta_hat)
     proven = verdict(method, alpha_hat, beta_hat)
     offsets = 1 + spread * np.linspace(-1, 1, SHARES + 1)
@@ -437,9 +430,7 @@ def _throughout(modulus: Modulus) -> Objective:
     return lambda alpha_hat, beta_hat, _: modulus(alpha_hat, beta_hat)
 
 
-def _checked_least(
-    pencil: AnyPencil, extent: Extent, objective: Objective, equal: bool, cut: bool
-) -> tuple[float, float]:
+def _checked_least(pencil: Pencil, extent: Extent, objective: Objective, equal: bool, cut: bool) -> tuple[float, float]:
     """Return where the objective is least; NumericalError if after a finer search, too, a sampled point is better."""
 
     def found(finer: int) -> tuple[float, float]:
@@ -490,7 +481,9 @@ def _least(extent: Extent, objective: Objective, equal: bool, cut: bool, finer: 
 
 def _critical_point(method: Method, box: Extent) -> tuple[float, float]:
     """Return the fastest point whose dominant pole is double, real and positive; InputError if there is none."""
-    chart = chart_of(free_pencil_of(method), region(method))
+    stable = region(method)
+    assert stable.view
+    chart = pencil_of(method, free=True).chart(stable.view, stable.boundary if stable.bounded else (), 1)
     place = critical_place(chart, box)
     if place is None:
         raise InputError(f"{method.name}: no double pole is dominant: --goal critical has no answer")

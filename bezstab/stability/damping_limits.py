@@ -15,7 +15,7 @@ from functools import cache
 
 import numpy as np
 
-from bezstab.methods import Method, Z, characteristic_polynomial, without_shared_factor
+from bezstab.methods import Method, rational_feedback_roots, without_shared_factor
 from bezstab.stability.arrays import BoolArray, FloatArray
 from bezstab.stability.path_crossings import ONE, ZERO, Path, crossing_factors, stable_end
 from bezstab.stability.quadrant_proofs import stable_for_all
@@ -48,11 +48,8 @@ def exact_critical_damping_limit(method: Method) -> Fraction | None:
     limit = _limit_at(method, ONE)
     if not limit:
         return limit
-    if not method.has_mu:
-        return None
-    pi = characteristic_polynomial(without_shared_factor(method))
-    rational_mu = [mu for z in (1, -1) for mu in pi.eval(Z, z).ground_roots()]
-    limits = [-Fraction(int(mu.p), int(mu.q)) / method.step_multiple for mu in rational_mu]
+    rational_mu = [mu for z in (1, -1) for mu in rational_feedback_roots(without_shared_factor(method), z)]
+    limits = [-mu / method.step_multiple for mu in rational_mu]
     return next((exact for exact in limits if abs(exact - limit) <= KNOWN_TO * limit), None)
 
 

@@ -21,8 +21,9 @@ from bezstab.stability.accurate_points import BETTER
 from bezstab.stability.arrays import FloatArray
 from bezstab.stability.best_points import BestPoint, best_point_or_reason
 from bezstab.stability.choices import search_box
-from bezstab.stability.closed_loop import free_pencil_of, largest_modulus
+from bezstab.stability.closed_loop import largest_modulus
 from bezstab.stability.forced_errors import OMEGA_H, combined_error, forced_error
+from bezstab.stability.pencils import pencil_of
 from bezstab.stability.regions import region
 from bezstab.stability.searches import ROUNDS, SHRINK, checked, zoom_on_minimum
 
@@ -106,7 +107,7 @@ def error_front(method: Method, rates: Sequence[float] = RATES, omega_h: Fractio
 
 def _front_point(method: Method, omega_h: Fraction, rate: float, alpha_hat: float, beta_hat: float) -> FrontPoint:
     """Return a point of the front, alpha_hat and beta_hat being dimensionless, with its errors."""
-    z_abs = largest_modulus(free_pencil_of(method), alpha_hat, beta_hat)
+    z_abs = largest_modulus(pencil_of(method, free=True), alpha_hat, beta_hat)
     errors = forced_error(method, alpha_hat, beta_hat, omega_h)
     return FrontPoint(
         method=method,
@@ -127,7 +128,7 @@ def _plane(points: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def _logarithms(method: Method, omega_h: Fraction) -> Logarithms:
-    pencil = free_pencil_of(method)  # a pole that no parameters move must not hide the others
+    pencil = pencil_of(method, free=True)  # a pole that no parameters move must not hide the others
 
     def looked_at(points: FloatArray) -> tuple[FloatArray, FloatArray]:
         alpha_hat, beta_hat = _plane(points)

@@ -1,4 +1,4 @@
-r"""What |z_p| of a second-order scheme tends to where alpha_hat or beta_hat grow without end, and the least of that.
+r"""What |z_p| tends to where alpha_hat or beta_hat grow without end, and the least of that.
 
 Along alpha_hat = x t^p, beta_hat = y t^q those terms alpha_hat^i beta_hat^j of P decide as t grows whose p i + q j is
 the largest: a corner or a side of the polygon of all exponents (i, j), Newton's.
@@ -23,9 +23,10 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.polynomial.polynomial import polyval
+from numpy.polynomial.polynomial import polyroots, polyval
 
 from bezstab.stability.arrays import DOUBLE, SAME, BoolArray, FloatArray
+from bezstab.stability.mu_pencils import MuPencil
 from bezstab.stability.plane_pencils import PlanePencil
 from bezstab.stability.root_finding import companion_roots
 from bezstab.stability.searches import least_between
@@ -56,6 +57,17 @@ class FarLimit:
         if q == 0:
             return t**p, 1 / ratio
         return ratio ** (1 / q) * t**p, t**q
+
+
+def far_limit_through_mu(pencil: MuPencil) -> FarLimit:
+    """Return the value that |z_p| tends to as beta_hat grows; infinite where a pole does.
+
+    The largest root of pi(., mu) as mu grows: both mu grow as beta_hat does, at any alpha_hat. From P it would be known
+    to half the digits, as all its roots are double there.
+    """
+    polynomial = np.trim_zeros(pencil.table[:, -1], "b")
+    z_abs = math.inf if len(polynomial) < len(pencil.table) else float(np.abs(polyroots(polynomial)).max())
+    return FarLimit(z_abs, direction=(0, 1))
 
 
 def least_far_limit(pencil: PlanePencil) -> FarLimit:

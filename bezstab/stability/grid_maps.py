@@ -6,7 +6,8 @@ import numpy as np
 
 from bezstab.methods import Method
 from bezstab.stability.arrays import ComplexArray, FloatArray
-from bezstab.stability.closed_loop import any_pencil_of, largest_pole
+from bezstab.stability.closed_loop import largest_pole
+from bezstab.stability.pencils import pencil_of
 from bezstab.stability.root_finding import CHUNK
 
 BLOCK = 4 * CHUNK  # points between two looks at the progress bar
@@ -21,7 +22,7 @@ def pole_map(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray) -> Ite
     Stacked, the blocks have shape (beta_hat.size, alpha_hat.size); dimensionless. NumericalError if a root of paper
     Eq. 17 leaves the range of float64.
     """
-    pencil = any_pencil_of(method)
+    pencil = pencil_of(method)
     rows = max(1, BLOCK // alpha_hat.size)
     for start in range(0, beta_hat.size, rows):
         yield largest_pole(pencil, alpha_hat, beta_hat[start : start + rows, np.newaxis])

@@ -36,7 +36,7 @@ from bezstab.stability.boundary_locus import (
     bounds_of,
     rim_radius,
 )
-from bezstab.stability.pencils import Pencil, deadbeat_mu, roots_in_mu
+from bezstab.stability.mu_pencils import MuPencil, deadbeat_mu, roots_in_mu
 from bezstab.stability.shapes import USUAL_SIZE, Shape, joined
 
 MEETING = 1e-4  # of the curves' size: where branches meet on the circle an arc ends the root of SHORTEST from it
@@ -46,7 +46,7 @@ NOISE_ANGLES: FloatArray = np.linspace(0.1, 3.1, 16)  # at which the rounding of
 WELL_WIDE = 1e-11  # of |mu|: about a zero of R that narrow a part of S_r is a hundredfold above rounding of its ends
 
 
-def locus_shape(pencil: Pencil, level: float, finer: int) -> Shape | None:
+def locus_shape(pencil: MuPencil, level: float, finer: int) -> Shape | None:
     """Return the region |z_p| < level; None if it is empty. `finer`: so many times the samples of the locus.
 
     NumericalError if branches of the locus could not be told apart, or a part of it was not found.
@@ -74,7 +74,7 @@ def locus_shape(pencil: Pencil, level: float, finer: int) -> Shape | None:
     return Shape(area, extent, view, tuple(curves), known=_known(pencil, level, bounds))
 
 
-def _edge_noise(pencil: Pencil, level: float) -> float:
+def _edge_noise(pencil: MuPencil, level: float) -> float:
     """Return by what share of |mu| rounding moves where lines cross |z| = level of a one-step z = N / Q, at worst.
 
     They are zeros of |N|^2 - level^2 |Q|^2. Terms are rounded at the size that they have without their signs, and of
@@ -91,7 +91,7 @@ def _edge_noise(pencil: Pencil, level: float) -> float:
     return float(noise[np.isfinite(noise)].max(initial=0))
 
 
-def straight_edges(pencil: Pencil, bounds: Bounds) -> list[FloatArray]:
+def straight_edges(pencil: MuPencil, bounds: Bounds) -> list[FloatArray]:
     """Return the two ends of each straight edge in the user's plane, of shape (2, 2): one mu held, the other not.
 
     It is held at an end of an interval other than the rim, the other runs along one.
@@ -102,7 +102,7 @@ def straight_edges(pencil: Pencil, bounds: Bounds) -> list[FloatArray]:
     ]
 
 
-def _area(pencil: Pencil, bounds: Bounds) -> float:
+def _area(pencil: MuPencil, bounds: Bounds) -> float:
     """Return the area in the user's plane: of conjugate pairs, of pairs from one interval, and from two.
 
     For real mu of a step of h (alpha_hat, beta_hat) = (-(mu_1 + mu_2), mu_1 mu_2) has the Jacobian |mu_1 - mu_2|.
@@ -115,7 +115,7 @@ def _area(pencil: Pencil, bounds: Bounds) -> float:
     return area / pencil.multiple**3
 
 
-def _extent(pencil: Pencil, bounds: Bounds) -> Extent | None:
+def _extent(pencil: MuPencil, bounds: Bounds) -> Extent | None:
     """Return the ranges of alpha_hat and beta_hat within the rim: of pairs of ends, and of arcs' furthest points."""
     ends = np.array(bounds.intervals).ravel()
     corners = [pencil.user_points(np.full(len(ends), end), ends) for end in ends]
@@ -133,7 +133,7 @@ def _extent(pencil: Pencil, bounds: Bounds) -> Extent | None:
     return ends_of(0), ends_of(1)
 
 
-def _known(pencil: Pencil, level: float, bounds: Bounds) -> FloatArray:
+def _known(pencil: MuPencil, level: float, bounds: Bounds) -> FloatArray:
     """Return the points at which every pole of a one-step method is zero: conjugate zeros of R.
 
     By the maximum principle each part of S_r has a zero of R. NumericalError if a real one lies in no interval. Parts
@@ -151,7 +151,7 @@ def _known(pencil: Pencil, level: float, bounds: Bounds) -> FloatArray:
     return pencil.user_points(pairs, pairs.conj())
 
 
-def _unbounded_extent(pencil: Pencil, level: float, bounds: Bounds, near: Extent, finer: int) -> Extent:
+def _unbounded_extent(pencil: MuPencil, level: float, bounds: Bounds, near: Extent, finer: int) -> Extent:
     """Return the ranges of an unbounded region, from those within the rim: infinite where they grow with its radius.
 
     Where all of the rim is stable they all do. Else a range without limit grows at least as a root of the radius: from
@@ -176,7 +176,7 @@ def _unbounded_extent(pencil: Pencil, level: float, bounds: Bounds, near: Extent
     return (limit(0, 0), limit(0, 1)), (limit(1, 0), limit(1, 1))
 
 
-def _view(pencil: Pencil, bounds: Bounds) -> Extent:
+def _view(pencil: MuPencil, bounds: Bounds) -> Extent:
     """Return ranges that hold what an unbounded region has of shape where alpha_hat, beta_hat >= 0, and USUAL_SIZE.
 
     That is its corners (both mu at an end of an interval), the arcs that do not run to infinity, of those that do their

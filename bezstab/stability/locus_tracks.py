@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 
 from bezstab.errors import NumericalError
 from bezstab.stability.arrays import BoolArray, ComplexArray, FloatArray
-from bezstab.stability.pencils import Pencil, roots_in_mu
+from bezstab.stability.mu_pencils import MuPencil, roots_in_mu
 
 SAMPLES = 1024  # of theta over half the circle: what is shorter is looked for by itself
 STEP_SHARE = 0.12  # of the distance to the nearest branch point; the proof above allows 0.17
@@ -37,7 +37,7 @@ SHORTEST = 1e-11  # rad; a branch point this close to the circle lies on it, as 
 class Track:
     """One branch mu(theta) of the locus of |z| = level, sampled at ascending theta; both of shape (samples,)."""
 
-    pencil: Pencil
+    pencil: MuPencil
     level: float
     theta: FloatArray
     mu: ComplexArray
@@ -58,7 +58,7 @@ def nearest(candidates: ComplexArray, targets: ComplexArray) -> ComplexArray:
     return found
 
 
-def tracks(pencil: Pencil, level: float, finer: int) -> Iterator[Track]:
+def tracks(pencil: MuPencil, level: float, finer: int) -> Iterator[Track]:
     """Yield every branch of the locus for theta in [0, pi], broken off where it is infinite or meets another.
 
     That is at branch points on the circle. `finer` divides the steps. NumericalError if two branches claim one
@@ -81,7 +81,7 @@ def tracks(pencil: Pencil, level: float, finer: int) -> Iterator[Track]:
                 yield Track(pencil, level, theta[start:end], branch)
 
 
-def sampled_angles(pencil: Pencil, level: float, finer: int) -> FloatArray:
+def sampled_angles(pencil: MuPencil, level: float, finer: int) -> FloatArray:
     """Return the angles of the samples, ascending from 0 to pi, finer towards branch points and either end."""
     towards_ends = np.geomspace(1e-5, 1e-2, 30 * finer)  # near a kink S_r is a lens whose arcs lie close to 0 and pi
     even = np.linspace(1e-2, np.pi - 1e-2, SAMPLES * finer)
@@ -98,7 +98,7 @@ def sampled_angles(pencil: Pencil, level: float, finer: int) -> FloatArray:
     return np.asarray(theta, float)
 
 
-def _too_long(pencil: Pencil, level: float, theta: FloatArray, finer: int) -> BoolArray:
+def _too_long(pencil: MuPencil, level: float, theta: FloatArray, finer: int) -> BoolArray:
     """Return which steps are longer than their share of the distance to the nearest branch point; shape (steps,)."""
     points = pencil.branch_points_in_z
     z = level * np.exp(1j * theta)
@@ -108,7 +108,7 @@ def _too_long(pencil: Pencil, level: float, theta: FloatArray, finer: int) -> Bo
     return too_long
 
 
-def _followed(pencil: Pencil, level: float, continuation: NDArray[np.intp]) -> NDArray[np.intp]:
+def _followed(pencil: MuPencil, level: float, continuation: NDArray[np.intp]) -> NDArray[np.intp]:
     """Return at each sample the number of each branch's root; shape (branches, samples).
 
     `continuation` has the number of the next root for each root and step. NumericalError unless no two share one.

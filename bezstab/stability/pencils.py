@@ -1,244 +1,93 @@
-"""A pencil: everything that float64 needs to know of a method, made once and handed on.
+"""Pencils: what this room asks of a method in float64, whatever its kind, which is asked here and nowhere else.
 
-A pencil is to a method what a compiled mechanism is to a scene. It is the polynomial pi(z, mu) of one step on
-y' = lambda y, mu = h lambda, whose roots z at a given mu, and mu at a given z, are what this room is about.
+With a mu it is answered from pi(z, mu) (mu_pencils, regions by locus_shapes), without one from P(z; alpha_hat,
+beta_hat) (plane_pencils, regions by plane_cells).
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from fractions import Fraction
-from functools import cache, cached_property
+from functools import cache, partial
 
 import numpy as np
-from numpy.polynomial.polynomial import polyder, polymul, polyroots, polysub, polyval, polyval2d
-from numpy.typing import NDArray
 
-from bezstab.errors import NumericalError
-from bezstab.methods import Method, branch_polynomial, coefficient_table
-from bezstab.stability.arrays import EPS, BoolArray, ComplexArray, FloatArray
-from bezstab.stability.exact_sums import feedback_roots
-from bezstab.stability.root_finding import horner, inside_circle, roots_of_table
+from bezstab.methods import Method, without_shared_factor
+from bezstab.stability.arrays import BoolArray, ComplexArray, Extent, FloatArray
+from bezstab.stability.charts import Chart, mu_chart, plane_chart
+from bezstab.stability.far_limits import FarLimit, far_limit_through_mu, least_far_limit
+from bezstab.stability.locus_shapes import locus_shape
+from bezstab.stability.mu_pencils import deadbeat_points, mu_pencil_of, write_largest_poles
+from bezstab.stability.plane_cells import strips_shape
+from bezstab.stability.plane_pencils import largest_plane_root, plane_pencil_of
+from bezstab.stability.shapes import Shape
 
-Mu = NDArray[np.inexact] | complex
-"""Complex or real, one or many."""
-
-LEADING = 4 * EPS  # of the sum of its terms' sizes: a leading coefficient below it is rounding of zero
+AtPoles = Callable[[FloatArray, FloatArray, ComplexArray], ComplexArray]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Pencil:
-    """A method's polynomial pi(z, mu) = sum_kj table[k, j] z^k mu^j in float64, and what follows from it.
+    """What can be asked of the poles of a method, `degree` of them, over rows of alpha_hat and beta_hat; dimensionless.
 
-    `steps` is its degree in z. `table_by_z` and `table_by_mu` are the tables of its derivatives. mu is that of the
-    method's own step, `multiple` times the user's h. Everything is dimensionless.
+    `poles` returns all of them, shape (degree, points); NumericalError if one is infinite or leaves float64's range.
+    `all_within` returns whether all have |z| < level, by Schur's recursion, from three arrays of one shape; False where
+    an implicit step has no solution. `write_largest_poles` writes the largest, Im >= 0, of a grid of a shape, row by
+    row, into a row; infinite where a step has no solution.
+    `turning_shift` and `own_feedback_root` are about poles z at points, arrays of one shape (turning).
+    `deadbeat_points` returns the points known from R(mu) at which every pole is zero, `far_limit` the least value that
+    |z_p| tends to as parameters grow; `chart` takes what is seen of the region, its curves if it is bounded, and by how
+    much its grid is finer. `shape` returns the region below a level, None if empty, from so many times finer samples.
     """
 
     method: Method
-    steps: int
-    table: FloatArray
-    table_by_z: FloatArray
-    table_by_mu: FloatArray
-    multiple: float
-
-    def __repr__(self) -> str:
-        return f"Pencil({self.method.name})"
-
-    @property
-    def degree(self) -> int:
-        """How many poles there are, counted with their multiplicity."""
-        return 2 * self.steps
-
-    def feedback_roots(self, alpha_hat: FloatArray, beta_hat: FloatArray) -> tuple[ComplexArray, ComplexArray]:
-        """Return both mu that the feedback asks for at some points: a conjugate pair, upper first, or two real ones."""
-        first, second = feedback_roots(alpha_hat, beta_hat)
-        return self.multiple * first, self.multiple * second
-
-    def user_points(self, first_mu: Mu, second_mu: Mu) -> FloatArray:
-        """Return alpha_hat and beta_hat of the feedback with these two roots; shape (*that of one, 2)."""
-        first, second = np.divide(first_mu, self.multiple), np.divide(second_mu, self.multiple)
-        return np.stack([-(first + second).real, (first * second).real], axis=-1)
-
-    def poles(self, alpha_hat: FloatArray, beta_hat: FloatArray) -> ComplexArray:
-        """Return all poles at a row of points; shape (degree, points). Errors as `roots_in_z`."""
-        mu = np.stack(self.feedback_roots(alpha_hat, beta_hat))
-        z = roots_in_z(self, mu.ravel())
-        of_each_mu = z.reshape(len(z), *mu.shape).swapaxes(0, 1)
-        return of_each_mu.reshape(self.degree, alpha_hat.size)
-
-    def all_within(self, alpha_hat: FloatArray, beta_hat: FloatArray, level: FloatArray) -> BoolArray:
-        """Return whether every pole has |z| < level at each point, by Schur's recursion; arrays of one shape.
-
-        False where an implicit step has no solution.
-        """
-        first, second = self.feedback_roots(alpha_hat, beta_hat)
-        within = all_inside(self, first, level)
-        real = within & (first.imag == 0)  # of a conjugate pair both have the same moduli
-        within[real] = all_inside(self, second[real], level[real])
-        return within
-
-    @property
-    def implicit(self) -> bool:
-        """Whether the leading coefficient in z depends on mu: at some mu a root is infinite."""
-        return bool(self.table[-1, 1:].any())
-
-    @cached_property
-    def infinite_at(self) -> ComplexArray:
-        """Every mu at which a root z is infinite, so that an implicit step has no solution; none if explicit."""
-        leading = np.trim_zeros(self.table[-1], "b")
-        return polyroots(leading).astype(complex) if len(leading) > 1 else np.zeros(0, complex)
-
-    @cached_property
-    def branch_points(self) -> ComplexArray:
-        """Every mu at which two roots z of pi(., mu) meet, or one is infinite; shape (points,).
-
-        Beyond the nearest of them a root's power series diverges. Found on first use: the resultant takes longer than
-        a pole. NumericalError if it leaves the range of float64.
-        """
-        exact = branch_polynomial(self.method)
-        largest = max(map(abs, exact))  # perhaps beyond float64, or below it: a scale says nothing about roots
-        z = polyroots(np.trim_zeros(_floats(self.method, [c / largest for c in exact]), "b")).astype(complex)
-        mu = roots_in_mu(self, z)
-        with np.errstate(invalid="ignore"):  # an infinite mu has no slope, which some versions of numpy warn of
-            slope = np.abs(polyval2d(np.broadcast_to(z, mu.shape), mu, self.table_by_z))
-        flattest = np.argmin(slope, axis=0)  # of all mu with a root at this z, the one whose root is double
-        met: ComplexArray = np.take_along_axis(mu, flattest[np.newaxis], axis=0)[0]
-        return np.append(met[np.isfinite(met)], self.infinite_at)
-
-    @cached_property
-    def branch_points_in_z(self) -> ComplexArray:
-        """Every z at which two roots mu of pi(z, .) meet, or one is infinite; shape (points,).
-
-        Explicit multistep: none, as mu = rho / sigma has one value, and where it is infinite nothing is stable.
-        Implicit multistep: the zeros of sigma. One step, z = R(mu): R at the zeros of R', and at infinity. PECE, a
-        quadratic in mu: the zeros of its discriminant and of its leading coefficient.
-        """
-        if self.table.shape[1] == 2:
-            return polyroots(self.table[:, 1]).astype(complex) if self.implicit else np.zeros(0, complex)
-        if self.steps == 1:
-            numerator, denominator = -self.table[0], self.table[1]
-            if not self.implicit:
-                numerator, denominator = numerator / denominator[0], np.ones(1)
-            slope = polysub(polymul(polyder(numerator), denominator), polymul(numerator, polyder(denominator)))
-            flat = polyroots(np.trim_zeros(slope, "b")).astype(complex)
-            with np.errstate(all="ignore"):
-                values = polyval(flat, numerator) / polyval(flat, denominator)
-                values = np.append(values, numerator[-1] / self.table[1, -1])
-            return np.asarray(values[np.isfinite(values)], complex)
-        constant, linear, quadratic = self.table.T
-        discriminant = polysub(polymul(linear, linear), 4 * polymul(constant, quadratic))
-        zeros = [np.zeros(0)]
-        for polynomial in (discriminant, quadratic):
-            trimmed = np.trim_zeros(polynomial, "b")
-            if len(trimmed) > 1:
-                zeros.append(polyroots(trimmed))
-        return np.concatenate(zeros).astype(complex)
+    degree: int
+    poles: Callable[[FloatArray, FloatArray], ComplexArray]
+    all_within: Callable[[FloatArray, FloatArray, FloatArray], BoolArray]
+    write_largest_poles: Callable[[FloatArray, FloatArray, tuple[int, int], ComplexArray], None]
+    turning_shift: AtPoles
+    own_feedback_root: AtPoles
+    deadbeat_points: Callable[[], list[tuple[float, float]]]
+    far_limit: Callable[[], FarLimit]
+    chart: Callable[[Extent, Sequence[FloatArray], int], Chart]
+    shape: Callable[[float, int], Shape | None]
 
 
 @cache
-def pencil_of(method: Method) -> Pencil:
+def pencil_of(method: Method, free: bool = False) -> Pencil:
     """Return the pencil of a method; NumericalError if its coefficients leave the range of float64.
 
-    TypeError for a second-order scheme, which has no pi(z, mu).
+    free: without the poles that no parameters move.
     """
-    table = _floats(method, coefficient_table(method))
+    return _through_mu(without_shared_factor(method) if free else method) if method.has_mu else _through_p(method, free)
+
+
+def _through_mu(method: Method) -> Pencil:
+    pencil = mu_pencil_of(method)
     return Pencil(
         method=method,
-        steps=len(table) - 1,
-        table=table,
-        table_by_z=np.asarray(polyder(table, axis=0), float),
-        table_by_mu=np.asarray(polyder(table, axis=1), float),
-        multiple=float(method.step_multiple),
+        degree=pencil.degree,
+        poles=pencil.poles,
+        all_within=pencil.all_within,
+        write_largest_poles=partial(write_largest_poles, pencil),
+        turning_shift=pencil.turning_shift,
+        own_feedback_root=pencil.own_feedback_root,
+        deadbeat_points=partial(deadbeat_points, pencil),
+        far_limit=partial(far_limit_through_mu, pencil),
+        chart=partial(mu_chart, pencil),
+        shape=partial(locus_shape, pencil),
     )
 
 
-def _floats(method: Method, exact: Sequence[Fraction | Sequence[Fraction]]) -> FloatArray:
-    """Return exact coefficients as float64: the one place where they become so."""
-    try:
-        return np.array(exact, float)
-    except OverflowError:
-        raise NumericalError(f"{method.name}: products of its coefficients leave the range of float64") from None
-
-
-def roots_in_z(pencil: Pencil, mu: ComplexArray) -> ComplexArray:
-    """Return all z with pi(z, mu) = 0; complex, shape (steps, mu.size) for a row of mu, dimensionless.
-
-    NumericalError if one leaves the range of float64, or is infinite: there an implicit step has no solution.
-    """
-    z = roots_of_table(pencil.table, mu)
-    finite = np.isfinite(z).all(axis=0) & ~has_infinite_root(pencil, mu)
-    if not finite.all():
-        raise_not_finite(pencil, mu[~finite])
-    return z
-
-
-def largest_root_in_z(pencil: Pencil, mu: ComplexArray) -> ComplexArray:
-    """Return the root z of pi(., mu) of largest modulus for each of a row of mu; complex, dimensionless.
-
-    Infinite where an implicit step has no solution. NumericalError if a finite root leaves the range of float64.
-    """
-    z = roots_of_table(pencil.table, mu)
-    largest: ComplexArray = np.take_along_axis(z, np.argmax(np.abs(z), axis=0)[np.newaxis], axis=0)[0]
-    bad = np.flatnonzero(~np.isfinite(largest))  # argmax prefers nan
-    if bad.size:
-        infinite = has_infinite_root(pencil, mu[bad])
-        if not infinite.all():
-            raise_not_finite(pencil, mu[bad[~infinite]])
-        largest[bad] = np.inf
-    return largest
-
-
-def raise_not_finite(pencil: Pencil, mu: ComplexArray) -> None:
-    """Raise NumericalError for a row of mu (one at least) at which a root is not finite."""
-    name, worst = pencil.method.name, mu[0]
-    if has_infinite_root(pencil, mu[:1])[0]:
-        raise NumericalError(
-            f"{name}: at mu = {worst:.6g} a pole is infinite: the equations of an implicit step have no solution there"
-        )
-    raise NumericalError(f"{name}: at mu = {worst:.6g} a pole leaves the range of float64")
-
-
-def has_infinite_root(pencil: Pencil, mu: ComplexArray) -> BoolArray:
-    """Return at which of a row of finite mu a root z is infinite, to rounding: the leading coefficient vanishes."""
-    if not pencil.implicit:
-        return np.zeros(mu.shape, bool)
-    with np.errstate(all="ignore"):  # of mu whose powers overflow
-        leading = polyval(mu, pencil.table[-1])
-        size = polyval(np.abs(mu), np.abs(pencil.table[-1]))
-        vanishes: BoolArray = (np.abs(leading) <= LEADING * size) & np.isfinite(size)
-    return vanishes
-
-
-def moduli_in_z(pencil: Pencil, mu: ComplexArray) -> FloatArray:
-    """Return the moduli of all roots z at each of a row of mu, infinite for all where one is; shape as roots_in_z."""
-    z_abs = np.abs(roots_of_table(pencil.table, mu))
-    return np.asarray(np.where(np.isnan(z_abs).any(axis=0), np.inf, z_abs))
-
-
-def roots_in_mu(pencil: Pencil, z: ComplexArray) -> ComplexArray:
-    """Return all mu with pi(z, mu) = 0, the locus of a root at z; shape (degree of pi in mu, z.size) for a row of z.
-
-    Not finite where one of them is at infinity.
-    """
-    return roots_of_table(pencil.table.T, z)
-
-
-def deadbeat_mu(pencil: Pencil) -> ComplexArray:
-    """Return all finite mu at which the root z of a one-step method is zero, the zeros of R; shape (zeros,).
-
-    None for a method of several steps.
-    """
-    numerator = np.trim_zeros(pencil.table[0], "b")
-    if len(numerator) == 1 or pencil.steps > 1:
-        return np.empty(0, complex)
-    return np.asarray(roots_of_table(numerator[:, np.newaxis], np.zeros(1, complex))[:, 0])
-
-
-def all_inside(pencil: Pencil, mu: ComplexArray, level: float | FloatArray) -> BoolArray:
-    """Return whether every root z of pi(., mu) has |z| < level, by Schur's recursion; shape of mu, and of levels."""
-    size = np.ones_like(mu.real)
-    p = np.empty((len(pencil.table), *mu.shape), complex)
-    with np.errstate(over="ignore", invalid="ignore"):  # far out, where nothing is inside
-        for row, coefficients in zip(p, pencil.table, strict=True):
-            np.multiply(horner(coefficients, mu), size, out=row)
-            size = size * level
-    return inside_circle(p)
+def _through_p(method: Method, free: bool) -> Pencil:
+    pencil = plane_pencil_of(method, free)
+    return Pencil(
+        method=method,
+        degree=pencil.degree,
+        poles=pencil.poles,
+        all_within=pencil.all_within,
+        write_largest_poles=partial(largest_plane_root, pencil),
+        turning_shift=pencil.turning_shift,
+        own_feedback_root=lambda alpha_hat, beta_hat, z: np.zeros(z.shape, complex),
+        deadbeat_points=list,
+        far_limit=partial(least_far_limit, pencil),
+        chart=partial(plane_chart, pencil),
+        shape=lambda level, finer: strips_shape(method, level),
+    )

@@ -1,13 +1,14 @@
-"""What float64 needs to know of a second-order scheme, made once: its P(z; alpha_hat, beta_hat) as a plane pencil.
+"""What float64 needs to know of P(z; alpha_hat, beta_hat), made once: a plane pencil.
 
-Such a scheme has no pi(z, mu), and its P is not a product over two mu. Its poles are the roots of P itself: two for
-most of these schemes, which a formula gives, or three, or as many as it looks back.
+A second-order scheme has no pi(z, mu), and its P is not a product over two mu. Its poles are the roots of P itself: two
+for most of these schemes, which a formula gives, or three, or as many as it looks back.
 """
 
 from dataclasses import dataclass
-from functools import cache, partial
+from functools import cache, cached_property, partial
 
 import numpy as np
+from numpy.polynomial.polynomial import polyder, polyval3d
 from numpy.typing import NDArray
 
 from bezstab.errors import NumericalError
@@ -49,6 +50,17 @@ class PlanePencil:
         """
         coefficients = coefficients_at(self, alpha_hat, beta_hat)
         return inside_circle(np.stack([c * level**k for k, c in enumerate(coefficients)]))
+
+    @cached_property
+    def slopes(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """The tables of P's derivatives by z, alpha_hat and beta_hat."""
+        by_z, by_alpha, by_beta = (np.asarray(polyder(self.table, axis=axis), float) for axis in range(3))
+        return by_z, by_alpha, by_beta
+
+    def turning_shift(self, alpha_hat: FloatArray, beta_hat: FloatArray, z: ComplexArray) -> ComplexArray:
+        """Return z - (2 P_alpha + alpha_hat P_beta) / P_z (turning); a step of m h turns by m times as much as h."""
+        by_z, by_alpha, by_beta = (polyval3d(z, alpha_hat, beta_hat, slope) for slope in self.slopes)
+        return np.asarray(z - (2 * by_alpha + alpha_hat * by_beta) / (float(self.method.step_multiple) * by_z))
 
 
 @cache

@@ -27,7 +27,8 @@ from bezstab.errors import NumericalError
 from bezstab.methods import Method
 from bezstab.rationals import exact
 from bezstab.stability.arrays import DOUBLE, MULTIPLE, ROUNDING, SAME, BoolArray, FloatArray, even_points
-from bezstab.stability.closed_loop import AnyPencil, decays_faster, free_pencil_of, largest_modulus
+from bezstab.stability.closed_loop import decays_faster, largest_modulus
+from bezstab.stability.pencils import Pencil, pencil_of
 from bezstab.stability.quadratures import integrals
 from bezstab.stability.root_finding import TOLD
 from bezstab.stability.searches import AT_ONCE, bisected, least_between
@@ -56,7 +57,7 @@ Verdicts = Callable[[FloatArray, FloatArray], BoolArray]
 
 def check_region(method: Method, level: float, shape: Shape | None) -> None:
     """Raise NumericalError unless the shape of |z_p| < level (None: empty) agrees with the poles."""
-    pencil = free_pencil_of(method)
+    pencil = pencil_of(method, free=True)
     name = f"{method.name}, |z_p| < {level:g}"
 
     def inside(alpha_hat: FloatArray, beta_hat: FloatArray) -> BoolArray:
@@ -176,7 +177,7 @@ def _check_known(name: str, shape: Shape) -> None:
             raise NumericalError(f"{name}: a part of the region was not found, near beta_hat = {beta_hat:.6g}")
 
 
-def _check_ends(name: str, shape: Shape, pencil: AnyPencil, inside: Verdicts, proven: Verdicts) -> None:
+def _check_ends(name: str, shape: Shape, pencil: Pencil, inside: Verdicts, proven: Verdicts) -> None:
     """Raise NumericalError unless the region comes to the ends of the extent, and no further, or goes on far out."""
     sizes = np.ptp(shape.view, axis=1)
     drawn = np.concatenate([np.zeros((0, 2)), *shape.curves])
@@ -199,7 +200,7 @@ def _check_ends(name: str, shape: Shape, pencil: AnyPencil, inside: Verdicts, pr
 
 def _stable_on_line(
     shape: Shape,
-    pencil: AnyPencil,
+    pencil: Pencil,
     inside: Verdicts,
     proven: Verdicts,
     axis: int,

@@ -7,13 +7,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bezstab.errors import InputError
-from bezstab.methods import Method, fixed_poles, without_shared_factor
+from bezstab.methods import Method, fixed_poles
 from bezstab.read_only import ReadOnlyArrays
 from bezstab.stability.arrays import ROUNDING, BoolArray, Extent, FloatArray
 from bezstab.stability.closed_loop import spectral_radius
-from bezstab.stability.locus_shapes import locus_shape
 from bezstab.stability.pencils import pencil_of
-from bezstab.stability.plane_cells import strips_shape
 from bezstab.stability.region_checks import check_region
 from bezstab.stability.searches import checked
 from bezstab.stability.shapes import ATTAINED, GOES_ON, Approached, Shape
@@ -79,7 +77,7 @@ def region(method: Method, level: float = 1.0) -> Region:
         return empty
 
     def checked_shape(finer: int) -> Shape | None:
-        shape = shape_of(method, level, finer)
+        shape = pencil_of(method, free=True).shape(level, finer)
         check_region(method, level, shape)
         return shape
 
@@ -97,13 +95,6 @@ def region(method: Method, level: float = 1.0) -> Region:
         view=shape.view,
         approached=shape.approached,
     )
-
-
-def shape_of(method: Method, level: float, finer: int = 1) -> Shape | None:
-    """Return the shape from so many times finer samples of the locus of a method that has a mu, or from strips."""
-    if method.has_mu:
-        return locus_shape(pencil_of(without_shared_factor(method)), level, finer)
-    return strips_shape(method, level)
 
 
 def pole_place(z: complex) -> str:

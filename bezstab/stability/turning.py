@@ -17,16 +17,12 @@ chi = 1 - 1 / (z mu'(z)), mu' = -pi_z / pi_mu, which also holds where both mu ar
 For an exact integrator z = e^mu: chi = 0, as it must be.
 """
 
-from functools import cache
-
 import numpy as np
-from numpy.polynomial.polynomial import polyder, polyval2d, polyval3d
 from numpy.typing import ArrayLike
 
 from bezstab.methods import Method
 from bezstab.stability.arrays import ComplexArray, FloatArray
 from bezstab.stability.pencils import pencil_of
-from bezstab.stability.plane_pencils import plane_pencil_of
 
 
 def turning_sensitivity(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike, z: ArrayLike) -> ComplexArray:
@@ -42,13 +38,8 @@ def turning_sensitivity(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLik
 
 def turning_shift(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike, z: ArrayLike) -> ComplexArray:
     """Return z chi, by which poles z move for each unit of h eig K; as `turning_sensitivity`, and finite at z = 0."""
-    alpha_hat, beta_hat, z = np.broadcast_arrays(
-        np.asarray(alpha_hat, float), np.asarray(beta_hat, float), np.asarray(z, complex)
-    )
     with np.errstate(all="ignore"):
-        if not method.has_mu:
-            return _by_closed_loop(method, alpha_hat, beta_hat, z)
-        return _by_feedback_roots(method, alpha_hat, beta_hat, z)
+        return pencil_of(method).turning_shift(*_broadcast(alpha_hat, beta_hat, z))
 
 
 def own_feedback_root(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike, z: ArrayLike) -> ComplexArray:
@@ -56,39 +47,10 @@ def own_feedback_root(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike,
 
     Of methods that step position and velocity differently poles belong to no mu: zero.
     """
-    alpha_hat, beta_hat, z = np.broadcast_arrays(
-        np.asarray(alpha_hat, float), np.asarray(beta_hat, float), np.asarray(z, complex)
-    )
-    if not method.has_mu:
-        return np.zeros(z.shape, complex)
-    pencil = pencil_of(method)
-    mu = np.stack(pencil.feedback_roots(alpha_hat.ravel(), beta_hat.ravel())).reshape(2, *z.shape)
-    left_over = np.abs(polyval2d(np.broadcast_to(z, mu.shape), mu, pencil.table))
-    return np.asarray(np.take_along_axis(mu, np.argmin(left_over, axis=0)[np.newaxis], axis=0)[0])
+    return pencil_of(method).own_feedback_root(*_broadcast(alpha_hat, beta_hat, z))
 
 
-def _by_feedback_roots(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray, z: ComplexArray) -> ComplexArray:
-    """Return z + pi_mu / pi_z at whichever root mu of the feedback each z belongs to."""
-    pencil = pencil_of(method)
-    own = own_feedback_root(method, alpha_hat, beta_hat, z)
-    slope_z = polyval2d(z, own, pencil.table_by_z)
-    slope_mu = polyval2d(z, own, pencil.table_by_mu)
-    return np.asarray(z + slope_mu / slope_z)
-
-
-def _by_closed_loop(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray, z: ComplexArray) -> ComplexArray:
-    """Return z - (2 P_alpha + alpha_hat P_beta) / P_z; a step of m h turns by m times as much as one of h."""
-    by_z, by_alpha, by_beta = (_value(table, z, alpha_hat, beta_hat) for table in _closed_loop_slopes(method))
-    return np.asarray(z - (2 * by_alpha + alpha_hat * by_beta) / (float(method.step_multiple) * by_z))
-
-
-@cache
-def _closed_loop_slopes(method: Method) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return the tables of P's derivatives by z, alpha_hat and beta_hat, indexed by powers in this order."""
-    table = plane_pencil_of(method).table
-    by_z, by_alpha, by_beta = (np.asarray(polyder(table, axis=axis), float) for axis in range(3))
-    return by_z, by_alpha, by_beta
-
-
-def _value(table: FloatArray, z: ComplexArray, alpha_hat: FloatArray, beta_hat: FloatArray) -> ComplexArray:
-    return np.asarray(polyval3d(z, alpha_hat, beta_hat, table))
+def _broadcast(alpha_hat: ArrayLike, beta_hat: ArrayLike, z: ArrayLike) -> tuple[FloatArray, FloatArray, ComplexArray]:
+    arrays = np.asarray(alpha_hat, float), np.asarray(beta_hat, float), np.asarray(z, complex)
+    shape = np.broadcast_shapes(*(each.shape for each in arrays))
+    return np.broadcast_to(arrays[0], shape), np.broadcast_to(arrays[1], shape), np.broadcast_to(arrays[2], shape)

@@ -52,10 +52,11 @@ from bezstab.methods import (
     steps,
 )
 from bezstab.show.explorer import Explorer
-from bezstab.stability import FloatArray, Pencil, Region, pencil_of, region, roots_in_z, spectral_radius, window
+from bezstab.stability import FloatArray, Region, region, spectral_radius, window
 from bezstab.stability.boundary_locus import bounds_of
+from bezstab.stability.mu_pencils import MuPencil, mu_pencil_of, roots_in_z
+from bezstab.stability.pencils import pencil_of
 from bezstab.stability.region_checks import check_region
-from bezstab.stability.regions import shape_of
 from tests.evidence.exact_rates import own_motion_rates
 
 HERE = Path(__file__).parent
@@ -132,7 +133,7 @@ def away_from_multiple_roots(method: Method, alpha_hat: FloatArray, beta_hat: Fl
     """Return where no two poles of P lie within MULTIPLE of each other; boolean."""
     discriminant = np.emath.sqrt(alpha_hat**2 / 4 - beta_hat)
     mus = (-alpha_hat / 2 + discriminant, -alpha_hat / 2 - discriminant)
-    z = np.concatenate([roots_in_z(pencil_of(method), mu.ravel().astype(complex)) for mu in mus])
+    z = np.concatenate([roots_in_z(mu_pencil_of(method), mu.ravel().astype(complex)) for mu in mus])
     gaps = [np.abs(z[i] - z[j]) for i in range(len(z)) for j in range(i)]
     return np.asarray(np.min(gaps, axis=0) > MULTIPLE).reshape(alpha_hat.shape)
 
@@ -298,14 +299,14 @@ def moving_mechanisms() -> Iterator[Line]:
 def self_checks() -> Iterator[Line]:
     """Yield how many times as long as its check against poles the rest of a region takes: 0.4 at least."""
     for name in ("B4", "AB4", "RK4", "ABM3"):
-        pencil = pencil_of(lookup(name))
+        pencil = mu_pencil_of(lookup(name))
 
-        def found(pencil: Pencil = pencil) -> Region:
+        def found(pencil: MuPencil = pencil) -> Region:
             for remembered in (region, bounds_of):
                 remembered.cache_clear()
             return region(pencil.method)
 
-        shape = shape_of(pencil.method, 1.0)
+        shape = pencil_of(pencil.method, free=True).shape(1.0, 1)
         (whole, _), (check, _) = interleaved(found, partial(check_region, pencil.method, 1.0, shape))
         note = f"{1e3 * check:.1f} ms of {1e3 * whole:.0f} ms"
         yield Line("check", f"{name}: a region and its check", (whole - check) / check, 0.4, note)

@@ -194,9 +194,13 @@ def test_what_an_encoding_or_a_file_system_lacks_is_changed_and_json_is_not(tmp_
 
 @pytest.mark.slow
 def test_a_terminal_shows_what_is_worked_on_and_a_pipe_does_not(tmp_path: Path) -> None:
-    ours, theirs = os.openpty()
-    with os.fdopen(theirs, "wb") as terminal:
-        answered = finished(*SMALL, cwd=tmp_path, stderr=terminal)
-    assert b"100%" in os.read(ours, 65536)
-    os.close(ours)
-    assert b"100%" not in answered.stdout
+    """A map's chunks; and a mechanism, whose equations may take many seconds before anything else is to be seen."""
+    run = ("simulate", "--scene", "pendulum", "--time", "0.1", "--figure", "none")
+    check = ("check", "--scene", "pendulum", "--method", "SYM", "--h", "0.001", "--alpha", "0.5", "--beta", "0.1")
+    for command in (SMALL, run, check):
+        ours, theirs = os.openpty()
+        with os.fdopen(theirs, "wb") as terminal:
+            answered = finished(*command, cwd=tmp_path, stderr=terminal)
+        assert b"pendulum  [####################################]  100%" in os.read(ours, 65536)
+        os.close(ours)
+        assert b"100%" not in answered.stdout

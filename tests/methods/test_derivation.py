@@ -16,13 +16,13 @@ from bezstab.methods import (
     RungeKutta,
     S,
     Z,
-    characteristic_polynomial,
     closed_loop_at,
     closed_loop_polynomial,
     lookup,
     mapping_equations,
     steps,
 )
+from bezstab.methods.derivation import characteristic_polynomial
 from tests.methods.kinds import EXPLICIT, SAMPLE, sampled
 from tests.reference.closed_loops import sympy_rational
 from tests.reference.steppers import State, trajectory

@@ -21,7 +21,7 @@ import numpy as np
 from numpy.polynomial.polynomial import polyder, polyval
 
 from bezstab.stability.arrays import BoolArray, ComplexArray, FloatArray
-from bezstab.stability.pencils import Pencil, all_inside, deadbeat_mu
+from bezstab.stability.mu_pencils import MuPencil, all_inside, deadbeat_mu
 
 COSINE_SLACK = 1e-6  # a double zero splits by sqrt(eps) = 1e-8 into the complex plane; more candidates do no harm
 TRUE_DEGREE = 1e-12  # relative: Chebyshev coefficients of a polynomial of lower degree are rounding, 1e-16 or so
@@ -31,7 +31,7 @@ TO_ANOTHER = 0.2  # of theta: a longer step could reach another zero
 LEADING = 1e-14  # of the largest coefficient: a leading coefficient below it is rounding of a zero
 
 
-def mu_bound(pencil: Pencil, level: float) -> float:
+def mu_bound(pencil: MuPencil, level: float) -> float:
     """Return a radius that holds every mu whose roots z all have |z| < level, of an explicit method.
 
     The coefficient of z^(n-i) is at most comb(n, i) level^i; each that depends on mu bounds mu by Cauchy's rule
@@ -87,7 +87,7 @@ def _cosine_zeros(values_at: Callable[[FloatArray], FloatArray], degree: int, ro
     return np.where(real, np.clip(zeros.real, -1, 1), np.nan)
 
 
-def real_events(pencil: Pencil, level: float) -> FloatArray:
+def real_events(pencil: MuPencil, level: float) -> FloatArray:
     """Return every real mu at which a root z has |z| = level (and perhaps others), ascending; shape (events,)."""
     table = pencil.table
     found: list[float] = []
@@ -99,7 +99,7 @@ def real_events(pencil: Pencil, level: float) -> FloatArray:
     return np.unique(found)
 
 
-def _with_a_pair_on_the_circle(pencil: Pencil, level: float) -> list[float]:
+def _with_a_pair_on_the_circle(pencil: MuPencil, level: float) -> list[float]:
     """Return every real mu with a conjugate pair of roots z on the circle: there pi and its conjugate share a root mu.
 
     With pi = c_0 + c_1 mu that is Im(c_0 conj(c_1)) = 0.
@@ -117,13 +117,13 @@ def _with_a_pair_on_the_circle(pencil: Pencil, level: float) -> list[float]:
     return found
 
 
-def _coefficients_on_the_circle(pencil: Pencil, level: float, cosine: FloatArray) -> ComplexArray:
+def _coefficients_on_the_circle(pencil: MuPencil, level: float, cosine: FloatArray) -> ComplexArray:
     """Return the coefficients in mu of pi at z = level e^(i theta), theta in [0, pi]; shape (powers, *cosine.shape)."""
     z = level * (cosine + 1j * np.sqrt(np.maximum(0, 1 - cosine**2)))
     return np.asarray(polyval(z, pencil.table))
 
 
-def island_radii(pencil: Pencil, level: float) -> FloatArray:
+def island_radii(pencil: MuPencil, level: float) -> FloatArray:
     """Return radii |mu| about each part of S_r of a one-step method; shape (radii,).
 
     Every part holds a zero c of R (maximum principle). Its size is about level / |R'(c)|, however small: the radii are
@@ -138,7 +138,7 @@ def island_radii(pencil: Pencil, level: float) -> FloatArray:
     return np.asarray(np.abs(np.abs(zero) + beside[:, np.newaxis] * size).ravel())
 
 
-def turning_radii(pencil: Pencil, level: float) -> FloatArray:
+def turning_radii(pencil: MuPencil, level: float) -> FloatArray:
     """Return |mu| where the locus turns towards or away from zero, for a multistep method; else nothing.
 
     There d log|mu| / d theta = -Im(z (rho'/rho - sigma'/sigma)) = 0, times |rho sigma|^2 / sin(theta) a polynomial in
@@ -162,7 +162,7 @@ def turning_radii(pencil: Pencil, level: float) -> FloatArray:
         return np.asarray(np.abs(a / b))
 
 
-def paired_crossings(pencil: Pencil, level: float, radius: FloatArray) -> FloatArray:
+def paired_crossings(pencil: MuPencil, level: float, radius: FloatArray) -> FloatArray:
     """Return Re mu of every conjugate pair with |mu| = radius and a root z on |z| = level; shape (radii, candidates).
 
     radius: shape (radii,), > 0. Rows are padded with nan.
@@ -172,7 +172,7 @@ def paired_crossings(pencil: Pencil, level: float, radius: FloatArray) -> FloatA
     return _multistep_crossings(pencil, level, radius)
 
 
-def _one_step_crossings(pencil: Pencil, level: float, radius: FloatArray) -> FloatArray:
+def _one_step_crossings(pencil: MuPencil, level: float, radius: FloatArray) -> FloatArray:
     """Return paired_crossings for z = R(mu): on |mu| = radius |R|^2 = level^2 is a polynomial in cos phi."""
     around = radius[:, np.newaxis]
     minus_r = pencil.table[0]
@@ -191,7 +191,7 @@ def _one_step_crossings(pencil: Pencil, level: float, radius: FloatArray) -> Flo
     return around * np.cos(_refined(_cosine_zeros(growth, pencil.table.shape[1] - 1, len(radius)), step_at))
 
 
-def _multistep_crossings(pencil: Pencil, level: float, radius: FloatArray) -> FloatArray:
+def _multistep_crossings(pencil: MuPencil, level: float, radius: FloatArray) -> FloatArray:
     """Return paired_crossings for mu = rho / sigma: |rho|^2 = radius^2 |sigma|^2 is a polynomial in cos theta.
 
     Near z = 1 a cosine keeps only half the digits of theta: each zero is refined in theta itself.
@@ -237,7 +237,7 @@ class Slices:
         return np.asarray(np.where(self.stable, np.diff(self.ends, axis=1), 0).sum(axis=1))
 
 
-def slices(pencil: Pencil, level: float, q: FloatArray, events: FloatArray, bound: float) -> Slices:
+def slices(pencil: MuPencil, level: float, q: FloatArray, events: FloatArray, bound: float) -> Slices:
     """Return where lines of constant q, shape (lines,), none zero, are stable.
 
     events: from real_events; bound: from mu_bound.

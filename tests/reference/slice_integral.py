@@ -9,7 +9,8 @@ import numpy as np
 from numpy.polynomial.legendre import leggauss
 
 from bezstab.methods import Method
-from bezstab.stability import FloatArray, pencil_of
+from bezstab.stability import FloatArray
+from bezstab.stability.mu_pencils import mu_pencil_of
 from tests.reference.line_slices import island_radii, mu_bound, real_events, slices, turning_radii
 from tests.reference.sliced_areas import Integral
 
@@ -25,7 +26,7 @@ def slice_area(
 
     relative: share of the area that the summed differences of panels and their halves may reach.
     """
-    pencil = pencil_of(method)
+    pencil = mu_pencil_of(method)
     bound, events = mu_bound(pencil, level), real_events(pencil, level)
     nodes, weights = leggauss(PANEL_NODES)
     taken = 0

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from bezstab.methods import lookup
-from bezstab.stability import pencil_of
 from bezstab.stability.closed_loop import decays_faster
+from bezstab.stability.mu_pencils import mu_pencil_of
 from tests.reference.line_slices import mu_bound, real_events, slices
 from tests.reference.slice_integral import slice_area
 
@@ -19,7 +19,7 @@ NAMES = ["B4", "AB4", "RK4"]
 @pytest.mark.parametrize("level", [1.0, 0.8])
 @pytest.mark.parametrize("name", NAMES)
 def test_between_its_ends_a_slice_is_proven(name: str, level: float) -> None:
-    pencil = pencil_of(lookup(name))
+    pencil = mu_pencil_of(lookup(name))
     q = np.array([0.003, 0.02, 0.1, 0.3, 1.1])
     found = slices(pencil, level, q, real_events(pencil, level), mu_bound(pencil, level))
     for row, line in enumerate(q.tolist()):

@@ -18,7 +18,9 @@ DRIVE = Drive(Fraction(200), Fraction(5), Fraction("0.1"))
 
 
 def drawn(timing: Timing, drive: Drive = DRIVE) -> Figure:
-    (answer,) = held_answers(HeldQuestion(drive=drive, h=H, timing=timing, methods=(lookup("SYM"),)))
+    (answer,) = held_answers(
+        HeldQuestion(drive=drive, h=H, methods=(lookup("SYM"),), every=timing.every, late=timing.late)
+    )
     return held_figure(answer, 40)
 
 

@@ -17,8 +17,8 @@ from bezstab.stability import (
     best_points,
     choices,
     choose,
+    mu_pencils,
     path_crossings,
-    pencil_of,
     region,
     stability_margins,
     verdict,
@@ -26,8 +26,9 @@ from bezstab.stability import (
 from bezstab.stability.answer_checks import check_best_point, check_margin
 from bezstab.stability.charts import SPACINGS, Chart
 from bezstab.stability.least_modulus import Least, least_on
+from bezstab.stability.mu_pencils import deadbeat_mu
 from bezstab.stability.path_crossings import Path
-from bezstab.stability.pencils import deadbeat_mu
+from bezstab.stability.pencils import pencil_of
 from tests.reference.made_methods import runge_kutta
 
 
@@ -72,7 +73,7 @@ def test_a_kink_that_is_not_the_least_is_no_answer(name: str, monkeypatch: pytes
 
 @pytest.mark.parametrize("name", ["RK1", "RK2", "RK4", "SIE"])
 def test_a_deadbeat_point_that_is_none_is_no_answer(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(best_points, "deadbeat_mu", lambda pencil: 1.001 * deadbeat_mu(pencil))
+    monkeypatch.setattr(mu_pencils, "deadbeat_mu", lambda pencil: 1.001 * deadbeat_mu(pencil))
     with pytest.raises(NumericalError, match="to be zero"):
         best_point(lookup(name))
 

@@ -11,9 +11,9 @@ from bezstab.methods import Method, lookup
 from bezstab.stability import boundary_locus, locus_shapes, region
 from bezstab.stability.boundary_locus import Arc, Bounds, bounds_of
 from bezstab.stability.locus_tracks import Track, tracks
-from bezstab.stability.pencils import Pencil
+from bezstab.stability.mu_pencils import MuPencil
+from bezstab.stability.pencils import pencil_of
 from bezstab.stability.region_checks import check_region
-from bezstab.stability.regions import shape_of
 from bezstab.stability.shapes import Shape
 from tests.reference.made_methods import CLOSE_BRANCHES, FAR_INTERVAL
 from tests.reference.second_order_methods import RECIPES, second_order
@@ -43,7 +43,7 @@ def identify(case: object) -> str:
 def with_bounds(monkeypatch: pytest.MonkeyPatch, wrong: Wrong, finest: int) -> None:
     """Have regions made from wrong bounds, up to a sampling that is so many times finer."""
 
-    def made_wrong(pencil: Pencil, level: float, finer: int, radius: float) -> Bounds:
+    def made_wrong(pencil: MuPencil, level: float, finer: int, radius: float) -> Bounds:
         right = bounds_of(pencil, level, finer, radius)
         return wrong(right) if finer <= finest else right
 
@@ -88,7 +88,7 @@ def test_a_wrong_region_is_no_answer_and_a_finer_sampling_puts_it_right(
 
 
 def test_a_branch_followed_twice_in_place_of_another_is_no_answer(monkeypatch: pytest.MonkeyPatch) -> None:
-    def swapped(pencil: Pencil, level: float, finer: int) -> list[Track]:
+    def swapped(pencil: MuPencil, level: float, finer: int) -> list[Track]:
         first, _, *others = tracks(pencil, level, finer)
         return [first, first, *others]
 
@@ -106,7 +106,7 @@ SHAPES = [
 def found(name: str, level: float) -> tuple[Method, Shape]:
     """Return the shape of a region, from the locus or from strips."""
     method = second_order(name) if name in RECIPES else lookup(name)
-    shape = shape_of(method, level)
+    shape = pencil_of(method, free=True).shape(level, 1)
     assert shape
     return method, shape
 

@@ -1,0 +1,342 @@
+"""What float64 needs to know of a method that has a mu, made once: its pi(z, mu) as a mu pencil.
+
+pi(z, mu) is the polynomial of one step on y' = lambda y, mu = h lambda. At the two roots mu of the feedback its roots z
+are the poles. Compared with the roots of P that halves the degree, needs one solve where the mu are conjugate, and
+keeps all digits on beta_hat = alpha_hat^2/4, where the roots of P pair up. On grids the largest pole is the largest
+root of P all the same, followed among neighbours (real_factors), but for explicit one-step methods, whose R(mu) is
+known, and next to beta_hat = alpha_hat^2/4.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cache, cached_property
+
+import numpy as np
+from numpy.polynomial.polynomial import polyder, polymul, polyroots, polysub, polyval, polyval2d
+from numpy.typing import NDArray
+
+from bezstab.errors import NumericalError
+from bezstab.methods import Method, branch_polynomial, coefficient_table
+from bezstab.stability.arrays import DOUBLE, EPS, SAME, BoolArray, ComplexArray, FloatArray
+from bezstab.stability.exact_sums import feedback_discriminant, feedback_roots
+from bezstab.stability.low_degrees import largest_quadratic_root, polynomial_of_pair
+from bezstab.stability.neighbourhoods import FEWEST
+from bezstab.stability.plane_pencils import CANCELS, largest_plane_root, plane_pencil_of
+from bezstab.stability.root_finding import CHUNK, horner, inside_circle, roots_of_table
+
+Mu = NDArray[np.inexact] | complex
+"""Complex or real, one or many."""
+
+LEADING = 4 * EPS  # of the sum of its terms' sizes: a leading coefficient below it is rounding of zero
+REACH = np.finfo(float).max ** 0.5  # of mu, whose square is beta_hat; one zero of R is within its degree
+MOST_FOLLOWED = 18  # poles: of more, whose factors lie close together, most points need all roots, and mu halves them
+ORDINARY = 1e12  # of alpha_hat and beta_hat: their products, of degree 12 at most, are within float64
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class MuPencil:
+    """A method's polynomial pi(z, mu) = sum_kj table[k, j] z^k mu^j in float64, and what follows from it.
+
+    `steps` is its degree in z. `table_by_z` and `table_by_mu` are the tables of its derivatives. mu is that of the
+    method's own step, `multiple` times the user's h. Everything is dimensionless.
+    """
+
+    method: Method
+    steps: int
+    table: FloatArray
+    table_by_z: FloatArray
+    table_by_mu: FloatArray
+    multiple: float
+
+    def __repr__(self) -> str:
+        return f"MuPencil({self.method.name})"
+
+    @property
+    def degree(self) -> int:
+        """How many poles there are, counted with their multiplicity."""
+        return 2 * self.steps
+
+    def feedback_roots(self, alpha_hat: FloatArray, beta_hat: FloatArray) -> tuple[ComplexArray, ComplexArray]:
+        """Return both mu that the feedback asks for at some points: a conjugate pair, upper first, or two real ones."""
+        first, second = feedback_roots(alpha_hat, beta_hat)
+        return self.multiple * first, self.multiple * second
+
+    def user_points(self, first_mu: Mu, second_mu: Mu) -> FloatArray:
+        """Return alpha_hat and beta_hat of the feedback with these two roots; shape (*that of one, 2)."""
+        first, second = np.divide(first_mu, self.multiple), np.divide(second_mu, self.multiple)
+        return np.stack([-(first + second).real, (first * second).real], axis=-1)
+
+    def poles(self, alpha_hat: FloatArray, beta_hat: FloatArray) -> ComplexArray:
+        """Return all poles at a row of points; shape (degree, points). Errors as `roots_in_z`."""
+        mu = np.stack(self.feedback_roots(alpha_hat, beta_hat))
+        z = roots_in_z(self, mu.ravel())
+        of_each_mu = z.reshape(len(z), *mu.shape).swapaxes(0, 1)
+        return of_each_mu.reshape(self.degree, alpha_hat.size)
+
+    def all_within(self, alpha_hat: FloatArray, beta_hat: FloatArray, level: FloatArray) -> BoolArray:
+        """Return whether every pole has |z| < level at each point, by Schur's recursion; arrays of one shape.
+
+        False where an implicit step has no solution.
+        """
+        first, second = self.feedback_roots(alpha_hat, beta_hat)
+        within = all_inside(self, first, level)
+        real = within & (first.imag == 0)  # of a conjugate pair both have the same moduli
+        within[real] = all_inside(self, second[real], level[real])
+        return within
+
+    def own_feedback_root(self, alpha_hat: FloatArray, beta_hat: FloatArray, z: ComplexArray) -> ComplexArray:
+        """Return the root mu of the feedback that each pole z belongs to; shape of all three."""
+        mu = np.stack(self.feedback_roots(alpha_hat.ravel(), beta_hat.ravel())).reshape(2, *z.shape)
+        left_over = np.abs(polyval2d(np.broadcast_to(z, mu.shape), mu, self.table))
+        return np.asarray(np.take_along_axis(mu, np.argmin(left_over, axis=0)[np.newaxis], axis=0)[0])
+
+    def turning_shift(self, alpha_hat: FloatArray, beta_hat: FloatArray, z: ComplexArray) -> ComplexArray:
+        """Return z + pi_mu / pi_z at whichever root mu of the feedback each z belongs to (turning)."""
+        own = self.own_feedback_root(alpha_hat, beta_hat, z)
+        slope_z, slope_mu = (polyval2d(z, own, table) for table in (self.table_by_z, self.table_by_mu))
+        return np.asarray(z + slope_mu / slope_z)
+
+    @property
+    def implicit(self) -> bool:
+        """Whether the leading coefficient in z depends on mu: at some mu a root is infinite."""
+        return bool(self.table[-1, 1:].any())
+
+    @cached_property
+    def infinite_at(self) -> ComplexArray:
+        """Every mu at which a root z is infinite, so that an implicit step has no solution; none if explicit."""
+        leading = np.trim_zeros(self.table[-1], "b")
+        return polyroots(leading).astype(complex) if len(leading) > 1 else np.zeros(0, complex)
+
+    @cached_property
+    def branch_points(self) -> ComplexArray:
+        """Every mu at which two roots z of pi(., mu) meet, or one is infinite; shape (points,).
+
+        Beyond the nearest of them a root's power series diverges. Found on first use: the resultant takes longer than
+        a pole. NumericalError if it leaves the range of float64.
+        """
+        exact = branch_polynomial(self.method)
+        largest = max(map(abs, exact))  # perhaps beyond float64, or below it: a scale says nothing about roots
+        z = polyroots(np.trim_zeros(_floats(self.method, [c / largest for c in exact]), "b")).astype(complex)
+        mu = roots_in_mu(self, z)
+        with np.errstate(invalid="ignore"):  # an infinite mu has no slope, which some versions of numpy warn of
+            slope = np.abs(polyval2d(np.broadcast_to(z, mu.shape), mu, self.table_by_z))
+        flattest = np.argmin(slope, axis=0)  # of all mu with a root at this z, the one whose root is double
+        met: ComplexArray = np.take_along_axis(mu, flattest[np.newaxis], axis=0)[0]
+        return np.append(met[np.isfinite(met)], self.infinite_at)
+
+    @cached_property
+    def branch_points_in_z(self) -> ComplexArray:
+        """Every z at which two roots mu of pi(z, .) meet, or one is infinite; shape (points,).
+
+        Explicit multistep: none, as mu = rho / sigma has one value, and where it is infinite nothing is stable.
+        Implicit multistep: the zeros of sigma. One step, z = R(mu): R at the zeros of R', and at infinity. PECE, a
+        quadratic in mu: the zeros of its discriminant and of its leading coefficient.
+        """
+        if self.table.shape[1] == 2:
+            return polyroots(self.table[:, 1]).astype(complex) if self.implicit else np.zeros(0, complex)
+        if self.steps == 1:
+            numerator, denominator = -self.table[0], self.table[1]
+            if not self.implicit:
+                numerator, denominator = numerator / denominator[0], np.ones(1)
+            slope = polysub(polymul(polyder(numerator), denominator), polymul(numerator, polyder(denominator)))
+            flat = polyroots(np.trim_zeros(slope, "b")).astype(complex)
+            with np.errstate(all="ignore"):
+                values = polyval(flat, numerator) / polyval(flat, denominator)
+                values = np.append(values, numerator[-1] / self.table[1, -1])
+            return np.asarray(values[np.isfinite(values)], complex)
+        constant, linear, quadratic = self.table.T
+        discriminant = polysub(polymul(linear, linear), 4 * polymul(constant, quadratic))
+        zeros = [np.zeros(0)]
+        for polynomial in (discriminant, quadratic):
+            trimmed = np.trim_zeros(polynomial, "b")
+            if len(trimmed) > 1:
+                zeros.append(polyroots(trimmed))
+        return np.concatenate(zeros).astype(complex)
+
+
+@cache
+def mu_pencil_of(method: Method) -> MuPencil:
+    """Return the mu pencil of a method; NumericalError if its coefficients leave the range of float64.
+
+    TypeError for a second-order scheme, which has no pi(z, mu).
+    """
+    table = _floats(method, coefficient_table(method))
+    return MuPencil(
+        method=method,
+        steps=len(table) - 1,
+        table=table,
+        table_by_z=np.asarray(polyder(table, axis=0), float),
+        table_by_mu=np.asarray(polyder(table, axis=1), float),
+        multiple=float(method.step_multiple),
+    )
+
+
+def _floats(method: Method, exact: Sequence[Fraction | Sequence[Fraction]]) -> FloatArray:
+    """Return exact coefficients as float64: the one place where they become so."""
+    try:
+        return np.array(exact, float)
+    except OverflowError:
+        raise NumericalError(f"{method.name}: products of its coefficients leave the range of float64") from None
+
+
+def roots_in_z(pencil: MuPencil, mu: ComplexArray) -> ComplexArray:
+    """Return all z with pi(z, mu) = 0; complex, shape (steps, mu.size) for a row of mu, dimensionless.
+
+    NumericalError if one leaves the range of float64, or is infinite: there an implicit step has no solution.
+    """
+    z = roots_of_table(pencil.table, mu)
+    finite = np.isfinite(z).all(axis=0) & ~has_infinite_root(pencil, mu)
+    if not finite.all():
+        raise_not_finite(pencil, mu[~finite])
+    return z
+
+
+def largest_root_in_z(pencil: MuPencil, mu: ComplexArray) -> ComplexArray:
+    """Return the root z of pi(., mu) of largest modulus for each of a row of mu; complex, dimensionless.
+
+    Infinite where an implicit step has no solution. NumericalError if a finite root leaves the range of float64.
+    """
+    z = roots_of_table(pencil.table, mu)
+    largest: ComplexArray = np.take_along_axis(z, np.argmax(np.abs(z), axis=0)[np.newaxis], axis=0)[0]
+    bad = np.flatnonzero(~np.isfinite(largest))  # argmax prefers nan
+    if bad.size:
+        infinite = has_infinite_root(pencil, mu[bad])
+        if not infinite.all():
+            raise_not_finite(pencil, mu[bad[~infinite]])
+        largest[bad] = np.inf
+    return largest
+
+
+def raise_not_finite(pencil: MuPencil, mu: ComplexArray) -> None:
+    """Raise NumericalError for a row of mu (one at least) at which a root is not finite."""
+    name, worst = pencil.method.name, mu[0]
+    if has_infinite_root(pencil, mu[:1])[0]:
+        raise NumericalError(
+            f"{name}: at mu = {worst:.6g} a pole is infinite: the equations of an implicit step have no solution there"
+        )
+    raise NumericalError(f"{name}: at mu = {worst:.6g} a pole leaves the range of float64")
+
+
+def has_infinite_root(pencil: MuPencil, mu: ComplexArray) -> BoolArray:
+    """Return at which of a row of finite mu a root z is infinite, to rounding: the leading coefficient vanishes."""
+    if not pencil.implicit:
+        return np.zeros(mu.shape, bool)
+    with np.errstate(all="ignore"):  # of mu whose powers overflow
+        leading = polyval(mu, pencil.table[-1])
+        size = polyval(np.abs(mu), np.abs(pencil.table[-1]))
+        vanishes: BoolArray = (np.abs(leading) <= LEADING * size) & np.isfinite(size)
+    return vanishes
+
+
+def moduli_in_z(pencil: MuPencil, mu: ComplexArray) -> FloatArray:
+    """Return the moduli of all roots z at each of a row of mu, infinite for all where one is; shape as roots_in_z."""
+    z_abs = np.abs(roots_of_table(pencil.table, mu))
+    return np.asarray(np.where(np.isnan(z_abs).any(axis=0), np.inf, z_abs))
+
+
+def roots_in_mu(pencil: MuPencil, z: ComplexArray) -> ComplexArray:
+    """Return all mu with pi(z, mu) = 0, the locus of a root at z; shape (degree of pi in mu, z.size) for a row of z.
+
+    Not finite where one of them is at infinity.
+    """
+    return roots_of_table(pencil.table.T, z)
+
+
+def deadbeat_points(pencil: MuPencil) -> list[tuple[float, float]]:
+    """Return alpha_hat and beta_hat where every pole of a one-step method is zero, z = R(mu), the most damped first.
+
+    Of an implicit method those where Re mu <= 0; none of several steps. NumericalError where at the first a pole is
+    not zero, to rounding.
+    """
+    zeros: list[complex] = []
+    for root in np.sort_complex(deadbeat_mu(pencil)):
+        mu = complex(root.real, abs(root.imag) if abs(root.imag) > SAME * abs(root) else 0)
+        if pencil.implicit:
+            if mu.real > SAME * abs(mu):
+                continue
+            mu = complex(min(mu.real, 0.0), mu.imag)
+        if abs(mu) < REACH and all(abs(mu - other) > DOUBLE * abs(mu) for other in zeros):
+            zeros.append(mu)
+    points = pencil.user_points(np.array(zeros, complex), np.array(zeros, complex).conj())
+    if zeros:
+        size = float(np.abs(pencil.table[0]) @ abs(zeros[0]) ** np.arange(pencil.table.shape[1]))
+        z_abs = float(np.abs(pencil.poles(*points[:1].T)).max())
+        if z_abs > 100 * np.sqrt(EPS) * size:  # a double mu splits by the root of rounding
+            raise NumericalError(f"{pencil.method.name}: |z_p| = {z_abs:.6g} where all poles were to be zero")
+    return [(alpha_hat, beta_hat) for alpha_hat, beta_hat in points.tolist()]
+
+
+def deadbeat_mu(pencil: MuPencil) -> ComplexArray:
+    """Return all finite mu at which the root z of a one-step method is zero, the zeros of R; shape (zeros,).
+
+    None for a method of several steps.
+    """
+    numerator = np.trim_zeros(pencil.table[0], "b")
+    if len(numerator) == 1 or pencil.steps > 1:
+        return np.empty(0, complex)
+    return np.asarray(roots_of_table(numerator[:, np.newaxis], np.zeros(1, complex))[:, 0])
+
+
+def all_inside(pencil: MuPencil, mu: ComplexArray, level: float | FloatArray) -> BoolArray:
+    """Return whether every root z of pi(., mu) has |z| < level, by Schur's recursion; shape of mu, and of levels."""
+    size = np.ones_like(mu.real)
+    p = np.empty((len(pencil.table), *mu.shape), complex)
+    with np.errstate(over="ignore", invalid="ignore"):  # far out, where nothing is inside
+        for row, coefficients in zip(p, pencil.table, strict=True):
+            np.multiply(horner(coefficients, mu), size, out=row)
+            size = size * level
+    return inside_circle(p)
+
+
+def write_largest_poles(
+    pencil: MuPencil, alpha_hat: FloatArray, beta_hat: FloatArray, shape: tuple[int, int], into: ComplexArray
+) -> None:
+    """Write the dominant pole of each point of a row: those of a grid of that shape, row by row; as of P's roots."""
+    many = into.size >= FEWEST and _ordinary(alpha_hat, beta_hat)
+    if many and pencil.steps == 1 and not pencil.implicit:
+        _write_largest_of_one_step(pencil, alpha_hat, beta_hat, into)
+    elif many and pencil.degree <= MOST_FOLLOWED:
+        largest_plane_root(plane_pencil_of(pencil.method), alpha_hat, beta_hat, shape, into)
+        square = alpha_hat * alpha_hat / 4
+        close = np.flatnonzero(np.abs(square - beta_hat) <= CANCELS * square)  # P's roots keep less than 12 digits
+        into[close] = _largest_by_mu(pencil, alpha_hat[close], beta_hat[close])
+    else:
+        for i in range(0, into.size, CHUNK):
+            chunk = slice(i, i + CHUNK)
+            into[chunk] = _largest_by_mu(pencil, alpha_hat[chunk], beta_hat[chunk])
+
+
+def _write_largest_of_one_step(
+    pencil: MuPencil, alpha_hat: FloatArray, beta_hat: FloatArray, into: ComplexArray
+) -> None:
+    """Write the larger pole, Im >= 0, of an explicit one-step method, z = R(mu), at each of a row of points.
+
+    From R at the sum and the product of both mu, as P's coefficients, of high degree, would lose digits.
+    """
+    in_mu = -pencil.table[0] / pencil.table[1, 0]
+    stability_function = (in_mu * pencil.multiple ** np.arange(in_mu.size)).tolist()  # of the user's mu
+    for start in range(0, alpha_hat.size, CHUNK):
+        chunk = slice(start, start + CHUNK)
+        alphas, betas = alpha_hat[chunk], beta_hat[chunk]
+        middle, factor = polynomial_of_pair(stability_function, alphas, betas)
+        largest_quadratic_root(-middle, factor * factor * feedback_discriminant(alphas, betas), into[chunk])
+
+
+def _largest_by_mu(pencil: MuPencil, alpha_hat: FloatArray, beta_hat: FloatArray) -> ComplexArray:
+    """Return the dominant pole, Im >= 0, of each point of a row: of all roots of pi at both mu.
+
+    Conjugate mu have conjugate poles, so one of the two is enough; of two real mu both are looked at.
+    """
+    first_mu, second_mu = pencil.feedback_roots(alpha_hat, beta_hat)
+    some = np.flatnonzero(first_mu.imag == 0)
+    both = largest_root_in_z(pencil, np.concatenate([first_mu, second_mu[some]]))
+    found, others = both[: first_mu.size], both[first_mu.size :]
+    found[some] = np.where(np.abs(others) > np.abs(found[some]), others, found[some])
+    found.imag = np.abs(found.imag)
+    return found
+
+
+def _ordinary(alpha_hat: FloatArray, beta_hat: FloatArray) -> bool:
+    """Return whether all powers of a row of points are far from the ends of float64's range."""
+    return all(bool(row.min() > -ORDINARY and row.max() < ORDINARY) for row in (alpha_hat, beta_hat))
