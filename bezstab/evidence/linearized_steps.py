@@ -84,8 +84,11 @@ def _found_together(action: Found) -> Accelerations:
     """Return accelerations that are found together, with what is known of their places apart from what is sought."""
     results = tuple(each.result for each in action.evaluations)
     parts = [part for each in action.evaluations for part in (each.position, each.velocity)]
-    places = [(quantity.name, float(share)) for part in parts for quantity, share in part.items()]
-    at_state = places == [("x", 1.0), ("v", 1.0)] and len({quantity.step for part in parts for quantity in part}) == 1
+    first = action.evaluations[0]
+    at_state = any(
+        first.position == {Quantity("x", each.step): 1} and first.velocity == {Quantity("v", each.step): 1}
+        for each in first.position
+    )
     return Accelerations(
         results=results,
         known=tuple({quantity: part[quantity] for quantity in part if quantity not in results} for part in parts),
@@ -201,7 +204,7 @@ def _accelerations_on_it(
 
 def _times(course: Course, group: Accelerations) -> FloatArray:
     """Return when the accelerations of each step take place (s), shape (steps, c)."""
-    return np.asarray(course.step * np.add.outer(np.arange(course.steps), group.moments))
+    return course.step * np.add.outer(np.arange(course.steps), group.moments)
 
 
 def _linearized(
