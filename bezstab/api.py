@@ -358,10 +358,10 @@ def check_drive(
     drive = _drive(pd)
     assert drive
     with _in_keywords():
-        question = questions.held_question(
-            drive,
-            _exact(h, "h"),
-            () if method is None else (_method(method),),
+        question = questions.HeldQuestion(
+            drive=drive,
+            h=_exact(h, "h"),
+            methods=() if method is None else (_method(method),),
             every=every,
             late=_exact(late, "late"),
             filter_seconds=_exact(filter_seconds, "filter_seconds"),

@@ -16,7 +16,9 @@ from tests.cli.running import rows, run
 TESTS = Path(__file__).parent
 
 
-@pytest.mark.parametrize("page", ["../README.md", "../bezstab/README.md", "mistakes_in_python.md"])
+@pytest.mark.parametrize(
+    "page", ["../README.md", "../bezstab/README.md", "../configs/logs/README.md", "mistakes_in_python.md"]
+)
 def test_what_a_page_shows_of_python_is_what_python_prints(page: str) -> None:
     found = doctest.testfile(str(TESTS / page), module_relative=False, optionflags=doctest.ELLIPSIS, encoding="utf-8")
     assert (found.attempted > 1, found.failed) == (True, 0)
@@ -72,7 +74,7 @@ def test_every_goal_can_be_chosen(goal: Goal) -> None:
 @pytest.mark.slow_except("check --engine", "choose")
 def test_python_answers_what_the_command_line_answers(typed: str, asked: dict[str, Any]) -> None:
     command = typed.split(maxsplit=1)[0]
-    printed = json.loads(run(*typed.split(), "--format", "json").stdout)
+    printed = json.loads(run(typed, "--format json").stdout)
     answer = getattr(bezstab, command)(**asked)
     found = [answer, *([answer.instead] if command == "check" else [])]
     for row, each in zip((printed[0], printed[-1]), found, strict=False):
@@ -82,7 +84,7 @@ def test_python_answers_what_the_command_line_answers(typed: str, asked: dict[st
 def test_a_held_drive_is_checked_as_on_the_command_line() -> None:
     answer = bezstab.check_drive((200, 5, "0.1"), h=0.002, every=4, late=1, filter_seconds="0.01", method="SYM")
     typed = "check --pd 200,5,0.1 --h 0.002 --every 4 --late 1 --filter 0.01 --method SYM"
-    (row,) = rows(*typed.split())
+    (row,) = rows(typed)
     assert (answer.verdict, answer.z_abs, answer.used_up) == (row["verdict"], row["z_abs"], row["held_by"])
     assert answer.limits.late == row["late_max"]
     assert answer.limits.kd == (row["kd_min"], row["kd_max"])

@@ -1,14 +1,8 @@
-import importlib.util
 import sys
 
 import pytest
 
-from bezstab.compiling import (
-    COMPILED_CHOICE,
-    check_numba,
-    compiled_choice,
-    compiler,
-)
+from bezstab.compiling import COMPILED_CHOICE, compiled_choice, compiler
 from bezstab.errors import InputError
 
 
@@ -27,6 +21,3 @@ def test_a_missing_compiler_is_refused_in_a_line(monkeypatch: pytest.MonkeyPatch
     monkeypatch.setitem(sys.modules, "numba", None)
     with pytest.raises(InputError, match=r"pip install 'bezstab\[fast\]'"):
         compiler()
-    monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
-    with pytest.raises(InputError, match=r"pip install 'bezstab\[fast\]'"):
-        check_numba()

@@ -22,12 +22,13 @@ PAGES = (
     "bezstab/stability/README.md",
     "bezstab/evidence/README.md",
     "bezstab/paper/README.md",
+    "configs/logs/README.md",
     "configs/methods/README.md",
     "configs/scenes/README.md",
     "tests/README.md",
     "tests/cli/sentences.md",
 )
-"""The pages whose commands are run; that about logs has a test of its own, next to those of `probe`."""
+"""The pages whose commands are run."""
 
 ON_A_PIPE = {"COLUMNS": None}
 """Environment in which nothing says how wide a line may be."""
@@ -68,6 +69,8 @@ def _with_the_files_of_the_pages(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     monkeypatch.chdir(tmp_path)
     response = of_poles(poles(lookup("B4"), 0.5, 0.1), 300, seed=2)  # at the point that the page asks about
     np.savetxt("log.csv", response, "%.9g", header="c", comments="")
+    (logging,) = re.findall(r"```python\n(.*?)```", (ROOT / "configs/logs/README.md").read_text("utf-8"), re.DOTALL)
+    exec(logging, {})  # writes the logs of that page
     shutil.copy(DATA / "two_joints.xml", "robot.xml")
     shutil.copy(DATA / "arm.urdf", "robot.urdf")
     shutil.copy(DATA / "legs.xml", "legs.xml")
@@ -75,7 +78,9 @@ def _with_the_files_of_the_pages(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 
 @pytest.mark.usefixtures("_with_the_files_of_the_pages")
 @pytest.mark.parametrize("session", SESSIONS, ids=prompted)
-@pytest.mark.slow_except("check --method SYM", "check --engine bullet", "choose --method SYM", "chains", "methods")
+@pytest.mark.slow_except(
+    "check --method SYM", "check --engine bullet", "choose --method SYM", "chains", "methods", "probe kicked"
+)
 def test_a_session_prints_what_the_page_shows(session: str) -> None:
     """Three dots stand for whatever is printed there."""
     command, shown = prompted(session), session.partition("\n")[2]
@@ -103,7 +108,7 @@ def own_file(command: str) -> Path:
     return ROOT / "configs" / ("scenes/pendulum.toml" if "--scene own.toml" in command else "methods/ebdf2.toml")
 
 
-@pytest.mark.parametrize("page", [*PAGES, "configs/logs/README.md"])
+@pytest.mark.parametrize("page", PAGES)
 def test_every_picture_and_link_is_there(page: str) -> None:
     for target in re.findall(r"\]\(([^)#]+)\)", (ROOT / page).read_text(encoding="utf-8")):
         if not target.startswith("https://"):

@@ -8,30 +8,17 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from bezstab.cli.command_group import AS_TYPED, NUMERICAL_TROUBLE
-from bezstab.cli.options import TypedPoint, left_at_default
+from bezstab.cli.options import left_at_default
 from bezstab.cli.output import for_reading, say, show_command, show_text, worked_out
-from bezstab.engines import Engine, Point
+from bezstab.engines import Engine
 from bezstab.errors import NumericalError
 from bezstab.show import Row, motion_words
-from bezstab.units import to_dimensionless
 
 if TYPE_CHECKING:
     from bezstab.questions import Answer, Meant, Question
 
 Asked = TypeVar("Asked")
 Item = TypeVar("Item")
-
-
-def point_at(typed: TypedPoint, h: Fraction | None) -> Point | None:
-    """Return the point (alpha_hat, beta_hat) that was typed, for a step of h (s); None if none was.
-
-    UsageError if one of the two numbers is missing, and for numbers in 1/s without a step.
-    """
-    if typed.numbers is None or not typed.physical:
-        return typed.numbers
-    if h is None:
-        raise click.UsageError("--physical needs --h: α and β in 1/s need the step in s")
-    return to_dimensionless(*typed.numbers, h)
 
 
 def asked(kind: Callable[..., Asked], **typed: Any) -> Asked:
@@ -50,8 +37,7 @@ def asked(kind: Callable[..., Asked], **typed: Any) -> Asked:
         typed["chain"] = typed_chain(typed["chain"], typed.pop("mass_ratio"))
     point = typed.get("point")
     if point:
-        longest = typed["h"] or (typed.get("h_max") if typed.get("h_min") else None)
-        typed["point"] = point_at(point, longest)
+        typed["point"] = point.at(typed["h"] or (typed.get("h_max") if typed.get("h_min") else None))
     question = kind(**typed)
     if point and not point.physical:
         say_if_units_were_mistaken(question)
@@ -126,21 +112,6 @@ def say_what_is_left_out(engine: Engine, *, many: bool = False) -> None:
     say(f"{engine.name}: left out: {engine.excludes}{swept + ask if engine.sweeps and not many else ''}")
     if many and engine.sweeping:
         say(f"{engine.name}: sweeps are its {engine.sweeping.word}; of them left out: {engine.sweeping.excludes}")
-
-
-WITHOUT_ACCURACY = ("total_error", "order_left", "times_least_velocity")
-"""Columns that tables of a drive omit: nothing feeds the acceleration of its target forward."""
-
-OF_ONE_ALONE = (
-    *("worst", "settle_steps", "settle_seconds", "h_limit"),
-    *("alpha_factor_min", "alpha_factor_max", "beta_factor_min", "beta_factor_max"),
-)
-"""Columns that tables omit for constraints that an engine sweeps over: they are about one constraint alone."""
-
-
-def left_out(question: "Question") -> tuple[str, ...]:
-    """Return the keys that tables of a question leave out."""
-    return (*(WITHOUT_ACCURACY if question.drive else ()), *(OF_ONE_ALONE if question.swept else ()))
 
 
 def say_varying(answers: "Iterable[Answer]") -> None:

@@ -47,8 +47,7 @@ def chains(
     files.check_output()
     words, values = engine
     maps = [chain_map(words, values, h, ratio, bodies, SWEEPS_DRAWN) for ratio in mass_ratios]
-    rows = [row for one in maps for row in chain_rows(words, one)]
-    show_rows(CHAINS, rows)
+    show_rows(CHAINS, (row for one in maps for row in chain_rows(words, one)))
 
     typed = ", ".join(f"{name} = {float(value):.4g}" for name, value in zip(words.parameters, values, strict=False))
     title = f"{words.name}: {typed}, h = {float(h):.3g} s"

@@ -4,13 +4,13 @@ from collections.abc import Iterable, Iterator
 from itertools import groupby
 from typing import TYPE_CHECKING, Any
 
-from bezstab.cli.asking import asked_of_feedback, left_out, say_varying, show_below, show_sentences
+from bezstab.cli.asking import asked_of_feedback, say_varying, show_below, show_sentences
 from bezstab.cli.held_drives import held_asked, show_held
 from bezstab.cli.options import TypedPoint, changed, command, typed_options
 from bezstab.cli.output import for_reading, say, show_rows, show_text
 from bezstab.errors import InputError, NumericalError
 from bezstab.methods import Method
-from bezstab.show import CHECKED, LARGEST_STEPS, answer_row, costs_words, largest_step_row
+from bezstab.show import CHECKED, LARGEST_STEPS, answer_row, costs_words, largest_step_row, left_out
 
 if TYPE_CHECKING:
     from bezstab.questions import Answer
@@ -74,14 +74,14 @@ def check(**typed: Any) -> bool:
     given = [answer for answer in found if answer.role == "given"]
     if for_reading():
         without = left_out(question)
-        show_rows(CHECKED, [answer_row(answer) for answer in given], without)
+        show_rows(CHECKED, map(answer_row, given), without)
         say_varying(given)
         show_sentences(map(costs_words, given if not drive else ()))
-        if instead := [answer_row(answer) for answer in found if answer.role == "instead"]:
+        if instead := [answer for answer in found if answer.role == "instead"]:
             show_text("\nWhat `choose` gives instead:\n")
-            show_rows(CHECKED, instead, without)
+            show_rows(CHECKED, map(answer_row, instead), without)
     else:
-        show_rows(CHECKED, [answer_row(answer) for answer in found])
+        show_rows(CHECKED, map(answer_row, found))
     show_below(question, found)
     return all(answer.safe for answer in given)
 
@@ -103,5 +103,5 @@ def _check_without_step(methods: tuple[Method, ...], point: TypedPoint) -> bool:
 
     assert point.numbers
     found = [largest_step(method, *point.numbers) for method in methods_for(methods, None, None)]
-    show_rows(LARGEST_STEPS, [largest_step_row(each) for each in found])
+    show_rows(LARGEST_STEPS, map(largest_step_row, found))
     return all(each.safe for each in found)

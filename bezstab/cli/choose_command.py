@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from bezstab.cli.asking import asked_of_feedback, left_out, say_varying, show_below, show_sentences
+from bezstab.cli.asking import asked_of_feedback, say_varying, show_below, show_sentences
 from bezstab.cli.held_drives import held_asked, show_held
 from bezstab.cli.options import INERTIA, NUMBER, SECONDS, SHARE, changed, command, left_at_default, option
 from bezstab.cli.output import for_reading, progress, show_rows, show_text
 from bezstab.goals import GOALS, Goal
 from bezstab.methods import lookup
 from bezstab.rationals import typed_number
-from bezstab.show import CHOICES, alone_words, answer_row, trade_words
+from bezstab.show import CHOICES, alone_words, answer_row, left_out, trade_words
 
 if TYPE_CHECKING:
     from bezstab.questions import Answer, HeldQuestion
@@ -92,7 +92,7 @@ def choose(goal: Goal | None, equal: str | None, bandwidth: Fraction | None, **t
     goal = goal or usual_goal(typed["engine"], drive)
     question = asked_of_feedback(goal=goal, equal=equal is not None, **typed)
     chosen = list(progress(answers(question), goal, len(question.methods)))
-    show_rows(CHOICES, [answer_row(answer) for answer in chosen], left_out(question))
+    show_rows(CHOICES, map(answer_row, chosen), left_out(question))
     if for_reading():
         say_varying(chosen)
         if not (drive or question.swept):

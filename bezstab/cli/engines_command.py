@@ -24,8 +24,7 @@ def engines(h: Fraction, point: TypedPoint) -> None:
 
     Example: bezstab engines --alpha 1 --beta 0.2 --h 0.002
     """
-    rows = [engine_row(engine, point.numbers, h) for engine in ENGINES.values()]
-    show_rows(ENGINES_LISTED, rows)
+    show_rows(ENGINES_LISTED, (engine_row(engine, point.numbers, h) for engine in ENGINES.values()))
     show_text("\nAnd others, by what they run underneath:\n")
     for name, underneath in RUN_UNDERNEATH.items():
         show_text(f"{name}: {underneath}")

@@ -19,6 +19,5 @@ def extremes(short: bool) -> bool:
 
     checks = list(extreme_checks(not short))
     outcomes = [check() for check in progress(checks, "extremes")]
-    rows = [EXTREMES.row(outcome) for outcome in outcomes]
-    show_rows(EXTREMES, rows)
+    show_rows(EXTREMES, map(EXTREMES.row, outcomes))
     return all(outcome.held for outcome in outcomes)

@@ -2,6 +2,8 @@
 
 from typing import TYPE_CHECKING, Any
 
+import click
+
 from bezstab.cli.options import left_at_default, refuse_beside, typed_options
 from bezstab.cli.output import show_rows, show_text
 from bezstab.show import HELD, LATE_COMMANDS, NOT_JUDGED, held_row, timing_words
@@ -17,16 +19,18 @@ def held_asked(typed: dict[str, Any], asked: str, *allowed: str, always: bool = 
     """Take the timing options out of `typed`. Return the question about such a drive, None if none of them was typed.
 
     With `always` there is a question without these options, too: every step then computes its torque and applies it.
-    Without --method it is about all four ways of applying a drive. Errors as `held_question`; UsageError, which says
+    Without --method it is about all four ways of applying a drive. Errors as `HeldQuestion`; UsageError, which says
     what is `asked`, if an option was typed that is neither about drives nor `allowed`.
     """
-    from bezstab.questions import held_question
+    from bezstab.questions import HeldQuestion
 
     timing = {name: typed.pop(name) for name in ("every", "late", "filter_seconds")}
     if not always and all(value is None for value in timing.values()):
         return None
     methods = () if left_at_default("methods") else tuple(typed["methods"])
-    question = held_question(typed["drive"], typed["h"], methods, **timing)
+    if typed["h"] is None:
+        raise click.UsageError("--pd needs --h: the step in s")
+    question = HeldQuestion(drive=typed["drive"], h=typed["h"], methods=methods, **timing)
     refuse_beside(asked, typed_options().keys() - {*ABOUT_DRIVES, *allowed}, "this answer is about the drive alone")
     return question
 
@@ -37,6 +41,6 @@ def show_held(question: "HeldQuestion") -> "list[HeldAnswer]":
 
     found = list(held_answers(question))
     heading = timing_words(question.timing, float(question.h))
-    show_rows(HELD, [held_row(answer) for answer in found], heading=heading)
+    show_rows(HELD, map(held_row, found), heading=heading)
     show_text(f"\n{LATE_COMMANDS} {NOT_JUDGED}")
     return found

@@ -72,8 +72,7 @@ def lint(model: Path, gains: "Sequence[MotorGains]", every: int, late: Fraction)
     linted = list(progress(linted_model(model_data, gains, timing), "lint", model_data.size))
     heading = f"{model.name}: timestep {model_data.h:g} s, integrator {model_data.integrator}"
     if linted or not for_reading():
-        rows = [LINTED.row(each, advice=each.advice or None) for each in linted]
-        show_rows(LINTED, rows, heading=heading)
+        show_rows(LINTED, (LINTED.row(each, advice=each.advice or None) for each in linted), heading=heading)
     else:
         show_text(
             f"{heading}\n\nNothing to judge: no equality, limit, friction loss, contact, spring, damper or drive."

@@ -18,6 +18,7 @@ from bezstab.methods import REGISTRY, lookup
 from bezstab.rationals import rational
 from bezstab.show import FIGURE_FORMS, TABLE_FORMS, Format
 from bezstab.stabilising import STABILISE
+from bezstab.units import to_dimensionless
 
 if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
@@ -41,16 +42,16 @@ WITH_PARAMETERS = ("newmark(1/4,1/2)", "hht(-1/20)", "generalized-alpha(4/5)")
 GAINS = ("kp", "kd", "inertia")
 
 
+@dataclass(frozen=True)
 class ParsedType(click.ParamType):  # type: ignore[type-arg]  # generic since click 8.3
     """A type whose values `parse` makes of the typed text. Its InputError becomes a message that names the option.
 
     The shell offers the `names` when it completes a value.
     """
 
-    def __init__(
-        self, name: str, parse: Callable[[str], object], names: Callable[[], Iterable[str]] | None = None
-    ) -> None:
-        self.name, self.parse, self.names = name, parse, names
+    name: str
+    parse: Callable[[str], object]
+    names: Callable[[], Iterable[str]] | None = None
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """Return the parsed value; fail with a message that names the option if there is none."""
@@ -83,16 +84,12 @@ def _positive(text: str) -> Fraction:
     return number
 
 
-def _within_squares(unit: str) -> Callable[[str], Fraction]:
-    """Return a function that reads a positive number whose square is within float64; messages name the unit."""
-
-    def read(text: str) -> Fraction:
-        number = _positive(text)
-        if not SHORTEST <= number <= 1 / SHORTEST:
-            raise InputError(f"{text}: expected {float(SHORTEST):g} to {float(1 / SHORTEST):g} {unit}")
-        return number
-
-    return read
+def _within_squares(text: str, unit: str) -> Fraction:
+    """Return a positive number whose square is within float64; messages name the unit."""
+    number = _positive(text)
+    if not SHORTEST <= number <= 1 / SHORTEST:
+        raise InputError(f"{text}: expected {float(SHORTEST):g} to {float(1 / SHORTEST):g} {unit}")
+    return number
 
 
 def _sequence(text: str) -> list[Fraction]:
@@ -109,7 +106,7 @@ def _sequence(text: str) -> list[Fraction]:
         times = rational(count) if star else Fraction(1)
         if times.denominator != 1 or not 1 <= times <= MOST_IN_SEQUENCE - len(sequence):
             raise InputError(f"{part[:50]!r}: expected a number of steps from 1, and {MOST_IN_SEQUENCE} in all")
-        sequence += [_within_squares("s")(step)] * int(times)
+        sequence += [_within_squares(step, "s")] * int(times)
     return sequence
 
 
@@ -131,8 +128,8 @@ def _inertia(text: str) -> Drive:
 
 NUMBER = ParsedType("number", rational)
 POSITIVE = ParsedType("number", _positive)
-SECONDS = ParsedType("seconds", _within_squares("s"))
-SPEED = ParsedType("number", _within_squares("times the scene's own speed"))
+SECONDS = ParsedType("seconds", partial(_within_squares, unit="s"))
+SPEED = ParsedType("number", partial(_within_squares, unit="times the scene's own speed"))
 SEQUENCE = ParsedType("steps", _sequence)
 METHOD = ParsedType("method", lookup, lambda: (*REGISTRY, *WITH_PARAMETERS))
 SHARE = ParsedType("number", lambda text: float(rational(text)))
@@ -164,15 +161,9 @@ def _choose_compiled(context: click.Context, parameter: click.Parameter, choice:
 
     if choice == "yes":
         check_numba()
-    before = os.environ.get(COMPILED_CHOICE)
+    before = {COMPILED_CHOICE: os.environ.get(COMPILED_CHOICE, "auto")}
     os.environ[COMPILED_CHOICE] = choice
-
-    def restore() -> None:
-        os.environ.pop(COMPILED_CHOICE)
-        if before is not None:
-            os.environ[COMPILED_CHOICE] = before
-
-    context.call_on_close(restore)
+    context.call_on_close(partial(os.environ.update, before))
 
 
 A_METHOD = "A method's name, as `bezstab methods` lists it, or a .toml file; NAME@m takes steps of m h."
@@ -330,7 +321,7 @@ GROUPS: Mapping[str, tuple[str | Option | Rule, ...]] = {
     "holding": (
         *("stabilise", "iterations"),
         Rule(
-            ("--stabilise projection", "--stabilise none"),
+            tuple(f"--stabilise {word}" for word in STABILISE if word != "baumgarte"),
             "it has no feedback",
             excludes=("--alpha", "--beta", "--physical", "--hold", "--omega"),
         ),
@@ -361,6 +352,14 @@ class TypedPoint:
         if self.physical:
             raise click.UsageError("--physical needs --alpha and --beta: it says that they are in 1/s")
         return None
+
+    def at(self, h: Fraction | None) -> Point | None:
+        """Return the point (alpha_hat, beta_hat) for a step of h (s), None without one; UsageError as `numbers`."""
+        if self.numbers is None or not self.physical:
+            return self.numbers
+        if h is None:
+            raise click.UsageError("--physical needs --h: α and β in 1/s need the step in s")
+        return to_dimensionless(*self.numbers, h)
 
 
 GATHERED = {"point": TypedPoint, "files": Files, "work": Work}

@@ -52,14 +52,14 @@ def for_reading() -> bool:
     return chosen_format() in ("text", "markdown")
 
 
-def show_rows(kind: RowKind, rows: Sequence[Row], without: Collection[str] = (), heading: str = "") -> None:
+def show_rows(kind: RowKind, found: Iterable[Row], without: Collection[str] = (), heading: str = "") -> None:
     """Print rows of a kind on standard output, below a heading where people read them; `without` as RowKind.columns.
 
     As text, a single row is a block of lines below its sentence; so is each row of a table wider than the terminal.
     """
+    form, rows = chosen_format(), list(found)
     if heading:
         show_text(f"{heading}\n")
-    form = chosen_format()
     columns = kind.columns(rows, without) if for_reading() else []
     answer = render(rows, columns, form)
     if form == "text" and rows and (len(rows) == 1 or not fits(answer, text_width())):
@@ -160,16 +160,12 @@ class Files:
 
         The files are `path` + .csv, .png, ... What is not asked for is neither made nor loaded.
         """
+        from bezstab import show
+
         if table and self.table != "none":
-            columns = table()
-            from bezstab.show import write_arrays
-
-            write_file(path.with_name(f"{path.name}.{self.table}"), partial(write_arrays, columns, self.table))
+            write_file(path.with_name(f"{path.name}.{self.table}"), partial(show.write_arrays, table(), self.table))
         if figure and self.figure != "none":
-            drawn = figure()
-            from bezstab.show import save
-
-            write_file(path.with_name(f"{path.name}.{self.figure}"), partial(save, drawn, self.figure))
+            write_file(path.with_name(f"{path.name}.{self.figure}"), partial(show.save, figure(), self.figure))
 
 
 @dataclass(frozen=True)

@@ -93,7 +93,7 @@ def _show_forced_errors(question: "VerifyQuestion") -> int:
     }
     every_pair = [pair for pairs in by_method.values() for pair in pairs]
     scene = question.mechanism.scene.name
-    show_rows(FORCED, [row for pair in every_pair for row in show.forced_rows(scene, pair)])
+    show_rows(FORCED, (row for pair in every_pair for row in show.forced_rows(scene, pair)))
     show_text("\n" + "\n".join(show.forced_words(name, pairs) for name, pairs in by_method.items()))
     outcomes = {pair.holds for pair in every_pair}
     return NUMERICAL_TROUBLE if None in outcomes else outcomes == {True}
@@ -113,8 +113,8 @@ def _show_measurements(question: "VerifyQuestion") -> None:
         show_text(show.exact_rate_words(mechanism, of_method))
     if len(rows) > len(measured):  # of one point each there is nothing to sum up
         click.echo()
-        summaries = [SUMMARIES.row(evidence.measurement_summary(of_method)) for of_method in measured]
-        show_rows(SUMMARIES, summaries, () if floquet else OVER_THE_MOTION)
+        summaries = map(evidence.measurement_summary, measured)
+        show_rows(SUMMARIES, map(SUMMARIES.row, summaries), () if floquet else OVER_THE_MOTION)
 
 
 def _write_map(question: "VerifyQuestion", method: "Method", across: int, work: Work, files: Files) -> Row:

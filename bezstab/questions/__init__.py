@@ -8,7 +8,7 @@
 from bezstab.questions.answering import Answer, CheckedRole, Gain, LargestStep, answers, largest_step
 from bezstab.questions.chains import Chain, ChainMap, chain_map, typed_chain
 from bezstab.questions.growing_runs import growing_run
-from bezstab.questions.held_drives import HeldAnswer, HeldQuestion, UsedUp, held_answers, held_gains, held_question
+from bezstab.questions.held_drives import HeldAnswer, HeldQuestion, UsedUp, held_answers, held_gains
 from bezstab.questions.log_probes import ColumnAnswer, LogQuestion, check_told, log_answers
 from bezstab.questions.motions import ReferenceMotion, check_speed, motion_of, turns_too_far
 from bezstab.questions.points import Meant

@@ -12,13 +12,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field, fields
 from fractions import Fraction
 from functools import cached_property
-from typing import TYPE_CHECKING, Literal, cast
+from typing import TYPE_CHECKING, Any, Literal, cast
 
 from bezstab.engines import Curve, Engine, Point
 from bezstab.errors import InputError, NumericalError
 from bezstab.goals import UP_TO_LONGEST, Goal
 from bezstab.methods import Method
-from bezstab.questions.chains import ALONE, SweptAnswer, strongest_point, sweeps_to_spare, swept_answer
+from bezstab.questions.chains import ALONE, SweptAnswer
 from bezstab.questions.points import all_points
 from bezstab.questions.question import Question, usual_goal
 from bezstab.rationals import rational
@@ -189,17 +189,15 @@ class Answer(Choice):
     @cached_property
     def swept(self) -> SweptAnswer | None:
         """What the engine's sweeps do to the errors of a chain, or of the scene's constraints."""
-        engine, h, constraints = self.question.engine, self.question.h, self.question.swept
-        if engine is None or h is None or constraints is None:
-            return None
-        return swept_answer(engine, self._engine_values(engine, h), h, constraints, self.question.iterations)
+        swept = self.question.swept
+        return None if swept is None else swept.answer(self._engine_values(swept.engine, swept.h))
 
     @property
     def swept_over(self) -> str | None:
         """The constraints that the answer is about, if the engine sweeps; None if it solves all of them together."""
         if self.question.engine is None or not self.question.engine.sweeps:
             return None
-        return (self.question.swept or ALONE).words
+        return (self.question.swept.constraints if self.question.swept else ALONE).words
 
     @cached_property
     def alone(self) -> "Answer | None":
@@ -213,10 +211,8 @@ class Answer(Choice):
     @cached_property
     def sweeps_to_spare(self) -> int | None:
         """The number of sweeps from which the choice is stable, even if it were stronger by the spread."""
-        engine, h, constraints = self.question.engine, self.question.h, self.question.swept
-        if engine is None or engine.curve is None or h is None or constraints is None:
-            return None
-        return sweeps_to_spare(engine, self.point, h, constraints, self.question.spread)
+        swept = self.question.swept
+        return swept.sweeps_to_spare(self.point, self.question.spread) if swept and swept.engine.curve else None
 
     @cached_property
     def gains(self) -> Gains | None:
@@ -318,12 +314,13 @@ def _choice(
 ) -> Choice:
     """Return the choice of a goal; if an engine sweeps over constraints, at most the strongest that they allow."""
     found = _choice_alone(question, method, goal, settle, margins=margins)
-    engine, h, constraints = question.engine, question.h, question.swept
-    if engine is None or h is None or constraints is None or not (engine.parameters and _curve(question, goal)):
+    swept = question.swept
+    if swept is None or not (swept.engine.parameters and _curve(question, goal)):
         return found
-    strongest = strongest_point(engine, h, constraints, question.iterations, question.spread)
+    strongest = swept.strongest(question.spread)
     if strongest is None:
-        raise InputError(f"{engine.name}: no feedback is stable in {constraints.words}: ask with more --iterations")
+        words = f"no feedback is stable in {swept.constraints.words}: ask with more --iterations"
+        raise InputError(f"{swept.engine.name}: {words}")
     if found.beta_hat <= strongest[1]:
         return found
     return describe_point(method, goal, *strongest, question.spread, margins)
@@ -337,30 +334,18 @@ def _choice_alone(
     along = _curve(question, goal)
     longest = question.h_max if question.goal else None
     modulus = _modulus_as_it_moves(question, method, longest or question.h)
+    of_both: dict[str, Any] = {
+        "spread": question.spread,
+        "equal": question.equal,
+        "modulus": modulus,
+        "along": along,
+        "omega_h": motion.omega_h_max,
+        "margins": margins,
+    }
     if question.h is None:
-        return choose(
-            method,
-            goal,
-            spread=question.spread,
-            equal=question.equal,
-            modulus=modulus,
-            margins=margins,
-            along=along,
-            omega_h=motion.omega_h_max,
-        )
-    return choose_at_step(
-        method,
-        goal,
-        h=question.h,
-        h_max=longest if goal in UP_TO_LONGEST else None,
-        settle=settle,
-        spread=question.spread,
-        equal=question.equal,
-        modulus=modulus,
-        along=along,
-        omega_h=motion.omega_h_max,
-        margins=margins,
-    )
+        return choose(method, goal, **of_both)
+    h_max = longest if goal in UP_TO_LONGEST else None
+    return choose_at_step(method, goal, h=question.h, h_max=h_max, settle=settle, **of_both)
 
 
 def _curve(question: Question, goal: Goal) -> Curve | None:

@@ -1,13 +1,13 @@
 """Chains of bodies and scenes in an engine that sweeps over constraints: are they stable, and with how many sweeps?"""
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
-from bezstab.engines import Curve, Engine, Point, SweptStep, check_iterations
+from bezstab.engines import Engine, Point, SweptStep, check_iterations
 from bezstab.errors import InputError
 from bezstab.mechanism import Revolute, Scene, compiled_mechanism, constraint_jacobian, initial_state
 from bezstab.questions.motions import name_of, scene_at_speed
@@ -99,21 +99,6 @@ def constraints_of(scene: str | Scene, speed: Fraction) -> Constraints:
     return Constraints(words, masses, tuple(joints))
 
 
-@dataclass(frozen=True)
-class SweptAnswer:
-    """What a step of an engine does to the errors of many constraints.
-
-    `iterations` are the sweeps that were asked about, `alone` the factor by which a step multiplies the error of one
-    constraint alone, `stable_iterations` from how many sweeps they are stable, None if from none that is tried.
-    """
-
-    constraints: Constraints
-    iterations: int
-    growth: Growth
-    alone: float
-    stable_iterations: int | None
-
-
 def check_sweeps(
     question_chain: Chain | None,
     iterations: int | None,
@@ -146,82 +131,86 @@ def check_sweeps(
         raise InputError(f"--iterations: {name_of(scene)} has one constraint alone: there is nothing to sweep over")
 
 
-def swept_answer(
-    engine: Engine, values: tuple[Fraction, ...], h: Fraction, constraints: Constraints, iterations: int | None
-) -> SweptAnswer:
-    """Return what the sweeps of an engine do to the errors of constraints, with its values at a step of h (s).
+@dataclass(frozen=True)
+class SweptAnswer:
+    """What a step of an engine does to the errors of many constraints.
 
-    `iterations` None: the engine's own number. NumericalError if rounding leaves open whether errors decay.
+    `iterations` are the sweeps that were asked about, `alone` the factor by which a step multiplies the error of one
+    constraint alone, `stable_iterations` from how many sweeps they are stable, None if from none that is tried.
     """
-    assert engine.sweeping
-    step = _steps(engine, values, h)
-    asked = iterations or engine.sweeping.iterations
-    growth = constraints.growth(engine, step(asked))
-    growth.check_settled()
-    return SweptAnswer(
-        constraints=constraints,
-        iterations=asked,
-        growth=growth,
-        alone=ALONE.growth(engine, step(asked)).factor,
-        stable_iterations=fewest_sweeps(lambda sweeps: constraints.growth(engine, step(sweeps))),
-    )
+
+    constraints: Constraints
+    iterations: int
+    growth: Growth
+    alone: float
+    stable_iterations: int | None
 
 
-def strongest_point(
-    engine: Engine, h: Fraction, constraints: Constraints, iterations: int | None, spread: float
-) -> Point | None:
-    """Return the strongest feedback on the engine's curve that constraints allow, even if it were `spread` stronger.
+@dataclass(frozen=True, eq=False)
+class SweptConstraints:
+    """Constraints over which an engine sweeps so many times in a step of h (s). Values are those of the engine."""
 
-    A point (alpha_hat, beta_hat), h in s. None where no feedback on the curve is stable, or there is none to set.
-    """
-    assert engine.sweeping
-    asked = iterations or engine.sweeping.iterations
-    curve = engine.curve
-    if curve is None or not engine.parameters:
-        return None
+    engine: Engine
+    h: Fraction
+    constraints: Constraints
+    iterations: int
 
-    def allowed(share: float) -> bool:
-        try:
-            values = _values_at(engine, curve, share, h, spread)
-        except InputError:  # the engine cannot express it
-            return False
-        return constraints.growth(engine, _steps(engine, values, h)(asked)).decays
+    def growth(self, values: Sequence[Fraction], sweeps: int | None = None) -> Growth:
+        """Return the factor by which a step multiplies their errors, with another number of sweeps if one is given."""
+        assert self.engine.sweeping
+        step = self.engine.sweeping.step(sweeps or self.iterations, self.h, *values)
+        return self.constraints.growth(self.engine, step)
 
-    def refused(shares: FloatArray) -> BoolArray:
-        return np.array([not allowed(float(share)) for share in shares])
+    def fewest(self, values: Sequence[Fraction]) -> int | None:
+        """Return from how many sweeps their errors decay; None if from none that is tried."""
+        return fewest_sweeps(partial(self.growth, values))
 
-    turn = first_where(refused, SHARES)
-    if turn and turn[0] == turn[1]:  # already the weakest
-        return None
-    alpha_hat, beta_hat = curve(turn[0] if turn else SHARES[-1])
-    return Fraction(alpha_hat), Fraction(beta_hat)
+    def answer(self, values: Sequence[Fraction]) -> SweptAnswer:
+        """Return what the sweeps do to their errors; NumericalError if rounding leaves open whether errors decay."""
+        growth = self.growth(values)
+        growth.check_settled()
+        alone = replace(self, constraints=ALONE).growth(values).factor
+        return SweptAnswer(self.constraints, self.iterations, growth, alone, self.fewest(values))
 
+    def strongest(self, spread: float) -> Point | None:
+        """Return the strongest feedback on the engine's curve that is stable even if it were `spread` stronger.
 
-def sweeps_to_spare(engine: Engine, point: Point, h: Fraction, constraints: Constraints, spread: float) -> int | None:
-    """Return from how many sweeps a point on the engine's curve is stable even if it were `spread` stronger."""
-    curve = engine.curve
-    assert curve
+        A point (alpha_hat, beta_hat); None where no feedback on the curve is stable.
+        """
 
-    def as_strong(shares: FloatArray) -> BoolArray:
-        return np.array([float(curve(float(share))[1]) >= float(point[1]) for share in shares])
+        def allowed(share: float) -> bool:
+            try:
+                return self.growth(self._values_at(share, spread)).decays
+            except InputError:  # the engine cannot express it
+                return False
 
-    turn = first_where(as_strong, SHARES)
-    share = float(turn[1] if turn else SHARES[-1])
-    step = _steps(engine, _values_at(engine, curve, share, h, spread), h)
-    return fewest_sweeps(lambda sweeps: constraints.growth(engine, step(sweeps)))
+        def refused(shares: FloatArray) -> BoolArray:
+            return np.array([not allowed(float(share)) for share in shares])
 
+        turn = first_where(refused, SHARES)
+        if turn and turn[0] == turn[1]:  # already the weakest
+            return None
+        return self._point_at(turn[0] if turn else SHARES[-1])
 
-def _values_at(engine: Engine, curve: Curve, share: float, h: Fraction, spread: float) -> tuple[Fraction, ...]:
-    """Return the engine's values for a share of its strongest feedback that is `spread` stronger, at most all of it."""
-    alpha_hat, beta_hat = curve(min(share * (1 + spread), 1.0))
-    return tuple(rational(value) for value in engine.values((Fraction(alpha_hat), Fraction(beta_hat)), h))
+    def sweeps_to_spare(self, point: Point, spread: float) -> int | None:
+        """Return from how many sweeps a point on the engine's curve is stable even if it were `spread` stronger."""
 
+        def as_strong(shares: FloatArray) -> BoolArray:
+            return np.array([self._point_at(float(share))[1] >= point[1] for share in shares])
 
-def _steps(engine: Engine, values: tuple[Fraction, ...], h: Fraction) -> Callable[[int], SweptStep]:
-    """Return the engine's step by its number of sweeps."""
-    assert engine.sweeping
-    step = engine.sweeping.step
-    return lambda iterations: step(iterations, h, *values)
+        turn = first_where(as_strong, SHARES)
+        return self.fewest(self._values_at(float(turn[1] if turn else SHARES[-1]), spread))
+
+    def _point_at(self, share: float) -> Point:
+        """Return the point for a share of the strongest feedback on the engine's curve."""
+        assert self.engine.curve
+        alpha_hat, beta_hat = self.engine.curve(share)
+        return Fraction(alpha_hat), Fraction(beta_hat)
+
+    def _values_at(self, share: float, spread: float) -> list[Fraction]:
+        """Return the values for a share of the strongest feedback that is `spread` stronger, at most for all of it."""
+        point = self._point_at(min(share * (1 + spread), 1.0))
+        return [rational(value) for value in self.engine.values(point, self.h)]
 
 
 @dataclass(frozen=True)
@@ -242,15 +231,8 @@ def chain_map(
 ) -> ChainMap:
     """Return the map of an engine with such values at a step of h (s); errors as `check_sweeps`."""
     check_sweeps(Chain(bodies, mass_ratio), sweeps, engine)
-    step = _steps(engine, values, h)
-    z_abs = np.empty((bodies, sweeps))
-    fewest = []
-    for row in range(bodies):
-        links = Chain(row + 1, mass_ratio).constraints
-
-        def growth(iterations: int, links: Constraints = links) -> Growth:
-            return links.growth(engine, step(iterations))
-
-        z_abs[row] = [growth(iterations).factor for iterations in range(1, sweeps + 1)]
-        fewest.append(fewest_sweeps(growth))
-    return ChainMap(float(mass_ratio), z_abs, tuple(fewest))
+    chains = [
+        SweptConstraints(engine, h, Chain(links, mass_ratio).constraints, sweeps) for links in range(1, bodies + 1)
+    ]
+    z_abs = [[each.growth(values, so_many).factor for so_many in range(1, sweeps + 1)] for each in chains]
+    return ChainMap(float(mass_ratio), np.array(z_abs), tuple(each.fewest(values) for each in chains))

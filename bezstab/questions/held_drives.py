@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -49,19 +49,24 @@ SETTLED = 9.2334
 
 @dataclass(frozen=True, kw_only=True)
 class HeldQuestion:
-    """Is a drive safe whose torque is computed every few steps of h (s) and applied late?
+    """Is a drive safe whose torque is computed every few steps of h (s), applied late, or of a filtered velocity?
 
-    Without `methods` all ways of applying a drive are asked about. InputError for a step that is not positive, and for
-    a method that is no way of applying a drive.
+    The torque is computed `every` so many steps and applied so many steps `late`; the time constant of the filter is
+    in s. What is None is as in a controller that is as fast as the physics. Without `methods` all ways of applying a
+    drive are asked about. InputError as `Timing`, for a step that is not positive, and for a method that is no way of
+    applying a drive.
     """
 
     drive: Drive
     h: Fraction
-    timing: Timing
     methods: tuple[Method, ...] = ()
+    every: int | None = None
+    late: Fraction | None = None
+    filter_seconds: Fraction | None = None
 
     def __post_init__(self) -> None:
         check_step(self.h, "h")
+        _ = self.timing
         object.__setattr__(self, "methods", self.methods or tuple(map(lookup, DRIVE_METHODS)))
         for method in self.methods:
             if method.name not in DRIVE_METHODS:
@@ -69,29 +74,13 @@ class HeldQuestion:
                     f"--method {method.name}: expected a way of applying a drive, {', '.join(DRIVE_METHODS)}"
                 )
 
-
-def held_question(
-    drive: Drive,
-    h: Fraction | None,
-    methods: tuple[Method, ...] = (),
-    *,
-    every: int | None = None,
-    late: Fraction | None = None,
-    filter_seconds: Fraction | None = None,
-) -> HeldQuestion:
-    """Return the question for a torque that is computed `every` so many steps, is so many steps `late`, and so on.
-
-    What is not given is as in a controller that is as fast as the physics. The time constant of the filter is in s.
-    InputError as `HeldQuestion` and `Timing`, and without a step.
-    """
-    if h is None:
-        raise InputError("--pd needs --h: the step in s")
-    check_step(h, "h")
-    seconds = filter_seconds or Fraction(0)
-    if seconds < 0:
-        raise InputError(f"--filter {float(seconds):g}: expected 0 s or more")
-    timing = Timing(1 if every is None else every, late or Fraction(0), seconds / h)
-    return HeldQuestion(drive=drive, h=h, timing=timing, methods=methods)
+    @cached_property
+    def timing(self) -> Timing:
+        """The same in steps."""
+        seconds = self.filter_seconds or Fraction(0)
+        if seconds < 0:
+            raise InputError(f"--filter {float(seconds):g}: expected 0 s or more")
+        return Timing(1 if self.every is None else self.every, self.late or Fraction(0), seconds / self.h)
 
 
 @dataclass(frozen=True, repr=False)
@@ -142,9 +131,8 @@ class HeldAnswer:
         """Return the cause of instability: the drive would be stable without it."""
         point, timing = self.question.drive.point(self.question.h), self.question.timing
 
-        def stable(**changed: int | Fraction) -> bool:
-            values = {"every": timing.every, "late": timing.late, "filter_steps": timing.filter_steps} | changed
-            return held_verdict(self.method.name, *point, Timing(**values)) == "converges"  # type: ignore[arg-type]
+        def stable(**changed: Any) -> bool:
+            return held_verdict(self.method.name, *point, replace(timing, **changed)) == "converges"
 
         if not stable(every=1, late=Fraction(0), filter_steps=Fraction(0)):
             return "gains"
@@ -205,9 +193,12 @@ def held_gains(
     """
     if (bandwidth is None) == (settle is None):
         raise InputError("give --bandwidth or --settle, and only one of them")
-    wanted = 2 * math.pi * float(bandwidth) if bandwidth is not None else SETTLED / float(settle or 1)
+    if settle is None:
+        asked, wanted = f"--bandwidth {float(bandwidth or 0):g} Hz", 2 * math.pi * float(bandwidth or 0)
+    else:
+        asked, wanted = f"--settle {float(settle):g} s", SETTLED / float(settle) if settle else 0.0
     if not wanted > 0:
-        raise InputError(f"{_option(bandwidth, settle)}: expected a positive number")
+        raise InputError(f"{asked}: expected a positive number")
 
     def with_margin(omega: float) -> bool:
         return _safe_with_margin(_critical_drive(omega, inertia), h, timing, methods)
@@ -219,23 +210,13 @@ def held_gains(
         return np.array([with_margin(each / float(h)) for each in omega_h.tolist()])
 
     found = first_where(holds, OMEGA_H)
-    refused = f"{_option(bandwidth, settle)}: not safe with a margin of {MARGIN:g}-fold at this rate and delay"
+    refused = f"{asked}: not safe with a margin of {MARGIN:g}-fold at this rate and delay"
     if found is None:
         raise InputError(f"{refused}, nor is any that is slower")
     largest = found[1] / float(h)
-    reach = (
-        f"up to {_rounded_down(largest / (2 * math.pi))} Hz"
-        if bandwidth is not None
-        else (f"from {SETTLED / largest:.3g} s on")
-    )
+    hertz = f"up to {_rounded_down(largest / (2 * math.pi))} Hz"
+    reach = hertz if settle is None else f"from {SETTLED / largest:.3g} s on"
     raise InputError(f"{refused}; {reach} is")
-
-
-def _option(bandwidth: Fraction | None, settle: Fraction | None) -> str:
-    if bandwidth is not None:
-        return f"--bandwidth {float(bandwidth):g} Hz"
-    assert settle is not None
-    return f"--settle {float(settle):g} s"
 
 
 def _rounded_down(value: float) -> str:

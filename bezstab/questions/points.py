@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Literal
 
-from bezstab.engines import Drive, Engine, Point
+from bezstab.engines import Engine, Point
 from bezstab.errors import InputError
 from bezstab.methods import Method
 from bezstab.stability import verdict
@@ -38,11 +38,6 @@ def point_of_engine(engine: Engine, values: tuple[Fraction, ...], h: Fraction, *
         return GivenPoint(engine.point(values, h))
     applied = engine.applied(values, h)
     return GivenPoint(applied.point, applied.notes, applied.also)
-
-
-def point_of_drive(drive: Drive, h: Fraction) -> GivenPoint:
-    """Return the point that a drive's gains are at a step of h (s); InputError as `Drive.point`."""
-    return GivenPoint(drive.point(h))
 
 
 def all_points(engine: Engine, values: tuple[Fraction, ...], h: Fraction, *, as_typed: bool) -> list[Point]:

@@ -12,9 +12,9 @@ from bezstab.errors import InputError
 from bezstab.goals import GOALS, SETTLING, UP_TO_LONGEST, Goal
 from bezstab.mechanism import Scene, TurningNormals
 from bezstab.methods import Method, check_one_step, lookup
-from bezstab.questions.chains import Chain, Constraints, check_sweeps, constraints_of
+from bezstab.questions.chains import Chain, SweptConstraints, check_sweeps, constraints_of
 from bezstab.questions.motions import ReferenceMotion, check_speed, motion_of, turning_of
-from bezstab.questions.points import GivenPoint, Meant, engine_holds, meant_in_seconds, point_of_drive, point_of_engine
+from bezstab.questions.points import GivenPoint, Meant, engine_holds, meant_in_seconds, point_of_engine
 from bezstab.units import check_step
 
 WHICH_METHOD = (
@@ -140,7 +140,7 @@ class Question:
         if self.values is not None and self.engine and self.h is not None:
             return point_of_engine(self.engine, self.values, self.h, as_typed=self.as_typed)
         if self.drive and self.h is not None:
-            return point_of_drive(self.drive, self.h)
+            return GivenPoint(self.drive.point(self.h))
         assert self.point
         return GivenPoint(self.point)
 
@@ -179,16 +179,14 @@ class Question:
             return motion_of(None, None, Fraction(1), self.h, longest)  # the sweeps are what is asked about
 
     @cached_property
-    def swept(self) -> Constraints | None:
+    def swept(self) -> SweptConstraints | None:
         """The constraints that the engine sweeps over; None for one alone, and if it is not known how it sweeps."""
-        if self.engine is None or self.engine.sweeping is None:
+        if self.engine is None or self.engine.sweeping is None or self.h is None:
             return None
-        if self.chain:
-            return self.chain.constraints
-        if self.scene is None:
+        found = self.chain.constraints if self.chain else self.scene and constraints_of(self.scene, self.speed)
+        if not found or (found.count == 1 and not self.chain):
             return None
-        found = constraints_of(self.scene, self.speed)
-        return found if len(found.joints) > 1 else None
+        return SweptConstraints(self.engine, self.h, found, self.iterations or self.engine.sweeping.iterations)
 
     @cached_property
     def turning(self) -> TurningNormals | None:

@@ -289,11 +289,16 @@ class MapAnswer:
     @property
     def drawn_levels(self) -> list[float]:
         """The levels of |z_p| to draw: those that were given, else one that suits the method."""
-        given = [float(level) for level in self.question.levels if level < 1 or not self.question.motion]
+        motion = self.question.motion
+        given = [float(level) for level in self.question.levels if level < 1 or not motion]
         if given:
             return given
-        motion = self.question.motion
         return [default_rate(self.method, motion.omega_h)] if motion else self.stable.faster_levels
+
+    @property
+    def faster(self) -> list[Region]:
+        """The regions of these levels."""
+        return [region(self.method, level) for level in self.drawn_levels]
 
     @cached_property
     def chosen(self) -> Choice | None:

@@ -1,6 +1,7 @@
 """How the tests run commands in this process."""
 
 import json
+import shlex
 from pathlib import Path
 from typing import Any
 
@@ -12,17 +13,16 @@ from bezstab.cli import main
 DATA = Path(__file__).parent / "data"
 
 
-def run(*arguments: str) -> Result:
-    """Return what a command prints, and its exit status."""
-    return CliRunner().invoke(main, list(arguments))
+def run(*parts: str) -> Result:
+    """Return what a command prints, and its exit status; its line is given in parts, each of them as in a shell."""
+    return CliRunner().invoke(main, [word for part in parts for word in shlex.split(part)])
 
 
-def rows(*arguments: str) -> list[dict[str, object]]:
-    """Return the rows that a command prints, once it has ended well."""
-    result = run(*arguments, "--format", "json")
-    assert result.exit_code == 0, result.stderr
-    data = json.loads(result.stdout)
-    assert isinstance(data, list)
+def rows(*parts: str, status: int = 0) -> list[dict[str, Any]]:
+    """Return the rows that a command prints, once it has ended with this exit status."""
+    result = run(*parts, "--format json")
+    assert result.exit_code == status, result.stderr
+    data: list[dict[str, Any]] = json.loads(result.stdout)
     return data
 
 

@@ -9,11 +9,11 @@ import pytest
 
 from tests.cli.running import arrays, rows, run
 
-NOTHING = ("--figure", "none", "--table", "none")
+NOTHING = "--figure none --table none"
 
 
 def test_simulate_writes_the_history_that_its_row_sums_up(tmp_path: Path) -> None:
-    (row,) = rows("simulate", "--time", "0.05", "--perturb", "1e-4", "--table", "npz")
+    (row,) = rows("simulate --time 0.05 --perturb 1e-4 --table npz")
     assert sorted(path.suffix for path in tmp_path.iterdir()) == [".npz", ".png"]
     history = arrays(tmp_path / "simulate_slider_crank_B4.npz")
     assert history["t"][-1] == pytest.approx(0.05)
@@ -23,7 +23,7 @@ def test_simulate_writes_the_history_that_its_row_sums_up(tmp_path: Path) -> Non
 
 
 def test_a_run_that_fails_is_status_three_with_its_time_and_keeps_the_history(tmp_path: Path) -> None:
-    result = run("simulate", "--alpha", "1.7", "--beta", "0.8", "--time", "1", "--table", "csv", "--format", "json")
+    result = run("simulate --alpha 1.7 --beta 0.8 --time 1 --table csv --format json")
     assert result.exit_code == 3
     assert "blow-up" in json.loads(result.stdout)[0]["failure"]
     assert "at t = 0.1" in result.stderr.splitlines()[-1]
@@ -31,7 +31,7 @@ def test_a_run_that_fails_is_status_three_with_its_time_and_keeps_the_history(tm
 
 
 def test_simulate_says_where_it_goes_through_singular_configurations() -> None:
-    result = run("simulate", "--scene", "slider_crank_equal", *NOTHING, "--format", "json", "--time", "4")
+    result = run("simulate --scene slider_crank_equal", NOTHING, "--format json --time 4")
     assert (result.exit_code, json.loads(result.stdout)[0]["singular_passages"]) == (0, 2)
     assert "2 singular configurations, at t = 0.772, " in result.stderr
 
@@ -40,7 +40,7 @@ def test_simulate_says_where_it_goes_through_singular_configurations() -> None:
 def test_tradeoff_writes_a_table_without_times_and_two_figures_and_the_same_again(tmp_path: Path) -> None:
     point = "--alpha 0.1 --beta 0.01 --repeats 1"
     command = f"tradeoff --scene pendulum --method SYM --method AB4 --h 0.01 --h 0.02 --time 0.1 {point} --workers"
-    found = rows(*command.split(), "2")
+    found = rows(command, "2")
     written = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
     name = "tradeoff_pendulum"
     assert set(written) == {f"{name}.csv", f"{name}_trajectory.png", f"{name}_constraint.png"}
@@ -48,13 +48,13 @@ def test_tradeoff_writes_a_table_without_times_and_two_figures_and_the_same_agai
     assert [(row["method"], row["h"]) for row in table] == [(row["method"], str(row["h"])) for row in found]
     assert not any("second" in key for key in table[0])
     assert all(float(str(row["seconds"])) > 0 for row in found)
-    assert run(*command.split(), "1").exit_code == 0
+    assert run(command, "1").exit_code == 0
     assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == written
 
 
 @pytest.mark.parametrize("command", ["simulate", "paper"])
 def test_without_numba_compiled_runs_are_refused_in_a_line(command: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
-    refused = run(command, "--compiled", "yes")
+    refused = run(command, "--compiled yes")
     assert refused.exit_code == 2
     assert refused.stderr == "bezstab: compiled runs need an optional package: pip install 'bezstab[fast]'\n"

@@ -127,11 +127,3 @@ def test_help_wraps_at_80_columns_and_explains_every_option() -> None:
         assert max(widest(printed(f"{name} --help", columns=columns)) for columns in (80, 200)) <= 80, name
         for option in getattr(main.get_command(context, name), "params", []):
             assert not isinstance(option, click.Option) or option.help, (name, option.opts)
-
-
-@pytest.mark.parametrize("columns", ["", "0", "-1", "wide"])
-def test_without_a_width_several_rows_are_a_table(columns: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("COLUMNS", columns)
-    several = run("poles", "--alpha", "0.5", "--beta", "0.1").stdout.splitlines()
-    assert several[2].split() == ["method", "pole", "z", "|z|", "∠z", "(deg)", "verdict", "error", "×", "least"]
-    assert len(several) == 2 + 1 + 8 + 2  # the last line says what errors are shares of

@@ -7,7 +7,6 @@ runs share. Keys are those of today; what rows have got since is not there. Whic
 import json
 import math
 import re
-import shlex
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -111,7 +110,7 @@ def _without_numbers(text: str) -> str:
 @pytest.mark.slow_except("poles", "choose --engine", "check", "engines", "region --method B4 --method AB4")
 def test_a_command_prints_what_it_printed_before(golden: dict[str, Any], tmp_path: Path) -> None:
     command = golden["command"]
-    result = run(*shlex.split(command), "--format", "json")
+    result = run(command, "--format json")
     assert result.exit_code == golden["status"], result.stderr
     printed = json.loads(result.stdout)
     if command == "methods":  # which lists more methods since

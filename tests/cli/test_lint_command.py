@@ -17,7 +17,7 @@ MODEL = """<mujoco><option timestep="0.004"><flag {flag}/></option>
 def linted(flag: str = "", solref: str = "0.002 1") -> tuple[dict[str, Any], int]:
     """Return the one row of a model, and the exit status."""
     Path("model.xml").write_text(MODEL.format(flag=flag, solref=solref), encoding="utf-8")
-    result = run("lint", "model.xml", "--format", "json")
+    result = run("lint model.xml --format json")
     (row,) = json.loads(result.stdout)
     return row, result.exit_code
 
@@ -26,14 +26,14 @@ def test_what_is_unsafe_ends_with_status_one_and_what_is_safe_gets_no_advice() -
     row, status = linted(flag='refsafe="disable"')
     assert (row["verdict"], status) == ("diverges", 1)
     assert row["h_factor"] == pytest.approx((32**0.5 - 4) / 4)  # a = 2h / tc at the limit of zeta = 1
-    text = run("lint", "model.xml").stdout
+    text = run("lint model.xml").stdout
     assert "timestep 0.004 s, integrator Euler" in text
     assert 'write solref="0.008 1"' in text
     row, status = linted(solref="0.02 1")
     assert (row["safe"], row["advice"], status) == (True, None, 0)
     Path("model.xml").write_text("<mujoco/>", encoding="utf-8")
-    assert rows("lint", "model.xml") == []
-    assert "Nothing to judge" in run("lint", "model.xml").stdout
+    assert rows("lint model.xml") == []
+    assert "Nothing to judge" in run("lint model.xml").stdout
 
 
 def test_without_mujoco_one_line_says_how_to_install_it(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -48,10 +48,8 @@ def test_a_motor_is_judged_with_its_controllers_gains() -> None:
     (row,) = rows("lint", model)
     assert (row["kind"], row["verdict"]) == ("motor", None)
     assert "--pd 'hip_left=KP,KD' judges it" in str(row["advice"])
-    timing = ("--every", "4", "--late", "1", "--format", "json")
+    timing = "--every 4 --late 1"
     for kd, exit_code in (("5", 0), ("0.1", 1)):
-        result = run("lint", model, "--pd", f"hip.*=200,{kd}", *timing)
-        checked = run("check", "--pd", f"200,{kd},0.094", "--h", "0.002", "--method", "SYM", *timing)
-        assert result.exit_code == checked.exit_code == exit_code
-        ((row,), (answer,)) = json.loads(result.stdout), json.loads(checked.stdout)
+        (row,) = rows("lint", model, f"--pd hip.*=200,{kd}", timing, status=exit_code)
+        (answer,) = rows(f"check --pd 200,{kd},0.094 --h 0.002 --method SYM", timing, status=exit_code)
         assert (row["verdict"], row["z_abs"]) == (answer["verdict"], pytest.approx(answer["z_abs"], rel=1e-9))

@@ -15,7 +15,7 @@ from tests.cli.running import arrays, rows, run
 @pytest.mark.slow
 def test_region_writes_what_is_asked_for_where_it_is_asked_for(tmp_path: Path) -> None:
     options = "--figure svg --table npz --grid 11 --alpha-range -0.1 0.5 --beta-range 1/10 2/10 --level 0.8 --h 0.001"
-    result = run("region", "--method", "B3", "-o", "out", *options.split())
+    result = run("region --method B3 -o out", options)
     assert result.stderr.count("wrote") == 2
     assert {path.name for path in (tmp_path / "out").iterdir()} == {"region_B3.svg", "region_B3.npz"}
     table = arrays(tmp_path / "out" / "region_B3.npz")
@@ -26,9 +26,9 @@ def test_region_writes_what_is_asked_for_where_it_is_asked_for(tmp_path: Path) -
 
 
 def test_the_tables_of_a_map_and_of_compared_boundaries(tmp_path: Path) -> None:
-    assert run("region", "--quality", "fast", "--figure", "none", "--table", "csv").exit_code == 0
-    compared = ("region", "--compare", "--method", "B4", "--method", "RK4@5", "--figure", "none", "--table", "csv")
-    (row, _) = rows(*compared, "--level", "0.9")
+    assert run("region --quality fast --figure none --table csv").exit_code == 0
+    compared = "region --compare --method B4 --method RK4@5 --figure none --table csv"
+    (row, _) = rows(compared, "--level 0.9")
     assert row["z_abs_below"] == 0.9
     points, boundaries = (
         list(csv.DictReader((tmp_path / name).read_text(encoding="utf-8").splitlines()))
@@ -41,8 +41,8 @@ def test_the_tables_of_a_map_and_of_compared_boundaries(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_a_map_of_each_way_of_applying_a_drive_is_written_and_the_rows_are_those_of_check(tmp_path: Path) -> None:
-    late = ("--pd", "200,5,0.1", "--h", "0.002", "--every", "4", "--late", "1")
-    assert rows("region", *late, "--quality", "fast") == rows("check", *late)
+    late = "--pd 200,5,0.1 --h 0.002 --every 4 --late 1"
+    assert rows("region", late, "--quality fast") == rows("check", late)
     ways = ("SYM", "imex-euler", "stable-pd", "implicit-euler")
     assert {path.name for path in tmp_path.iterdir()} == {f"region_{way}_held.png" for way in ways}
 
@@ -50,7 +50,7 @@ def test_a_map_of_each_way_of_applying_a_drive_is_written_and_the_rows_are_those
 @pytest.mark.slow
 def test_the_map_of_errors_is_written_as_figure_and_table(tmp_path: Path) -> None:
     options = "--alpha-range 0.001 6 --beta-range 1e-5 9 --grid 20 --level 0.9 --table npz -o out"
-    region, level = rows("region", "--method", "RK4", "--accuracy", *options.split())
+    region, level = rows("region --method RK4 --accuracy", options)
     assert {path.name for path in (tmp_path / "out").iterdir()} == {
         "region_RK4_accuracy.png",
         "region_RK4_accuracy.npz",

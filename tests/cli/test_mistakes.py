@@ -5,7 +5,6 @@ is installed, or that lists many names. The files that commands name are those o
 """
 
 import re
-import shlex
 import shutil
 from pathlib import Path
 
@@ -21,7 +20,7 @@ MISTAKES = re.findall(r"^\$ bezstab (.+)\n(.+)$", TABLE, re.MULTILINE)
 def test_a_mistake_takes_one_line_status_two_and_no_file(command: str, said: str, tmp_path: Path) -> None:
     shutil.copytree(DATA, tmp_path, dirs_exist_ok=True)
     before = set(tmp_path.rglob("*"))
-    result = run(*shlex.split(command))
+    result = run(command)
     assert (result.exit_code, result.stdout, result.stderr.count("\n")) == (2, "", 1)
     begin, more, _ = f"bezstab: {said}".partition("…")
     assert result.stderr.startswith(begin) if more else result.stderr == f"{begin}\n"

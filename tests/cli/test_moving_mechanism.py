@@ -5,17 +5,15 @@ import pytest
 from bezstab.mechanism import compiled_mechanism, constraint_motion, load_scene
 from tests.cli.running import rows, run
 
-FOUR_BAR = ("--scene", "driven_four_bar", "--h", "0.01")
+FOUR_BAR = "--scene driven_four_bar"
 
 
 def test_poles_print_what_the_motion_does() -> None:
-    asked = ("poles", "--alpha", "0.5", "--beta", "0.1", "--method", "B4", "--method", "AB4")
-    moving, at_rest = rows(*asked, *FOUR_BAR), rows(*asked)
+    asked = "poles --alpha 0.5 --beta 0.1 --method B4 --method AB4"
+    moving, at_rest = rows(asked, FOUR_BAR, "--h 0.01"), rows(asked)
     for row, plain in zip(moving, at_rest, strict=True):
-        assert [row[key] for key in ("z_abs", "verdict", "order_left")] == [
-            plain[key] for key in ("z_abs", "verdict", "order_left")
-        ]
-        assert row["z_abs_worst"] >= row["z_abs_moving"] >= row["z_abs"] - 1e-9  # type: ignore[operator]
+        assert all(row[key] == plain[key] for key in ("z_abs", "verdict", "order_left"))
+        assert row["z_abs_worst"] >= row["z_abs_moving"] >= row["z_abs"] - 1e-9
         assert row["kappa"] == pytest.approx(3.22, abs=0.01)  # 1/s: half of omega
     assert [row["moving_verdict"] for row in moving] == ["converges", "diverges"]
     assert [row["safe"] for row in (*at_rest, *moving)] == [True, True, True, False]
@@ -24,28 +22,16 @@ def test_poles_print_what_the_motion_does() -> None:
 @pytest.mark.slow
 def test_a_scenes_own_motion_is_taken_and_omega_instead_of_it() -> None:
     motion = constraint_motion(compiled_mechanism(load_scene("driven_four_bar")), 1.0)
-    asked = [
-        "check",
-        "--method",
-        "RK4",
-        "--alpha",
-        "0.5",
-        "--beta",
-        "0.1",
-        "--h",
-        "0.002",
-        "--scene",
-        "driven_four_bar",
-    ]
-    own = rows(*asked)[0]
+    asked = f"check --method RK4 --alpha 0.5 --beta 0.1 --h 0.002 {FOUR_BAR}"
+    own = rows(asked)[0]
     assert own["omega_h"] == pytest.approx(0.002 * motion.omega, rel=1e-12)
-    assert rows(*asked, "--omega", "5")[0]["omega_h"] == 0.01
+    assert rows(asked, "--omega 5")[0]["omega_h"] == 0.01
     in_units = float(str(own["total_error"])) * motion.amplitude
-    assert f"of the motion's amplitude, {in_units:.1e} m or rad" in run(*asked).stdout
+    assert f"of the motion's amplitude, {in_units:.1e} m or rad" in run(asked).stdout
 
 
 @pytest.mark.slow
 def test_beyond_the_law_choose_calls_nothing_safe() -> None:
-    result = run("choose", "--method", "AB4", "--goal", "robust", "--h", "0.02", *FOUR_BAR[:2], "--speed", "1.8")
+    result = run("choose --method AB4 --goal robust --h 0.02 --speed 1.8", FOUR_BAR)
     assert "turn by κh = 0.12 a step: beyond 0.1 the law fails" in result.stderr
     assert (result.stdout[:8], result.exit_code) == ("Not safe", 1)

@@ -12,8 +12,8 @@ from bezstab.questions import answering, regions
 from bezstab.stability import best_points, choices, feedback_costs
 from tests.cli.running import rows, run
 
-POINT = ("--method", "B4", "--alpha", "1/2", "--beta", "1/10")
-FILES = ("--figure", "none", "--table", "none")
+POINT = "--method B4 --alpha 1/2 --beta 1/10"
+FILES = "--figure none --table none"
 REASON = "B4: two branches could not be told apart"
 
 
@@ -30,25 +30,25 @@ def _forget_what_failed() -> Iterator[None]:
 def test_without_an_alternative_check_still_answers(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(stability.choices, "region", failing)
     for alpha, status, said in (("1/2", 0, "Safe."), ("5", 1, "Not safe.")):
-        result = run("check", "--method", "B4", "--alpha", alpha, "--beta", "1/10")
+        result = run(f"check --method B4 --alpha {alpha} --beta 1/10")
         assert (result.exit_code, result.stdout.startswith(said)) == (status, True)
         assert f"nothing instead: {REASON}" in result.stderr
 
 
 def test_without_margins_check_still_answers_and_claims_no_limit(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(choices, "stability_margins", failing)
-    result = run("check", *POINT, "--h", "0.001")
+    result = run("check", POINT, "--h 0.001")
     assert result.exit_code == 0
     assert result.stdout.startswith("Safe. Each step multiplies the error by")
     assert f"not known: {REASON}" in " ".join(result.stdout.split())
     assert not {"unlimited", "without limit"} & set(result.stdout.split("  "))
-    given = rows("check", *POINT)[0]
+    given = rows("check", POINT)[0]
     assert (given["safe"], given["h_factor"], given["margins_reason"]) == (True, None, REASON)
 
 
 def test_without_a_best_point_region_still_prints_the_area(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(best_points, "best_point", failing)
-    result = run("region", "--method", "B4", *FILES)
+    result = run("region --method B4", FILES)
     assert result.exit_code == 3
     assert "0.8096847184" in result.stdout
     assert f"not known: {REASON}" in " ".join(result.stdout.split())
@@ -57,7 +57,7 @@ def test_without_a_best_point_region_still_prints_the_area(monkeypatch: pytest.M
 def test_a_method_without_a_region_withholds_no_other(monkeypatch: pytest.MonkeyPatch) -> None:
     of_any = stability.region
     monkeypatch.setattr(regions, "region", lambda method, *level: (of_any if method.name == "B4" else failing)(method))
-    result = run("region", "--method", "AB4", "--method", "B4", *FILES)
+    result = run("region --method AB4 --method B4", FILES)
     assert (result.exit_code, result.stderr) == (3, f"bezstab: {REASON}\n")
     assert "0.8096847184" in result.stdout
 
@@ -67,6 +67,6 @@ def test_a_defect_does_not_end_as_unsafe(monkeypatch: pytest.MonkeyPatch) -> Non
         return Fraction(1, 0)
 
     monkeypatch.setattr(answering, "describe_point", broken)
-    result = run("check", *POINT)
+    result = run("check", POINT)
     assert result.exit_code == 70
     assert "defect" in result.stderr

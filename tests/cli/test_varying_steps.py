@@ -2,34 +2,26 @@ import json
 import shlex
 from fractions import Fraction
 from pathlib import Path
-from typing import Any
 
 import pytest
 import sympy as sp
 
-from tests.cli.running import DATA, run
+from tests.cli.running import DATA, rows, run
 from tests.reference.symbolic_steps import form_decreases, symplectic_euler
 
-EXAMPLE = ("--method", "SYM", "--alpha", "2", "--beta", "100", "--physical", "--h-min", "0.00917", "--h-max", "1/60")
-NOTHING = ("--figure", "none", "--table", "none")
-
-
-def rows_of(*arguments: str, status: int = 0) -> list[dict[str, Any]]:
-    """Return the rows that a command prints with this exit status."""
-    result = run(*arguments, "--format", "json")
-    assert result.exit_code == status, result.stderr
-    printed: list[dict[str, Any]] = json.loads(result.stdout)
-    return printed
+EXAMPLE = "--method SYM --alpha 2 --beta 100 --physical"
+STEPS = "--h-min 0.00917 --h-max 1/60"
+NOTHING = "--figure none --table none"
 
 
 def test_steps_that_are_refuted_together_may_be_typed_or_stand_in_a_file() -> None:
-    given = rows_of("check", *EXAMPLE, status=1)[0]
+    given = rows("check", EXAMPLE, STEPS, status=1)[0]
     assert (given["verdict"], given["varying"], len(given["sequence"])) == ("converges", "refuted", 2)
     assert given["h_limit"] == pytest.approx(0.0196, abs=1e-4)  # every constant step up to here decays
-    at = ("simulate", *EXAMPLE[:7], "--h", "1/60", "--perturb", "1e-6", "--time", "0.5", *NOTHING, "--steps")
+    at = f"simulate {EXAMPLE} --h 1/60 --perturb 1e-6 --time 0.5 {NOTHING} --steps"
     steps = ",".join(map(repr, given["sequence"]))
     Path("steps.txt").write_text(steps.replace(",", "\n"), encoding="utf-8")
-    typed, from_file = (rows_of(*at, each)[0]["c_max"] for each in (steps, "steps.txt"))
+    typed, from_file = (rows(at, each)[0]["c_max"] for each in (steps, "steps.txt"))
     assert typed == from_file > 1e-2
 
 
@@ -43,10 +35,10 @@ def test_steps_that_are_refuted_together_may_be_typed_or_stand_in_a_file() -> No
 @pytest.mark.parametrize(
     "arguments",
     [
-        " ".join(EXAMPLE),
+        f"{EXAMPLE} {STEPS}",
         "--method SYM --alpha 0.4 --beta 1 --h 2 --h-min 0.2 --hold",
         "--method RK4 --alpha 6 --beta 2 --h 1e-4 --h-min 5e-5",  # 1e-4 s alone grows
-        f"{' '.join(EXAMPLE)} --scene slider_crank --speed 1/2",
+        f"{EXAMPLE} {STEPS} --scene slider_crank --speed 1/2",
         "--method verlet-old --alpha 0.2 --beta 1 --h 0.01 --h-min 0.002 --hold",
         "--method newmark(1/4,1/2) --alpha 0.1 --beta 1 --h 0.01 --h-min 0.002 --hold",
         "--method generalized-alpha --alpha 0.02 --beta 40 --h 0.01 --h-min 0.0005",
@@ -54,15 +46,15 @@ def test_steps_that_are_refuted_together_may_be_typed_or_stand_in_a_file() -> No
 )
 @pytest.mark.slow_except("--method SYM --alpha 0.4")
 def test_the_line_that_shows_errors_grow_does_as_typed(arguments: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    given = rows_of("check", *arguments.split(), status=1)[0]
+    given = rows("check", arguments, status=1)[0]
     assert given["varying"] == "refuted"
     assert given["growth"] > 1
-    result = run(*shlex.split(given["shown_by"])[1:], *NOTHING, "--format", "json")
+    result = run(given["shown_by"].removeprefix("bezstab"), NOTHING, "--format json")
     assert (result.exit_code, result.stderr) == (0, "")
     (grown,) = json.loads(result.stdout)
     assert grown["c_max"] > 1e-4  # a hundred times what it began with: a start may lie athwart of what grows
     monkeypatch.setenv("COLUMNS", "80")  # there the line goes on as in a shell
-    parts = run("check", *arguments.split()).stdout.split("\n\n")
+    parts = run("check", arguments).stdout.split("\n\n")
     shown = next(part for part in parts if part.startswith("    bezstab simulate"))
     assert shlex.split(shown.replace("\\\n", "")) == shlex.split(given["shown_by"])
 
@@ -75,14 +67,14 @@ def test_the_line_that_shows_errors_grow_does_as_typed(arguments: str, monkeypat
     ],
 )
 def test_no_line_is_given_that_would_show_nothing(arguments: str) -> None:
-    given = rows_of("check", *arguments.split(), status=1)[0]
+    given = rows("check", arguments, status=1)[0]
     assert (given["varying"], given["shown_by"]) == ("refuted", None)
 
 
 @pytest.mark.promise("Steps that vary, proven (`check --h-min --h-max`)")
 def test_anyone_can_verify_the_certificate_that_is_printed() -> None:
-    point = ("--alpha", "1", "--beta", "1/4", "--h", "0.001")
-    given = rows_of("check", "--method", "SYM", *point, "--h-min", "0.0001")[0]
+    point = "--alpha 1 --beta 1/4 --h 0.001"
+    given = rows("check --method SYM", point, "--h-min 0.0001")[0]
     assert (given["varying"], given["certificate_kind"]) == ("proven", "quadratic")
     form = sp.Matrix([[sp.Rational(number) for number in row] for row in given["certificate"]])
     assert form_decreases(form, symplectic_euler(Fraction(1), Fraction(1, 4)), Fraction(1, 10), Fraction(1))

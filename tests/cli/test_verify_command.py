@@ -4,11 +4,11 @@ from tests.cli.running import rows, run
 
 
 def test_what_is_thrown_apart_at_once_diverges_and_seconds_are_understood() -> None:
-    at = ("verify", "--scene", "pendulum", "--method", "RK4")
-    (gone,) = rows(*at, "--alpha", "14217", "--beta", "16544")  # |z| = 1.7e15: nothing stays finite
+    at = "verify --scene pendulum --method RK4"
+    (gone,) = rows(at, "--alpha 14217 --beta 16544")  # |z| = 1.7e15: nothing stays finite
     assert (gone["measurable"], gone["measured_verdict"], gone["verdicts_agree"]) == (False, "diverges", True)
     # alpha = 400 1/s and beta = 500 1/s: alpha_hat = 2 alpha h, beta_hat = (beta h)^2
-    (in_seconds,) = rows(*at, "--alpha", "400", "--beta", "500", "--h", "0.001", "--physical")
+    (in_seconds,) = rows(at, "--alpha 400 --beta 500 --h 0.001 --physical")
     assert (in_seconds["alpha_hat"], in_seconds["beta_hat"]) == (0.8, 0.25)
     assert in_seconds["floquet_z_abs"] is None  # nothing exact is computed unless it is asked for
 
@@ -23,8 +23,8 @@ def test_what_is_thrown_apart_at_once_diverges_and_seconds_are_understood() -> N
 )
 @pytest.mark.slow
 def test_exact_rates_are_said_to_be_along_which_motion(scene: str, method: str, said: str) -> None:
-    point = ("--alpha", "0.5", "--beta", "0.1", "--h", "0.01")
-    assert said in run("verify", "--scene", scene, "--method", method, *point, "--floquet").stdout.replace("\n", " ")
+    asked = f"verify --scene {scene} --method {method} --alpha 0.5 --beta 0.1 --h 0.01 --floquet"
+    assert said in run(asked).stdout.replace("\n", " ")
 
 
 @pytest.mark.parametrize(
@@ -38,5 +38,5 @@ def test_exact_rates_are_said_to_be_along_which_motion(scene: str, method: str, 
 )
 @pytest.mark.slow
 def test_whether_the_prediction_holds_is_the_exit_status(options: str, status: int, said: str) -> None:
-    result = run("verify", "--accuracy", *options.split())
+    result = run("verify --accuracy", options)
     assert (result.exit_code, said in result.stdout) == (status, True)

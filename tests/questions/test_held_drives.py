@@ -16,12 +16,14 @@ INERTIA = Fraction("0.1")
 
 def explicit(kp: str, kd: str, timing: Timing) -> HeldAnswer:
     drive = Drive(Fraction(kp), Fraction(kd), INERTIA)
-    (answer,) = held_answers(HeldQuestion(drive=drive, h=H, timing=timing, methods=(lookup("SYM"),)))
+    (answer,) = held_answers(
+        HeldQuestion(drive=drive, h=H, methods=(lookup("SYM"),), every=timing.every, late=timing.late)
+    )
     return answer
 
 
 def test_by_default_all_four_ways_of_applying_a_drive_are_asked() -> None:
-    question = HeldQuestion(drive=Drive(Fraction(200), Fraction(5), INERTIA), h=H, timing=Timing(4, Fraction(1)))
+    question = HeldQuestion(drive=Drive(Fraction(200), Fraction(5), INERTIA), h=H, every=4, late=Fraction(1))
     assert [answer.method.name for answer in held_answers(question)] == [
         *("SYM", "imex-euler", "stable-pd", "implicit-euler")
     ]
@@ -92,7 +94,7 @@ def test_what_cannot_be_reached_is_refused_with_what_can() -> None:
 
 def test_bad_input_is_refused_in_a_line() -> None:
     with pytest.raises(InputError, match="--method RK4: expected a way of applying a drive"):
-        HeldQuestion(drive=Drive(Fraction(1), Fraction(1), INERTIA), h=H, timing=Timing(2), methods=(lookup("RK4"),))
+        HeldQuestion(drive=Drive(Fraction(1), Fraction(1), INERTIA), h=H, methods=(lookup("RK4"),))
     with pytest.raises(InputError, match="give --bandwidth or --settle"):
         held_gains(INERTIA, H, Timing())
     with pytest.raises(InputError, match="--bandwidth 0 Hz: expected a positive number"):

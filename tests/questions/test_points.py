@@ -2,10 +2,10 @@ from fractions import Fraction
 
 import pytest
 
-from bezstab.engines import Drive, engine_and_values
+from bezstab.engines import engine_and_values
 from bezstab.errors import InputError
 from bezstab.methods import lookup
-from bezstab.questions.points import all_points, engine_holds, meant_in_seconds, point_of_drive, point_of_engine
+from bezstab.questions.points import all_points, engine_holds, meant_in_seconds, point_of_engine
 
 H = Fraction(1, 500)
 
@@ -23,13 +23,6 @@ def test_an_engines_clamps_are_noted_and_may_be_left_out() -> None:
 def test_an_engine_may_take_further_points() -> None:
     engine, values = engine_and_values(f"mujoco={-0.54 / 0.002**2!r},{-1.84 / 0.002!r}")
     assert len(all_points(engine, values, H, as_typed=False)) == 2
-
-
-def test_a_drives_gains_are_a_point() -> None:
-    assert point_of_drive(Drive(Fraction(1000), Fraction(80), Fraction("0.1")), Fraction(1, 240)).point == (
-        Fraction(80, 24),
-        Fraction(1000) * 10 / 240**2,
-    )
 
 
 def test_an_engine_holds_alpha_hat_and_beta_hat_or_alpha_and_beta_or_is_refused() -> None:
