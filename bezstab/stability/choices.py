@@ -384,13 +384,13 @@ def _slowest(method: Method, modulus: Modulus, within: Within, spread: float) ->
         left = kept = np.flatnonzero(worst <= reached)
         if np.isfinite(reached):
             for shares in (all_shares[:1], all_shares[1:]):  # most points fail at the largest
-                share, *points = scaled(shares, alpha_hat[kept], beta_hat[kept])
-                kept = kept[within(*points, (reached * (1 + TOLD)) ** share).all(axis=(0, 1))]
+                share, alphas, betas = scaled(shares, alpha_hat[kept], beta_hat[kept])
+                kept = kept[within(alphas, betas, (reached * (1 + TOLD)) ** share).all(axis=(0, 1))]
             if kept.size:  # next to a double pole even the point that was reached may seem larger
                 worst[np.setdiff1d(left, kept)] = np.inf
                 left = kept
-        share, *points = scaled(all_shares, alpha_hat[left], beta_hat[left])
-        worst[left] = np.maximum(worst[left], (modulus(*points) ** (1 / share)).max(axis=(0, 1)))
+        share, alphas, betas = scaled(all_shares, alpha_hat[left], beta_hat[left])
+        worst[left] = np.maximum(worst[left], (modulus(alphas, betas) ** (1 / share)).max(axis=(0, 1)))
         return worst
 
     return objective
