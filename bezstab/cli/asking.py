@@ -114,21 +114,6 @@ def say_what_is_left_out(engine: Engine, *, many: bool = False) -> None:
         say(f"{engine.name}: sweeps are its {engine.sweeping.word}; of them left out: {engine.sweeping.excludes}")
 
 
-WITHOUT_ACCURACY = ("total_error", "order_left", "times_least_velocity")
-"""Columns that tables of a drive omit: nothing feeds the acceleration of its target forward."""
-
-OF_ONE_ALONE = (
-    *("worst", "settle_steps", "settle_seconds", "h_limit"),
-    *("alpha_factor_min", "alpha_factor_max", "beta_factor_min", "beta_factor_max"),
-)
-"""Columns that tables omit for constraints that an engine sweeps over: they are about one constraint alone."""
-
-
-def left_out(question: "Question") -> tuple[str, ...]:
-    """Return the keys that tables of a question leave out."""
-    return (*(WITHOUT_ACCURACY if question.drive else ()), *(OF_ONE_ALONE if question.swept else ()))
-
-
 def say_varying(answers: "Iterable[Answer]") -> None:
     """Print a sentence about steps that vary, and the command of a run in which errors grow."""
     from bezstab.questions import growing_run

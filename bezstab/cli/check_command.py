@@ -4,13 +4,13 @@ from collections.abc import Iterable, Iterator
 from itertools import groupby
 from typing import TYPE_CHECKING, Any
 
-from bezstab.cli.asking import asked_of_feedback, left_out, say_varying, show_below, show_sentences
+from bezstab.cli.asking import asked_of_feedback, say_varying, show_below, show_sentences
 from bezstab.cli.held_drives import held_asked, show_held
 from bezstab.cli.options import TypedPoint, changed, command, typed_options
 from bezstab.cli.output import for_reading, say, show_rows, show_text
 from bezstab.errors import InputError, NumericalError
 from bezstab.methods import Method
-from bezstab.show import CHECKED, LARGEST_STEPS, answer_row, costs_words, largest_step_row
+from bezstab.show import CHECKED, LARGEST_STEPS, answer_row, costs_words, largest_step_row, left_out
 
 if TYPE_CHECKING:
     from bezstab.questions import Answer

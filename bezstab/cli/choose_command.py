@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from bezstab.cli.asking import asked_of_feedback, left_out, say_varying, show_below, show_sentences
+from bezstab.cli.asking import asked_of_feedback, say_varying, show_below, show_sentences
 from bezstab.cli.held_drives import held_asked, show_held
 from bezstab.cli.options import INERTIA, NUMBER, SECONDS, SHARE, changed, command, left_at_default, option
 from bezstab.cli.output import for_reading, progress, show_rows, show_text
 from bezstab.goals import GOALS, Goal
 from bezstab.methods import lookup
 from bezstab.rationals import typed_number
-from bezstab.show import CHOICES, alone_words, answer_row, trade_words
+from bezstab.show import CHOICES, alone_words, answer_row, left_out, trade_words
 
 if TYPE_CHECKING:
     from bezstab.questions import Answer, HeldQuestion

@@ -84,16 +84,16 @@ def course_of_steps(mechanism: Mechanism, method: Method, h: float, duration: fl
 def _found_together(action: Evaluated | Solved) -> Accelerations:
     """Return an evaluation, or all of a group, in one form."""
     if isinstance(action, Evaluated):
-        places = tuple(action.position), tuple(action.velocity)
-        at_state = all(list(each.values()) == [1] for each in (action.position, action.velocity)) and [
-            each.name for (each,) in places
-        ] == ["x", "v"]
+        at_state = any(
+            action.position == {Quantity("x", each.step): 1} and action.velocity == {Quantity("v", each.step): 1}
+            for each in action.position
+        )
         return Accelerations(
             results=(action.result,),
             known=(action.position, action.velocity),
             sought=np.zeros((2, 1)),
             moments=np.array([float(action.moment)]),
-            on_it=at_state and places[0][0].step == places[1][0].step,
+            on_it=at_state,
         )
     results = tuple(each.result for each in action.evaluations)
     sought = [part for each in action.evaluations for part in (each.sought_position, each.sought_velocity)]
@@ -212,7 +212,7 @@ def _accelerations_on_it(
 
 def _times(course: Course, group: Accelerations) -> FloatArray:
     """Return when the accelerations of each step take place (s), shape (steps, c)."""
-    return np.asarray(course.step * np.add.outer(np.arange(course.steps), group.moments))
+    return course.step * np.add.outer(np.arange(course.steps), group.moments)
 
 
 def _linearized(

@@ -21,7 +21,6 @@ from bezstab.show import (
     Row,
     column,
     column_figure,
-    history_line,
     legend_below,
     line_at,
     pole_cells,
@@ -446,7 +445,6 @@ def _draw_histories(axes: Axes, letter: str, runs: Sequence[Experiment], names: 
     """Draw c_1 against time of several runs at one point; `names` are all the methods of the figure."""
     for run in runs:
         line = line_at(names.index(run.method.name))
-        history_line(axes, run.t, run.c, label=run.method.name, **line, linewidth=0.6)
+        axes.plot(run.t, run.c, label=run.method.name, linewidth=0.6, **line)
     point = rf"$\hat\alpha = {runs[0].alpha_hat:g}$, $\hat\beta = {runs[0].beta_hat:g}$"
     axes.set_title(f"{letter}: {point}", fontsize=7)
-    axes.ticklabel_format(axis="y", scilimits=(-2, 3))

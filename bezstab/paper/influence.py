@@ -13,7 +13,7 @@ from bezstab.paper.experiments import STEP, Experiment, experiment
 from bezstab.paper.findings import Finding, finding
 from bezstab.paper.printed import FASTER_LEVEL, TABLE_5
 from bezstab.paper.reports import Progress, Report, captioned_table
-from bezstab.show import Column, Row, column, column_figure, history_line, line_at, pole_cells, pole_text, styled
+from bezstab.show import Column, Row, column, column_figure, line_at, pole_cells, pole_text, styled
 from bezstab.stability import FloatArray, poles
 
 KICK = 1e-3  # m: Table 4 is about decay and growth, so there must be something that decays or grows
@@ -353,10 +353,9 @@ def histories_figure(runs: Sequence[Experiment], derivative: bool) -> Figure:
             history = run.cdot if derivative else run.c
             visible = np.flatnonzero(np.abs(history) > VISIBLE * np.abs(history).max())
             shown = slice(visible[-1] + 1)
-            history_line(axes, 1e3 * run.t[shown], history[shown], **line_at(0))
+            axes.plot(1e3 * run.t[shown], history[shown], linewidth=0.6, **line_at(0))
             axes.set_xlim(0, 1e3 * run.t[visible[-1]])
             axes.set_title(rf"{number}: $\hat\alpha = {run.alpha_hat:g}$, $\hat\beta = {run.beta_hat:g}$", fontsize=7)
-            axes.ticklabel_format(axis="y", scilimits=(-2, 3))
         figure.supxlabel("t (ms)", fontsize=8)
         figure.supylabel(r"$\dot c_1$ (m/s)" if derivative else "$c_1$ (m)", fontsize=8)
         return figure

@@ -21,7 +21,7 @@ from bezstab.paper.experiments import DURATION, STEP, experiment
 from bezstab.paper.findings import Finding, finding
 from bezstab.paper.printed import TABLE_3
 from bezstab.paper.reports import Progress, Report, captioned_table
-from bezstab.show import Row, column, scene_figure
+from bezstab.show import Row, column, plot, styled
 from bezstab.stability import FloatArray
 
 SAME = 1e-12  # SI: rounding of sums of a few terms near one
@@ -57,7 +57,10 @@ def mechanism_figure() -> Figure:
     """Return Fig. 4: the slider-crank in its initial position."""
     scene = load_scene("slider_crank")
     q, _ = initial_state(compiled_mechanism(scene))
-    return scene_figure(scene, q)
+    with styled():
+        figure = plot.mechanism(scene, q)[0].figure
+    assert isinstance(figure, Figure)
+    return figure
 
 
 def body_table(scene: Scene) -> str:

@@ -295,6 +295,11 @@ class MapAnswer:
             return given
         return [default_rate(self.method, motion.omega_h)] if motion else self.stable.faster_levels
 
+    @property
+    def faster(self) -> list[Region]:
+        """The regions of these levels."""
+        return [region(self.method, level) for level in self.drawn_levels]
+
     @cached_property
     def chosen(self) -> Choice | None:
         """The point to draw beside the fastest: the choice of the goal accurate on a motion, else of robust."""

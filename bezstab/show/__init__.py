@@ -14,6 +14,7 @@ from bezstab.show.answer_rows import (
     costs_words,
     engine_cells,
     largest_step_row,
+    left_out,
     motion_words,
     trade_words,
 )
@@ -96,10 +97,9 @@ if TYPE_CHECKING:
     from bezstab.show.chain_figures import chains_figure
     from bezstab.show.explorer import open_explorer
     from bezstab.show.held_figures import held_figure
-    from bezstab.show.histories import history_line
     from bezstab.show.plane_figures import PlaneMap, comparison_figure, family_figure, region_figure, verdict_figure
     from bezstab.show.region_maps import compared_figure, compared_table, map_figure, map_rows, map_table
-    from bezstab.show.run_figures import history_figure, scene_figure, trade_figures, work_precision_figure
+    from bezstab.show.run_figures import history_figure, trade_figures, work_precision_figure
     from bezstab.show.style import DASHES, column_figure, legend_below, line_at, save, styled
 
 __getattr__ = lazy_names(__name__)

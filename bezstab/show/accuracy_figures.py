@@ -3,28 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import pairwise
-from math import ceil, floor
 from typing import Any
 
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.colors import FuncNorm
-from matplotlib.contour import QuadContourSet
 from matplotlib.figure import Figure
+from matplotlib.path import Path
 from matplotlib.patheffects import AbstractPathEffect, withStroke
+from matplotlib.ticker import MaxNLocator
 
+from bezstab.show import plot
 from bezstab.show.plane_figures import PlaneMap
-from bezstab.show.style import (
-    DASHES,
-    column_figure,
-    hollow_line_at,
-    legend_below,
-    method_marker,
-    plane_axes,
-    plane_coordinates,
-    styled,
-)
+from bezstab.show.style import DASHES, legend_below, marked_line_at, new_axes, plane_axes, plane_coordinates, styled
 from bezstab.stability import FloatArray, FrontPoint
 
 TICKS = (0.1, 0.5, 0.9, 0.99, 0.999, 0.9999)
@@ -34,13 +24,16 @@ FASTEST_DRAWN, SLOWEST_DRAWN = 0.1, 0.9999
 """|z_p|: beyond, three steps are enough, or tens of thousands are not, and colours no longer change."""
 
 MOST_CONTOURS = 12
-"""Powers of ten of a map, up to one: of more only every second is drawn, or third, ..."""
+"""Of a map, each a power of ten; where there would be more, only every second is drawn."""
 
 BELOW_MARKERS = 2.9
 """Of labels: no point is hidden."""
 
 HALO: list[AbstractPathEffect] = [withStroke(linewidth=1.5, foreground="black")]
 """So that a white line shows on any colour, in grey too."""
+
+PARTS = 300
+"""Of each chord of a boundary, which is straight on other axes alone: the last is thinner than a line."""
 
 
 def decay_scale(z_abs: FloatArray) -> FloatArray:
@@ -65,16 +58,19 @@ def accuracy_map_figure(shown: PlaneMap, omega_h: float, error: FloatArray, leve
         axes.set(xscale="log", yscale="log")
         axes.grid(visible=False)
         x, y = plane_coordinates(shown.alpha_hat, shown.beta_hat, shown.h)
+        norm = FuncNorm((decay_scale, from_decay_scale), vmin=FASTEST_DRAWN, vmax=SLOWEST_DRAWN)
         stable = np.ma.masked_greater_equal(z_abs, 1.0)
-        drawn = np.clip(stable.compressed(), FASTEST_DRAWN, SLOWEST_DRAWN)
-        norm = FuncNorm((decay_scale, from_decay_scale), vmin=drawn.min(), vmax=drawn.max())
         # as an image in files of lines, too: a mesh of so many cells has no place there
         mesh = axes.pcolormesh(x, y, stable, cmap="cividis", norm=norm, shading="nearest", rasterized=True)
         bar = figure.colorbar(mesh, label="$|z_p|$", extend="both", format="{x:g}", ticks=TICKS)
         bar.ax.minorticks_off()
-        contours = _error_contours(axes, x, y, np.ma.masked_where(z_abs >= 1, error))
-        boundary = plane_coordinates(*_for_logarithmic_axes(region.boundary), shown.h)
-        axes.plot(*boundary, color="black", linestyle="-", label=f"$|z_p| = {region.level:g}$")
+        white: dict[str, Any] = {"colors": "white", "linewidths": 0.7, "linestyles": "-"}
+        powers = np.log10(np.where(z_abs < 1, error, np.nan))
+        contours = axes.contour(x, y, powers, locator=MaxNLocator(MOST_CONTOURS, integer=True), **white)
+        contours.set_path_effects(HALO)
+        axes.plot([], [], color="white", linewidth=0.7, path_effects=HALO, label="forced error / motion")  # a key
+        boundary = plot.region(region, axes, shown.h, color="black", linestyle="-", label=f"$|z_p| = {region.level:g}$")
+        boundary.set_data(np.transpose(Path(boundary.get_xydata()).interpolated(PARTS).vertices))
         for number, level in enumerate(levels, start=1):
             dashes = DASHES[number % 4]
             axes.contour(x, y, z_abs, levels=[level], colors="black", linewidths=0.8, linestyles=[dashes])
@@ -88,52 +84,20 @@ def accuracy_map_figure(shown: PlaneMap, omega_h: float, error: FloatArray, leve
         return figure
 
 
-def _error_contours(axes: Axes, x: FloatArray, y: FloatArray, error: np.ma.MaskedArray) -> QuadContourSet:
-    """Draw the lines on which the error is a power of ten, and return them."""
-    logarithm = np.ma.log10(error)
-    lowest, highest = ceil(logarithm.min()), min(0, floor(logarithm.max()))
-    powers = np.arange(lowest, highest + 1, max(1, ceil((highest - lowest) / MOST_CONTOURS)))
-    style: dict[str, Any] = {"colors": "white", "linewidths": 0.7, "linestyles": "-"}
-    contours: QuadContourSet = axes.contour(x, y, logarithm, levels=powers, **style)
-    contours.set_path_effects(HALO)
-    axes.plot([], [], color="white", linewidth=0.7, path_effects=HALO, label="forced error / motion")  # a key
-    return contours
-
-
-def _for_logarithmic_axes(curves: Sequence[FloatArray]) -> tuple[FloatArray, FloatArray]:
-    """Return curves, nan between them, with points on each long chord, which is straight on other axes alone.
-
-    Long is what doubles a coordinate. The points are closest to both ends, down to a billionth of the chord.
-    """
-    close = np.geomspace(1e-9, 0.5, 60)[:, np.newaxis]
-    shares = np.concatenate([[[0.0]], close, 1 - close[::-1]])
-    pieces = [np.empty((0, 2))]
-    for curve in curves:
-        for start, end in pairwise(curve):
-            long = np.any((np.maximum(start, end) > 2 * np.minimum(start, end)) & (np.maximum(start, end) > 0))
-            pieces.append(start + shares * (end - start) if long else start[np.newaxis])
-        pieces += [curve[-1:], np.full((1, 2), np.nan)]
-    points = np.concatenate(pieces)
-    return points[:, 0], points[:, 1]
-
-
 def error_front_figure(fronts: Sequence[Sequence[FrontPoint]]) -> Figure:
     """Return how little error each method can force, a share of the motion, against |z_p|, even in how fast that is.
 
     A front for each method, at least one point each, all of one motion.
     """
     with styled():
-        figure = column_figure(1.05)
-        axes = figure.add_subplot()
+        title = rf"equal steps, $\omega h$ = {fronts[0][0].omega_h:.3g}"
+        figure, axes = new_axes(title, "$|z_p|$ at most", "least forced error / motion", 1.05)
         axes.set_xscale("function", functions=(decay_scale, from_decay_scale))
         axes.set_yscale("log")
         for place, front in enumerate(fronts):
             drawn = [point for point in front if point.z_abs_below >= FASTEST_DRAWN]
-            style = {**hollow_line_at(place), "linewidth": 0.8, "marker": method_marker(front[0].method)}
             x, y = [point.z_abs_below for point in drawn], [point.combined_error for point in drawn]
-            axes.plot(x, y, label=front[0].method.name, **style)
-        axes.set(xlabel="$|z_p|$ at most", ylabel="least forced error / motion")
-        axes.set_title(rf"equal steps, $\omega h$ = {fronts[0][0].omega_h:.3g}")
+            axes.plot(x, y, label=front[0].method.name, **marked_line_at(place))
         limits = axes.get_xlim()
         axes.set_xticks(TICKS, [f"{tick:g}" for tick in TICKS])
         axes.set_xlim(limits)  # which ticks beyond them would widen

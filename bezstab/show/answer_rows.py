@@ -28,7 +28,7 @@ from bezstab.units import from_dimensionless
 if TYPE_CHECKING:
     from fractions import Fraction
 
-    from bezstab.questions import Answer, LargestStep, ReferenceMotion
+    from bezstab.questions import Answer, LargestStep, Question, ReferenceMotion
     from bezstab.stability import FeedbackCost
 
 COSTLY = 10.0
@@ -37,11 +37,25 @@ COSTLY = 10.0
 GAIN = 0.95
 """Of an error: what is not below is called no gain."""
 
+WITHOUT_ACCURACY = ("total_error", "order_left", "times_least_velocity")
+"""Columns that tables of a drive omit: nothing feeds the acceleration of its target forward."""
+
+OF_ONE_ALONE = (
+    *("worst", "settle_steps", "settle_seconds", "h_limit"),
+    *("alpha_factor_min", "alpha_factor_max", "beta_factor_min", "beta_factor_max"),
+)
+"""Columns that tables omit for constraints that an engine sweeps over: they are about one constraint alone."""
+
 
 def answer_row(answer: Answer) -> Row:
     """Return all that an answer has as a row; keys of an engine, a drive, a scene, a range of steps where asked for."""
     kind = CHOICES if answer.role == "chosen" else CHECKED
     return {**kind.row(answer), **_engine_cells(answer), **added_cells(answer)}
+
+
+def left_out(question: Question) -> tuple[str, ...]:
+    """Return the keys that tables of a question leave out."""
+    return (*(WITHOUT_ACCURACY if question.drive else ()), *(OF_ONE_ALONE if question.swept else ()))
 
 
 def added_cells(answer: Answer) -> dict[str, Value]:

@@ -1,18 +1,20 @@
 """A window on the plane: the region and |z_p| map, and beside them what the point under the mouse means."""
 
 from collections.abc import Callable, Sequence
+from fractions import Fraction
 from shlex import quote
 
-import numpy as np
 from matplotlib.backend_bases import KeyEvent, MouseEvent
 from matplotlib.figure import Figure
+from matplotlib.patches import Circle
 
 from bezstab.errors import InputError
 from bezstab.methods import Method
-from bezstab.rationals import exact
 from bezstab.show import plot
-from bezstab.show.style import styled
-from bezstab.stability import dominant_pole, kick_response, poles, region, useful_window, verdict
+from bezstab.show.columns import formatted
+from bezstab.show.rows import pole_cells
+from bezstab.show.style import ACCENT, COLOURS, styled
+from bezstab.stability import kick_response, poles, region, useful_window, verdict
 from bezstab.units import alpha_and_beta
 
 POINTS = 150  # per axis of the map: it appears at once
@@ -29,7 +31,7 @@ class Explorer:
     def __init__(self, figure: Figure, methods: Sequence[Method], h: float, print_line: Callable[[str], None]) -> None:
         self.figure, self.methods, self.h, self.print_line = figure, methods, h, print_line
         self.method = methods[0]
-        self.point = (0.5, 0.1)
+        self.typed = ("0.5", "0.1")
         self._lay_out()
         figure.suptitle(KEYS, fontsize=8)
         figure.subplots_adjust(left=0.09, right=0.97, top=0.88, bottom=0.22, wspace=0.25, hspace=0.55)
@@ -45,13 +47,12 @@ class Explorer:
         grid = self.figure.add_gridspec(2, 2, width_ratios=(3, 2))
         self.map = self.figure.add_subplot(grid[:, 0])
         circle = self.figure.add_subplot(grid[0, 1])
-        turn = np.linspace(0, 2 * np.pi, 200)
-        circle.plot(np.cos(turn), np.sin(turn), color="0.6")
+        circle.add_patch(Circle((0, 0), 1, fill=False, edgecolor="0.6"))
         circle.set(xlim=(-1.6, 1.6), ylim=(-1.6, 1.6), aspect="equal", title="poles z")
-        (self.poles,) = circle.plot([], [], "o", color="#d55e00", markersize=4, animated=True)
+        (self.poles,) = circle.plot([], [], "o", color=ACCENT, markersize=4, animated=True)
         decay = self.figure.add_subplot(grid[1, 1])
         decay.set(xlim=(0, STEPS), ylim=(1e-6, 1e3), yscale="log", xlabel="step", title="|c| after a unit kick")
-        (self.decay,) = decay.plot([], [], color="#00395c", animated=True)
+        (self.decay,) = decay.plot([], [], color=COLOURS[0], animated=True)
         self.text = self.figure.text(0.01, 0.02, "", linespacing=1.5, animated=True)
 
     def _draw_map(self) -> None:
@@ -63,34 +64,29 @@ class Explorer:
         plot.region(stable, axes, color="black", linestyle="-", label="")
         axes.set(xlim=alpha_range, ylim=beta_range, facecolor="0.93", title=self.method.name)
         (self.cross,) = axes.plot([], [], "+", color="white", markeredgecolor="red", markersize=10, animated=True)
-        self.look(*self.point)
+        self.look(float(self.typed[0]), float(self.typed[1]))
         self.figure.canvas.draw_idle()
 
     def look(self, alpha_hat: float, beta_hat: float, prove: bool = False) -> None:
-        """Show what a point means: poles, the linear recursion's answer to a unit kick, and the numbers."""
-        self.point = round(float(alpha_hat), 6), round(float(beta_hat), 6)
-        alpha_hat, beta_hat = self.point
-        z = poles(self.method, alpha_hat, beta_hat)
-        self.poles.set_data(z.real, z.imag)
-        response = kick_response(z, STEPS)
-        self.decay.set_data(np.arange(STEPS + 1), np.abs(response))
-        self.cross.set_data([alpha_hat], [beta_hat])
-        self.text.set_text(self._numbers(prove))
+        """Show what a point means: poles, the linear recursion's answer to a unit kick, and the numbers.
 
-    def _numbers(self, prove: bool) -> str:
-        """Return what there is to say of the point; with `prove` its verdict is exact."""
-        alpha_hat, beta_hat = self.point
-        z_p = complex(dominant_pole(self.method, alpha_hat, beta_hat))
+        The point is that of the six digits that the key p prints; with `prove` its verdict is exact.
+        """
+        self.typed = f"{alpha_hat:.6g}", f"{beta_hat:.6g}"
+        point = float(self.typed[0]), float(self.typed[1])
+        alpha, beta = alpha_and_beta(*point, self.h)
+        z = poles(self.method, *point)
+        largest = pole_cells(z[0])
+        judgement = "stable" if abs(z[0]) < 1 else "unstable"
         if prove:
-            judgement = f"{verdict(self.method, exact(alpha_hat), exact(beta_hat))} (proven)"
-        else:
-            judgement = "stable" if abs(z_p) < 1 else "unstable"
-        alpha, beta = alpha_and_beta(alpha_hat, beta_hat, self.h)
-        beta_text = "-" if beta is None else f"{beta:.6g}"
-        return (
-            rf"$\hat\alpha$ = {alpha_hat:.6f}   $\hat\beta$ = {beta_hat:.6f}   "
-            f"α = {alpha:.6g}   β = {beta_text} 1/s at h = {self.h:g} s\n"
-            f"$|z_p|$ = {abs(z_p):.6f}   ∠$z_p$ = {np.degrees(np.angle(z_p)):.2f}°   {judgement}"
+            judgement = f"{verdict(self.method, *map(Fraction, self.typed))} (proven)"
+        self.poles.set_data(z.real, z.imag)
+        self.decay.set_data(range(STEPS + 1), abs(kick_response(z, STEPS)))
+        self.cross.set_data([point[0]], [point[1]])
+        self.text.set_text(
+            rf"$\hat\alpha$ = {self.typed[0]}   $\hat\beta$ = {self.typed[1]}   "
+            f"α = {alpha:.6g}   β = {formatted(beta, '.6g')} 1/s at h = {self.h:g} s\n"
+            f"$|z_p|$ = {largest['z_abs']:.6f}   ∠$z_p$ = {largest['z_angle_deg']:.2f}°   {judgement}"
         )
 
     def _show(self) -> None:
@@ -120,9 +116,8 @@ class Explorer:
             self.method = self.methods[following % len(self.methods)]
             self._draw_map()
         elif event.key == "p":
-            alpha_hat, beta_hat = self.point
             name = quote(self.method.name)  # newmark(1/4,1/2) means something else to a shell
-            self.print_line(f"--method {name} --alpha {alpha_hat!r} --beta {beta_hat!r}")
+            self.print_line(f"--method {name} --alpha {self.typed[0]} --beta {self.typed[1]}")
 
 
 def open_explorer(methods: Sequence[Method], h: float, print_line: Callable[[str], None]) -> None:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from functools import partial
+from operator import mul
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -10,11 +11,11 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from bezstab.engines import DRIVE_METHODS
-from bezstab.show.style import ABOVE_THE_AXES, ACCENT, cells, column_figure, legend_below, styled, title_lines
+from bezstab.show.held_rows import timing_words
+from bezstab.show.style import ABOVE_THE_AXES, ACCENT, cells, legend_below, new_axes, styled, title_lines
 
 if TYPE_CHECKING:
     from bezstab.questions import HeldAnswer
-    from bezstab.stability import Timing
 
 
 def held_figure(answer: HeldAnswer, points: int) -> Figure:
@@ -27,10 +28,10 @@ def held_figure(answer: HeldAnswer, points: int) -> Figure:
     h = float(question.h)
     kp_of_one, kd_of_one = question.drive.gains(1.0, 1.0, h)
     kd, kp = kd_of_one * found.alpha_hat, kp_of_one * found.beta_hat
+    of_method = title_lines(DRIVE_METHODS[answer.method.name], f"h = {h:g} s")
     with styled():
-        figure = column_figure(1.1)
-        axes = figure.add_subplot()
-        axes.set_title(title_lines(DRIVE_METHODS[answer.method.name], *_timing(question.timing, h), f"h = {h:g} s"))
+        title = f"{of_method}\n{title_lines(timing_words(question.timing, h))}"
+        figure, axes = new_axes(title, "kd (N m s/rad)", "kp (N m/rad)", 1.1)
         stable = np.ma.masked_greater_equal(found.z_abs, 1.0)
         image = cells(axes, kd, kp, stable, cmap="cividis", vmax=1.0)
         figure.colorbar(image, label="$|z_p|$ a step", location="bottom", shrink=0.8)
@@ -45,28 +46,12 @@ def held_figure(answer: HeldAnswer, points: int) -> Figure:
         star: dict[str, Any] = {"marker": "*", "markersize": 11, "linestyle": "", "clip_on": False}
         star |= {"color": ACCENT, "markeredgecolor": "black", "zorder": ABOVE_THE_AXES}
         handles += axes.plot(*own, label=f"kp = {own[1]:g}, kd = {own[0]:g}", **star)
-        axes.set(xlabel="kd (N m s/rad)", ylabel="kp (N m/rad)", facecolor="0.93")
-        axes.set(xlim=(min(0.0, kd[0]), kd[-1]), ylim=(min(0.0, kp[0]), kp[-1]))
-        across = axes.secondary_xaxis("top", functions=_in_units_of(kd_of_one))
+        axes.set(xlim=(min(0.0, kd[0]), kd[-1]), ylim=(min(0.0, kp[0]), kp[-1]), facecolor="0.93")
+        across = axes.secondary_xaxis("top", functions=(partial(mul, 1 / kd_of_one), partial(mul, kd_of_one)))
         across.set_xlabel(r"$\hat\alpha = $ kd $h$ / inertia")
-        up = axes.secondary_yaxis("right", functions=_in_units_of(kp_of_one))
+        up = axes.secondary_yaxis("right", functions=(partial(mul, 1 / kp_of_one), partial(mul, kp_of_one)))
         up.set_ylabel(r"$\hat\beta = $ kp $h^2$ / inertia")
         for axis in (axes.xaxis, axes.yaxis, across.xaxis, up.yaxis):
             axis.set_major_formatter("{x:g}")  # a common factor would stand beside it, on the axis opposite
         legend_below(figure, handles, facecolor="0.75")
         return figure
-
-
-def _timing(timing: Timing, h: float) -> list[str]:
-    """Return when the torque is computed and applied, as parts of a title."""
-    parts = [f"held {timing.every} steps" if timing.every > 1 else "computed in every step"]
-    if timing.late:
-        parts.append(f"{float(timing.late):g} step{'s' * (timing.late > 1)} late")
-    if timing.filter_steps:
-        parts.append(f"velocity filtered over {float(timing.filter_steps) * h:g} s")
-    return parts
-
-
-def _in_units_of(unit: float) -> tuple[Callable[[Any], Any], Callable[[Any], Any]]:
-    """Return what takes a gain to its multiple of a unit, and back."""
-    return lambda gain: gain / unit, lambda multiple: multiple * unit

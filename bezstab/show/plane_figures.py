@@ -69,9 +69,8 @@ class PlaneMap:
         axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]), facecolor="0.93")
 
     def _holds(self, point: Point) -> bool:
-        return all(
-            axis[0] <= value <= axis[-1] for axis, value in zip((self.alpha_hat, self.beta_hat), point, strict=True)
-        )
+        axes = (self.alpha_hat, self.beta_hat)
+        return all(axis[0] <= value <= axis[-1] for axis, value in zip(axes, point, strict=True))
 
 
 def region_figure(
@@ -149,8 +148,7 @@ def verdict_figure(verdicts: VerdictMap, region: Region) -> Figure:
         run = (verdicts.scene.name, verdicts.method.name, f"h = {verdicts.h:g} s", f"{verdicts.run} steps")
         given = f"{verdicts.judged} of {verdicts.undecided.size} runs gave a verdict"
         agreeing = f"{given}, {verdicts.agreeing} of them agree" if verdicts.judged else "no run gave a verdict"
-        title = f"{title_lines(*run)}\n{title_lines(agreeing)}"
-        figure, axes = plane_axes(title, None)
+        figure, axes = plane_axes(f"{title_lines(*run)}\n{title_lines(agreeing)}", None)
         plot.verdicts(verdicts, axes)
         plot.region(region, axes, color="black", linestyle="-", label=r"$|z_p| = 1$")
         plot.disagreements(verdicts, axes)
@@ -164,29 +162,30 @@ def family_figure(families: Mapping[str, Sequence[Member]], shown: str, limit: L
     Error constants can be compared between methods of one order alone: where the order differs from member to member
     the orders are drawn instead. `limit` is what the Bezier methods tend to: a line, and its region.
     """
+    members = families[shown]
+    own = line_at(list(families).index(shown))
+    orders = {member.order for member in members}
+    quantity: plot.Quantity = "error constant" if len(orders) == 1 else "order of accuracy"
     with styled():
         figure = column_figure(1.3)
         (area, fastest), (accuracy, regions) = figure.subplots(2, 2)
-        for place, (name, members) in enumerate(families.items()):
-            label = STEP_FAMILIES[name].title
-            plot.family(members, "area", area, label=label, **line_at(place))
-            plot.family(members, "least |z_p|", fastest, label=label, **line_at(place))
-        place = list(families).index(shown)
-        members = families[shown]
-        orders = {member.order for member in members}
-        quantity: plot.Quantity = "error constant" if len(orders) == 1 else "order of accuracy"
-        plot.family(members, quantity, accuracy, **line_at(place))
-        _draw_regions(regions, members, line_at(place)["color"])
+        for place, (name, of_family) in enumerate(families.items()):
+            line = {"label": STEP_FAMILIES[name].title, **line_at(place)}
+            plot.family(of_family, "area", area, **line)
+            plot.family(of_family, "least |z_p|", fastest, **line)
+        plot.family(members, quantity, accuracy, **own)
+        for member, dashes in zip(members[:: max(1, len(members) // 3)], DASHES, strict=False):
+            plot.region(member.region, regions, color=own["color"], linestyle=dashes)
         if limit is not None:
             line = {"color": ACCENT, "linestyle": DASHES[2]}
             values = ((area, limit.area), (fastest, limit.z_abs), (accuracy, float(limit.error_constant)))
             for axes, value in values:
                 axes.axhline(value, label="Bézier, limit", **line)
             regions.plot(limit.boundary[:, 0], limit.boundary[:, 1], **line)
-        area.set(ylabel="area of the region", yscale="log", xlabel="steps $n$")
-        fastest.set(ylabel="least $|z_p|$", xlabel="steps $n$")
-        all_of_order = f", all of order {members[0].order}" if len(orders) == 1 else ""
-        accuracy.set(ylabel=f"{quantity}{all_of_order}", xlabel="steps $n$")
+        area.set(ylabel="area of the region", yscale="log")
+        fastest.set(ylabel="least $|z_p|$")
+        if len(orders) == 1:
+            accuracy.set(ylabel=f"error constant, all of order {members[0].order}")
         regions.set(xlabel=r"$\hat\alpha$ (dimensionless)", ylabel=r"$\hat\beta$ (dimensionless)")
         regions.set_ylim(top=1.4 * regions.get_ylim()[1])  # room above the curves
         regions.legend(fontsize=6, loc="upper center", ncols=2, handlelength=1.5, columnspacing=1)
@@ -194,10 +193,3 @@ def family_figure(families: Mapping[str, Sequence[Member]], shown: str, limit: L
             axes.xaxis.set_major_locator(MaxNLocator(5, integer=True))
         legend_below(figure, handles=area.lines)
         return figure
-
-
-def _draw_regions(axes: Axes, members: Sequence[Member], colour: str) -> None:
-    """Draw the regions of some members of one family, told apart by their dashes."""
-    stride = max(1, len(members) // 3)
-    for number, member in enumerate(members[::stride]):
-        plot.region(member.region, axes, color=colour, linestyle=DASHES[number % len(DASHES)])

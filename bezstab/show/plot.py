@@ -21,26 +21,26 @@ from matplotlib.image import AxesImage
 from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 from matplotlib.patheffects import withStroke
+from numpy.typing import ArrayLike
 
 from bezstab.errors import check_kind
 from bezstab.methods import Method
-from bezstab.show.histories import history_line
 from bezstab.show.style import (
     ACCENT,
     CONVERGES,
     DASHES,
     DIVERGES,
     cells,
-    column_figure,
-    label_plane,
     line_at,
-    method_marker,
-    next_line,
+    marked_line_at,
+    new_axes,
     plane_axes,
     plane_coordinates,
+    plane_labels,
     styled,
+    title_lines,
 )
-from bezstab.stability import BestPoint, Choice, FloatArray, Member, Region, useful_window, window
+from bezstab.stability import BestPoint, Choice, FloatArray, Member, Region, useful_window
 from bezstab.stability import spectral_radius as spectral_radius_at
 
 if TYPE_CHECKING:  # so that a picture of the plane does not load what runs mechanisms
@@ -50,6 +50,7 @@ if TYPE_CHECKING:  # so that a picture of the plane does not load what runs mech
 Range = tuple[SupportsFloat, SupportsFloat]
 Quantity = Literal["area", "least |z_p|", "error constant", "order of accuracy"]
 Point = tuple[float, float]
+Coordinates = tuple[ArrayLike, ArrayLike]
 
 __all__ = [
     "best_point",
@@ -80,6 +81,7 @@ ALONG_AN_EDGE, ARROWS = 121, 5
 PARABOLA = 400  # points of a smooth curve: more than its pixels tell apart
 NAME_OFF = 4.0  # points from a body up to its name
 MARK_SHAPES = "Ds^vP"
+FINE = 0.6  # points: lines of histories, so that fast oscillations are told apart
 ERROR_LABELS: Mapping[ErrorOf, str] = {
     "trajectory": "trajectory error (m, rad)",
     "constraint": "largest $|c|$ (SI)",
@@ -111,18 +113,12 @@ def region(region: Region, axes: Axes | None = None, h: float | None = None, **l
     check_kind(region, Region, "bezstab.region")
     label = region.method.name if region.bounded else f"{region.method.name} (unbounded)"
     axes = _plane(axes, rf"$|z_p| = {region.level:g}$", h)
-    style = {"label": label, **next_line(axes), **line}
+    drawn = _line(axes, ([], []), line, label=label, **line_at(len(axes.lines)))
     gap = np.full((1, 2), np.nan)  # lifts the pen from one closed curve to the next
     points = np.concatenate([part for curve in region.boundary for part in (curve, gap)] or [gap])
-    x, y = plane_coordinates(points[:, 0], points[:, 1], h)
-    shown = useful_window(region)
-    if region.bounded and shown == window(region):
-        (drawn,) = axes.plot(x, y, **style)
-        return drawn
-    (drawn,) = axes.plot([], [], **style)
-    drawn.set_data(x, y)  # which leaves the limits of the axes alone
-    alpha_range, beta_range = (np.array(ends) for ends in shown)
-    axes.update_datalim(np.stack(plane_coordinates(alpha_range, beta_range, h), axis=-1))
+    drawn.set_data(*plane_coordinates(points[:, 0], points[:, 1], h))  # which leaves the limits of the axes alone
+    alpha_range, beta_range = np.array(useful_window(region))
+    axes.update_datalim(np.transpose(plane_coordinates(alpha_range, beta_range, h)))
     axes.autoscale_view()
     return drawn
 
@@ -143,14 +139,14 @@ def moving_region(
     from bezstab.evidence import MovingRegion
 
     check_kind(moving, MovingRegion, "bezstab.evidence.moving_region")
-    drawn_on = _plane(axes, moving.method.name, h)
+    axes = _plane(axes, moving.method.name, h)
     x, y = plane_coordinates(moving.alpha_hat, moving.beta_hat, h)
     outside_the_law = moving.excluded & (moving.growth < 0)
     if hatched and outside_the_law.any():
-        drawn_on.contourf(x, y, outside_the_law, levels=[0.5, 1.5], colors="none", hatches=["....."])
-        drawn_on.add_patch(Rectangle((0, 0), 0, 0, fill=False, hatch=".....", label="law does not hold"))  # a key
-    edge: QuadContourSet = drawn_on.contour(x, y, moving.growth, levels=[0.0], colors="black", linestyles=[dashes])
-    drawn_on.plot([], [], color="black", linestyle=dashes, label=label)
+        axes.contourf(x, y, outside_the_law, levels=[0.5, 1.5], colors="none", hatches=["....."])
+        axes.add_patch(Rectangle((0, 0), 0, 0, fill=False, hatch=".....", label="law does not hold"))  # a key
+    edge: QuadContourSet = axes.contour(x, y, moving.growth, levels=[0.0], colors="black", linestyles=[dashes])
+    axes.plot([], [], color="black", linestyle=dashes, label=label)
     return edge
 
 
@@ -167,8 +163,7 @@ def spectral_radius(
     Where |z_p| >= 1 it is blank. The ranges are dimensionless whatever the axes.
     """
     check_kind(method, Method, "bezstab.method")
-    alpha_hat = np.linspace(float(alpha_range[0]), float(alpha_range[1]), points)
-    beta_hat = np.linspace(float(beta_range[0]), float(beta_range[1]), points)
+    alpha_hat, beta_hat = (np.linspace(float(low), float(high), points) for low, high in (alpha_range, beta_range))
     z_abs = spectral_radius_at(method, alpha_hat, beta_hat[:, np.newaxis])
     return modulus_map(alpha_hat, beta_hat, z_abs, axes=_plane(axes, method.name, h), h=h)
 
@@ -185,9 +180,9 @@ def modulus_map(
 
     z_abs has shape (beta_hat.size, alpha_hat.size).
     """
-    x, y = plane_coordinates(alpha_hat, beta_hat, h)
     inside = np.ma.masked_greater_equal(z_abs, level)
-    return cells(_plane(axes, "$|z_p|$", h), x, y, inside, cmap="cividis", vmax=level)
+    axes = _plane(axes, "$|z_p|$", h)
+    return cells(axes, *plane_coordinates(alpha_hat, beta_hat, h), inside, cmap="cividis", vmax=level)
 
 
 def critical_damping(alpha_range: Range, axes: Axes | None = None, h: float | None = None, **line: Any) -> Line2D:
@@ -196,40 +191,56 @@ def critical_damping(alpha_range: Range, axes: Axes | None = None, h: float | No
     White with a black outline: it is made to lie on a map.
     """
     alpha_hat = np.linspace(float(alpha_range[0]), float(alpha_range[1]), PARABOLA)
-    x, y = plane_coordinates(alpha_hat, alpha_hat**2 / 4, h)
-    outline = withStroke(linewidth=2.4, foreground="black")  # white alone is lost outside the region
-    style = {
-        "color": "white",
-        "linestyle": DASHES[2],
-        "label": "critical damping: " + (r"$\hat\beta = \hat\alpha^2/4$" if h is None else r"$\alpha = \beta$"),
-        "path_effects": [outline],
-        **line,
-    }
-    (drawn,) = _plane(axes, r"$(\hat\alpha, \hat\beta)$", h).plot(x, y, **style)
-    return drawn
+    return _line(
+        _plane(axes, r"$(\hat\alpha, \hat\beta)$", h),
+        plane_coordinates(alpha_hat, alpha_hat**2 / 4, h),
+        line,
+        color="white",
+        linestyle=DASHES[2],
+        label="critical damping: " + (r"$\hat\beta = \hat\alpha^2/4$" if h is None else r"$\alpha = \beta$"),
+        path_effects=[withStroke(linewidth=2.4, foreground="black")],  # white alone is lost outside the region
+    )
 
 
 def best_point(best: BestPoint, axes: Axes | None = None, h: float | None = None, **line: Any) -> Line2D:
     """Draw a star at the point of least |z_p|, labelled with it, and return the line of one point."""
     check_kind(best, BestPoint, "bezstab.best_point")
     label = "deadbeat: $|z_p| = 0$" if best.z_abs == 0 else f"least $|z_p|$: {best.z_abs:.4f}"
-    style = {"marker": "*", "markersize": 8, "label": label, **line}
-    return _one_point((best.alpha_hat, best.beta_hat), _plane(axes, best.method.name, h), h, **style)
+    axes = _plane(axes, best.method.name, h)
+    return _one_point(best.alpha_hat, best.beta_hat, axes, h, line, marker="*", markersize=8, label=label)
 
 
 def choice(choice: Choice, axes: Axes | None = None, h: float | None = None, **line: Any) -> Line2D:
     """Draw a circle at the point that was chosen, labelled with its goal and |z_p|; return the line of one point."""
     check_kind(choice, Choice, "bezstab.choose")
     label = f"choose {choice.goal}: {f'{abs(choice.pole):.4f}' if choice.pole else 'deadbeat'}"
-    style = {"marker": "o", "markersize": 5, "label": label, **line}
-    return _one_point((choice.alpha_hat, choice.beta_hat), _plane(axes, choice.method.name, h), h, **style)
+    axes = _plane(axes, choice.method.name, h)
+    return _one_point(choice.alpha_hat, choice.beta_hat, axes, h, line, marker="o", markersize=5, label=label)
 
 
-def _one_point(point: Point, axes: Axes, h: float | None, **line: Any) -> Line2D:
-    """Draw a white marker with a black edge at (alpha_hat, beta_hat), and return the line of one point."""
-    x, y = plane_coordinates(*point, h)
-    style = {"linestyle": "none", "color": "white", "markeredgecolor": "black", **line}
-    (drawn,) = axes.plot(x, y, **style)
+def marks(points: Mapping[str, Point], axes: Axes | None = None, h: float | None = None, **line: Any) -> list[Line2D]:
+    """Draw points (alpha_hat, beta_hat) by their labels, each with a shape of its own, and return a line for each.
+
+    There are five shapes; further points begin again.
+    """
+    axes = _plane(axes, r"$(\hat\alpha, \hat\beta)$", h)
+    return [
+        _one_point(*point, axes, h, line, marker=MARK_SHAPES[number % len(MARK_SHAPES)], markersize=5, label=label)
+        for number, (label, point) in enumerate(points.items())
+    ]
+
+
+def _one_point(
+    alpha_hat: float, beta_hat: float, axes: Axes, h: float | None, line: Mapping[str, Any], **usual: Any
+) -> Line2D:
+    """Draw a white marker with a black edge, and return the line of one point."""
+    white = {"linestyle": "none", "color": "white", "markeredgecolor": "black"}
+    return _line(axes, plane_coordinates(alpha_hat, beta_hat, h), line, **white, **usual)
+
+
+def _line(axes: Axes, points: Coordinates, line: Mapping[str, Any], **usual: Any) -> Line2D:
+    """Draw a line through points (x, y) as a caller asks for it, in the usual way where he does not, and return it."""
+    (drawn,) = axes.plot(*points, **{**usual, **line})
     return drawn
 
 
@@ -243,31 +254,16 @@ def open_edges(region: Region, axes: Axes, h: float | None = None, inset: float 
         return []
     along = np.linspace(inset, 1 - inset, ALONG_AN_EDGE)
     drawn: list[Line2D] = []
-    for axis, arrows in enumerate(("<>", "v^")):
-        for end, arrow in enumerate(arrows):
-            if np.isfinite(region.extent[axis][end]):
-                continue
-            edge = np.full((ALONG_AN_EDGE, 2), float(end))  # in shares of the axes
-            edge[:, 1 - axis] = along
-            points = axes.transLimits.inverted().transform(edge) / plane_coordinates(1.0, 1.0, h)
-            inside = region.contains(*points.T)
-            if inside.any():
-                shown = np.where(inside, np.clip(edge, inset, 1 - inset).T, np.nan)
-                style = {"marker": arrow, "markersize": 3, "markevery": ALONG_AN_EDGE // ARROWS, "linewidth": 0.6}
-                drawn += axes.plot(*shown, transform=axes.transAxes, label="_nolegend_", **{**style, **line})
-    return drawn
-
-
-def marks(points: Mapping[str, Point], axes: Axes | None = None, h: float | None = None, **line: Any) -> list[Line2D]:
-    """Draw points (alpha_hat, beta_hat) by their labels, each with a shape of its own, and return a line for each.
-
-    There are five shapes; further points begin again.
-    """
-    axes = _plane(axes, r"$(\hat\alpha, \hat\beta)$", h)
-    drawn: list[Line2D] = []
-    for number, (label, point) in enumerate(points.items()):
-        style = {"marker": MARK_SHAPES[number % len(MARK_SHAPES)], "markersize": 5, "label": label, **line}
-        drawn.append(_one_point(point, axes, h, **style))
+    for axis, end in np.argwhere(np.isinf(region.extent)):
+        edge = np.full((ALONG_AN_EDGE, 2), float(end))  # in shares of the axes
+        edge[:, 1 - axis] = along
+        points = axes.transLimits.inverted().transform(edge) / plane_coordinates(1.0, 1.0, h)
+        inside = region.contains(*points.T)
+        if inside.any():
+            x, y = np.where(inside, np.clip(edge, inset, 1 - inset).T, np.nan)
+            arrows: dict[str, Any] = {"markersize": 3, "markevery": ALONG_AN_EDGE // ARROWS, "linewidth": 0.6}
+            arrows |= {"marker": ("<>", "v^")[axis][end], "label": "_nolegend_", "transform": axes.transAxes}
+            drawn.append(_line(axes, (x, y), line, **arrows))
     return drawn
 
 
@@ -277,10 +273,7 @@ def verdicts(verdict_map: VerdictMap, axes: Axes | None = None) -> AxesImage:
     Values of shape (beta_hat.size, alpha_hat.size): 0 converges, 1 diverges, blank where the run gave none. What the
     colours mean is labelled.
     """
-    from bezstab.evidence import VerdictMap
-
-    check_kind(verdict_map, VerdictMap, "bezstab.evidence.verdict_map")
-    axes = _plane(axes, f"{verdict_map.scene.name}, {verdict_map.method.name}", None)
+    axes = _verdict_axes(verdict_map, axes)
     values = np.ma.masked_array(verdict_map.diverges, verdict_map.undecided)
     colours = ListedColormap([CONVERGES, DIVERGES])
     image = cells(axes, verdict_map.alpha_hat, verdict_map.beta_hat, values, cmap=colours, vmin=0, vmax=1)
@@ -295,16 +288,20 @@ def verdicts(verdict_map: VerdictMap, axes: Axes | None = None) -> AxesImage:
 
 def disagreements(verdict_map: VerdictMap, axes: Axes | None = None) -> Line2D | None:
     """Cross the cells whose simulated verdict contradicts |z_p| < 1; return the line, None if there are none."""
-    from bezstab.evidence import VerdictMap
-
-    check_kind(verdict_map, VerdictMap, "bezstab.evidence.verdict_map")
+    axes = _verdict_axes(verdict_map, axes)
     rows, columns = np.nonzero(verdict_map.disagrees)
     if not rows.size:
         return None
-    axes = _plane(axes, f"{verdict_map.scene.name}, {verdict_map.method.name}", None)
     alpha_hat, beta_hat = verdict_map.alpha_hat[columns], verdict_map.beta_hat[rows]
     (drawn,) = axes.plot(alpha_hat, beta_hat, "x", color=ACCENT, markersize=3, label="disagree")
     return drawn
+
+
+def _verdict_axes(verdict_map: VerdictMap, axes: Axes | None) -> Axes:
+    from bezstab.evidence import VerdictMap
+
+    check_kind(verdict_map, VerdictMap, "bezstab.evidence.verdict_map")
+    return _plane(axes, title_lines(verdict_map.scene.name, verdict_map.method.name), None)
 
 
 def family(members: Sequence[Member], quantity: Quantity = "area", axes: Axes | None = None, **line: Any) -> Line2D:
@@ -313,12 +310,10 @@ def family(members: Sequence[Member], quantity: Quantity = "area", axes: Axes | 
     Area of the region (dimensionless; a gap where it is unbounded), least |z_p| (a gap where the region is empty),
     order of accuracy or error constant, which says something between members of one order alone.
     """
-    axes = _new_axes("", "n", quantity) if axes is None else axes
+    axes = _axes(axes, "", "steps $n$", quantity)
     values = [attrgetter(QUANTITIES[quantity])(member) for member in members]
-    style = {**next_line(axes), "marker": ".", **line}
     known = [np.nan if value is None else float(value) for value in values]
-    (drawn,) = axes.plot([member.n for member in members], known, **style)
-    return drawn
+    return _line(axes, ([member.n for member in members], known), line, marker=".", **line_at(len(axes.lines)))
 
 
 def history(
@@ -330,36 +325,31 @@ def history(
 ) -> Line2D:
     """Draw the error of one constraint of a run, or its time derivative, against t (s) and return the line; SI units.
 
-    Constraints count from 1. Where the error oscillates faster than print can show, a band between its least and its
-    largest values stands for the line.
+    Constraints count from 1.
     """
-    from bezstab.mechanism import Simulation
-
-    check_kind(simulation, Simulation, "bezstab.simulate")
-    errors = (simulation.cdot if derivative else simulation.c)[:, constraint - 1]
     name = rf"$\dot c_{constraint}$ (SI)" if derivative else rf"$c_{constraint}$ (SI)"
-    axes = _run_axes(simulation, name) if axes is None else axes
-    return history_line(axes, simulation.t, errors, **{**next_line(axes), **line})
+    axes = _run_axes(simulation, axes, name)
+    errors = simulation.cdot if derivative else simulation.c
+    return _line(axes, (simulation.t, errors[:, constraint - 1]), line, linewidth=FINE, **line_at(len(axes.lines)))
 
 
 def largest_error(simulation: Simulation, axes: Axes | None = None, **line: Any) -> Line2D:
     """Draw the largest |c| over all constraints of a run against t (s) on a logarithmic axis and return the line; SI.
 
-    A gap where all constraints hold to the last bit; a band as for `history`.
+    A gap where all constraints hold to the last bit.
     """
+    axes = _run_axes(simulation, axes, "largest $|c|$ (SI)")
+    axes.set_yscale("log", nonpositive="mask")
+    largest = np.abs(simulation.c).max(axis=1)
+    return _line(axes, (simulation.t, largest), line, linewidth=FINE, **line_at(len(axes.lines)))
+
+
+def _run_axes(simulation: Simulation, axes: Axes | None, name: str) -> Axes:
     from bezstab.mechanism import Simulation
 
     check_kind(simulation, Simulation, "bezstab.simulate")
-    axes = _run_axes(simulation, "largest $|c|$ (SI)") if axes is None else axes
-    axes.set_yscale("log")
-    largest = np.abs(simulation.c).max(axis=1)
-    above_rounding = np.where(largest > 0, largest, np.nan)
-    return history_line(axes, simulation.t, above_rounding, **{**next_line(axes), **line})
-
-
-def _run_axes(simulation: Simulation, name: str) -> Axes:
     trajectory = simulation.trajectory
-    return _new_axes(f"{trajectory.mechanism.scene.name}, {trajectory.method.name}", "t (s)", name)
+    return _axes(axes, title_lines(trajectory.mechanism.scene.name, trajectory.method.name), "t (s)", name)
 
 
 def mechanism(scene: Scene, q: FloatArray, axes: Axes | None = None) -> list[Line2D]:
@@ -372,32 +362,34 @@ def mechanism(scene: Scene, q: FloatArray, axes: Axes | None = None) -> list[Lin
 
     check_kind(scene, Scene, "bezstab.scene")
     if axes is None:
-        axes = _new_axes(scene.name, "x (m)", "y (m)")
-        axes.set_aspect("equal")
+        axes = _axes(None, title_lines(scene.name), "x (m)", "y (m)", height=0.6)
+        axes.set_aspect("equal", adjustable="datalim")
+        axes.margins(0.15)  # room for names
+        axes.locator_params(axis="y", nbins=4)
     for body in scene.bodies:
         if body.turns_in_place:
             x, y = body.locked.get("x", 0.0), body.locked.get("y", 0.0)
             axes.plot(x, y, marker=6, color="0.6", markersize=9, zorder=1.5)  # a triangle whose tip is the pivot
     sliding = {body.name for body in scene.bodies if {"x", "y"} & set(body.free)}
-    places = scene.joint_places(q.tolist())
-    colours = {name: line_at(place)["color"] for place, name in enumerate(places)}
-    lengths = {name: math.dist(points[0], points[-1]) for name, points in places.items()}
-    lines: dict[str, Line2D] = {}
-    for name in sorted(places, key=lengths.__getitem__, reverse=True):  # so that a longer body hides no shorter one
-        x, y = np.transpose(places[name])
-        (lines[name],) = axes.plot(x, y, color=colours[name], linewidth=3, solid_capstyle="round", label=name)
+    lines: list[Line2D] = []
+    for place, (name, points) in enumerate(scene.joint_places(q.tolist()).items()):
+        x, y = np.transpose(points)
+        length = math.dist(points[0], points[-1])
+        above = 2 + 1 / (2 + length)  # so that a longer body hides no shorter one
+        thick: dict[str, Any] = {"linewidth": 3, "solid_capstyle": "round", "zorder": above, "label": name}
+        lines += axes.plot(x, y, color=line_at(place)["color"], **thick)
         if len(x) == 1 and name in sliding:
             axes.plot(x, y, "s", color="0.8", markeredgecolor="black", markersize=12, zorder=1.5)
-        axes.plot(x, y, "o", color="white", markeredgecolor="black", markersize=4)
+        axes.plot(x, y, "o", color="white", markeredgecolor="black", markersize=4, zorder=above)
         axes.annotate(
             name,
             ((x[0] + x[-1]) / 2, (y[0] + y[-1]) / 2),
-            xytext=(0, NAME_OFF if lengths[name] else 2 * NAME_OFF),
+            xytext=(0, NAME_OFF if length else 2 * NAME_OFF),
             textcoords="offset points",
             ha="center",
             path_effects=[withStroke(linewidth=1.6, foreground="white")],  # lines run below
         )
-    return [lines[name] for name in places]
+    return lines
 
 
 def work_precision(
@@ -408,34 +400,30 @@ def work_precision(
     against: Cost = "evaluations",
     **line: Any,
 ) -> Line2D:
-    """Draw an error (SI) of one method's runs (at least one) against their cost, and return the line.
+    """Draw an error (SI) of one method's runs (at least one) against their cost, both logarithmic, and return the line.
 
     Left out are runs that failed and errors up to `floor`, that of the reference.
     """
-    if axes is None:
-        axes = _new_axes("", COST_LABELS[against], ERROR_LABELS[error])
-        axes.set(xscale="log", yscale="log")
-    method = runs[0].method
+    axes = _axes(axes, "", COST_LABELS[against], ERROR_LABELS[error])
+    axes.set(xscale="log", yscale="log")
     shown = [(run.cost(against), known) for run in runs if (known := run.error(error)) is not None and known > floor]
-    marker = {"marker": method_marker(method), "markersize": 3}
-    style = {**next_line(axes), **marker, "linewidth": 0.8, "label": method.name, **line}
-    (drawn,) = axes.plot([cost for cost, _ in shown], [known for _, known in shown], **style)
-    return drawn
+    costs, errors = [cost for cost, _ in shown], [known for _, known in shown]
+    return _line(axes, (costs, errors), line, label=runs[0].method.name, **marked_line_at(len(axes.lines)))
 
 
 def _plane(axes: Axes | None, title: str, h: float | None) -> Axes:
     """Return the given axes, labelled if they are empty, or those of a new figure for the plane."""
-    if axes is not None:
-        if not (axes.has_data() or axes.get_xlabel() or axes.get_ylabel()):
-            label_plane(axes, h)
-        return axes
-    with styled():
-        return plane_axes(title, h)[1]
+    if axes is None:
+        with styled():
+            return plane_axes(title, h)[1]
+    return _axes(axes, title, *plane_labels(h))
 
 
-def _new_axes(title: str, x_label: str, y_label: str) -> Axes:
-    """Return the axes of a new figure."""
-    with styled():
-        axes = column_figure().add_subplot()
-        axes.set(title=title, xlabel=x_label, ylabel=y_label)
-        return axes
+def _axes(axes: Axes | None, title: str, xlabel: str, ylabel: str, height: float = 1.0) -> Axes:
+    """Return the given axes, labelled if they are empty, or those of a new figure."""
+    if axes is None:
+        with styled():
+            return new_axes(title, xlabel, ylabel, height)[1]
+    if not (axes.has_data() or axes.get_xlabel() or axes.get_ylabel()):
+        axes.set(xlabel=xlabel, ylabel=ylabel)
+    return axes

@@ -11,7 +11,7 @@ from bezstab.show.columns import Row
 from bezstab.show.fields import cells
 from bezstab.show.row_kinds import ACCURACY
 from bezstab.show.rows import region_row
-from bezstab.stability import ComplexArray, Region, region
+from bezstab.stability import ComplexArray, Region
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -42,8 +42,7 @@ def map_figure(answer: MapAnswer, z: ComplexArray) -> Figure:
     )
     if question.motion:
         return accuracy_map_figure(shown, float(question.motion.omega_h), answer.errors(z), answer.drawn_levels)
-    faster = [region(answer.method, level) for level in answer.drawn_levels]
-    return region_figure(shown, faster, answer.moving, question.alpha_beta, question.scene_name)
+    return region_figure(shown, answer.faster, answer.moving, question.alpha_beta, question.scene_name)
 
 
 def map_table(answer: MapAnswer, z: ComplexArray) -> Arrays:

@@ -86,15 +86,12 @@ def formula_row(method: Method, latex: bool = False) -> Row:
     method's own.
     """
     from bezstab.methods import (  # loads sympy
-        accuracy,
         characteristic_text,
-        leading_error,
         mapping_text,
         recursion_text,
         steady_error_text,
     )
-
-    order, _ = accuracy(method)
+    from bezstab.stability import order_left
 
     return {
         "method": method.name,
@@ -103,7 +100,7 @@ def formula_row(method: Method, latex: bool = False) -> Row:
         "characteristic_polynomial": characteristic_text(method, latex),
         "steady_error": steady_error_text(method, "x", latex),
         "steady_velocity_error": steady_error_text(method, "v", latex),
-        "order_left": min(order, leading_error(method).order_left),
+        "order_left": order_left(method),
     }
 
 

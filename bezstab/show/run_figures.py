@@ -1,29 +1,25 @@
-"""Figures of simulations: a scene, the history of a run, and what accuracy costs."""
+"""Figures of simulations: the history of a run, and what accuracy costs."""
 
 from collections.abc import Callable
 from itertools import product
-from textwrap import fill
 from typing import Any
 
-import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 from bezstab.evidence import ErrorOf, SweptRuns
-from bezstab.mechanism import Scene, Simulation
+from bezstab.mechanism import Simulation
 from bezstab.show import plot
 from bezstab.show.style import (
-    TITLE_WIDTH,
     column_figure,
-    hollow_line_at,
     legend_below,
     line_at,
-    mark_powers,
+    marked_line_at,
+    new_axes,
     styled,
     title_lines,
 )
-from bezstab.stability import FloatArray
 
 TREATMENTS: dict[tuple[str, bool], tuple[str, dict[str, Any]]] = {
     ("baumgarte", True): ("feedback, advised", {"marker": "o", "markerfacecolor": "none"}),
@@ -35,21 +31,6 @@ TREATMENTS: dict[tuple[str, bool], tuple[str, dict[str, Any]]] = {
 MARKER = {"markersize": 3.5, "markeredgewidth": 0.7}
 
 TIMES = 5  # intervals between the times that are written below a history: times of milliseconds have six digits
-
-
-def scene_figure(scene: Scene, q: FloatArray) -> Figure:
-    """Return a scene's bodies in a state q, each a line through the points of its joints, in m (paper Fig. 4)."""
-    with styled():
-        figure = column_figure(0.6)
-        axes = figure.add_subplot()
-        plot.mechanism(scene, q, axes)
-        axes.set(xlabel="x (m)", ylabel="y (m)", title=title_lines(scene.name))
-        low, high = np.array(axes.dataLim.min), np.array(axes.dataLim.max)
-        room_for_names = 0.12 * (high - low).max()
-        axes.update_datalim([low - room_for_names, high + room_for_names])
-        axes.autoscale_view()
-        axes.set_aspect("equal", adjustable="datalim")
-        return figure
 
 
 def history_figure(simulation: Simulation) -> Figure:
@@ -65,7 +46,7 @@ def history_figure(simulation: Simulation) -> Figure:
         "with projection" if simulation.stabilise == "projection" else point,
     ]
     if simulation.failure:
-        title.append(fill(simulation.failure, TITLE_WIDTH))
+        title.append(title_lines(simulation.failure))
     with styled():
         figure = column_figure(1.3)
         upper, middle, lower = figure.subplots(3, 1, sharex=True)
@@ -73,12 +54,9 @@ def history_figure(simulation: Simulation) -> Figure:
         plot.history(simulation, derivative=True, axes=middle)
         plot.largest_error(simulation, axes=lower)
         figure.suptitle("\n".join(title))
-        upper.set(ylabel="$c_1$ (SI)")
-        middle.set(ylabel=r"$\dot c_1$ (SI)")
-        lower.set(xlabel="t (s)", ylabel="largest $|c|$ (SI)")
-        lower.xaxis.set_major_locator(MaxNLocator(TIMES))
         for axes in (upper, middle):
-            axes.ticklabel_format(axis="y", scilimits=(-2, 3))
+            axes.label_outer()
+        lower.xaxis.set_major_locator(MaxNLocator(TIMES))
         return figure
 
 
@@ -89,13 +67,12 @@ def work_precision_figure(swept: SweptRuns, scene: str, error: ErrorOf, floor: f
     """
     runs = swept.runs
     with styled():
-        figure = column_figure(1.15)
-        axes = figure.add_subplot()
+        figure, axes = new_axes(title_lines(scene), plot.COST_LABELS[swept.against], plot.ERROR_LABELS[error], 1.15)
         known_errors = [known for run in runs if (known := run.error(error)) is not None]
         top = 10 * max(known_errors, default=1.0)
         for place, method in enumerate(dict.fromkeys(run.method for run in runs)):
             own = [run for run in runs if run.method == method]
-            plot.work_precision(own, error, floor, axes, swept.against, **hollow_line_at(place))
+            plot.work_precision(own, error, floor, axes, swept.against, **marked_line_at(place))
             failed = [run.cost(swept.against) for run in own if run.failure]
             axes.plot(failed, [top] * len(failed), "x", color=line_at(place)["color"], markersize=4)
         front = swept.constraint_front if error == "constraint" else swept.trajectory_front
@@ -105,10 +82,6 @@ def work_precision_figure(swept: SweptRuns, scene: str, error: ErrorOf, floor: f
             plot.work_precision(of_front, error, floor, axes, swept.against, label="front", **discs)
         if any(run.failure for run in runs):
             axes.plot([], [], "x", color="0.4", label="diverged")
-        axes.set(xscale="log", yscale="log", title=title_lines(scene))
-        axes.set(xlabel=plot.COST_LABELS[swept.against], ylabel=plot.ERROR_LABELS[error])
-        for axis in (axes.xaxis, axes.yaxis):
-            mark_powers(axis)
         legend_below(figure)
         return figure
 
@@ -125,17 +98,14 @@ def projection_figure(swept: SweptRuns, scene: str, floor: float) -> Figure:
     with styled():
         figure = column_figure(1.9)
         panels = figure.subplots(3, 1, sharex=True)
-        for axes, (error, label) in zip(panels, plot.ERROR_LABELS.items(), strict=True):
+        for axes, error in zip(panels, plot.ERROR_LABELS, strict=True):
             least = floor if error == "trajectory" else 0.0
             for (place, method), key in product(enumerate(methods), used):
                 own = [run for run in swept.runs if (run.method, run.stabilise, run.advised) == (method, *key)]
                 if own:
                     line = {**MARKER, **line_at(place), **TREATMENTS[key][1]}
                     plot.work_precision(own, error, least, axes, "projection", **line)
-            axes.set(xscale="log", yscale="log", ylabel=label)
-            mark_powers(axes.yaxis)
-        panels[-1].set_xlabel(plot.COST_LABELS["projection"])
-        mark_powers(panels[-1].xaxis)
+            axes.label_outer()
         figure.suptitle(title_lines(scene))
         of_methods = [Line2D([], [], label=method.name, **line_at(place)) for place, method in enumerate(methods)]
         of_treatments = [

@@ -51,7 +51,6 @@ def feedback_cost(
     the goal accurate is this package's.
     """
     order, _ = accuracy(method)
-    leading = leading_error(method)
     shares = _shares(method, alpha_hat, beta_hat, omega_h)
     least_at = _least_at(method, omega_h)
     least = _NONE if least_at is None else _shares(method, *least_at, omega_h)
@@ -60,12 +59,18 @@ def feedback_cost(
         forced_error=shares.position,
         total_error=shares.total,
         velocity_error=shares.velocity,
-        order_left=min(order, leading.order_left),
+        order_left=order_left(method),
         order=order,
         times_least=_times(shares.total, least.total),
         times_least_velocity=_times(shares.velocity, least.velocity),
         least_at=least_at,
     )
+
+
+def order_left(method: Method) -> int:
+    """Return the order in h of constraint errors where alpha_hat and beta_hat are held, at most the method's own."""
+    order, _ = accuracy(method)
+    return min(order, leading_error(method).order_left)
 
 
 @dataclass(frozen=True)

@@ -98,13 +98,5 @@ def test_the_figures_draw_the_histories(derivative: bool) -> None:
         t, drawn = np.array(line.get_xdata()), np.array(line.get_ydata())
         assert t == pytest.approx(1e3 * run.t[: t.size])
         assert np.abs(history[t.size :]).max(initial=0.0) <= VISIBLE * np.abs(history).max()  # the rest is its axis
-        in_a_band = np.isnan(drawn)
-        assert drawn[~in_a_band] == pytest.approx(history[: t.size][~in_a_band])
-        for band in axes.collections:
-            ((x_low, low), (x_high, high)) = band.get_paths()[0].get_extents().get_points()
-            inside = in_a_band & (t >= x_low) & (t <= x_high)
-            assert low <= history[: t.size][inside].min()
-            assert high >= history[: t.size][inside].max()
-            in_a_band &= ~inside
-        assert not in_a_band.any()  # each hidden time has its band
+        assert drawn == pytest.approx(history[: t.size])
         assert f"{run.alpha_hat:g}" in axes.get_title()

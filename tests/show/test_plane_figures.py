@@ -66,7 +66,7 @@ def test_the_verdict_figure_shows_cells_boundary_and_disagreement() -> None:
     lines = lines_of(axes)
     assert lines["disagree"].tolist() == [[cells.alpha_hat[3], cells.beta_hat[2]]]
     assert lines["$|z_p| = 1$"][:-1] == pytest.approx(region(method).boundary[0])
-    assert axes.get_title().splitlines()[-2:] == ["35 of 36 runs gave a verdict", "34 of them agree"]
+    assert axes.get_title().splitlines()[-2:] == ["35 of 36 runs gave a verdict,", "34 of them agree"]
 
 
 @pytest.mark.slow

@@ -11,7 +11,7 @@ from matplotlib.lines import Line2D
 from bezstab.methods import lookup
 from bezstab.show import FIGURE_FORMS
 from bezstab.show.plane_figures import comparison_figure
-from bezstab.show.style import line_at, method_marker, save
+from bezstab.show.style import marked_line_at, save, title_lines
 from bezstab.stability import region
 
 NAMES = ["rk45", "hht", "generalized-alpha", "newmark", "radau3", "B3", "B4", "AB4", "RK4@5", "SYM", "SIE", "ABM4"]
@@ -27,10 +27,8 @@ def test_methods_in_a_figure_differ_in_colour_dashes_and_marker() -> None:
     axes = comparison_figure([region(lookup(name)) for name in NAMES]).axes[0]
     looks = {(str(line.get_color()), dashes_of(line)) for line in axes.lines[: len(NAMES)]}
     assert len(looks) == len(NAMES)
-    for key in ("color", "linestyle"):  # of neighbours both
-        assert len({str(line_at(place)[key]) for place in range(6)}) == 6
-    usual = ["B2", "B3", "B4", "AB2", "AB4", "ABM4", "RK4", "SIE", "SYM"]  # tradeoff's default
-    assert len({str(method_marker(lookup(name))) for name in usual}) == len(usual)
+    for key in ("color", "linestyle", "marker", "markersize"):  # of neighbours all
+        assert len({str(marked_line_at(place)[key]) for place in range(6)}) == 6
 
 
 @pytest.mark.parametrize("form", FIGURE_FORMS)
@@ -58,3 +56,11 @@ def test_two_processes_draw_the_same_bytes() -> None:
     )
     assert first.stdout == second.stdout
     assert b"<svg" in first.stdout
+
+
+def test_a_title_breaks_at_commas_wherever_that_does() -> None:
+    assert title_lines("slider-crank with a light rod", "AB4", "h = 0.001 s") == (
+        "slider-crank with a light rod, AB4,\nh = 0.001 s"
+    )
+    words = " ".join(["word"] * 20)
+    assert [set(line.split()) for line in title_lines(words).splitlines()] == [{"word"}] * 3
