@@ -39,7 +39,6 @@ from bezstab.evidence.moving_mechanisms import (
     growth_rates,
     moving_pole,
     moving_poles,
-    tabulated_rates,
 )
 from bezstab.evidence.moving_regions import MovingRegion, moving_growth, moving_modulus, moving_region
 from bezstab.evidence.mujoco_controllers import MotorGains

@@ -29,8 +29,7 @@ from bezstab.units import feedback_gains
 
 FIRST_SHARE = 1 / 3  # of the steps in which errors stand out: there the lesser poles still count
 STANDS_OUT = 1e-7  # of the change of the coordinates: the free motion of a method has a constraint error of this size
-TOGETHER = 32  # points: fewer spend their time in Python, more do not fit a core's cache
-NUMBERS = 2**23  # of all steps of the points that are taken together: 64 MB
+NUMBERS = 2**21  # of all steps of the points that are taken together: fewer spend their time in Python, more in memory
 
 IntArray = NDArray[np.int_]
 
@@ -57,8 +56,7 @@ def gains_on(course: Course, method: Method, alpha_hat: FloatArray, beta_hat: Fl
 
 def batches(course: Course, points: int) -> Iterator[slice]:
     """Yield the points, so many at a time."""
-    of_one = course.steps * (course.rows + 4 * course.mechanism.size**2)
-    size = max(1, min(TOGETHER, NUMBERS // of_one))
+    size = max(1, NUMBERS // (course.steps * (course.rows + 4 * course.mechanism.size**2)))
     for first in range(0, points, size):
         yield slice(first, first + size)
 

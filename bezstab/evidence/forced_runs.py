@@ -196,7 +196,7 @@ def _derivative(along: Motion, power: int, h: float) -> FloatArray:
     followed = _rising((1 - np.abs(omega * h) / LARGEST_OMEGA_H) / FADED)  # beyond, derivatives are noise
     spectrum = np.fft.fft(along.a[:-1] * fading[:, np.newaxis], axis=0)
     factors = followed * (1j * omega) ** (power - 2)
-    return np.asarray(np.fft.ifft(spectrum * factors[:, np.newaxis], axis=0).real)
+    return np.fft.ifft(spectrum * factors[:, np.newaxis], axis=0).real
 
 
 def _fading(count: int) -> FloatArray:
@@ -211,7 +211,7 @@ def _rising(x: FloatArray) -> FloatArray:
     What fades so, in time and in frequency, is seen nearby only: an edge would ring through the whole of a motion.
     """
     inside = np.clip(x, 0.002, 0.998)  # from there on it is 0 and 1 to rounding
-    return np.asarray(1 / (1 + np.exp(1 / inside - 1 / (1 - inside))))
+    return 1 / (1 + np.exp(1 / inside - 1 / (1 - inside)))
 
 
 def _measured(

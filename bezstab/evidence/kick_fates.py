@@ -89,9 +89,7 @@ def follow(blocks: Iterator[tuple[FloatArray, FloatArray]], masses: FloatArray, 
         differences = np.abs(c[:, :, 0, 0] - c[:, :, 1, 0]).max(axis=1) / (2 * kick)
         window_of_step = np.arange(k, k + len(c)) // WINDOW
         for of_all, of_block in ((error, differences), (moved, _size(q, masses) / displaced)):
-            seen = np.where(still, of_block, 0.0)
-            for window in np.unique(window_of_step):
-                np.maximum(of_all[window], seen[window_of_step == window].max(axis=0), out=of_all[window])
+            np.maximum.at(of_all, window_of_step, np.where(still, of_block, 0.0))
         linear = still[-1]
         linear_steps += still.sum(axis=0)
         k += len(c)

@@ -37,7 +37,7 @@ def rates_of_kicked_revolutions(mechanism: Mechanism, method: Method, motions: O
     """
     rates = np.full(motions.rates.size, np.nan)
     there = np.flatnonzero(motions.there)
-    known = 1 + max(steps(method), states_needed(method) - 1)
+    known = 1 + steps_before_a_kick(method)
     if known > motions.steps or not there.size:
         return rates
     with np.errstate(all="ignore"):  # of runs that run into infinity
@@ -53,6 +53,11 @@ def rates_of_kicked_revolutions(mechanism: Mechanism, method: Method, motions: O
                 rates[there[point]] = _largest_multiplier(before[point], after[point]) ** (1 / motions.steps)
             before = after
     return rates
+
+
+def steps_before_a_kick(method: Method) -> int:
+    """Return how many steps of its own a run has to have taken until a method has all that it remembers."""
+    return max(steps(method), states_needed(method) - 1)
 
 
 def _in_range(differences: FloatArray) -> BoolArray:
@@ -73,7 +78,7 @@ def _differences(state: FloatArray, h: float) -> FloatArray:
     """Return the differences of runs kicked up and down, of q and h v; shape (points, 2 n, kicks)."""
     q_and_v = state.copy()
     q_and_v[len(q_and_v) // 2 :] *= h
-    return np.asarray(np.moveaxis(q_and_v[:, 0] - q_and_v[:, 1], 2, 0))
+    return np.moveaxis(q_and_v[:, 0] - q_and_v[:, 1], 2, 0)
 
 
 def _kicked_runs(

@@ -8,6 +8,7 @@ import csv
 import math
 import re
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
@@ -138,8 +139,8 @@ def _is_number_or_missing(cell: str) -> bool:
 def time_column(log: Log, chosen: str | None = None) -> int | None:
     """Return the place of the time column: the chosen one, else one that is called so; None if there is none.
 
-    In a log without names the first of several columns is taken if it rises by equal steps. InputError if the chosen
-    column is not there.
+    In a log without names the first of several columns is taken if it rises by equal steps, but for their rounding.
+    InputError if the chosen column is not there.
     """
     if chosen is not None:
         return log.number_of(chosen)
@@ -147,8 +148,10 @@ def time_column(log: Log, chosen: str | None = None) -> int | None:
         if _plain(column) in TIMES:
             return place
     unnamed = log.columns == tuple(str(k) for k in range(1, len(log.columns) + 1))
-    if unnamed and len(log.columns) > 1 and len(log.values) > 2 and _rises_evenly(log.values[:, 0]):
-        return 0
+    if unnamed and len(log.columns) > 1 and len(log.values) > 2:
+        with suppress(InputError):
+            row_step(log, 0)
+            return 0
     return None
 
 
@@ -196,12 +199,6 @@ def row_step(log: Log, time: int) -> float:
         )
     unit = re.search(r"[\[(/]\s*(\w+)", log.columns[time])
     return step * UNITS.get(unit[1], 1.0) if unit else step
-
-
-def _rises_evenly(t: FloatArray) -> bool:
-    """Return whether numbers rise by equal steps."""
-    steps = np.diff(t)
-    return bool(np.isfinite(t).all() and steps.min() > 0 and np.ptp(steps) < UNEVEN * steps.mean())
 
 
 def decimal_place(values: FloatArray) -> float:

@@ -22,24 +22,22 @@ from typing import Literal
 
 import numpy as np
 
-from bezstab.evidence.kicked_revolutions import rates_of_kicked_revolutions
+from bezstab.evidence.kicked_revolutions import rates_of_kicked_revolutions, steps_before_a_kick
 from bezstab.evidence.linear_prediction import NEGLIGIBLE, SAMPLES, SPREAD, Refusal, fit_dominant_pole
 from bezstab.evidence.moving_mechanisms import MovingVerdict, moving_poles
 from bezstab.evidence.own_motions import find_own_motions
 from bezstab.mechanism import (
-    Block,
+    How,
     Mechanism,
     constraint_errors,
     initial_state,
     march,
     perturbed_state,
-    resume,
     resume_in_groups,
     runs_compiled,
-    states_needed,
     turning_normals,
 )
-from bezstab.methods import Method, Verdict, evaluations, steps
+from bezstab.methods import Method, Verdict, evaluations
 from bezstab.rationals import exact
 from bezstab.stability import (
     ComplexArray,
@@ -330,19 +328,14 @@ def kicked_motions(
     gains = feedback_gains(alpha_hat, beta_hat, h)
     q, v = initial_state(mechanism)
     start = np.repeat(np.concatenate([q, v])[:, np.newaxis], alpha_hat.size, axis=1)
-    before = march(mechanism, method, h_step, gains, start, "rk4", _steps_before_the_kick(method))
+    before = march(mechanism, method, h_step, gains, start, "rk4", steps_before_a_kick(method))
     history = [start, *(state for block in before for state in block.states)]
     undisturbed = history[-1]
     displaced = perturbed_state(mechanism, 1.0)[0] - q  # linear in the constraint error
     direction = np.concatenate([displaced, np.zeros_like(v)])
     amounts = np.multiply.outer([1.0, -1.0], kicks)[..., np.newaxis]
     kicked = history[-1] = undisturbed[:, np.newaxis, np.newaxis] + np.multiply.outer(direction, amounts)
-    given = (mechanism, method, h_step, gains, history)
-    groups: Iterable[tuple[slice, Iterator[Block]]]
-    if compiled:
-        groups = resume_in_groups(*given, undisturbed, count)
-    else:
-        groups = [(slice(None), resume(*given, count, undisturbed=undisturbed))]
+    groups = resume_in_groups(mechanism, method, h_step, gains, history, count, How(compiled), undisturbed)
 
     def seen(states_in_blocks: Iterable[FloatArray]) -> Iterator[tuple[FloatArray, FloatArray]]:
         k = len(history) - 1
@@ -364,7 +357,3 @@ def nothing_happens_without_feedback(mechanism: Mechanism, method: Method, h: fl
         ((_, drifting),) = kicked_motions(mechanism, method, h, none, none, [0.0], AT_ONCE)
         largest = max(float(np.abs(c).max()) for c, _ in drifting)
     return largest < CALM  # not so where it is not a number
-
-
-def _steps_before_the_kick(method: Method) -> int:
-    return max(steps(method), states_needed(method) - 1)

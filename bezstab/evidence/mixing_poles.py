@@ -62,24 +62,24 @@ class NearestPoles:
     def reach(self, turned: float) -> FloatArray:
         """Return the modulus that neither of each pair exceeds; turned: kappa h of the method's own step."""
         common = turned * self.common
-        return np.asarray(self.middle + common + np.sqrt(common**2 + self.gap**2 / 4 + turned * self.splitting))
+        return self.middle + common + np.sqrt(common**2 + self.gap**2 / 4 + turned * self.splitting)
 
     def left_out(self, turned: float) -> FloatArray:
         """Return the terms of second order in ln|z| that `reach` leaves out: squares of what the pair moves by."""
         reach = self.reach(turned)
         with np.errstate(divide="ignore", invalid="ignore"):
-            return np.asarray((reach - self.middle) ** 2 / reach)
+            return (reach - self.middle) ** 2 / reach
 
     def mixing_from(self) -> FloatArray:
         """Return the kappa h from which on each pole mixes."""
         with np.errstate(divide="ignore", invalid="ignore"):
-            return np.asarray(self.room / np.abs(self.shift))
+            return self.room / np.abs(self.shift)
 
     def reaching_one_at(self) -> FloatArray:
         """Return the kappa h at which the reach of each pair is one; not positive where it is beyond at rest."""
         left = 1 - self.middle
         with np.errstate(divide="ignore", invalid="ignore"):
-            return np.asarray((left**2 - self.gap**2 / 4) / (2 * left * self.common + self.splitting))
+            return (left**2 - self.gap**2 / 4) / (2 * left * self.common + self.splitting)
 
 
 def nearest_poles(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray) -> NearestPoles:
@@ -115,7 +115,7 @@ def nearest_poles(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray) -
 
 
 def _may_lead(z: ComplexArray) -> BoolArray:
-    return np.asarray(np.abs(z) >= SLOWEST * np.abs(z[:, :1]))
+    return np.abs(z) >= SLOWEST * np.abs(z[:, :1])
 
 
 def _gaps(z: ComplexArray) -> FloatArray:

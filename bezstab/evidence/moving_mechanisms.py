@@ -68,21 +68,14 @@ class MovingPole:
         return "converges" if self.z_abs_moving < 1 else "diverges"
 
 
-def growth_rates(turning: TurningNormals, chi: ArrayLike) -> FloatArray:
-    """Return Lambda (1/s), shape of chi: how fast Y' = chi K(t) Y grows over the motion.
+def growth_rates(turning: TurningNormals, chi: ArrayLike) -> tuple[FloatArray, FloatArray]:
+    """Return Lambda (1/s), how fast Y' = chi K(t) Y grows over the motion, and what of it is sure; shape of chi each.
 
-    Over a revolution: of the spectral radius of Y. Over a run, which has no such thing: of Y's norm, errors measured by
-    the displacement they stand for. Runge and Kutta's rule for linear equations, K at every second sample in the
-    middle of a step. From |chi| = LARGEST_CHI on it is taken to grow in proportion.
-    """
-    rates, _ = growth_rates_and_sure_ones(turning, chi)
-    return rates
-
-
-def growth_rates_and_sure_ones(turning: TurningNormals, chi: ArrayLike) -> tuple[FloatArray, FloatArray]:
-    """Return the same, and what of it is sure: over a run the lesser of it and of the growth of errors as they are.
-
-    What an error stands for changes over a run: measured by it even an error that stays as it is may seem to grow.
+    Over a revolution: of the spectral radius of Y, all of it sure. Over a run, which has no such thing: of Y's norm,
+    errors measured by the displacement they stand for. That changes over a run, and even an error that stays as it is
+    may seem to grow; sure is the lesser of it and of the growth of errors as they are. Runge and Kutta's rule for
+    linear equations, K at every second sample in the middle of a step. From |chi| = LARGEST_CHI on both are taken to
+    grow in proportion.
     """
     chi = np.asarray(chi, complex)
     parts = np.array_split(chi.ravel(), chi.size // AT_A_TIME + 1)
@@ -113,7 +106,7 @@ def _growth_rates_of_row(turning: TurningNormals, chi: ComplexArray) -> FloatArr
         before, after = (np.linalg.cholesky(metric) for metric in turning.metric)
         multiplied = np.linalg.norm(np.linalg.solve(after, grown @ before), ord=2, axis=(-2, -1))
         sure = np.minimum(multiplied, np.linalg.norm(grown, ord=2, axis=(-2, -1)))
-    return np.asarray(beyond * (np.log([multiplied, sure]) + log_scale) / turning.duration)
+    return beyond * (np.log([multiplied, sure]) + log_scale) / turning.duration
 
 
 def _step_polynomials(turning: TurningNormals) -> FloatArray:
@@ -172,27 +165,27 @@ class _GrowthTable:
         rows, columns = np.nonzero(wanted & np.isnan(self.rates))
         if rows.size:
             chi = self.radii[rows] * np.exp(1j * self.angles[columns])
-            self.rates[rows, columns] = growth_rates(self.turning, chi)
-        return np.asarray(self.rates[i, k])
+            self.rates[rows, columns], _ = growth_rates(self.turning, chi)
+        return self.rates[i, k]
 
 
 _growth_table = cache(_GrowthTable)
 
 
-def momentary_rates(turning: TurningNormals, chi: ArrayLike) -> FloatArray:
+def momentary_rates(turning: TurningNormals, chi: ComplexArray) -> FloatArray:
     """Return the largest growth rate for a moment: of chi times an eigenvalue of K(t) along the motion (1/s).
 
     float64, shape of chi, which has no unit. To first order in K, for each moment by itself (evidence/README.md).
     """
     eigenvalues = np.linalg.eigvals(turning.rates).ravel()
-    return np.asarray((np.multiply.outer(np.asarray(chi, complex), eigenvalues)).real.max(axis=-1))
+    return np.asarray(np.multiply.outer(chi, eigenvalues).real.max(axis=-1))
 
 
 @dataclass(frozen=True, eq=False)
 class Law:
     """What the first-order law makes of the poles at a row of points; of shape (points, poles), the dominant one first.
 
-    `at_rest` is ln|z| a step, `growth` h Lambda of each pole and `sure` what of it is sure (`growth_rates_and_sure`),
+    `at_rest` is ln|z| a step, `growth` h Lambda of each pole and `sure` what of it is sure (`growth_rates`),
     minus infinity of a pole that does not count: too small ever to lead, or the conjugate of one that counts. `mixing`
     are those that the law moves too near to their neighbours, or to no finite place; these come as far as their `reach`
     (`mixing_poles`), whatever the law says. `turned` is kappa h of the method's own step.
@@ -216,7 +209,7 @@ class Law:
     def furthest(self) -> FloatArray:
         """The same of poles that do not mix, and of those that do what they reach."""
         with np.errstate(divide="ignore", invalid="ignore"):
-            return np.asarray(np.where(self.mixing, np.log(self.nearest.reach(self.turned)), self.moving))
+            return np.where(self.mixing, np.log(self.nearest.reach(self.turned)), self.moving)
 
     @property
     def rate(self) -> FloatArray:
@@ -268,7 +261,7 @@ def first_order_law(
         matters = known & (np.abs(at_rest) < np.abs(np.where(known, chi, 0)) * turning.largest_norm * step)
         growth[matters] = step * tabulated_rates(turning, chi[matters])
     else:
-        growth[known], sure[known] = step * np.array(growth_rates_and_sure_ones(turning, chi[known]))
+        growth[known], sure[known] = step * np.array(growth_rates(turning, chi[known]))
     return Law(nearest, turned, at_rest, chi, known, mixing, growth, sure)
 
 

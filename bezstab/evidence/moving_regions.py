@@ -58,21 +58,13 @@ class MovingRegion(ReadOnlyArrays):
 
 def moving_growth(
     method: Method, turning: TurningNormals, h: float, alpha_hat: FloatArray, beta_hat: FloatArray
-) -> FloatArray:
-    """Return ln|z| a step over the motion, of the pole that grows most; shape of alpha_hat and beta_hat broadcast.
-
-    h in s, the rest dimensionless. Where a pole at rest is so far from one that no motion of this kappa could matter
-    its value is that at rest. To first order in kappa h (evidence/README.md). NumericalError where a pole leaves the
-    range of float64.
-    """
-    rates, _ = _rates_and_doubles(method, turning, h, alpha_hat, beta_hat)
-    return rates
-
-
-def _rates_and_doubles(
-    method: Method, turning: TurningNormals, h: float, alpha_hat: FloatArray, beta_hat: FloatArray
 ) -> tuple[FloatArray, BoolArray]:
-    """Return the same, and where two poles mix so that the law does not hold (`Law.double`)."""
+    """Return ln|z| a step over the motion of the pole that grows most, and where two poles mix (`Law.double`).
+
+    Both have the shape of alpha_hat and beta_hat broadcast; h in s, the rest dimensionless. Where a pole at rest is so
+    far from one that no motion of this kappa could matter its value is that at rest. To first order in kappa h
+    (evidence/README.md). NumericalError where a pole leaves the range of float64.
+    """
     alpha_hat, beta_hat = np.broadcast_arrays(alpha_hat, beta_hat)
     rates, doubles = np.empty(alpha_hat.size), np.empty(alpha_hat.size, bool)
     for first in range(0, alpha_hat.size, AT_A_TIME):
@@ -90,7 +82,8 @@ def moving_modulus(method: Method, turning: TurningNormals, h: float) -> Modulus
     """
 
     def modulus(alpha_hat: FloatArray, beta_hat: FloatArray) -> FloatArray:
-        return np.exp(np.minimum(moving_growth(method, turning, h, alpha_hat, beta_hat), HOPELESS))
+        growth, _ = moving_growth(method, turning, h, alpha_hat, beta_hat)
+        return np.exp(np.minimum(growth, HOPELESS))
 
     return modulus
 
@@ -108,7 +101,7 @@ def moving_region(method: Method, turning: TurningNormals, h: float, points: int
     lengths = _stable_lengths(method, turning, h, np.linspace(alpha_low, alpha_high, SAMPLES), lines)
     alpha_hat = np.linspace(alpha_low, alpha_high, points)
     beta_hat = np.linspace(beta_low, beta_high, points)
-    growth, excluded = _rates_and_doubles(method, turning, h, alpha_hat, beta_hat[:, np.newaxis])
+    growth, excluded = moving_growth(method, turning, h, alpha_hat, beta_hat[:, np.newaxis])
     return MovingRegion(
         method=method,
         h=h,
@@ -126,8 +119,8 @@ def _stable_lengths(
     """Return the length that decays on each line of constant beta_hat, between changes that are bisected."""
 
     def decays(alpha_hat: FloatArray, beta_hat: FloatArray) -> BoolArray:
-        decaying: BoolArray = moving_growth(method, turning, h, alpha_hat, beta_hat) < 0
-        return decaying
+        growth, _ = moving_growth(method, turning, h, alpha_hat, beta_hat)
+        return growth < 0
 
     held = decays(samples, lines[:, np.newaxis])
     row, step = np.nonzero(held[:, 1:] != held[:, :-1])

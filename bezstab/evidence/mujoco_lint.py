@@ -222,19 +222,15 @@ class _Plant:
     def inertia_along(self, direction: FloatArray) -> Fraction:
         """Return the inertia along a direction u with all else free, 1 / (u M^-1 u'), to DIGITS."""
         basis, _ = self.damping_modes
-        moved = np.flatnonzero(direction)  # one or a few of thousands
-        inertia = 1 / float(np.sum((direction[moved] @ basis[moved]) ** 2))
+        inertia = 1 / float(np.sum((direction @ basis) ** 2))
         return exact(float(f"{inertia:.{DIGITS}g}"))
 
 
 def _springs_and_dampers(model: ModelData, feedbacks: Sequence[Feedback]) -> tuple[FloatArray, FloatArray]:
     """Return the stiffness and the damping matrix of feedbacks; shape (dofs, dofs) each, SI."""
-    stiffness, damping = np.zeros_like(model.mass), np.zeros_like(model.mass)
-    for each in feedbacks:
-        moved = np.flatnonzero(each.direction)
-        squared = np.outer(each.direction[moved], each.direction[moved])
-        stiffness[np.ix_(moved, moved)] += each.stiffness * squared
-        damping[np.ix_(moved, moved)] += each.damping * squared
+    directions = np.array([each.direction for each in feedbacks]).reshape(-1, len(model.mass))
+    stiffness = directions.T * [each.stiffness for each in feedbacks] @ directions
+    damping = directions.T * [each.damping for each in feedbacks] @ directions
     return stiffness, damping
 
 
@@ -402,8 +398,7 @@ def _shares(plant: _Plant, constraint: Constraint) -> Shares:
         alone = constraint.kind == "joint limit"
         return lambda impedance, h: np.tile([impedance, impedance if alone else 1.0], (len(h), 1))
     basis, all_rates = plant.damping_modes
-    touched = np.flatnonzero(jacobian.any(axis=0))
-    moved = jacobian[:, touched] @ basis[touched]
+    moved = jacobian @ basis
     moving = moved.any(axis=0)
     moved, rates = moved[:, moving], all_rates[moving]
 
@@ -624,8 +619,14 @@ def _linted_together(plant: _Plant, constraints: Sequence[Constraint], controlle
     dofs = len(plant.model.mass)
     if dofs > MOST_DOFS:
         return _not_judged("all at qpos0", "together", f"{dofs} degrees of freedom, at most {MOST_DOFS}")
-    together = _Together(plant, constraints, controlled)
-    modulus = cache(together.modulus)
+    pulls = [_pulls(plant, each, each.solref) for each in constraints]
+    # with the equalities' impedances at the constraint, or past solimp's width, whichever is worse
+    choices = {tuple(of_each[which] for of_each in pulls) for which in (0, -1)}
+
+    @cache
+    def modulus(factor: float) -> float:
+        held_so = (list(zip(constraints, choice, strict=True)) for choice in choices)
+        return max(_modulus(plant, held, controlled, factor) for held in held_so)
 
     def unstable(factors: FloatArray) -> BoolArray:
         return np.array([modulus(factor) > 1 + ROUNDING for factor in factors.tolist()])
@@ -647,70 +648,59 @@ def _linted_together(plant: _Plant, constraints: Sequence[Constraint], controlle
     )
 
 
-@dataclass(frozen=True)
-class _Together:
-    """All equalities, springs, dampers, drives and motors of a model, as they are connected."""
+Held = Sequence[tuple[Constraint, _Pull]]
+"""Equalities, each with what it does with one impedance."""
 
-    plant: _Plant
-    constraints: Sequence[Constraint]
-    controlled: Sequence[Controlled]
 
-    def modulus(self, factor: float) -> float:
-        """Return the largest |z| of a step, so many times the model's; 0 where nothing holds.
+def _modulus(plant: _Plant, held: Held, controlled: Sequence[Controlled], factor: float) -> float:
+    """Return the largest |z| of a step of all that holds, so many times the model's; 0 where nothing holds."""
+    step, forces = _step(plant, held, controlled, factor)
+    every = 1
+    if controlled:
+        every = controlled[0].timing.every
+        step = lifted_step(step, forces, controlled, factor * plant.model.h)
+    z = np.linalg.eigvals(step)
+    moduli = np.abs(z[np.abs(z - 1) > FREE]) ** (1 / every)
+    return float(moduli.max(initial=0.0))
 
-        With the equalities' impedances at the constraint, or past solimp's width, whichever is worse.
-        """
-        pulls = [_pulls(self.plant, each, each.solref) for each in self.constraints]
-        choices = {tuple(of_each[which] for of_each in pulls) for which in (0, -1)}
-        return max(self._modulus_with(choice, factor) for choice in choices)
 
-    def _modulus_with(self, pulls: Sequence[_Pull], factor: float) -> float:
-        step, forces = self._step(pulls, factor)
-        every = 1
-        if self.controlled:
-            every = self.controlled[0].timing.every
-            step = lifted_step(step, forces, self.controlled, factor * self.plant.model.h)
-        z = np.linalg.eigvals(step)
-        held = np.abs(z[np.abs(z - 1) > FREE]) ** (1 / every)
-        return float(held.max(initial=0.0))
+def _step(plant: _Plant, held: Held, controlled: Sequence[Controlled], factor: float) -> tuple[FloatArray, FloatArray]:
+    """Return the matrices of one step: of (x, h v), shape (2 dofs, 2 dofs), and of motors' forces."""
+    model = plant.model
+    basis, rates = plant.damping_modes
+    h, dofs, motors = factor * model.h, len(model.mass), len(controlled)
+    inverse = basis @ basis.T  # of the mass
+    arms = np.array([each.motor.direction for each in controlled]).reshape(motors, dofs)
+    stiffness, damping = _springs_and_dampers(model, model.feedbacks)
+    acceleration = inverse @ np.hstack([-stiffness, -damping, arms.T])  # by positions, velocities and forces
+    if held:
+        jacobian, softening, wanted = _constrained(held, factor, h)
+        missing = np.hstack([wanted, np.zeros((len(jacobian), motors))]) - jacobian @ acceleration
+        forces = np.linalg.solve(jacobian @ inverse @ jacobian.T + np.diag(softening), missing)
+        acceleration = acceleration + inverse @ jacobian.T @ forces
+    slower = (basis / (1 + h * rates)) @ basis.T @ model.mass  # what implicit damping leaves of it
+    in_steps = np.repeat([h * h, h, h * h], [dofs, dofs, motors])  # velocities are in units of 1/h
+    whole = np.eye(2 * dofs + motors)
+    change = np.zeros_like(whole)
+    change[dofs : 2 * dofs] = slower @ acceleration * in_steps
+    if model.integrator == "RK4":
+        change[:dofs, dofs : 2 * dofs] = np.eye(dofs)
+        for part in (4, 3, 2, 1):
+            whole = np.eye(len(whole)) + change / part @ whole
+    else:  # the velocity first, then the position with it
+        whole += change
+        whole[:dofs] += whole[dofs : 2 * dofs]
+    return whole[: 2 * dofs, : 2 * dofs], whole[: 2 * dofs, 2 * dofs :]
 
-    def _step(self, pulls: Sequence[_Pull], factor: float) -> tuple[FloatArray, FloatArray]:
-        """Return the matrices of one step: of (x, h v), shape (2 dofs, 2 dofs), and of motors' forces."""
-        model = self.plant.model
-        basis, rates = self.plant.damping_modes
-        h, dofs, motors = factor * model.h, len(model.mass), len(self.controlled)
-        inverse = basis @ basis.T  # of the mass
-        arms = np.array([each.motor.direction for each in self.controlled]).reshape(motors, dofs)
-        stiffness, damping = _springs_and_dampers(model, model.feedbacks)
-        acceleration = inverse @ np.hstack([-stiffness, -damping, arms.T])  # by positions, velocities and forces
-        if self.constraints:
-            jacobian, softening, wanted = self._constrained(pulls, factor)
-            missing = np.hstack([wanted, np.zeros((len(jacobian), motors))]) - jacobian @ acceleration
-            forces = np.linalg.solve(jacobian @ inverse @ jacobian.T + np.diag(softening), missing)
-            acceleration = acceleration + inverse @ jacobian.T @ forces
-        slower = (basis / (1 + h * rates)) @ basis.T @ model.mass  # what implicit damping leaves of it
-        in_steps = np.repeat([h * h, h, h * h], [dofs, dofs, motors])  # velocities are in units of 1/h
-        whole = np.eye(2 * dofs + motors)
-        change = np.zeros_like(whole)
-        change[dofs : 2 * dofs] = slower @ acceleration * in_steps
-        if model.integrator == "RK4":
-            change[:dofs, dofs : 2 * dofs] = np.eye(dofs)
-            for part in (4, 3, 2, 1):
-                whole = np.eye(len(whole)) + change / part @ whole
-        else:  # the velocity first, then the position with it
-            whole += change
-            whole[:dofs] += whole[dofs : 2 * dofs]
-        return whole[: 2 * dofs, : 2 * dofs], whole[: 2 * dofs, 2 * dofs :]
 
-    def _constrained(self, pulls: Sequence[_Pull], factor: float) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return J and R of the constraints' rows, and the acceleration that positions and velocities ask of them."""
-        h = factor * self.plant.model.h
-        jacobians, softenings, wanted = [], [], []
-        for constraint, pull in zip(self.constraints, pulls, strict=True):
-            assert constraint.jacobian is not None
-            assert constraint.diagonal is not None
-            alpha_hat, beta_hat = map(float, pull.at(exact(factor)))
-            jacobians.append(constraint.jacobian)
-            softenings.append(_softening(constraint.diagonal, pull.impedance))
-            wanted.append(-np.hstack([beta_hat / h**2 * constraint.jacobian, alpha_hat / h * constraint.jacobian]))
-        return np.vstack(jacobians), np.concatenate(softenings), np.vstack(wanted)
+def _constrained(held: Held, factor: float, h: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return J and R of the constraints' rows, and the acceleration that positions and velocities ask of them."""
+    jacobians, softenings, wanted = [], [], []
+    for constraint, pull in held:
+        assert constraint.jacobian is not None
+        assert constraint.diagonal is not None
+        alpha_hat, beta_hat = map(float, pull.at(exact(factor)))
+        jacobians.append(constraint.jacobian)
+        softenings.append(_softening(constraint.diagonal, pull.impedance))
+        wanted.append(-np.hstack([beta_hat / h**2 * constraint.jacobian, alpha_hat / h * constraint.jacobian]))
+    return np.vstack(jacobians), np.concatenate(softenings), np.vstack(wanted)

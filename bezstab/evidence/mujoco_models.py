@@ -232,16 +232,10 @@ class _Loaded:
 
 def _constraints(loaded: _Loaded) -> Iterator[Constraint]:
     """Yield every constraint that the model can have, those whose kind is switched off left out."""
-    if not loaded.has("CONSTRAINT"):
-        return
-    if loaded.has("EQUALITY"):
-        yield from _equalities(loaded)
-    if loaded.has("LIMIT"):
-        yield from _limits(loaded)
-    if loaded.has("FRICTIONLOSS"):
-        yield from _friction_losses(loaded)
-    if loaded.has("CONTACT"):
-        yield from _contacts(loaded)
+    kinds = {"EQUALITY": _equalities, "LIMIT": _limits, "FRICTIONLOSS": _friction_losses, "CONTACT": _contacts}
+    for flag, of_kind in kinds.items():
+        if loaded.has("CONSTRAINT") and loaded.has(flag):
+            yield from of_kind(loaded)
 
 
 def _solref(values: FloatArray) -> tuple[float, float]:
@@ -394,21 +388,15 @@ def _mixed(model: Any, one: int, other: int) -> tuple[FloatArray, FloatArray]:
 def _passive(loaded: _Loaded) -> Iterator[Feedback]:
     """Yield the springs and dampers of joints and tendons."""
     model = loaded.model
-    springs, dampers = loaded.has("SPRING"), loaded.has("DAMPER")
-    for dof in range(model.nv):
-        joint = model.dof_jntid[dof]
-        stiffness, damping = springs * float(model.jnt_stiffness[joint]), dampers * float(model.dof_damping[dof])
-        if stiffness or damping:
-            element = loaded.named("joint", joint)
-            yield Feedback(element, "joint", loaded.joints[dof], stiffness, damping, euler_implicit=True)
-    for tendon, direction in enumerate(loaded.tendons):
-        stiffness, damping = (
-            springs * float(model.tendon_stiffness[tendon]),
-            dampers * float(model.tendon_damping[tendon]),
-        )
-        if stiffness or damping:
-            element = loaded.named("tendon", tendon)
-            yield Feedback(element, "tendon", direction, stiffness, damping, euler_implicit=False)
+    joints, tendons = model.dof_jntid, range(model.ntendon)
+    of_joints = joints, loaded.joints, model.jnt_stiffness[joints], model.dof_damping
+    of_tendons = tendons, loaded.tendons, model.tendon_stiffness, model.tendon_damping
+    for kind, columns in (("joint", of_joints), ("tendon", of_tendons)):
+        for number, direction, spring, damper in zip(*columns, strict=True):
+            stiffness, damping = loaded.has("SPRING") * float(spring), loaded.has("DAMPER") * float(damper)
+            if stiffness or damping:
+                element = loaded.named(kind, number)
+                yield Feedback(element, kind, direction, stiffness, damping, euler_implicit=kind == "joint")
 
 
 def _actuators(loaded: _Loaded) -> Iterator[Feedback | Motor | Unjudged]:

@@ -47,7 +47,7 @@ not known to so much errors are no longer normal, and nobody is helped."""
 class NoisyPole:
     """A pole in the closed upper half plane, per sample, and how far off it may be in the plane: STANDARD_ERRORS."""
 
-    z: complex
+    pole: complex
     uncertainty: float
 
 
@@ -156,7 +156,7 @@ def _visible_poles(chosen: "_Sum", richer: "Sequence[_Sum]") -> tuple[NoisyPole,
         # By Cornish and Fisher's expansion as many of the errors of fewer samples are less.
         factor = STANDARD_ERRORS * (1 + (STANDARD_ERRORS**2 + 1) / (4 * chosen.freedom))
         found.append(NoisyPole(complex(z), factor * float(error) + TIMES_FARTHEST * max(shifts, default=0.0)))
-    return tuple(sorted(found, key=lambda pole: -abs(pole.z)))
+    return tuple(sorted(found, key=lambda each: -abs(each.pole)))
 
 
 @dataclass(frozen=True)
@@ -256,7 +256,7 @@ def _signal_vectors(samples: FloatArray) -> FloatArray:
     """Return the singular vectors of the Hankel matrices of samples, those of the largest values first."""
     rows = len(samples) // 2
     hankel = np.concatenate([sliding_window_view(column, len(samples) - rows + 1).T for column in samples.T], axis=1)
-    return np.asarray(np.linalg.svd(hankel.T, full_matrices=False)[2].T)
+    return np.linalg.svd(hankel.T, full_matrices=False)[2].T
 
 
 def _shifting_poles(vectors: FloatArray) -> ComplexArray:

@@ -29,7 +29,7 @@ from bezstab.errors import InputError, NumericalError
 from bezstab.evidence.linear_prediction import NEGLIGIBLE, SAMPLES, SPREAD, Fit, Refusal, fit_dominant_pole
 from bezstab.evidence.logs import UNEVEN, decimal_place
 from bezstab.evidence.measured_poles import CLOSE, GROWN
-from bezstab.evidence.noisy_prediction import ITERATIONS, RESOLVED, VISIBLE, NoisyFit, fit_in_noise
+from bezstab.evidence.noisy_prediction import ITERATIONS, RESOLVED, VISIBLE, NoisyFit, NoisyPole, fit_in_noise
 from bezstab.methods import Method, closed_loop_at, closed_loop_table
 from bezstab.stability import EPS, ComplexArray, FloatArray, poles, region, spectral_radius, turning_sensitivity, window
 
@@ -179,21 +179,30 @@ def probed_pole(c: ArrayLike, minus: ArrayLike | None = None, differenced: bool 
     (`fit_dominant_pole`); where noise covers the samples, nonlinear least squares (`fit_in_noise`).
     """
     samples, rounding, cut = _usable_response(c, minus)
+    too_little = _too_little(samples, rounding)
+    if too_little:
+        found = _refused(len(samples), too_little)
+    else:
+        found = _fitted(samples, rounding, differenced or minus is not None)
+    return replace(found, reason=_joined(found.reason, cut))
+
+
+def _too_little(samples: FloatArray, rounding: float) -> str:
+    """Return why responses, shape (samples, responses), are too few or too coarse; nothing where they are not."""
     if len(samples) < FEWEST:
-        return _refused(len(samples), f"{len(samples)} samples: at least {FEWEST} are needed", cut)
+        return f"{len(samples)} samples: at least {FEWEST} are needed"
     largest = float(np.nanmax(np.abs(samples)))
     if largest == 0 or not np.ptp(samples, axis=0).any():
-        return _refused(len(samples), "nothing changes", cut)
+        return "nothing changes"
     answering = int((np.abs(samples) > 0).any(axis=1).sum())
     if answering < FEWEST // 2:
-        return _refused(len(samples), f"the error is gone after {answering} rows: too soon for a pole to be told", cut)
+        return f"the error is gone after {answering} rows: too soon for a pole to be told"
     if rounding > NEGLIGIBLE * largest:
-        coarse = f"rounded to {rounding:.3g}, which is more than {NEGLIGIBLE:g} of the largest, {largest:.3g}"
-        return _refused(len(samples), coarse, cut)
-    return _fitted(samples, rounding, differenced or minus is not None, cut)
+        return f"rounded to {rounding:.3g}, which is more than {NEGLIGIBLE:g} of the largest, {largest:.3g}"
+    return ""
 
 
-def _fitted(samples: FloatArray, rounding: float, of_two_runs: bool, cut: str) -> ProbedPole:
+def _fitted(samples: FloatArray, rounding: float, of_two_runs: bool) -> ProbedPole:
     """Return the pole in responses, shape (samples, responses), or in their differences if that is what is forced.
 
     What a motion forces changes slowly from row to row: differences take it off, all but what poles answer themselves.
@@ -205,42 +214,41 @@ def _fitted(samples: FloatArray, rounding: float, of_two_runs: bool, cut: str) -
         fit = fit_dominant_pole(changes, ORDER, limits=_linear_limits(changes), floor=floor)
         fits.append(fit)
         if isinstance(fit, Fit) and not _on_the_circle(fit) and (of_two_runs or _is_not_forced(fit, changes)):
-            return _claimed(fit, len(samples), _joined(DIFFERENCED if times else "", cut))
+            return _claimed(fit, len(samples), DIFFERENCED if times else "")
         changes, floor = np.diff(changes, axis=0), 2 * floor  # each of two roundings adds to that of a difference
     as_given, of_changes = fits[0], fits[1]
     if isinstance(as_given, Fit) and of_two_runs:  # or it had been claimed
-        return _claimed(as_given, len(samples), _joined(ON_THE_CIRCLE, cut))
+        return _claimed(as_given, len(samples), ON_THE_CIRCLE)
     if isinstance(as_given, Fit) and isinstance(of_changes, Fit) and _is_slow_pole(as_given, of_changes, samples):
         # Only as far as differences, which are forced less, show the same pole, is it known to be none that is forced.
         uncertainty = max(as_given.uncertainty, abs(as_given.pole - of_changes.pole) + of_changes.uncertainty)
-        return _claimed(replace(as_given, uncertainty=uncertainty), len(samples), _joined(SLOWLY, cut))
+        return _claimed(replace(as_given, uncertainty=uncertainty), len(samples), SLOWLY)
     leaves_the_linear_range = len(_linear_limits(samples)) > 1  # then what is left over is no noise, but looks like it
     covered = None if leaves_the_linear_range else fit_in_noise(samples, ORDER)
     if covered is not None:
-        return _told_in_noise(covered, len(samples), of_two_runs, cut)
+        return _told_in_noise(covered, len(samples), of_two_runs)
     if isinstance(as_given, Refusal):
-        return _refused(len(samples), as_given.reason, cut)
-    return _refused(len(samples), ON_THE_CIRCLE if _on_the_circle(as_given) else FORCED, cut)
+        return _refused(len(samples), as_given.reason)
+    return _refused(len(samples), ON_THE_CIRCLE if _on_the_circle(as_given) else FORCED)
 
 
-def _told_in_noise(fit: NoisyFit, rows: int, of_two_runs: bool, cut: str) -> ProbedPole:
+def _told_in_noise(fit: NoisyFit, rows: int, of_two_runs: bool) -> ProbedPole:
     """Return the pole that stands out of noise, or that none does.
 
     In one run a pole near 1 is what the motion forces, and one on the circle may be.
     """
     noise = ", ".join(f"{level:.2g}" for level in fit.noise)
-    poles = [pole for pole in fit.poles if of_two_runs or abs(pole.z - 1) > RESOLVED]
+    poles = [each for each in fit.poles if of_two_runs or abs(each.pole - 1) > RESOLVED]
     if not poles:
-        return _refused(rows, (FORCED_IN_NOISE if fit.poles else ALL_NOISE).format(noise), cut)
+        return _refused(rows, (FORCED_IN_NOISE if fit.poles else ALL_NOISE).format(noise))
     dominant = poles[0]
     if dominant.uncertainty > RESOLVED:
-        return _refused(rows, HIDDEN_IN_NOISE.format(noise, dominant.z, dominant.uncertainty), cut)
-    on_the_circle = abs(abs(dominant.z) - 1) < max(CLOSE, dominant.uncertainty)
-    if on_the_circle and not of_two_runs:
-        return _refused(rows, ON_THE_CIRCLE, cut)
-    reason = _joined(IN_NOISE.format(noise), ON_THE_CIRCLE if on_the_circle else "", cut)
-    told = tuple(pole.z for pole in poles)
-    return ProbedPole(dominant.z, dominant.uncertainty, fit.samples, rows, told, reason)
+        return _refused(rows, HIDDEN_IN_NOISE.format(noise, dominant.pole, dominant.uncertainty))
+    if _on_the_circle(dominant) and not of_two_runs:
+        return _refused(rows, ON_THE_CIRCLE)
+    reason = _joined(IN_NOISE.format(noise), ON_THE_CIRCLE if _on_the_circle(dominant) else "")
+    told = tuple(each.pole for each in poles)
+    return ProbedPole(dominant.pole, dominant.uncertainty, fit.samples, rows, told, reason)
 
 
 def _is_not_forced(fit: Fit, samples: FloatArray) -> bool:
@@ -250,15 +258,11 @@ def _is_not_forced(fit: Fit, samples: FloatArray) -> bool:
 
 def _is_slow_pole(fit: Fit, of_changes: Fit, samples: FloatArray) -> bool:
     """Return whether one run's pole near 1 may be one: it decays or grows, and differences of the samples have it."""
-    return not _on_the_circle(fit) and _explains_the_start(fit, samples) and _agree(fit, of_changes)
+    agree = abs(fit.pole - of_changes.pole) < max(SPREAD, fit.uncertainty + of_changes.uncertainty)
+    return agree and not _on_the_circle(fit) and _explains_the_start(fit, samples)
 
 
-def _agree(fit: Fit, other: Fit) -> bool:
-    """Return whether two fits have found the same pole."""
-    return abs(fit.pole - other.pole) < max(SPREAD, fit.uncertainty + other.uncertainty)
-
-
-def _on_the_circle(fit: Fit) -> bool:
+def _on_the_circle(fit: Fit | NoisyPole) -> bool:
     return abs(abs(fit.pole) - 1) < max(CLOSE, fit.uncertainty)
 
 
@@ -278,8 +282,8 @@ def _claimed(fit: Fit, rows: int, reason: str) -> ProbedPole:
     return ProbedPole(fit.pole, fit.uncertainty, fit.samples, rows, fit.poles, reason)
 
 
-def _refused(rows: int, *reasons: str) -> ProbedPole:
-    return ProbedPole(None, None, 0, rows, (), _joined(*reasons))
+def _refused(rows: int, reason: str) -> ProbedPole:
+    return ProbedPole(None, None, 0, rows, (), reason)
 
 
 def _joined(*reasons: str) -> str:
@@ -376,10 +380,10 @@ def likenesses(
     }
     found = []
     for method, recursion in recursions.items():
-        alike = [other.name for other, its in recursions.items() if its == recursion and other is not method]
+        alike = ", ".join(other.name for other, its in recursions.items() if its == recursion and other is not method)
         with suppress(NumericalError):
-            one = _likeness(probed, method, own_steps[method], (float(alpha_hat), float(beta_hat)), turned)
-            found.append(replace(one, same_as=", ".join(alike)))
+            point = float(alpha_hat), float(beta_hat)
+            found.append(_likeness(probed, method, own_steps[method], point, turned, alike))
     return sorted(found, key=lambda one: one.distance)
 
 
@@ -435,7 +439,7 @@ def _polynomial_without_zeros(method: Method, alpha_hat: Fraction, beta_hat: Fra
 
 
 def _likeness(
-    probed: ProbedPole, method: Method, between: int, point: tuple[float, float], turned: float | None
+    probed: ProbedPole, method: Method, between: int, point: tuple[float, float], turned: float | None, same_as: str
 ) -> Likeness:
     assert probed.pole is not None
     assert probed.uncertainty is not None
@@ -458,7 +462,7 @@ def _likeness(
         error=probed.uncertainty,
         allowed=probed.uncertainty + moved,
         dominant=bool(leading[nearest]),
-        same_as="",
+        same_as=same_as,
     )
 
 

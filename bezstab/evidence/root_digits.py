@@ -19,6 +19,7 @@ import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import product
 
 import mpmath as mp
 
@@ -136,8 +137,10 @@ def all_roots(polynomial: Sequence[mp.mpf], starts: Sequence[mp.mpc]) -> dict[in
     degree = len(polynomial) - 1
     if len(roots) < degree:
         raise NumericalError(f"only {len(roots)} of {degree} roots were found")
-    pairs = [(index, number) for index in range(len(starts)) for number in range(degree)]
-    pairs.sort(key=lambda pair: abs(starts[pair[0]] - roots[pair[1]]) / (abs(roots[pair[1]]) or 1))
+    pairs = sorted(
+        product(range(len(starts)), range(degree)),
+        key=lambda pair: abs(starts[pair[0]] - roots[pair[1]]) / (abs(roots[pair[1]]) or 1),
+    )
     beside: dict[int, int] = {}  # start by root
     for index, number in pairs:
         if number not in beside and index not in beside.values():

@@ -54,19 +54,12 @@ class Summary:
         """The least trajectory error (SI) that is told of."""
         return min((error for _, error in self.costs), default=None)
 
-    def evaluations_for(self, error: float) -> float | None:
-        """Return the evaluations at which the trajectory's error (SI) falls to `error`; None beyond the runs.
-
-        Between two neighbouring runs log error falls linearly with log evaluations, a power law; the first two count
-        between which the error lies.
-        """
-        return cost_for(error, self.costs)
-
 
 def cost_for(error: float, costs: Sequence[tuple[float, float]]) -> float | None:
     """Return the cost at which an error falls to `error`, from pairs of cost and error, the largest step's first.
 
-    None beyond them; else as `Summary.evaluations_for`.
+    None beyond them. Between two neighbours log error falls linearly with log cost, a power law; the first two count
+    between which the error lies.
     """
     for (cheaper, larger), (dearer, smaller) in pairwise(costs):
         if smaller <= error <= larger:
@@ -138,16 +131,12 @@ def _cheapest_sentence(runs: Sequence[Run], tolerance: float) -> str:
 
 def _order_sentences(summaries: Sequence[Summary], held: Held) -> Iterator[str]:
     """Yield the orders of accuracy that are lost, and those that are kept, if there are any."""
-    lost, kept = [], []
-    for one in summaries:
-        if one.order is None:
-            continue
-        text = f"{one.method.name} {one.order:.1f} (of {one.stated_order})"
-        if _lost(one):
-            lost.append(text)
-        else:
-            kept.append(text)
-    for verb, texts in (("lost", lost), ("kept", kept)):
+    for verb, is_lost in (("lost", True), ("kept", False)):
+        texts = [
+            f"{one.method.name} {one.order:.1f} (of {one.stated_order})"
+            for one in summaries
+            if one.order is not None and _lost(one) is is_lost
+        ]
         if texts:
             yield f"Order of accuracy {HELD_WORDS[held]}, {verb}: {', '.join(texts)}."
     started = [one.method.name for one in summaries if _lost(one) and _has_start_of_stages(one.method)]
@@ -207,7 +196,7 @@ def _advantages(bezier: Summary, other: Summary) -> Iterator[tuple[float, str]]:
         yield bezier.largest_step / other.largest_step, ends
     if bezier.least_error and other.least_error:
         error = max(bezier.least_error, other.least_error)  # the least that runs of both have reached
-        needed, by_other = bezier.evaluations_for(error), other.evaluations_for(error)
+        needed, by_other = cost_for(error, bezier.costs), cost_for(error, other.costs)
         if needed and by_other:
             ratio = needed / by_other
             yield 1 / ratio, f"a trajectory error of {error:.1e} with {ratio:.2g} times the evaluations"

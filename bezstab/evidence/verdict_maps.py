@@ -94,7 +94,7 @@ class VerdictMap(ReadOnlyArrays):
     @property
     def too_close(self) -> BoolArray:
         """Where |z_p| is nearer to one than the band, or than the motion moves it; shape (beta_hat, alpha_hat)."""
-        return np.asarray(~(np.abs(self.z_abs - 1) > np.maximum(self.band, self.moved)))
+        return ~(np.abs(self.z_abs - 1) > np.maximum(self.band, self.moved))
 
     @property
     def close_runs(self) -> int:
@@ -123,20 +123,12 @@ def map_rows(scene: Scene, method: Method, h: float, count: int) -> list[MapRows
     mechanism = compiled_mechanism(scene)
     compiled = runs_compiled(mechanism, method, 2 * count**2 * MAP_RUN * evaluations(method), together=True)
     centres = (np.arange(count) + 0.5) / count
-    alpha_window, beta_window = useful_window(region(method))
-    alpha_hat = _inside(alpha_window, centres)
-    beta_hat = _inside(beta_window, centres)
+    alpha_hat, beta_hat = (low + (high - low) * centres for low, high in useful_window(region(method)))
     rows_at_once = max(1, BATCH // count)
     return [
         MapRows(scene, method, h, alpha_hat, beta_hat[first : first + rows_at_once], compiled)
         for first in range(0, count, rows_at_once)
     ]
-
-
-def _inside(interval: tuple[float, float], shares: FloatArray) -> FloatArray:
-    """Return the points that lie at these shares of an interval."""
-    low, high = interval
-    return low + (high - low) * shares
 
 
 def simulated_verdicts(rows: MapRows) -> dict[str, BoolArray]:

@@ -10,6 +10,7 @@ from bezstab.evidence import (
     sweep_compiled,
     with_fronts,
 )
+from bezstab.evidence.sweep_summaries import cost_for
 from bezstab.mechanism import load_scene
 from bezstab.methods import accuracy, evaluations, lookup
 from bezstab.rationals import exact
@@ -81,7 +82,7 @@ def test_b4_costs_against_ab4_what_the_front_page_says_and_rk4_as_much_as_ab4() 
     b4, ab4 = summary(swept("B4", (1e-4, 2e-4))), summary(swept("AB4", (0.0004, 0.0008, 0.0016, 0.0032)))
     rk4 = summary(swept("RK4", (0.0032, 0.008, 0.0125)))
     assert b4.least_error == pytest.approx(1.2e-6, rel=0.05)
-    dear, cheap, same = (each.evaluations_for(b4.least_error or 0) or np.nan for each in (b4, ab4, rk4))
+    dear, cheap, same = (cost_for(b4.least_error or 0, each.costs) or np.nan for each in (b4, ab4, rk4))
     assert dear / cheap == pytest.approx(17, rel=0.05)
     assert 0.5 < same / cheap < 2
 

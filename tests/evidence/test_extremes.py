@@ -32,13 +32,6 @@ def name(check: Callable[[], Check]) -> str:
     return f"{check.func.__name__}-{'-'.join(str(getattr(value, 'name', value)) for value in values)}"
 
 
-def takes_long(check: Callable[[], Check]) -> bool:
-    """Return whether a check is left to `make test-slow`: of a kind that a shorter method or run shows as well."""
-    return name(check).startswith(
-        ("_sizes-B12", "_sizes-AB4", "_sizes-ABM4", "_boundary-ABM4", "_long_run-SYM", "_long_run-AB4")
-    )
-
-
 @pytest.mark.promise(
     "Near-double poles",
     unknown=(
@@ -51,10 +44,7 @@ def takes_long(check: Callable[[], Check]) -> bool:
     "Poles for α̂, β̂ from 1e-300 to 1e300",
     computed="15 digits less those of each pole's condition number, or overflow reported",
 )
-@pytest.mark.parametrize(
-    "check",
-    [pytest.param(check, id=name(check), marks=[pytest.mark.slow] if takes_long(check) else []) for check in SHORT],
-)
+@pytest.mark.parametrize("check", [pytest.param(check, id=name(check)) for check in SHORT])
 @pytest.mark.slow_except("_edge", "_speed-10", "_step", "_double_mu", "_double_root-B4", "_boundary-B4")
 def test_what_was_stated_beforehand_holds(check: Callable[[], Check]) -> None:
     found = check()

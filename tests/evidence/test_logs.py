@@ -35,6 +35,8 @@ def test_columns_without_names_are_numbered() -> None:
     log = parse_log("0 1\n0.5 -0.25\n1 0.0625\n", "log")
     assert log.columns == ("1", "2")
     assert (time_column(log), error_columns(log, (), 0)) == (0, [1])
+    assert time_column(parse_log("0.004 1\n0.008 2\n0.013 3\n0.017 4\n", "log")) == 0  # 1/240 s, to three decimals
+    assert time_column(parse_log("1 1\n0.5 2\n0.25 3\n", "log")) is None
 
 
 @given(st.lists(st.floats(allow_nan=False), min_size=1))

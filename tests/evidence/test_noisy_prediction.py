@@ -118,7 +118,7 @@ def test_responses_with_noise_of_different_sizes_are_weighed_by_it() -> None:
     assert alone is not None
     assert fit.noise == pytest.approx((1e-4, 50.0), rel=0.2)
     assert fit.poles[0].uncertainty < 1.5 * alone.poles[0].uncertainty
-    assert abs(fit.poles[0].z - 0.8 * np.exp(0.6j)) < fit.poles[0].uncertainty
+    assert abs(fit.poles[0].pole - 0.8 * np.exp(0.6j)) < fit.poles[0].uncertainty
     both[150:, 1] = np.nan
     assert (fitted(both) or fit).samples <= 150
 

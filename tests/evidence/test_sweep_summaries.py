@@ -5,6 +5,7 @@ from dataclasses import replace
 import pytest
 
 from bezstab.evidence import Held, Run, summary, sweep_sentences
+from bezstab.evidence.sweep_summaries import cost_for
 from bezstab.methods import lookup
 from bezstab.stability import spectral_radius
 from tests.evidence.small_sweeps import SOFT, swept
@@ -49,12 +50,11 @@ def test_an_order_lost_by_the_start_is_not_put_down_to_a_multistep_method() -> N
 
 @pytest.mark.promise("What methods cost against each other (`tradeoff`)")
 def test_evaluations_for_an_error_follow_the_power_law_within_the_runs_and_are_unknown_beyond() -> None:
-    cubic = summary(made_up("B4", [(1000, 1e-3), (10000, 1e-6)]))
-    assert cubic.least_error == 1e-6
+    costs = summary(made_up("B4", [(1000, 1e-3), (10000, 1e-6)])).costs
     for error in (1e-3, 3e-5, 1e-6):
-        assert cubic.evaluations_for(error) == pytest.approx((1e6 / error) ** (1 / 3))
-    assert cubic.evaluations_for(0.99e-6) is None
-    assert cubic.evaluations_for(1.01e-3) is None
+        assert cost_for(error, costs) == pytest.approx((1e6 / error) ** (1 / 3))
+    assert cost_for(0.99e-6, costs) is None
+    assert cost_for(1.01e-3, costs) is None
 
 
 @pytest.mark.parametrize(("name", "evaluations"), [("B4", 1), ("RK4", 4)])
