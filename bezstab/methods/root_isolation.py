@@ -2,7 +2,8 @@
 
 Roots may lie forty powers of ten apart, where feedback is weak. So they are isolated octave by octave. The signs of the
 coefficients that Descartes' rule counts, of x = 0 .. infinity mapped to an octave, say whether it has no root (no
-change of sign) or one (one change); else it is halved.
+change of sign) or one (one change); else it is halved. (sympy's own isolation is as fast where roots lie close
+together, but takes half a minute for such of ABM2.)
 """
 
 from collections.abc import Sequence
