@@ -37,7 +37,7 @@ def test_a_scene_turns_so_much_faster_as_it_moves_faster() -> None:
     assert twice
     assert twice.kappa == pytest.approx(2 * once.kappa, rel=1e-6)
     (warning,) = turn_too_far({ONE: once, Fraction(2): twice}, "driven_four_bar", 2 * H)
-    assert warning.startswith("constraints of driven_four_bar, 2 times as fast turn by κh = 0.13 a step: beyond 0.1 ")
+    assert warning.startswith("constraints of driven four-bar, 2 times as fast turn by κh = 0.13 a step: beyond 0.1 ")
 
 
 def test_a_speed_goes_with_a_scene_and_a_scene_with_a_step() -> None:
