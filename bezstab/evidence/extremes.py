@@ -16,6 +16,7 @@ import numpy as np
 from bezstab.errors import NumericalError
 from bezstab.evidence.root_digits import DIGITS, PoleDigits, pole_digits
 from bezstab.mechanism import (
+    How,
     compiled_mechanism,
     constraint_errors,
     initial_state,
@@ -220,7 +221,7 @@ def _largest_in_each_tenth(method: Method, count: int, gains: tuple[float, float
     q, v = initial_state(mechanism)
     largest = np.zeros(10)
     compiled = runs_compiled(mechanism, method, count * evaluations(method))
-    blocks = march(mechanism, method, H, gains, np.concatenate([q, v]), "rk4", count, compiled=compiled)
+    blocks = march(mechanism, method, H, gains, np.concatenate([q, v]), "rk4", count, How(compiled))
     k = 0
     for block in blocks:
         c = np.abs(constraint_errors(mechanism, 0.0, block.states[:, : mechanism.size].T)).max(axis=0)

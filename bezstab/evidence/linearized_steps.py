@@ -18,11 +18,10 @@ import numpy as np
 
 from bezstab.mechanism import (
     Assigned,
-    Evaluated,
+    Found,
     Mechanism,
     Memory,
     Motion,
-    Solved,
     linearized_acceleration,
     memory,
     regular_motion,
@@ -81,28 +80,21 @@ def course_of_steps(mechanism: Mechanism, method: Method, h: float, duration: fl
     return Course(mechanism, along, steps, along.duration / steps, memory(scheme), actions)
 
 
-def _found_together(action: Evaluated | Solved) -> Accelerations:
-    """Return an evaluation, or all of a group, in one form."""
-    if isinstance(action, Evaluated):
-        at_state = any(
-            action.position == {Quantity("x", each.step): 1} and action.velocity == {Quantity("v", each.step): 1}
-            for each in action.position
-        )
-        return Accelerations(
-            results=(action.result,),
-            known=(action.position, action.velocity),
-            sought=np.zeros((2, 1)),
-            moments=np.array([float(action.moment)]),
-            on_it=at_state,
-        )
+def _found_together(action: Found) -> Accelerations:
+    """Return accelerations that are found together, with what is known of their places apart from what is sought."""
     results = tuple(each.result for each in action.evaluations)
-    sought = [part for each in action.evaluations for part in (each.sought_position, each.sought_velocity)]
+    parts = [part for each in action.evaluations for part in (each.position, each.velocity)]
+    first = action.evaluations[0]
+    at_state = any(
+        first.position == {Quantity("x", each.step): 1} and first.velocity == {Quantity("v", each.step): 1}
+        for each in first.position
+    )
     return Accelerations(
         results=results,
-        known=tuple(part for each in action.evaluations for part in (each.known_position, each.known_velocity)),
-        sought=np.array([[float(part.get(result, 0)) for result in results] for part in sought]),
+        known=tuple({quantity: part[quantity] for quantity in part if quantity not in results} for part in parts),
+        sought=np.array([[float(part.get(result, 0)) for result in results] for part in parts]),
         moments=np.array([float(each.moment) for each in action.evaluations]),
-        on_it=True,
+        on_it=action.waiting or at_state,
     )
 
 

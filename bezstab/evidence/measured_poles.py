@@ -27,13 +27,12 @@ from bezstab.evidence.linear_prediction import NEGLIGIBLE, SAMPLES, SPREAD, Refu
 from bezstab.evidence.moving_mechanisms import MovingVerdict, moving_poles
 from bezstab.evidence.own_motions import find_own_motions
 from bezstab.mechanism import (
-    Block,
+    How,
     Mechanism,
     constraint_errors,
     initial_state,
     march,
     perturbed_state,
-    resume,
     resume_in_groups,
     runs_compiled,
     turning_normals,
@@ -326,12 +325,7 @@ def kicked_motions(
     direction = np.concatenate([displaced, np.zeros_like(v)])
     amounts = np.multiply.outer([1.0, -1.0], kicks)[..., np.newaxis]
     kicked = history[-1] = undisturbed[:, np.newaxis, np.newaxis] + np.multiply.outer(direction, amounts)
-    given = (mechanism, method, h_step, gains, history)
-    groups: Iterable[tuple[slice, Iterator[Block]]]
-    if compiled:
-        groups = resume_in_groups(*given, undisturbed, count)
-    else:
-        groups = [(slice(None), resume(*given, count, undisturbed=undisturbed))]
+    groups = resume_in_groups(mechanism, method, h_step, gains, history, count, How(compiled), undisturbed)
 
     def seen(states_in_blocks: Iterable[FloatArray]) -> Iterator[tuple[FloatArray, FloatArray]]:
         k = len(history) - 1

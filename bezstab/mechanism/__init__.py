@@ -16,6 +16,7 @@ from bezstab.mechanism.motions import Motion, motion, motion_over, regular_motio
 from bezstab.mechanism.observation import Observation, observe, singular_passages
 from bezstab.mechanism.runner import (
     Block,
+    How,
     Start,
     Trajectory,
     march,
@@ -27,7 +28,7 @@ from bezstab.mechanism.runner import (
 from bezstab.mechanism.scene_files import load_scene, parse_scene, read_scene, shipped_scenes
 from bezstab.mechanism.scenes import COORDINATES, GROUND, Body, Driver, Force, Revolute, Scene, at_speed
 from bezstab.mechanism.second_order_memory import Memory, check_after_step, memory
-from bezstab.mechanism.second_order_turns import Assigned, Evaluated, Solved, turn
+from bezstab.mechanism.second_order_turns import Assigned, Found, turn
 from bezstab.mechanism.simulation import MOST_STEPS, Simulation, simulated
 from bezstab.mechanism.start import constraint_errors, constraint_jacobian, initial_state, perturbed_state
 from bezstab.mechanism.varying_runs import simulated_with_steps

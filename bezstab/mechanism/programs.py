@@ -19,13 +19,12 @@ Where a row of an evaluation has an entry for what that evaluation finds, or for
 each other: a group of evaluations is solved together, each from the guess that it is what it was one step before.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
 
 from bezstab.mechanism.second_order_memory import ACCELERATION, POSITION, VELOCITY, memory
-from bezstab.mechanism.second_order_turns import Assigned, Evaluated, Solved, Sum, turn
+from bezstab.mechanism.second_order_turns import Assigned, Found, Sum, turn
 from bezstab.methods import Quantity, SecondOrder
 
 Row = tuple[Fraction, ...]
@@ -70,6 +69,11 @@ class Program:
         """Whether there are equations to solve."""
         return any(waiting for _, _, waiting in self.groups)
 
+    @property
+    def explicit_evaluations(self) -> int:
+        """The number of evaluations in a turn that are not Newton's."""
+        return sum(last - first for first, last, waiting in self.groups if not waiting)
+
 
 @cache
 def program_of(scheme: SecondOrder) -> Program:
@@ -77,7 +81,7 @@ def program_of(scheme: SecondOrder) -> Program:
     remembered = memory(scheme)
     carried = remembered.carried
     actions = turn(scheme)
-    found = [quantity for action in actions for quantity in _found(action)]
+    found = [each.result for action in actions if isinstance(action, Found) for each in action.evaluations]
     registers = [*carried, *found]
     columns = {quantity: column for column, quantity in enumerate(registers)}
     values: dict[Quantity, Row] = {
@@ -85,34 +89,22 @@ def program_of(scheme: SecondOrder) -> Program:
         for quantity, own in columns.items()
     }
 
-    def row(*parts: Sum) -> Row:
-        """Return a sum of sums as a row."""
-        terms = [(factor, values[quantity]) for part in parts for quantity, factor in part.items()]
-        return tuple(
-            sum((factor * value[column] for factor, value in terms), Fraction(0)) for column in columns.values()
-        )
+    def row(sum_: Sum) -> Row:
+        """Return a sum as a row."""
+        terms = [(factor, values[quantity]) for quantity, factor in sum_.items()]
+        return tuple(sum((factor * value[column] for factor, value in terms), ZERO) for column in columns.values())
 
     evaluations: list[Evaluation] = []
     groups = []
     for action in actions:
+        if isinstance(action, Assigned):
+            values[action.result] = row(action.value)
+            continue
         first = len(evaluations)
-        match action:
-            case Assigned(result, value):
-                values[result] = row(value)
-            case Evaluated(_, position, velocity, moment):
-                evaluations.append(Evaluation(row(position), row(velocity), moment, guess=0))
-                groups.append((first, first + 1, False))
-            case Solved(_, together):
-                for each in together:
-                    evaluations.append(
-                        Evaluation(
-                            position=row(each.known_position, each.sought_position),
-                            velocity=row(each.known_velocity, each.sought_velocity),
-                            moment=each.moment,
-                            guess=columns[Quantity(each.result.name, each.result.step - 1)],
-                        )
-                    )
-                groups.append((first, len(evaluations), True))
+        for each in action.evaluations:
+            guess = columns[Quantity(each.result.name, each.result.step - 1)] if action.waiting else 0
+            evaluations.append(Evaluation(row(each.position), row(each.velocity), each.moment, guess))
+        groups.append((first, len(evaluations), action.waiting))
 
     state = (Quantity(POSITION, 1), Quantity(VELOCITY, 1))
     newer = [Quantity(quantity.name, quantity.step + 1) for quantity in carried]
@@ -130,14 +122,3 @@ def program_of(scheme: SecondOrder) -> Program:
             for shares, step in zip(remembered.shares, remembered.state_steps, strict=True)
         ),
     )
-
-
-def _found(action: Assigned | Evaluated | Solved) -> Sequence[Quantity]:
-    """Return the accelerations that an action finds."""
-    match action:
-        case Assigned():
-            return ()
-        case Evaluated(result):
-            return (result,)
-        case Solved(_, together):
-            return tuple(each.result for each in together)

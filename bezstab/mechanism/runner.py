@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from functools import cache
 from typing import Any, Literal
 
@@ -15,7 +15,7 @@ from bezstab.mechanism.compiled import SINGULAR, Mechanism, acceleration_functio
 from bezstab.mechanism.compiled_stepping import LANES, functions_called, machine_steps, runs_compiled
 from bezstab.mechanism.programs import program_of
 from bezstab.mechanism.registers import MOST_ITERATIONS, IntArray, Steps, in_lists, room_of, rows_of
-from bezstab.mechanism.second_order_memory import check_after_step, implicit_evaluations, memory
+from bezstab.mechanism.second_order_memory import check_after_step, memory
 from bezstab.mechanism.start import initial_state
 from bezstab.mechanism.stepping import BLOWN_UP, EVALUATIONS, ITERATIONS, PROJECTIONS
 from bezstab.methods import (
@@ -44,16 +44,28 @@ Gains = tuple[Any, Any]
 NUMBERS_OF_A_BLOCK = 2**16
 """Of all runs, between two looks at what the user wants (Ctrl-C): some tenths of a second in Python."""
 
-MOST_STEPS_OF_A_BLOCK = 4096
-
 
 def no_counts() -> IntArray:
-    """Return what implicit steps and projections have taken before any: each a number, at a place of its own.
+    """Return what steps have taken before any: each a number, at a place of its own.
 
-    ITERATIONS; EVALUATIONS of the acceleration, a slope counted as one; and PROJECTIONS, how often these have computed
-    how a state has to be corrected.
+    ITERATIONS of Newton's method; EVALUATIONS of the acceleration, a slope counted as one; and PROJECTIONS, how often
+    these have computed how a state has to be corrected.
     """
     return np.zeros(3, np.int64)
+
+
+@dataclass(frozen=True, eq=False)
+class How:
+    """How steps are taken: by machine code or not, and with what is done `after` each.
+
+    A run that is `judged`, without a batch, ends where it breaks down; else what goes wrong shows in the numbers.
+    `counts` grow by what is taken.
+    """
+
+    compiled: bool = False
+    judged: bool = False
+    after: AfterStep = NOTHING
+    counts: IntArray = field(default_factory=no_counts)
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,22 +143,11 @@ def simulate(
     first = checked_start(initial_state(mechanism) if state is None else state)
     if compiled is None:
         compiled = runs_compiled(mechanism, method, count * evaluations(method), after)
-    counts = no_counts()
-    blocks = march(
-        mechanism,
-        method,
-        whole_step,
-        gains,
-        first,
-        start,
-        count,
-        compiled=compiled,
-        counts=counts,
-        judged=True,
-        after=after,
-    )
+    how = How(compiled, True, after)
     times = np.arange(count + 1, dtype=np.float64) * whole_step
-    return recorded(mechanism, method, first, times, blocks, start, counts, after)
+    return recorded(
+        mechanism, method, first, times, march(mechanism, method, whole_step, gains, first, start, count, how), how
+    )
 
 
 def checked_start(state: tuple[FloatArray, FloatArray]) -> FloatArray:
@@ -159,14 +160,7 @@ def checked_start(state: tuple[FloatArray, FloatArray]) -> FloatArray:
 
 
 def recorded(
-    mechanism: Mechanism,
-    method: Method,
-    first: FloatArray,
-    times: FloatArray,
-    blocks: Iterable[Block],
-    start: Start,
-    counts: IntArray,
-    after: AfterStep = NOTHING,
+    mechanism: Mechanism, method: Method, first: FloatArray, times: FloatArray, blocks: Iterable[Block], how: How
 ) -> Trajectory:
     """Return a run from its blocks, the times (s) of whose states are given, the first state's included."""
     parts, pivots, cause = [first[np.newaxis]], [np.ones(0)], None
@@ -175,11 +169,8 @@ def recorded(
         pivots.append(block.pivots)
         cause = block.cause
     states, least = np.concatenate(parts), np.concatenate(pivots)
-    steps_taken = len(states) - 1
-    failure = None
-    if cause:
-        steps_taken += 1  # the step that failed is not in the history, but was computed
-        failure = f"at t = {times[steps_taken]:.6g} s: {cause}"
+    # the step that failed is not in the history, but was computed
+    failure = f"at t = {times[len(states)]:.6g} s: {cause}" if cause else None
     lowest = int(least.argmin()) if least.min(initial=1.0) < 1.0 else None
     return Trajectory(
         mechanism=mechanism,
@@ -187,13 +178,13 @@ def recorded(
         t=times[: len(states)],
         q=states[:, : mechanism.size],
         v=states[:, mechanism.size :],
-        evaluations=evaluation_count(method, start, steps_taken) + int(counts[EVALUATIONS]),
+        evaluations=int(how.counts[EVALUATIONS]),
         failure=failure,
         least_pivot=1.0 if lowest is None else float(least[lowest]),
         pivot_time=0.0 if lowest is None else float(times[lowest]),
-        iterations=int(counts[ITERATIONS]) if implicit(method) else None,
-        projections=int(counts[PROJECTIONS]),
-        after=after,
+        iterations=int(how.counts[ITERATIONS]) if implicit(method) else None,
+        projections=int(how.counts[PROJECTIONS]),
+        after=how.after,
     )
 
 
@@ -205,30 +196,24 @@ def march(
     state: ArrayLike,
     start: Start,
     count: int,
-    *,
-    compiled: bool = False,
-    counts: IntArray | None = None,
-    judged: bool = False,
-    after: AfterStep = NOTHING,
+    how: How | None = None,
 ) -> Iterator[Block]:
     """Yield `count` steps from a state (q then v, shape (2n, *batch)) at t = 0 on, in blocks.
 
     h (s) is the whole step of the method, `gains` are 2 alpha and beta^2 (1/s, 1/s^2), which broadcast against the
-    batch; the first values of a multistep method come from `start`. A run that is `judged`, without a batch, ends where
-    it breaks down; else what goes wrong shows in the numbers. `counts` grow by what is taken.
-    InputError where steps are to be `compiled` without numba.
+    batch; the first values of a multistep method come from `start`, by steps that are not compiled. InputError where
+    steps are to be compiled without numba.
     """
-    options: dict[str, Any] = {"counts": counts, "judged": judged, "after": after}
+    how = how or How()
     history = [np.asarray(state)]
     for starter, step_count in _starters(method, start):
         some = min(step_count, count - len(history) + 1)
-        for block in resume(mechanism, starter, h, gains, history, some, **options):
+        for block in resume(mechanism, starter, h, gains, history, some, replace(how, compiled=False)):
             yield block
             if block.cause:
                 return
             history += list(block.states)
-    remaining = count - len(history) + 1
-    yield from resume(mechanism, method, h, gains, history, remaining, compiled=compiled, **options)
+    yield from resume(mechanism, method, h, gains, history, count - len(history) + 1, how)
 
 
 def resume(
@@ -238,12 +223,8 @@ def resume(
     gains: Gains,
     history: Sequence[ArrayLike],
     count: int,
-    *,
+    how: How | None = None,
     undisturbed: ArrayLike | None = None,
-    compiled: bool = False,
-    counts: IntArray | None = None,
-    judged: bool = False,
-    after: AfterStep = NOTHING,
 ) -> Iterator[Block]:
     """Yield `count` steps after `history`, as `march` does; its last state may have been tampered with: kicked.
 
@@ -252,33 +233,19 @@ def resume(
     """
     if count <= 0:
         return
-    counts = no_counts() if counts is None else counts
+    how = how or How()
     given = [np.asarray(state) for state in (*history, history[-1] if undisturbed is None else undisturbed)]
     batch = np.broadcast_shapes(*(state.shape[1:] for state in given), *map(np.shape, gains))
     *states, calm = (_for_batch(state, batch) for state in given)
-    scheme = second_order_form(method.scheme)
-    carried, start, repeated = carried_quantities(mechanism, method, h, gains, states, calm, counts)
+    carried, start, repeated = carried_quantities(mechanism, method, h, gains, states, calm, how.counts)
+    spread_gains = np.array([[np.broadcast_to(gain, batch).ravel() for gain in gains]], np.float64)
 
     def steps_between(first: int, last: int) -> Steps:
         numbers = np.arange(first, last, dtype=np.float64)
         return Steps(start + h * numbers, np.full(last - first, h), np.zeros(last - first, np.int64), spread_gains)
 
-    spread_gains = np.array([[np.broadcast_to(gain, batch).ravel() for gain in gains]], np.float64)
-    blocks = steps_in_blocks(
-        mechanism,
-        scheme,
-        steps_between,
-        h,
-        carried,
-        batch,
-        count + repeated,
-        compiled,
-        judged,
-        counts,
-        after=after,
-    )
     # of turns whose states are in the history already only what they give beyond them matters: the next needs it
-    for block in blocks:
+    for block in steps_in_blocks(mechanism, method, steps_between, h, carried, batch, count + repeated, how):
         left_out = min(repeated, len(block.states))
         repeated -= left_out
         if len(block.states) > left_out or block.cause:
@@ -297,76 +264,62 @@ def resume_in_groups(
     h: float,
     gains: Gains,
     history: Sequence[FloatArray],
-    undisturbed: FloatArray,
     count: int,
+    how: How,
+    undisturbed: FloatArray,
 ) -> Iterator[tuple[slice, Iterator[Block]]]:
-    """Yield what `resume` does, compiled, by groups: slices of the batch's last axis that are fast side by side."""
+    """Yield what `resume` does by groups: slices of the batch's last axis that are fast side by side if compiled."""
     batch = np.broadcast_shapes(history[-1].shape[1:], *map(np.shape, gains))
-    group = max(1, LANES // math.prod(batch[:-1]))
+    group = max(1, LANES // math.prod(batch[:-1]) if how.compiled else batch[-1])
 
     def of_group(array: Any, some: slice) -> Any:
         return array[..., some] if np.ndim(array) and np.shape(array)[-1] > 1 else array
 
     for first in range(0, batch[-1], group):
         some = slice(first, first + group)
-        own_gains = (of_group(gains[0], some), of_group(gains[1], some))
-        own_history = [of_group(state, some) for state in history]
-        yield (
-            some,
-            resume(
-                mechanism,
-                method,
-                h,
-                own_gains,
-                own_history,
-                count,
-                undisturbed=of_group(undisturbed, some),
-                compiled=True,
-            ),
-        )
+        two_alpha, beta_squared, calm, *states = (of_group(each, some) for each in (*gains, undisturbed, *history))
+        yield some, resume(mechanism, method, h, (two_alpha, beta_squared), states, count, how, calm)
 
 
 def steps_in_blocks(
     mechanism: Mechanism,
-    scheme: SecondOrder,
+    method: Method,
     steps_between: Callable[[int, int], Steps],
     h: float,
     carried: FloatArray,
     batch: tuple[int, ...],
     count: int,
-    compiled: bool,
-    judged: bool,
-    counts: IntArray,
+    how: How,
     kinds: int = 1,
-    after: AfterStep = NOTHING,
 ) -> Iterator[Block]:
     """Yield `count` steps in blocks, from what is carried into the first: shape (quantities, n lanes).
 
     `steps_between` has the times, lengths and gains of the steps from a number to before another; what is carried is in
     units of h (s). There are so many `kinds` of steps. The lanes are those of the batch, one after the other.
     """
-    program = program_of(scheme)
-    rows, n, lanes = rows_of(program, after), mechanism.size, math.prod(batch)
-    names = functions_called(program.implicit, after)
-    if compiled:
+    program = program_of(second_order_form(method.scheme))
+    rows, n, lanes = rows_of(program, how.after), mechanism.size, math.prod(batch)
+    names = functions_called(program.implicit, how.after)
+    if how.compiled:
         stride = 1 if lanes == 1 else max(LANES, lanes)
         take_steps, variables = machine_steps(mechanism, names, stride)
-        room = room_of(rows, carried.reshape(-1, n, lanes), h, kinds, counts, stride, variables)
+        room = room_of(rows, carried.reshape(-1, n, lanes), h, kinds, how.counts, stride, variables)
     elif lanes == 1:
         stride, take_steps = 1, float_steps(mechanism, names)
-        room = in_lists(room_of(rows, carried.reshape(-1, n, 1), h, kinds, counts, 1))
+        room = in_lists(room_of(rows, carried.reshape(-1, n, 1), h, kinds, how.counts, 1))
     else:
         stride, take_steps = lanes, array_steps(mechanism, names)
-        room = room_of(rows, carried.reshape(-1, n, 1, lanes), h, kinds, counts, 1)
-    at_once = max(1, min(MOST_STEPS_OF_A_BLOCK, NUMBERS_OF_A_BLOCK // (2 * n * stride)))
+        room = room_of(rows, carried.reshape(-1, n, 1, lanes), h, kinds, how.counts, 1)
+    at_once = max(1, NUMBERS_OF_A_BLOCK // (2 * n * stride))
     for first in range(0, count, at_once):
         last = min(first + at_once, count)
         states, pivots = np.empty((last - first, 2, *np.shape(room.state)[1:]), carried.dtype), np.empty(last - first)
         steps = steps_between(first, last)
         with np.errstate(all="ignore"):  # what runs into infinity is judged by its numbers
-            taken, *unsolved = take_steps(rows, steps, room, judged, states, pivots)
+            taken, *unsolved = take_steps(rows, steps, room, how.judged, states, pivots)
+        how.counts[EVALUATIONS] += taken * program.explicit_evaluations
         states = states.reshape(last - first, 2 * n, stride)[..., :lanes].reshape(last - first, 2 * n, *batch)
-        cause = breakdown(states[taken - 1], pivots[taken - 1], *unsolved) if judged else None
+        cause = breakdown(states[taken - 1], pivots[taken - 1], *unsolved) if how.judged else None
         if cause:
             taken -= 1
         yield Block(states[:taken], pivots[:taken], cause)
@@ -431,26 +384,6 @@ def breakdown(state: FloatArray, pivot: float = 1.0, unsolved: float = 0.0, unse
     if pivot > SINGULAR and np.abs(state).sum() < BLOWN_UP:
         return None
     return f"blow-up: the coordinates and velocities exceed {BLOWN_UP:g} in sum, or are not finite"
-
-
-def evaluation_count(method: Method, start: Start, steps_taken: int) -> int:
-    """Return the number of right-hand sides of the first so many steps, the starting ones included.
-
-    But for those that a second-order scheme starts with, and those of Newton's method, which are counted as taken.
-    """
-    count = 0
-    remaining = steps_taken
-    for starter, step_count in _starters(method, start):
-        starting = min(step_count, remaining)
-        count += starting * _explicit_evaluations(starter)
-        remaining -= starting
-    return count + remaining * _explicit_evaluations(method)
-
-
-def _explicit_evaluations(method: Method) -> int:
-    """Return the number of evaluations in a step of the method that are not Newton's."""
-    scheme = second_order_form(method.scheme)
-    return scheme.evaluations - len(implicit_evaluations(scheme))
 
 
 def states_needed(method: Method) -> int:

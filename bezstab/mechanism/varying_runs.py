@@ -6,7 +6,6 @@ begins with r times that h v and r^2 times that h^2 a. The acceleration itself i
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from itertools import cycle
 
 import numpy as np
@@ -17,10 +16,10 @@ from bezstab.mechanism.compiled_stepping import runs_compiled
 from bezstab.mechanism.energies import energy_balance
 from bezstab.mechanism.observation import observe
 from bezstab.mechanism.registers import Steps
-from bezstab.mechanism.runner import carried_quantities, checked_start, no_counts, recorded, steps_in_blocks
+from bezstab.mechanism.runner import How, carried_quantities, checked_start, recorded, steps_in_blocks
 from bezstab.mechanism.simulation import Simulation, check_duration
 from bezstab.mechanism.start import perturbed_state
-from bezstab.methods import Method, check_one_step, evaluations, second_order_form
+from bezstab.methods import Method, check_one_step, evaluations
 from bezstab.stabilising import NOTHING, AfterStep
 from bezstab.units import feedback_gains
 
@@ -53,37 +52,24 @@ def simulated_with_steps(
     check_duration(duration, min(sequence) * float(method.step_multiple))
     first = checked_start(perturbed_state(mechanism, perturb))
     steps = _steps(method, sequence, duration, lambda step: feedback_gains(alpha_hat, beta_hat, step if hold else h))
-    counts = no_counts()
-    length, gains = float(steps.lengths[0]), (float(steps.gains[0, 0]), float(steps.gains[0, 1]))
-    carried, _, _ = carried_quantities(mechanism, method, length, gains, [first], first, counts)
-
-    lengths, kinds = np.unique(steps.lengths, return_inverse=True)
-
-    def steps_between(begin: int, end: int) -> Steps:
-        gains_of_steps = steps.gains[begin:end, :, np.newaxis]
-        return Steps(
-            steps.times[begin:end], steps.lengths[begin:end], kinds[begin:end].astype(np.int64), gains_of_steps
-        )
-
+    count, length, gains = len(steps.lengths), float(steps.lengths[0]), steps.gains[..., 0]
+    how = How(runs_compiled(mechanism, method, count * evaluations(method), after), judged=True, after=after)
+    carried, *_ = carried_quantities(mechanism, method, length, (gains[0, 0], gains[0, 1]), [first], first, how.counts)
     blocks = steps_in_blocks(
         mechanism,
-        second_order_form(method.scheme),
-        steps_between,
+        method,
+        lambda begin, end: Steps._make(each[begin:end] for each in steps),
         length,
         carried,
-        batch=(),
-        count=len(steps.lengths),
-        compiled=runs_compiled(mechanism, method, len(steps.lengths) * evaluations(method), after),
-        judged=True,
-        counts=counts,
-        kinds=len(lengths),
-        after=after,
+        (),
+        count,
+        how,
+        kinds=int(steps.kinds.max()) + 1,
     )
-    trajectory = recorded(mechanism, method, first, steps.times, blocks, "rk4", counts, after)
+    trajectory = recorded(mechanism, method, first, steps.times, blocks, how)
     times = trajectory.t
     # at each time the gains of the step that begins there; at the last, those of the step that led to it
-    at_times = np.minimum(np.arange(len(times)), len(steps.lengths) - 1)
-    two_alpha, beta_squared = steps.gains[at_times].T
+    two_alpha, beta_squared = gains[np.minimum(np.arange(len(times)), count - 1)].T
     observation = observe(mechanism, times, trajectory.q, trajectory.v, two_alpha, beta_squared)
     balance = energy_balance(observation, steps.lengths[: len(times) - 1], nodes=2)
     return Simulation(
@@ -91,28 +77,13 @@ def simulated_with_steps(
     )
 
 
-@dataclass(frozen=True, eq=False)
-class VaryingSteps:
-    """Steps of different lengths (s), one after the other, shape (steps,).
-
-    `gains` has 2 alpha (1/s) and beta^2 (1/s^2) of each, shape (steps, 2).
-    """
-
-    lengths: FloatArray
-    gains: FloatArray
-
-    @property
-    def times(self) -> FloatArray:
-        """The times (s) at which they begin, and that at which the last one ends; shape (steps + 1,)."""
-        return np.concatenate([[0.0], np.cumsum(self.lengths)])
-
-
 def _steps(
     method: Method, sequence: Sequence[float], duration: float, gains: Callable[[float], tuple[float, float]]
-) -> VaryingSteps:
+) -> Steps:
     """Return the steps of a run: those of the sequence, over and over, until the duration (s) is reached.
 
-    `gains` has what belongs to a step of the user's, of which the method's own is its multiple.
+    `gains` has what belongs to a step of the user's, of which the method's own is its multiple. The times have the end
+    of the last step, too.
     """
     taken = []
     left = duration
@@ -123,5 +94,11 @@ def _steps(
             break
         taken.append(step)
         left -= step
-    gains_of = {length: gains(length / multiple) for length in set(taken)}
-    return VaryingSteps(lengths=np.array(taken), gains=np.array([gains_of[length] for length in taken]))
+    different, kinds = np.unique(taken, return_inverse=True)
+    of_kinds = np.array([gains(length / multiple) for length in different.tolist()])
+    return Steps(
+        times=np.concatenate([[0.0], np.cumsum(taken)]),
+        lengths=np.array(taken),
+        kinds=kinds.astype(np.int64),
+        gains=of_kinds[kinds][:, :, np.newaxis],
+    )

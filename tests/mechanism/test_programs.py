@@ -6,7 +6,7 @@ import pytest
 
 from bezstab.mechanism.programs import Evaluation, Program, program_of
 from bezstab.mechanism.second_order_memory import memory
-from bezstab.methods import REGISTRY, lookup, second_order_form
+from bezstab.methods import lookup, second_order_form
 
 HALF, ONE, NONE = Fraction(1, 2), Fraction(1), Fraction(0)
 
@@ -34,17 +34,6 @@ def test_a_projection_changes_what_is_carried_of_the_newest_state_and_nothing_ol
     shares = dict(zip(names, program("bdf2").corrected, strict=True))
     assert {name for name, of_it in shares.items() if any(of_it)} == {"x0", "v0"}
     assert {"x[-1]", "v[-1]"} <= set(shares)
-
-
-@pytest.mark.parametrize("name", REGISTRY)
-def test_no_row_asks_for_what_is_not_there_yet(name: str) -> None:
-    found = program(name)
-    carried = len(found.powers)
-    for first, last, waiting in found.groups:
-        there = carried + (last if waiting else first)
-        for evaluation in found.evaluations[first:last]:
-            assert not any(evaluation.position[there:])
-            assert not any(evaluation.velocity[there:])
 
 
 @pytest.mark.parametrize(("name", "together"), [("gauss4", [2]), ("sdirk2", [1, 1]), ("bdf3", [1]), ("yoshida4", [])])

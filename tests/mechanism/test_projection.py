@@ -16,12 +16,11 @@ from bezstab.mechanism import (
     load_scene,
     observe,
     simulate,
-    simulated,
     simulated_with_steps,
     state_function,
 )
 from bezstab.methods import Method, evaluations, implicit, lookup, steps
-from bezstab.stabilising import NOTHING, after_step
+from bezstab.stabilising import after_step
 from tests.evidence.samples import of_campaign
 from tests.mechanism.test_runner import measured_order
 from tests.mechanism.test_second_order_memory import LEAPFROG, STOERMER
@@ -193,20 +192,6 @@ def test_a_position_from_which_newtons_method_finds_none_ends_a_run() -> None:
     given_up = simulate(mechanism, lookup("RK1"), 0.5, 1.5, (0.0, 0.0), after=TWICE)
     assert given_up.failure is None
     assert abs(observe(mechanism, given_up.t, given_up.q, given_up.v, 0.0, 0.0).c).max() > 1e-3
-
-
-def test_a_run_says_what_held_its_constraints() -> None:
-    for gain, after, held in ((0.1, NOTHING, "baumgarte"), (0.0, NOTHING, "none"), (0.0, PROJECTED, "projection")):
-        run = simulated(
-            scene("pendulum"),
-            lookup("SYM"),
-            h=H,
-            duration=5 * H,
-            alpha_hat=gain,
-            beta_hat=gain,
-            after=after,
-        )
-        assert run.stabilise == held
 
 
 def test_bad_input_is_refused() -> None:

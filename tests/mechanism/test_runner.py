@@ -73,28 +73,23 @@ def test_a_run_keeps_its_methods_order_up_to_that_of_its_start(name: str) -> Non
 
 
 SHOWN_ORDERS = {
-    **{name: order(name) for name in ("B1", "B2", "B3", "B4", "AB2", "AB3", "AB4", "ABM2", "ABM3")},
-    **dict.fromkeys(("verlet-half", "verlet-predicted", "verlet-old", "verlet-implicit", "verlet-kdk"), 2),
-    **dict.fromkeys(("average-acceleration", "linear-acceleration", "central-difference", "heun"), 2),
-    **dict.fromkeys(("hht", "generalized-alpha", "trapezoid", "implicit-midpoint", "bdf2"), 2),
-    "stable-pd": 1,
-    "implicit-euler": 1,
+    **{name: order(name) for name in ("B4", "AB4", "ABM3")},
+    "verlet-half": 2,
+    "hht": 2,
+    "trapezoid": 2,
     "bdf3": 3,
-    "bdf4": 4,
     "am3": 3,
-    "am4": 4,
+    "implicit-euler": 1,
     # lower than on a free motion, for what happens between the ends of a step leaves the constraints
-    **dict.fromkeys(("RK2", "SIE", "ssprk3", "bs3", "cash-karp", "dirk3"), 1),
-    **dict.fromkeys(("RK3", "RK4", "dopri5", "tsit5", "ruth3", "forest-ruth", "yoshida4"), 2),
+    **dict.fromkeys(("RK2", "SIE", "ssprk3", "dirk3"), 1),
+    **dict.fromkeys(("RK4", "dopri5", "yoshida4"), 2),
     "rkn4": 3,
 }
 """With alpha_hat and beta_hat fixed. Slow to fall to 1: sdirk2, imex-euler, ralston: 1.19, 1.13, 1.05 at 3200 steps."""
 
-SHOWN_EACH_TIME = ("B4", "AB4", "ABM3", "RK2", "RK4", "verlet-half", "ssprk3", "hht", "bdf3", "dopri5", "rkn4")
-
 
 @pytest.mark.promise("Orders kept and lost with α̂ and β̂ fixed", measured="0.1, one method of each kind and more")
-@pytest.mark.parametrize("name", of_campaign(tuple(SHOWN_ORDERS), SHOWN_EACH_TIME))
+@pytest.mark.parametrize("name", SHOWN_ORDERS)
 @pytest.mark.slow_except("B4", "AB4", "RK4", "verlet-half")
 def test_with_alpha_hat_and_beta_hat_fixed_methods_with_stages_lose_order(name: str) -> None:
     """The feedback grows as h shrinks, and with it the push that stages get which leave the constraints."""
@@ -307,10 +302,3 @@ def test_a02_the_four_bars_go_through_their_singular_positions(count: int, durat
     assert np.abs(run.energy_drift).max() < 1e-6  # J, of hundreds; measured 1.5e-7
     assert len(run.singular_times) == passages
     assert run.trajectory.least_pivot < 1e-5
-
-
-def test_a02_as_shipped_has_forty_four_bars_and_starts_at_one_metre_a_second() -> None:
-    scene = load_scene("n_four_bar")
-    assert len(scene.coordinates) == 41 + 3 * 40
-    assert scene.velocity == {"rod0.theta": -1.0}  # the tip of an upright rod of 1 m: 1 m/s along x
-    assert scene.gravity == (0.0, -9.81)

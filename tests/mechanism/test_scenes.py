@@ -6,8 +6,6 @@ import pytest
 
 from bezstab.errors import InputError
 from bezstab.mechanism import (
-    Body,
-    Revolute,
     Scene,
     at_speed,
     compiled_mechanism,
@@ -17,16 +15,12 @@ from bezstab.mechanism import (
     shipped_scenes,
     simulate,
 )
-from bezstab.mechanism.scenes import Driver
 from bezstab.methods import lookup
 
 SHIPPED = [
     pytest.param(name, marks=[pytest.mark.slow] * (name == "n_four_bar"))  # with N = 40
     for name in shipped_scenes()
 ]
-
-CRANK = Body("crank", ("theta",), mass=1.0, inertia=1.0, locked={}, center=(0.0, 0.0))
-SLIDER = Body("slider", ("x", "theta"), mass=1.0, inertia=1.0, locked={}, center=(0.0, 0.0))
 
 
 def pendulum(**changes: Any) -> dict[str, Any]:
@@ -56,20 +50,6 @@ def four_bars(count: int) -> Scene:
 def small(name: str) -> Scene:
     """Return a shipped scene, of the N-four-bar one with N = 3."""
     return four_bars(3) if name == "n_four_bar" else load_scene(name)
-
-
-def test_a_scene_says_what_it_is_made_of() -> None:
-    """Coordinates left free in the order of the bodies; rows by number, kind and bodies; where joints hold them."""
-    drive = Driver("crank.theta", 0.0, 1.0, 0.0, 0.0, 0.0, 0.0)
-    pin = Revolute(("crank", "slider"), ((1.0, 0.0), (0.0, 2.0)))
-    scene = Scene("two", (0.0, 0.0), (CRANK, SLIDER), (drive, pin), (), (), position={}, velocity={}, guess={})
-    assert scene.coordinates == ("crank.theta", "slider.x", "slider.theta")
-    assert scene.constraint_names == (
-        "joint 1 (driver of crank.theta)",
-        "x of joint 2 (revolute, crank and slider)",
-        "y of joint 2 (revolute, crank and slider)",
-    )
-    assert scene.attachments == (("crank", (1.0, 0.0)), ("slider", (0.0, 2.0)))
 
 
 @pytest.mark.parametrize("name", ["four_bar", "driven_four_bar", "n_four_bar"])

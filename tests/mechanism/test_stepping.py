@@ -112,7 +112,7 @@ def test_newtons_method_ends_runs_alike(monkeypatch: pytest.MonkeyPatch) -> None
     assert run.iterations + 20 >= 3 * 500
     assert run.evaluations < 1.2 * run.iterations  # Jacobians are kept as long as they serve
     assert "blow-up" in str(both(mechanism, "bdf2", 100, feedback_gains(-1.0, 0.1, 0.3), 0.3).failure)
-    monkeypatch.setattr(runner, "MOST_STEPS_OF_A_BLOCK", 7)
+    monkeypatch.setattr(runner, "NUMBERS_OF_A_BLOCK", 7 * 2 * mechanism.size)
     assert_alike(both(mechanism, "bdf2", 500, feedback_gains(0.3, 0.04, H)), run, tolerance=0.0)
     ended = both(mechanism, "bdf2", 400, (0.0, 0.0), 0.1)
     assert len(ended.t) > 10

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from bezstab.compiling import COMPILED_CHOICE
-from bezstab.errors import InputError
 from bezstab.mechanism import (
     Mechanism,
     Simulation,
@@ -154,26 +153,12 @@ def test_the_times_are_sums_of_the_steps() -> None:
     assert run_with([0.01, 0.02], 0.045, "RK4").t == pytest.approx([0, 0.01, 0.03, 0.04, 0.06])
 
 
-@pytest.mark.parametrize("name", ["SYM", "verlet-half"])
-def test_held_parameters_follow_the_step(name: str) -> None:
-    # a step of 2H with the parameters held is a constant step of 2H at the same alpha_hat, beta_hat
-    constant = constant_run(2 * H, 2 * H, name)
-    assert np.array_equal(run_with([2 * H, H], 3 * H, name, hold=True).q[:2], constant.q)
-    assert not np.array_equal(run_with([2 * H, H], 3 * H, name).q[:2], constant.q)
-
-
 def test_steps_of_two_lengths_cost_newtons_method_no_more_than_equal_ones() -> None:
     # of either length the Jacobian is kept: with one for both a step takes more than twice as many evaluations
     equal = run_with([H], 40 * H, "gauss4").trajectory
     in_turn = run_with([H, H / 2], 30 * H, "gauss4").trajectory
     assert len(in_turn.t) == len(equal.t) == 41
     assert in_turn.evaluations < 1.2 * equal.evaluations
-
-
-@pytest.mark.parametrize("name", ["B4", "AB2", "ABM2", "bdf2"])
-def test_methods_of_several_steps_are_refused(name: str) -> None:
-    with pytest.raises(InputError, match="its coefficients assume"):
-        run_with([H], 0.4, name)
 
 
 def compiled_and_not(name: str, monkeypatch: pytest.MonkeyPatch, **point: Any) -> Simulation:
