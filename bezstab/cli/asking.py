@@ -2,7 +2,6 @@
 
 import shlex
 from collections.abc import Callable, Iterable, Sequence
-from fractions import Fraction
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
@@ -50,16 +49,15 @@ def asked_of_feedback(**typed: Any) -> "Question":
 
     question = asked(Question, **typed)
     worked_out([lambda: question.turning, lambda: question.motion], typed["scene"])
-    say_if_it_turns_too_far(typed["scene"], question.speed, question.h)
+    say_each(question.warnings)
     return question
 
 
-def say_if_it_turns_too_far(scene: str | None, speed: Fraction, h: Fraction | None) -> None:
-    """Warn on standard error if a scene's constraints turn too far in a step (s) for the first-order law."""
-    from bezstab.questions import turns_too_far
-
-    if warning := turns_too_far(scene, speed, h):
-        say(f"bezstab: {warning}")
+def say_each(reasons: Iterable[str | None]) -> None:
+    """Say each reason on standard error, once."""
+    for reason in dict.fromkeys(reasons):
+        if reason:
+            say(f"bezstab: {reason}")
 
 
 def of_each(items: Iterable[Item], show: Callable[[Item], Iterable[Row]]) -> tuple[list[Row], int]:
@@ -76,8 +74,7 @@ def of_each(items: Iterable[Item], show: Callable[[Item], Iterable[Row]]) -> tup
             failed.append(error)
     if failed and not rows:
         raise failed[0]
-    for each in failed:
-        say(f"bezstab: {each}")
+    say_each(map(str, failed))
     return rows, NUMERICAL_TROUBLE if failed else 0
 
 
@@ -92,9 +89,7 @@ def show_below(question: "Question", found: "Sequence[Answer]", *, motion: bool 
 
     For people to read, it is also said what an engine did to its values, and what the conversion leaves out.
     """
-    for reason in dict.fromkeys(answer.cost_reason for answer in found):
-        if reason:
-            say(f"bezstab: {reason}")
+    say_each(answer.cost_reason for answer in found)
     if not for_reading():
         return
     if motion and not question.drive:

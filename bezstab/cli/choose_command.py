@@ -1,6 +1,6 @@
 """The command that recommends α and β: choose."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
@@ -96,18 +96,17 @@ def choose(goal: Goal | None, equal: str | None, bandwidth: Fraction | None, **t
     if for_reading():
         say_varying(chosen)
         if not (drive or question.swept):
-            _say_trades(chosen)
+            show_sentences(_trades(chosen))
     show_below(question, chosen)
     show_sentences(map(alone_words, chosen))
     return all(answer.safe for answer in chosen)
 
 
-def _say_trades(chosen: "Sequence[Answer]") -> None:
-    """Print for each choice what faster decay would cost, and what slower decay would gain."""
+def _trades(chosen: "Sequence[Answer]") -> "Iterator[str]":
+    """Yield for each choice what faster decay would cost, and what slower decay would gain."""
     for answer in chosen:
-        if lines := trade_words(answer):
-            name = f"{answer.method.name}: " if len(chosen) > 1 else ""
-            show_text("\n" + "\n".join(f"{name}{line}" for line in lines))
+        name = f"{answer.method.name}: " if len(chosen) > 1 else ""
+        yield "\n".join(f"{name}{line}" for line in trade_words(answer))
 
 
 def _choose_held(question: "HeldQuestion", bandwidth: Fraction | None, settle: Fraction | None) -> bool:

@@ -10,13 +10,11 @@ from bezstab.methods import GROUPS, Method, lookup
 from bezstab.show import (
     LISTED_METHODS,
     NAMED_METHODS,
-    PROPERTIES,
     Column,
     Row,
     column,
     method_row,
     render,
-    transposed,
     whole_row,
     with_unbounded,
 )
@@ -60,14 +58,15 @@ def methods(methods: Sequence[Method], latex: bool) -> None:
     if form in ("json", "csv"):
         show_rows(NAMED_METHODS, rows)
         return
-    for number, row in enumerate(rows):
+    for number, row in enumerate(map(with_unbounded, rows)):
+        columns = [property_column(key, row) for key in row]
         if form == "markdown":
-            click.echo(render(transposed(with_unbounded(row)), PROPERTIES, form))
+            properties = [{"property": each.heading, "value": each.cell(row)} for each in columns]
+            click.echo(render(properties, [column(key, key) for key in properties[0]], form))
             continue
         if number:
             click.echo()
-        shown = with_unbounded(row)
-        show_blocks([shown], [property_column(key, shown) for key in shown], NAMED_METHODS.sentence)
+        show_blocks([row], columns, NAMED_METHODS.sentence)
     if form == "text":
         show_text("\nSteady errors are shares of a motion of ω rad/s, to leading order in θ = iωh.")
 

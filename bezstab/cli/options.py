@@ -25,11 +25,8 @@ if TYPE_CHECKING:
 
 EngineValues = tuple[Engine, tuple[Fraction, ...]]
 Function = Callable[..., Any]
-Decorator = Callable[[Any], Any]
-"""It takes a command's function and returns it with one more option."""
-
-Option = Callable[..., Decorator]
-"""`click.option`, with all but what a command may change of the option."""
+Option = Callable[..., click.Option]
+"""`click.Option`, with all but what a command may change of the option."""
 
 MOST_IN_SEQUENCE = 10**6  # steps: a run of minutes
 SHORTEST = Fraction("1e-100")  # s, and the longest time's inverse: their squares are within float64
@@ -141,13 +138,13 @@ INERTIA = ParsedType("inertia", _inertia)
 
 
 def option(names: str, kind: Any, meaning: str, **more: Any) -> Option:
-    """Return an option: its names as `click.option` has them, with spaces between; its values' type; its help."""
-    return partial(click.option, *names.split(), type=kind, help=meaning, **more)
+    """Return an option: its names as `click.Option` has them, with spaces between; its values' type; its help."""
+    return partial(click.Option, names.split(), type=kind, help=meaning, **more)
 
 
 def flag(names: str, meaning: str) -> Option:
     """Return an option without a value."""
-    return partial(click.option, *names.split(), is_flag=True, help=meaning)
+    return partial(click.Option, names.split(), is_flag=True, help=meaning)
 
 
 def _choose_compiled(context: click.Context, parameter: click.Parameter, choice: str) -> None:
@@ -385,11 +382,7 @@ def command(*options: str | Option | Rule) -> Callable[[Function], click.Command
                     typed[parameter] = kind(**own)
             return function(**typed)
 
-        with_option: Function = checked
-        for option in reversed(every):
-            if not isinstance(option, Rule):
-                with_option = option()(with_option)
-        return click.command()(with_option)
+        return click.command(params=[each() for each in every if not isinstance(each, Rule)])(checked)
 
     return with_options
 

@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING, Any
 import click
 import numpy as np
 
-from bezstab.cli.asking import asked, of_each, say_if_it_turns_too_far
+from bezstab.cli.asking import asked, of_each, say_each
 from bezstab.cli.command_group import NUMERICAL_TROUBLE
 from bezstab.cli.held_drives import held_asked, show_held
 from bezstab.cli.options import NUMBER, POSITIVE, SPEED, Rule, changed, command, flag, option
-from bezstab.cli.output import Files, progress, say, show_rows, show_text, worked_out
+from bezstab.cli.output import Files, progress, show_rows, show_text, worked_out
 from bezstab.show import NOT_KNOWN, REGIONS, Row, combined_words, region_row
 
 if TYPE_CHECKING:
@@ -83,8 +83,7 @@ def region(quality: str, grid: int | None, files: Files, **typed: Any) -> int:
     del typed["drive"]
     question = asked(MapQuestion, points=points, **typed)
     worked_out([lambda: question.motion, lambda: question.turnings], typed["scene"])
-    for speed in () if question.motion else question.speeds:
-        say_if_it_turns_too_far(question.scene, speed, question.h)
+    say_each(question.warnings)
     files.check_output()
     if question.compare:
         rows, status = _write_boundaries(question, files), 0
@@ -100,8 +99,7 @@ def _write_map(answer: "MapAnswer", files: Files) -> list[Row]:
     """Write the map of one method; return its rows."""
     from bezstab import show
 
-    if answer.forced and answer.forced.reason:
-        say(f"bezstab: {answer.forced.reason}")
+    say_each([answer.forced.reason] if answer.forced else [])
     if files.wanted:
         z = np.array(list(progress(answer.dominant_poles(), answer.method.name, len(answer.axes[1]))))
         of_what = "accuracy" if answer.forced else answer.question.scene

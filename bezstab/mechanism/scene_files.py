@@ -4,8 +4,7 @@ Nothing in a scene is ever executed: every entry is a number, a name or a list o
 """
 
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -70,16 +69,16 @@ def parse_scene(data: dict[str, Any]) -> Scene:
     name = top.text("name")
     gravity = top.point("gravity", default=NOWHERE)
     duration = top.positive_number("duration", default=DURATION)
-    chain = _four_bar_chain(top)
+    chain_bodies, chain_joints, upright = _four_bar_chain(top)
 
-    bodies = (*(_body(table) for table in top.tables("body")), *chain.bodies)
+    bodies = (*(_body(table) for table in top.tables("body")), *chain_bodies)
     body_names = [body.name for body in bodies]
     _refuse_taken_names(body_names)
     coordinates = tuple(f"{body.name}.{axis}" for body in bodies for axis in body.free)
     if not coordinates:
         raise top.mistake("no body has a free coordinate")
 
-    joints = (*(_joint(table, body_names, coordinates) for table in top.tables("joint")), *chain.joints)
+    joints = (*(_joint(table, body_names, coordinates) for table in top.tables("joint")), *chain_joints)
     if not joints:
         raise top.mistake("no joint, hence no constraint to stabilise")
     forces = tuple(_force(table, body_names) for table in top.tables("force"))
@@ -90,7 +89,7 @@ def parse_scene(data: dict[str, Any]) -> Scene:
     velocity = initial.numbers("velocity", allowed=coordinates)
     guess = initial.numbers("guess", allowed=coordinates)
     top.refuse_unknown_keys()
-    return Scene(name, gravity, bodies, joints, forces, springs, position, velocity, {**chain.guess, **guess}, duration)
+    return Scene(name, gravity, bodies, joints, forces, springs, position, velocity, {**upright, **guess}, duration)
 
 
 def _refuse_taken_names(body_names: Sequence[str]) -> None:
@@ -211,30 +210,14 @@ def _spring(table: TomlTable, body_names: Sequence[str]) -> Spring:
     return Spring(bodies, points, stiffness, free_length, damping)
 
 
-@dataclass(frozen=True)
-class Chain:
-    """The part of a scene that a chain of four-bars makes; the guess stands it upright."""
-
-    bodies: tuple[Body, ...]
-    joints: tuple[Joint, ...]
-    guess: Mapping[str, float]
+Chain = tuple[tuple[Body, ...], tuple[Joint, ...], dict[str, float]]
+"""The bodies and joints of a scene that a chain of four-bars makes, and the guess that stands it upright."""
 
 
 def _four_bar_chain(top: TomlTable) -> Chain:
-    """Return the chain of the table four_bar_chain, an empty one without such a table."""
-    table = top.optional_table("four_bar_chain")
-    if table is None:
-        return Chain((), (), {})
-    count = table.positive_number("count")
-    length = table.positive_number("length")
-    mass = table.positive_number("mass")
-    if count > MOST_FOUR_BARS or count != int(count):
-        raise table.mistake(f"count = {count:g}: expected a whole number from 1 to {MOST_FOUR_BARS}")
-    return _parallel_four_bars(int(count), length, mass)
+    """Return the chain of the table four_bar_chain, an empty one without such a table.
 
-
-def _parallel_four_bars(count: int, length: float, mass: float) -> Chain:
-    """Return parallel four-bars in a row: count + 1 rods pivoted on the ground, couplers between their tips.
+    Parallel four-bars in a row: count + 1 rods pivoted on the ground, couplers between their tips.
 
         o---coupler0---o---coupler1---o
         |              |              |
@@ -244,19 +227,23 @@ def _parallel_four_bars(count: int, length: float, mass: float) -> Chain:
 
     The N-four-bar benchmark of Gonzalez et al.
     """
-    inertia = mass * length**2
-    half = length / 2
+    table = top.optional_table("four_bar_chain")
+    if table is None:
+        return (), (), {}
+    number, length, mass = (table.positive_number(key) for key in ("count", "length", "mass"))
+    if number > MOST_FOUR_BARS or number != int(number):
+        raise table.mistake(f"count = {number:g}: expected a whole number from 1 to {MOST_FOUR_BARS}")
+    count, inertia, half, tip = int(number), mass * length**2, length / 2, (length, 0.0)
     rods = [
         Body(f"rod{i}", ("theta",), mass, inertia / 3, locked={"x": i * length}, center=(half, 0.0))
         for i in range(count + 1)
     ]
     couplers = [Body(f"coupler{i}", COORDINATES, mass, inertia / 12, locked={}, center=NOWHERE) for i in range(count)]
-    tip = (length, 0.0)
     joints: list[Joint] = []
     for i in range(count):
         joints.append(Revolute((f"rod{i}", f"coupler{i}"), (tip, (-half, 0.0))))
         joints.append(Revolute((f"coupler{i}", f"rod{i + 1}"), ((half, 0.0), tip)))
-    upright = {f"rod{i}.theta": math.pi / 2 for i in range(count + 1)}
-    middle_x = {f"coupler{i}.x": (i + 0.5) * length for i in range(count)}
-    middle_y = {f"coupler{i}.y": length for i in range(count)}
-    return Chain((*rods, *couplers), tuple(joints), guess={**upright, **middle_x, **middle_y})
+    guess = {f"rod{i}.theta": math.pi / 2 for i in range(count + 1)}
+    for i in range(count):
+        guess |= {f"coupler{i}.x": (i + 0.5) * length, f"coupler{i}.y": length}
+    return (*rods, *couplers), tuple(joints), guess

@@ -1,12 +1,13 @@
 """A run together with what its constraints did: what `simulate` on the command line and in Python shows."""
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import get_args
 
 from bezstab.errors import InputError
 from bezstab.mechanism.compiled import Mechanism
-from bezstab.mechanism.energies import EnergyBalance, energy_balance
+from bezstab.mechanism.energies import NODES, EnergyBalance, energy_balance
 from bezstab.mechanism.observation import FloatArray, Observation, observe, singular_passages
 from bezstab.mechanism.runner import Start, Trajectory, simulate
 from bezstab.mechanism.start import perturbed_state
@@ -140,14 +141,22 @@ def simulated(
     gains = feedback_gains(alpha_hat, beta_hat, h)
     state = perturbed_state(mechanism, perturb)
     trajectory = simulate(mechanism, method, h, duration, gains, state, start, after=after)
-    two_alpha, beta_squared = gains
-    observation = observe(mechanism, trajectory.t, trajectory.q, trajectory.v, two_alpha, beta_squared)
-    balance = energy_balance(observation, h * float(method.step_multiple))
-    return Simulation(
-        trajectory=trajectory,
-        observation=observation,
-        balance=balance,
-        h=h,
-        alpha_hat=alpha_hat,
-        beta_hat=beta_hat,
-    )
+    return seen_run(trajectory, gains, h * float(method.step_multiple), h, alpha_hat, beta_hat)
+
+
+def seen_run(
+    trajectory: Trajectory,
+    gains: Iterable[float | FloatArray],
+    steps: float | FloatArray,
+    h: float,
+    alpha_hat: float,
+    beta_hat: float,
+    nodes: int = NODES,
+) -> Simulation:
+    """Return a run with what its constraints did, for the gains at its times and its own `steps` (s).
+
+    Powers are integrated as by `running_integral`, with so many nodes.
+    """
+    observation = observe(trajectory.mechanism, trajectory.t, trajectory.q, trajectory.v, *gains)
+    balance = energy_balance(observation, steps, nodes)
+    return Simulation(trajectory, observation, balance, h, alpha_hat, beta_hat)

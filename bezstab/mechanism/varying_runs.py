@@ -13,11 +13,9 @@ from numpy.typing import NDArray
 
 from bezstab.mechanism.compiled import Mechanism
 from bezstab.mechanism.compiled_stepping import runs_compiled
-from bezstab.mechanism.energies import energy_balance
-from bezstab.mechanism.observation import observe
 from bezstab.mechanism.registers import Steps
 from bezstab.mechanism.runner import How, carried_quantities, checked_start, recorded, steps_in_blocks
-from bezstab.mechanism.simulation import Simulation, check_duration
+from bezstab.mechanism.simulation import Simulation, check_duration, seen_run
 from bezstab.mechanism.start import perturbed_state
 from bezstab.methods import Method, check_one_step, evaluations
 from bezstab.stabilising import NOTHING, AfterStep
@@ -45,8 +43,8 @@ def simulated_with_steps(
 
     alpha_hat and beta_hat belong to a step of h (s), and the alpha and beta that they are stay as they are; with `hold`
     alpha_hat and beta_hat stay, and alpha and beta follow the steps. The first constraint is off by `perturb` (m) at
-    the start. `after` is done to each state. Work and drift of energy are
-    integrated by the trapezoidal rule. InputError for a method of several steps, and as `simulated`.
+    the start. `after` is done to each state. Work and drift of energy are integrated by the trapezoidal rule.
+    InputError for a method of several steps, and as `simulated`.
     """
     check_one_step(method)
     check_duration(duration, min(sequence) * float(method.step_multiple))
@@ -67,14 +65,10 @@ def simulated_with_steps(
         kinds=int(steps.kinds.max()) + 1,
     )
     trajectory = recorded(mechanism, method, first, steps.times, blocks, how)
-    times = trajectory.t
+    taken = len(trajectory.t) - 1
     # at each time the gains of the step that begins there; at the last, those of the step that led to it
-    two_alpha, beta_squared = gains[np.minimum(np.arange(len(times)), count - 1)].T
-    observation = observe(mechanism, times, trajectory.q, trajectory.v, two_alpha, beta_squared)
-    balance = energy_balance(observation, steps.lengths[: len(times) - 1], nodes=2)
-    return Simulation(
-        trajectory=trajectory, observation=observation, balance=balance, h=h, alpha_hat=alpha_hat, beta_hat=beta_hat
-    )
+    at_times = gains[np.minimum(np.arange(taken + 1), count - 1)].T
+    return seen_run(trajectory, at_times, steps.lengths[:taken], h, alpha_hat, beta_hat, nodes=2)
 
 
 def _steps(

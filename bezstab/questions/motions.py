@@ -106,18 +106,14 @@ def turning_of(scene: str | Scene | None, speed: Fraction, h: Fraction | None) -
     return turning_normals(compiled_mechanism(moving), moving.duration)
 
 
-def turns_too_far(scene: str | Scene | None, speed: Fraction, h: Fraction | None) -> str | None:
+def turns_too_far(turning: TurningNormals | None, scene: str | Scene, speed: Fraction, h: Fraction) -> str | None:
     """Return a warning where a scene's constraints turn too far in a step (h in s) for the first-order law."""
-    turning = turning_of(scene, speed, h)
-    if turning is None or scene is None or h is None:
-        return None
     from bezstab.evidence import LAW_HOLDS
 
-    turned = turning.kappa * float(h)
-    if turned <= LAW_HOLDS:
+    if turning is None or turning.kappa * float(h) <= LAW_HOLDS:
         return None
-    name = scene_at_speed(scene, speed).name
-    return f"constraints of {name} turn by κh = {turned:.2g} a step: beyond {LAW_HOLDS:g} the law fails"
+    begin = f"constraints of {scene_at_speed(scene, speed).name} turn by κh = {turning.kappa * float(h):.2g} a step"
+    return f"{begin}: beyond {LAW_HOLDS:g} the law fails"
 
 
 def _motion_of_scene(scene: str | Scene, speed: Fraction, duration: Fraction | None) -> ConstraintMotion:

@@ -16,7 +16,7 @@ from bezstab.errors import InputError, NumericalError
 from bezstab.evidence import MovingRegion, moving_region
 from bezstab.mechanism import TurningNormals, load_scene
 from bezstab.methods import Method
-from bezstab.questions.motions import ReferenceMotion, motion_of, turning_of
+from bezstab.questions.motions import ReferenceMotion, motion_of, turning_of, turns_too_far
 from bezstab.questions.question import methods_for
 from bezstab.stability import (
     BestPoint,
@@ -241,6 +241,14 @@ class MapQuestion:
         """How the constraints of the scene turn, by speed; none where nothing moves is asked about."""
         found = {} if self.accuracy else {speed: turning_of(self.scene, speed, self.h) for speed in self.speeds}
         return {speed: turning for speed, turning in found.items() if turning}
+
+    @property
+    def warnings(self) -> list[str]:
+        """What is to be known before the answers."""
+        if self.scene is None or self.h is None:
+            return []
+        scene, h = self.scene, self.h
+        return list(filter(None, [turns_too_far(each, scene, speed, h) for speed, each in self.turnings.items()]))
 
     @cached_property
     def compared(self) -> list[RegionAnswer]:

@@ -21,7 +21,6 @@ from bezstab.show.answer_rows import (
 from bezstab.show.blocks import block, fits, wrapped
 from bezstab.show.cells import pole_text, with_unbounded
 from bezstab.show.columns import (
-    PROPERTIES,
     Column,
     Format,
     Row,
@@ -30,7 +29,6 @@ from bezstab.show.columns import (
     formatted,
     render,
     shown_width,
-    transposed,
     visible,
 )
 from bezstab.show.fields import Field, RowKind, Sentence, cells

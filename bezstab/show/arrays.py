@@ -86,19 +86,20 @@ def verdict_arrays(verdicts: VerdictMap) -> Arrays:
 def history_arrays(simulation: Simulation) -> Arrays:
     """Return t, every q and d/dt q, c_1, cdot_1, lambda_1, ..., energy and work: shape (times,), SI units."""
     coordinates = simulation.trajectory.mechanism.scene.coordinates
-    arrays: Arrays = {"t": simulation.t}
-    for i, name in enumerate(coordinates):
-        arrays[name] = simulation.q[:, i]
-    for i, name in enumerate(coordinates):
-        arrays[f"d/dt {name}"] = simulation.v[:, i]
     constraint_histories = {"c": simulation.c, "cdot": simulation.cdot, "lambda": simulation.multipliers}
-    for name, histories in constraint_histories.items():
-        for number, history in enumerate(histories.T, start=1):
-            arrays[f"{name}_{number}"] = history
-    arrays["energy"] = simulation.energy
-    arrays["driver_work"] = simulation.driver_work
-    arrays["force_work"] = simulation.force_work
-    return arrays
+    return {
+        "t": simulation.t,
+        **dict(zip(coordinates, simulation.q.T, strict=True)),
+        **{f"d/dt {name}": rate for name, rate in zip(coordinates, simulation.v.T, strict=True)},
+        **{
+            f"{name}_{number}": history
+            for name, histories in constraint_histories.items()
+            for number, history in enumerate(histories.T, start=1)
+        },
+        "energy": simulation.energy,
+        "driver_work": simulation.driver_work,
+        "force_work": simulation.force_work,
+    }
 
 
 def untimed_arrays(rows: Sequence[Row]) -> Arrays:

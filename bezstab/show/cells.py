@@ -1,7 +1,8 @@
 """What a cell of a table shows where it takes more than a format: texts made of a row."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from decimal import ROUND_FLOOR, Context
+from string import Formatter
 
 from bezstab.show.columns import MISSING, Row, Value, formatted
 from bezstab.show.words import times_words
@@ -14,20 +15,20 @@ LIMITS = ("alpha_hat_min", "alpha_hat_max", "beta_hat_min", "beta_hat_max")
 """The ends of a region's ranges, as rows name them."""
 
 
-def pole_text(row: Row) -> str:
-    """Return a complex pole, from z_real and z_imag: 0.762694 ± 0.142074i."""
-    real, imaginary = row["z_real"], row["z_imag"]
-    form = ".6f" if max(abs(real), imaginary) < MOST_FIXED else ".6e"
-    visible = round(imaginary / max(1, abs(real)), 6) != 0
-    return f"{real:{form}} ± {imaginary:{form}}i" if visible else f"{real:{form}}"
-
-
-def fitted_pole_text(row: Row) -> str:
-    """Return a pole that was fitted to a log; a dash where none was."""
+def pole_text(row: Row, digits: int = 6) -> str:
+    """Return a complex pole, from z_real and z_imag: 0.762694 ± 0.142074i; a dash where there is none."""
     real, imaginary = row["z_real"], row["z_imag"]
     if real is None:
         return MISSING
-    return f"{real:.7f} ± {imaginary:.7f}i" if imaginary else f"{real:.7f}"
+    form = f".{digits}{'f' if max(abs(real), imaginary) < MOST_FIXED else 'e'}"
+    visible = round(imaginary / max(1, abs(real)), digits) != 0
+    return f"{real:{form}} ± {imaginary:{form}}i" if visible else f"{real:{form}}"
+
+
+def filled(template: str) -> Text:
+    """Return the text of a template such as "{z_abs:.4f} a step" with a row's values; a dash if it lacks one."""
+    keys = [key for _, key, _, _ in Formatter().parse(template) if key]
+    return lambda row: MISSING if any(row[key] is None for key in keys) else template.format_map(row)
 
 
 def modulus_text(row: Row) -> str:
@@ -35,12 +36,6 @@ def modulus_text(row: Row) -> str:
     modulus = row["z_abs"]
     huge = modulus is not None and modulus >= MOST_FIXED
     return formatted(modulus, ".6e" if huge else ".6f")
-
-
-def yes_no_text(key: str) -> Text:
-    """Return the text of a truth value: yes, NO, or a dash where it is None."""
-    words: Mapping[Value, str] = {True: "yes", False: "NO", None: MISSING}
-    return lambda row: words[row[key]]
 
 
 def range_text(gain: str) -> Text:
@@ -70,12 +65,6 @@ def step_text(row: Row) -> str:
     return formatted(limit, ".4g")
 
 
-def searched_text(row: Row) -> str:
-    """Return how strong a feedback was searched: up to which alpha h and beta h; a dash where all of the region was."""
-    strongest = row["searched"]
-    return MISSING if strongest is None else f"αh, βh to {strongest:g}"
-
-
 def times_least_text(row: Row) -> str:
     """Return how many times the least the error is that feedback forces on a constraint."""
     times = row["times_least"]
@@ -86,12 +75,6 @@ def both_times_text(row: Row) -> str:
     """Return the same of the constraint and of its velocity."""
     velocity = row["times_least_velocity"]
     return MISSING if velocity is None else f"{times_least_text(row)}; velocity: {times_words(velocity)}"
-
-
-def both_errors_text(row: Row) -> str:
-    """Return the errors that feedback forces on a constraint and on its velocity."""
-    error, velocity = row["total_error"], row["velocity_error"]
-    return MISSING if error is None else f"{formatted(error, '.1e')}; velocity: {formatted(velocity, '.1e')}"
 
 
 def speed_text(row: Row) -> str:
@@ -191,11 +174,6 @@ def milliseconds_text(row: Row) -> str:
     times = (row["seconds"], row["seconds_min"], row["seconds_max"])
     median, shortest, longest = (formatted(1e3 * seconds, ".3g") for seconds in times)
     return f"{median} ({shortest} to {longest})"
-
-
-def found_text(key: str) -> Text:
-    """Return the text of a number that was found from a log, with its error."""
-    return lambda row: f"{formatted(row[key], '.7g')} ± {formatted(row[f'{key}_error'], '.1e')}"
 
 
 def safe_step_text(row: Row) -> str:

@@ -46,27 +46,17 @@ def column(heading: str, key: str, form: str = "") -> Column:
 
 
 def formatted(value: Value, form: str = "") -> str:
-    """Return a value in a format, minus zero as zero, truth as yes or no; a dash for None and for an empty text."""
+    """Return a value in a format, minus zero as zero; a dash for None and for an empty text.
+
+    Truth is yes or no; a format of its own is what it is called in place of no.
+    """
     if value is None or value == "":
         return MISSING
     if isinstance(value, bool):
-        return "yes" if value else "no"
+        return "yes" if value else form or "no"
     if isinstance(value, float):
         value += 0.0  # minus zero becomes zero
     return format(value, form)
-
-
-PROPERTIES: Sequence[Column] = (column("property", "property"), column("value", "value"))
-"""The columns of a transposed row."""
-
-
-def transposed(row: Row) -> list[Row]:
-    """Return one row per key of a long row, with `property` and `value` as texts, for reading from top to bottom."""
-    properties: list[Row] = []
-    for key, value in row.items():
-        text = formatted(value, ".10g") if isinstance(value, float) else formatted(value)
-        properties.append({"property": key.replace("_", " "), "value": text})
-    return properties
 
 
 def render(rows: Sequence[Row], columns: Sequence[Column], form: Format) -> str:

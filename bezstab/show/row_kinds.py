@@ -6,14 +6,13 @@ documentation of keys (`bezstab schema`) take it from there.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 
 from bezstab.show.cells import (
-    both_errors_text,
     both_times_text,
     constant_text,
     diverged_text,
-    fitted_pole_text,
-    found_text,
+    filled,
     gain_limit_text,
     milliseconds_text,
     modulus_text,
@@ -21,7 +20,6 @@ from bezstab.show.cells import (
     pole_text,
     range_text,
     safe_step_text,
-    searched_text,
     speed_text,
     stable_steps_text,
     step_text,
@@ -29,7 +27,6 @@ from bezstab.show.cells import (
     times_text,
     unbounded_text,
     used_up_text,
-    yes_no_text,
 )
 from bezstab.show.fields import Field, RowKind, integer, number, text, truth
 from bezstab.show.sentences import (
@@ -68,6 +65,13 @@ UNBOUNDED = "where the region has no end there, or is empty"
 METHOD = text("method", "Name of the integration method, with @m where its step is m times h", "method")
 ALPHA_HAT = number("alpha_hat", "Dimensionless damping of the feedback, 2 alpha h", "α̂", ".6f")
 BETA_HAT = number("beta_hat", "Dimensionless stiffness of the feedback, beta^2 h^2", "β̂", ".6f")
+
+
+def point_shown(form: str) -> Sequence[Field]:
+    """Return both fields of a point in another format."""
+    return ALPHA_HAT.shown("α̂", form), BETA_HAT.shown("β̂", form)
+
+
 ALPHA = number(
     "alpha",
     "Damping of the feedback c'' + 2 alpha c' + beta^2 c = 0",
@@ -494,12 +498,12 @@ LIKENESS = (
         "fits",
         "Whether the log may be the method's: it agrees with it within its uncertainty",
         "fits",
-        text=yes_no_text("fits"),
+        form="NO",
     ),
 )
 LIKE_POINT = (
-    ALPHA_HAT.shown("α̂", text=found_text("alpha_hat")),
-    BETA_HAT.shown("β̂", text=found_text("beta_hat")),
+    ALPHA_HAT.shown("α̂", text=filled("{alpha_hat:.7g} ± {alpha_hat_error:.1e}")),
+    BETA_HAT.shown("β̂", text=filled("{beta_hat:.7g} ± {beta_hat_error:.1e}")),
     number("alpha_hat_error", "How far alpha_hat may be off by the error of the fit"),
     number("beta_hat_error", "How far beta_hat may be off by the error of the fit"),
     H,
@@ -731,7 +735,7 @@ CHOICES = RowKind(
             "searched",
             "Largest alpha h and beta h that were searched",
             "searched",
-            text=searched_text,
+            text=filled("αh, βh to {searched:g}"),
             null="where all of the region was, or none of it",
         ),
         H.hidden,
@@ -781,7 +785,7 @@ CHOICES = RowKind(
         ),
         OMEGA_H,
         FORCED_ERROR,
-        TOTAL_ERROR.shown("error forced", text=both_errors_text),
+        TOTAL_ERROR.shown("error forced", text=filled("{total_error:.1e}; velocity: {velocity_error:.1e}")),
         VELOCITY_ERROR,
         ORDER_LEFT.shown("order left"),
         TIMES_LEAST,
@@ -816,8 +820,7 @@ LINTED = RowKind(
         text("kind", "What the element is", "kind"),
         SETTING,
         text("judged", "Which of its points is judged, and why", "judged"),
-        ALPHA_HAT.shown("α̂", ".4f"),
-        BETA_HAT.shown("β̂", ".4f"),
+        *point_shown(".4f"),
         text("map", "Method whose region judges the element", "map"),
         VERDICT,
         SAFE,
@@ -866,8 +869,7 @@ SIMULATIONS = RowKind(
         SCENE.of("trajectory.mechanism.scene"),
         METHOD.of("trajectory.method"),
         STABILISE,
-        ALPHA_HAT.shown("α̂", ".6g"),
-        BETA_HAT.shown("β̂", ".6g"),
+        *point_shown(".6g"),
         H.shown("h (s)", "g"),
         number("time", "When the run ended", "until (s)", ".6g", unit="s", path="t.-1"),
         C_MAX.of("observation.c_max"),
@@ -984,7 +986,7 @@ MEASUREMENTS = RowKind(
             "verdicts_agree",
             "Whether predicted and measured verdict agree",
             "verdicts agree",
-            text=yes_no_text("verdicts_agree"),
+            form="NO",
             null="where either is not settled",
         ),
         text(
@@ -1073,8 +1075,7 @@ FORCED = RowKind(
         SCENE.hidden,
         METHOD,
         number("gain_share", "Factor on alpha and beta of the point that was chosen or given", "gains", "g"),
-        ALPHA_HAT.shown("α̂", ".4g"),
-        BETA_HAT.shown("β̂", ".4g"),
+        *point_shown(".4g"),
         H.shown("h (s)", "g"),
         PREDICTED_ERROR.of("predicted"),
         MEASURED_ERROR.of("measured"),
@@ -1103,8 +1104,7 @@ WITNESSED = RowKind(
         SCENE,
         text("integrator", "What the other engine calls its integrator", "MuJoCo's integrator"),
         METHOD,
-        ALPHA_HAT.shown("α̂", ".4f"),
-        BETA_HAT.shown("β̂", ".4f"),
+        *point_shown(".4f"),
         number(
             "times_boundary",
             "Distance of the point from the origin, in those of the boundary on its ray",
@@ -1129,7 +1129,7 @@ PROBED = RowKind(
     "the pole in a column of a log, or a method beside it, or a point at which a method has it",
     fields=(
         text("column", "Name of the column of the log", "column"),
-        Z_REAL.shown("pole z, per row", text=fitted_pole_text),
+        Z_REAL.shown("pole z, per row", text=partial(pole_text, digits=7)),
         Z_IMAG,
         Z_ABS.shown("|z|", ".7f"),
         Z_ANGLE_DEG.shown("∠z (deg)", ".4f"),
@@ -1153,8 +1153,7 @@ SWEPT = RowKind(
         STABILISE,
         truth("advised", "Whether the point is the choice of the goal accurate for the scene's motion"),
         H.shown("h (s)", "g"),
-        ALPHA_HAT.shown("α̂", ".4g"),
-        BETA_HAT.shown("β̂", ".4g"),
+        *point_shown(".4g"),
         Z_ABS.of("z_abs"),
         number(
             "trajectory_error",
@@ -1206,8 +1205,7 @@ FRONTS = RowKind(
         OMEGA_H.of("omega_h"),
         Z_ABS_BELOW.of("z_abs_below"),
         Z_ABS.hidden.of("z_abs"),
-        ALPHA_HAT.shown("α̂", ".6g"),
-        BETA_HAT.shown("β̂", ".6g"),
+        *point_shown(".6g"),
         H,
         ALPHA,
         BETA,
@@ -1229,7 +1227,7 @@ EXTREMES = RowKind(
         text("case", "What was looked at", "case"),
         text("expected", "What must come out, stated beforehand", "expected"),
         text("seen", "What came out", "seen"),
-        truth("held", "Whether what came out is what was expected", "held", text=yes_no_text("held")),
+        truth("held", "Whether what came out is what was expected", "held", form="NO"),
     ),
     sentence=check_sentence,
 )

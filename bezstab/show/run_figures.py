@@ -24,7 +24,7 @@ from bezstab.show.style import (
 TREATMENTS: dict[tuple[str, bool], tuple[str, dict[str, Any]]] = {
     ("baumgarte", True): ("feedback, advised", {"marker": "o", "markerfacecolor": "none"}),
     ("baumgarte", False): ("feedback, given", {"marker": "x"}),
-    ("projection", False): ("projection", {"marker": "o"}),
+    ("projection", False): ("projection", {"marker": "o", "markerfacecolor": None}),  # filled
 }
 """What holds the constraints, and whether the point is advised: its name and its markers."""
 

@@ -75,6 +75,9 @@ def test_numbers_that_look_like_one_over_seconds_are_said_to() -> None:
     typed = "check --method SYM --alpha 50 --beta 50.5 --h 0.002"
     assert run(typed).stderr.splitlines()[0].endswith(f"add --physical: bezstab {typed} --physical")
     assert run(typed, "--physical").stderr == ""
+    assert (
+        run("check --method SYM --alpha 14217 --beta 16544 --h 0.002 --physical").stderr == ""
+    )  # meant so, and unsafe
     for command in ("poles", "check --method SYM", f"probe {DATA}/pendulum.csv"):  # and no step to read them at
         said = run(command, "--alpha 14217 --beta 16544").stderr
         assert "taken as α̂ and β̂, without unit; if they are in 1/s, add --physical and your --h\n" in said

@@ -52,6 +52,16 @@ def small(name: str) -> Scene:
     return four_bars(3) if name == "n_four_bar" else load_scene(name)
 
 
+def test_a_pin_is_at_one_place_of_both_bodies_that_it_holds() -> None:
+    scene = load_scene("slider_crank")
+    q, _ = initial_state(compiled_mechanism(scene))
+    places = scene.joint_places(q.tolist())
+    pivot, pin = places["crank"]
+    assert pivot == (0, 0)
+    assert pin == pytest.approx(0.2 * np.array([np.cos(q[0]), np.sin(q[0])]), abs=1e-15)
+    assert any(place == pytest.approx(pin, abs=1e-12) for place in places["rod"])
+
+
 @pytest.mark.parametrize("name", ["four_bar", "driven_four_bar", "n_four_bar"])
 def test_twice_the_speed_doubles_every_velocity_of_the_start(name: str) -> None:
     slow, fast = (initial_state(compiled_mechanism(at_speed(small(name), factor))) for factor in (1.0, 2.0))

@@ -12,11 +12,13 @@ from bezstab.mechanism import (
     at_speed,
     compiled_mechanism,
     load_scene,
+    observe,
     simulated,
     simulated_with_steps,
 )
 from bezstab.methods import lookup, step_matrix
 from bezstab.stability import FloatArray
+from bezstab.units import feedback_gains
 from tests.mechanism.test_stepping import assert_alike
 
 MECHANISM = compiled_mechanism(load_scene("slider_crank"))
@@ -151,6 +153,13 @@ def test_steps_that_are_each_stable_grow_in_turn() -> None:
 
 def test_the_times_are_sums_of_the_steps() -> None:
     assert run_with([0.01, 0.02], 0.045, "RK4").t == pytest.approx([0, 0.01, 0.03, 0.04, 0.06])
+
+
+def test_multipliers_are_those_of_the_step_that_begins() -> None:
+    run = run_with([2 * H, H], 3 * H, hold=True)
+    gains = feedback_gains(ALPHA_HAT, BETA_HAT, H)
+    seen = observe(MECHANISM, run.t[1:2], run.q[1:2], run.v[1:2], *gains)
+    assert run.multipliers[1] == pytest.approx(seen.multipliers[0], rel=1e-12)
 
 
 def test_steps_of_two_lengths_cost_newtons_method_no_more_than_equal_ones() -> None:

@@ -12,6 +12,7 @@ from bezstab.stability import chain, swept_growth
 
 CHIPMUNK = ENGINES["chipmunk"]
 DEFAULT = (Fraction("0.9") ** 60,)
+H = Fraction(1, 240)
 
 
 def test_a_chain_decides_whether_an_answer_is_safe() -> None:
@@ -51,6 +52,15 @@ def test_what_is_chosen_for_a_chain_is_safe_there(name: str) -> None:
         assert chained.sweeps_to_spare
         assert chained.swept
         assert chained.swept.iterations >= chained.sweeps_to_spare
+
+
+def test_what_is_chosen_for_a_chain_may_be_stronger_by_the_spread() -> None:
+    """Chipmunk takes back a share of the error, which is beta_hat: the largest that is stable, over 1 + spread."""
+    largest, spared = (
+        next(answers(Question(engine=CHIPMUNK, goal="fastest", h=H, chain=Chain(6, Fraction(20)), spread=spread)))
+        for spread in (0.0, 0.25)
+    )
+    assert spared.beta_hat == pytest.approx(largest.beta_hat / 1.25, rel=1e-6)
 
 
 def links(bodies: int, ratio: float) -> Scene:

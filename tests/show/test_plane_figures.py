@@ -5,50 +5,55 @@ from typing import Any
 
 import numpy as np
 import pytest
-from matplotlib.axes import Axes
+from matplotlib.collections import QuadMesh
 
 from bezstab.evidence import map_rows, simulated_verdicts, verdict_map
 from bezstab.mechanism import load_scene
 from bezstab.methods import lookup
+from bezstab.show.accuracy_figures import accuracy_map_figure
 from bezstab.show.plane_figures import PlaneMap, comparison_figure, family_figure, region_figure, verdict_figure
 from bezstab.stability import best_point, bezier_limit, choose, family_members, region, spectral_radius, window
-
-
-def lines_of(axes: Axes) -> dict[str, Any]:
-    """Return the points of each line by its label."""
-    return {str(line.get_label()): np.array(line.get_xydata()) for line in axes.lines}
+from tests.show.drawn import lines_of
 
 
 @pytest.mark.parametrize("h", [None, 0.001])
-def test_the_figure_draws_what_it_is_given(h: float | None) -> None:
-    method = lookup("B4")
-    alpha_hat, beta_hat = (np.linspace(low, high, 41) for low, high in window(region(method)))
+@pytest.mark.parametrize("on", ["even axes", "logarithmic axes"])
+def test_a_map_draws_what_it_is_given(on: str, h: float | None) -> None:
+    method, scale = lookup("B4"), np.array([1 / (h or 1), 1 / (h or 1) ** 2])
+    even = on == "even axes"
+    ends = window(region(method)) if even else ((2e-3, 1.6), (1e-6, 0.8))
+    alpha_hat, beta_hat = ((np.linspace if even else np.geomspace)(low, high, 41) for low, high in ends)
     z_abs = spectral_radius(method, alpha_hat, beta_hat[:, None])
-    best, chosen = best_point(method), choose(method, "robust")
-    faster = [region(method, 0.75), region(method, 0.9)]
-    marks = {"a rule": (0.1, 0.2)}
-    given: dict[str, Any] = {"alpha_hat": alpha_hat, "beta_hat": beta_hat, "z_abs": z_abs, "chosen": chosen}
-    figure = region_figure(PlaneMap(region=region(method), best=best, **given, h=h, marks=marks), faster)
-    axes, scale = figure.axes[0], np.array([1 / (h or 1), 1 / (h or 1) ** 2])
-    (image,) = axes.images
-    shown = np.ma.masked_array(image.get_array())
-    assert (np.ma.getmaskarray(shown) == (z_abs >= 1)).all()
-    assert shown.compressed().tolist() == z_abs[z_abs < 1].tolist()
-    left, right, *_ = image.get_extent()
-    step = (alpha_hat[1] - alpha_hat[0]) * scale[0]
-    assert (left + step / 2, right - step / 2) == pytest.approx((0, alpha_hat[-1] * scale[0]))  # nodes at pixel centres
+    best, chosen = best_point(method), choose(method, "robust", margins=False)
+    points: dict[str, Any] = {"best": best, "chosen": chosen, "marks": {"a rule": (0.1, 0.2), "far out": (3, 3)}}
+    shown = PlaneMap(region=region(method), alpha_hat=alpha_hat, beta_hat=beta_hat, z_abs=z_abs, h=h, **points)
+    faster = [region(method, level) for level in (0.75, 0.9)]
+    figure = region_figure(shown, faster) if even else accuracy_map_figure(shown, 0.01, z_abs)
+    axes = figure.axes[0]
+    (image,) = axes.images or [each for each in axes.collections if isinstance(each, QuadMesh)]
+    values = np.ma.masked_array(image.get_array())
+    assert (np.ma.getmaskarray(values) == (z_abs >= 1)).all()
+    assert values.compressed().tolist() == z_abs[z_abs < 1].tolist()
+    low, high = np.transpose([axes.get_xlim(), axes.get_ylim()])
+    assert [low, high] == pytest.approx(np.transpose([alpha_hat, beta_hat])[[0, -1]] * scale)
     lines = lines_of(axes)
-    for label, level in (("$|z_p| = 1$", 1.0), ("$|z_p| = 0.75$", 0.75), ("$|z_p| = 0.9$", 0.9)):
-        (curve,) = region(method, level).boundary
-        assert lines[label][:-1] == pytest.approx(curve * scale)
+    assert best
+    for label, point in {
+        "least $|z_p|$: 0.6259": (best.alpha_hat, best.beta_hat),
+        f"choose robust: {abs(chosen.pole):.4f}": (chosen.alpha_hat, chosen.beta_hat),
+        "a rule": (0.1, 0.2),
+    }.items():
+        assert lines[label][0] == pytest.approx(np.array(point) * scale)
+    assert "far out" not in lines
     (parabola,) = (points for label, points in lines.items() if label.startswith("critical damping"))
     assert parabola[:, 1] == pytest.approx(parabola[:, 0] ** 2 / 4)  # beta^2 = (2 alpha)^2/4 in either unit
-    assert best
-    (label,) = (label for label in lines if label.startswith("choose robust"))
-    assert lines["least $|z_p|$: 0.6259"][0] == pytest.approx(np.array([best.alpha_hat, best.beta_hat]) * scale)
-    assert lines[label][0] == pytest.approx(np.array([chosen.alpha_hat, chosen.beta_hat]) * scale)
-    assert lines["a rule"][0] == pytest.approx(np.array([0.1, 0.2]) * scale)
     assert ("1/s" in axes.get_xlabel()) == (h is not None)
+    if even:  # nodes are at the centres of pixels
+        for drawn in (region(method), *faster):
+            assert lines[f"$|z_p| = {drawn.level:g}$"][:-1] == pytest.approx(drawn.boundary[0] * scale)
+        left, right, *_ = axes.images[0].get_extent()
+        step = (alpha_hat[1] - alpha_hat[0]) * scale[0]
+        assert (left + step / 2, right - step / 2) == pytest.approx((0, alpha_hat[-1] * scale[0]))
 
 
 def test_the_verdict_figure_shows_cells_boundary_and_disagreement() -> None:

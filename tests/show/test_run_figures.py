@@ -1,79 +1,71 @@
-from fractions import Fraction
+"""Figures of runs that are made up: each error and each front is drawn where it is."""
+
+from typing import Any
 
 import numpy as np
 import pytest
 
-from bezstab.evidence import (
-    NO_FEEDBACK,
-    Cost,
-    ErrorOf,
-    Run,
-    Sweep,
-    measured_runs,
-    pareto_front,
-    reference_motion,
-    swept_runs,
-    with_fronts,
-)
+from bezstab.evidence import Cost, ErrorOf, Run, with_fronts
 from bezstab.mechanism import compiled_mechanism, load_scene, simulated
 from bezstab.methods import lookup
 from bezstab.show.run_figures import history_figure, projection_figure, work_precision_figure
-from bezstab.stabilising import NOTHING, AfterStep, after_step
+from tests.show.drawn import lines_of
 
 
-@pytest.mark.slow
-def test_the_work_precision_figure_has_every_run_and_rings_the_front() -> None:
-    scene, steps, point = load_scene("slider_crank_light"), (0.004, 0.008, 0.0125), (50.0, 50.0)
-    true = reference_motion(scene, min(steps), 1.0)
-    sweeps = [Sweep(lookup(name), scene, steps, 1.0, point, True, 1, true) for name in ("B2", "AB4")]
-    swept = [run for sweep in sweeps for run in swept_runs(sweep, measured_runs(sweep))]
-    failed, ended = ([run for run in swept if bool(run.failure) == wanted] for wanted in (True, False))
-    assert failed  # AB4 at the largest step
-
-    def drawn(run: Run, error: ErrorOf, against: Cost) -> tuple[float, float | None]:
-        cost = run.evaluations if against == "evaluations" else run.seconds
-        return cost, run.c_max if error == "constraint" else run.trajectory_error
-
-    kinds: list[tuple[ErrorOf, Cost]] = [("constraint", "evaluations"), ("trajectory", "time")]
-    for error, against in kinds:
-        (axes,) = work_precision_figure(with_fronts(swept, 0.0, against), scene.name, error).axes
-        lines = {str(line.get_label()): np.array(line.get_xydata()).tolist() for line in axes.lines}
-        places = [drawn(run, error, against) for run in ended]
-        for name in ("B2", "AB4"):
-            own = [list(place) for run, place in zip(ended, places, strict=True) if run.method.name == name]
-            assert lines[name] == own
-        assert lines["front"] == [list(places[k]) for k in pareto_front(places)]
-        crosses = [np.array(line.get_xydata()) for line in axes.lines if line.get_marker() == "x"]
-        across = sorted(x for cross in crosses for x, _ in cross)
-        assert across == sorted(drawn(run, error, against)[0] for run in failed)
+def a_run(method: str, evaluations: int, error: float, **other: Any) -> Run:
+    """Return a run whose |c| is a tenth of its error, and whose energy falls by twice that error."""
+    nothing = dict.fromkeys(("h", "alpha_hat", "beta_hat", "z_abs", "c_rms", "cdot_max", "cdot_rms"), 0.0)
+    unknown = dict.fromkeys(("measured_error", "predicted_error", "order", "failure"))
+    times = {f"seconds{which}": evaluations / 1e3 for which in ("", "_min", "_max")}
+    errors = {"trajectory_error": error, "c_max": error / 10, "energy_drift": -2 * error}
+    costs = {"evaluations": evaluations, "factorizations": 2 * evaluations}
+    given: dict[str, Any] = {**nothing, **unknown, **times, **errors, **costs, **other}
+    return Run(method=lookup(method), **given)
 
 
-@pytest.mark.slow
+RUNS = [
+    a_run("B2", 100, 1e-2),
+    a_run("B2", 200, 3e-3),
+    a_run("AB4", 80, 9.0, failure="too far"),
+    a_run("AB4", 300, 5e-3),
+]
+
+
+@pytest.mark.parametrize(("error", "against"), [("constraint", "evaluations"), ("trajectory", "time")])
+def test_the_work_precision_figure_has_every_run_and_rings_the_front(error: ErrorOf, against: Cost) -> None:
+    (axes,) = work_precision_figure(with_fronts(RUNS, 0.0, against), "made up", error).axes
+    scale = [1 if against == "evaluations" else 1e-3, 0.1 if error == "constraint" else 1]
+    lines = lines_of(axes)
+    for name, places in {
+        "B2": [(100, 1e-2), (200, 3e-3)],
+        "AB4": [(300, 5e-3)],
+        "front": [(100, 1e-2), (200, 3e-3)],  # AB4 costs more and errs more than the second
+    }.items():
+        assert lines[name] == pytest.approx(np.multiply(places, scale)), name
+    crosses = [np.array(line.get_xydata()).tolist() for line in axes.lines if line.get_marker() == "x"]
+    assert [x for points in crosses for x, _ in points] == pytest.approx([80 * scale[0]])
+
+
 def test_the_projection_figure_shows_all_three_errors_of_every_way_to_hold_the_constraints() -> None:
     """A line for each method and way in each axes."""
-    scene, steps = load_scene("slider_crank_light"), (0.008, 0.004)
-    true = reference_motion(scene, min(steps), 1.0)
-    ways: list[tuple[tuple[float, float] | None, AfterStep]]
-    ways = [(None, NOTHING), ((0.5, 0.1), NOTHING), (NO_FEEDBACK, after_step("projection"))]
-    sweeps = [
-        Sweep(lookup(name), scene, steps, 1.0, point, False, 1, true, Fraction(14), after=after)
-        for name in ("B2", "SYM")
-        for point, after in ways
+    ways = [("baumgarte", True), ("baumgarte", False), ("projection", False)]
+    runs = [
+        a_run(method, 10 + number, 10.0**-number, stabilise=stabilise, advised=advised)
+        for method in ("B2", "SYM")
+        for number, (stabilise, advised) in enumerate(ways)
     ]
-    swept = [run for sweep in sweeps for run in swept_runs(sweep, measured_runs(sweep))]
-    figure = projection_figure(with_fronts(swept, true.error, "projection"), scene.name, 0.0)
-    trajectory, constraint, energy = figure.axes
-    errors = ([run.trajectory_error, run.c_max, abs(run.energy_drift)] for run in swept)
-    for axes, of_runs in zip((trajectory, constraint, energy), zip(*errors, strict=True), strict=True):
+    figure = projection_figure(with_fronts(runs, 0.0, "projection"), "made up", 0.0)
+    for axes, share in zip(figure.axes, (1, 0.1, 2), strict=True):
         drawn = [point for line in axes.lines for point in np.array(line.get_xydata()).tolist()]
-        assert drawn == [[run.factorizations, error] for run, error in zip(swept, of_runs, strict=True)]
+        assert np.array(drawn) == pytest.approx(np.array([(20 + 2 * k, share * 10.0**-k) for k in range(3)] * 2))
+    assert len({(line.get_color(), line.get_marker(), line.get_markerfacecolor()) for line in axes.lines}) == 6
 
 
-def test_the_history_figure_says_what_was_run_and_shows_decay_as_a_line() -> None:
+def test_the_history_figure_shows_the_run() -> None:
     pendulum = compiled_mechanism(load_scene("pendulum"))
     run = simulated(pendulum, lookup("SYM"), h=0.002, duration=0.2, alpha_hat=0.5, beta_hat=0.1, perturb=1e-4)
     figure = history_figure(run)
-    upper, middle, lower = figure.axes
-    assert np.array(upper.lines[0].get_ydata()).tolist() == run.c[:, 0].tolist()
-    assert np.array(middle.lines[0].get_ydata()).tolist() == run.cdot[:, 0].tolist()
-    assert np.array(lower.lines[0].get_ydata()).tolist() == np.abs(run.c).max(axis=1).tolist()
+    shown = (run.c[:, 0], run.cdot[:, 0], np.abs(run.c).max(axis=1))
+    for axes, values in zip(figure.axes, shown, strict=True):
+        assert np.array(axes.lines[0].get_xydata()).T.tolist() == [run.t.tolist(), values.tolist()]
+    assert figure.axes[2].get_yscale() == "log"
