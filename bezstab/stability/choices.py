@@ -8,7 +8,6 @@ from functools import partial
 from typing import assert_never, get_args
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bezstab.errors import InputError, NumericalError
 from bezstab.goals import SETTLING, UP_TO_LONGEST, Goal
@@ -350,14 +349,13 @@ def describe_point(
 
 
 # `robust` asks for the least of a largest value among SHARES * 5 + 5. Most of them need not be looked at: a point at
-# which one is above what another point has at all cannot be the least.
+# which one is above what another point has at all cannot be the least, and whether a value is below a line needs no
+# pole: Schur's recursion tells whether all are within a circle.
 #
-#     largest so far   x       . limits alone: cheap, and half of the points are out
-#        |          x          - - - - - - - - reached: the largest of all, at the point that is best so far
-#        |    x  .    .  x     the others, at the points below that line alone
+#     largest          x
+#        |  x       x     x    - - - - - - - - reached: the largest of all, at the point that is best so far
+#        |       x             poles are asked for at the points below that line alone
 #        +--------------------
-#
-# Whether a value is below a line needs no pole: Schur's recursion tells whether all are within a circle.
 
 
 def _slowest(method: Method, modulus: Modulus, within: Within, spread: float) -> Objective:
@@ -369,57 +367,30 @@ def _slowest(method: Method, modulus: Modulus, within: Within, spread: float) ->
     no more is said than that they are larger. `within` tells whether |z_p| is below a bound, faster than `modulus`.
     """
     of_alpha, of_beta = np.array([(-1, -1), (-1, 1), (0, 0), (1, -1), (1, 1)]).T[:, :, np.newaxis] * spread + 1
-    all_shares = np.linspace(0, 1, SHARES + 1)[1:]
-    smaller_steps, largest_step = all_shares[:-1], all_shares[-1:]
+    all_shares = np.linspace(1, 0, SHARES + 1)[:-1]
     multiple = float(method.step_multiple)
-
-    def limit(alpha_hat: FloatArray, beta_hat: FloatArray) -> FloatArray:
-        half, square = of_alpha * alpha_hat / 2, of_beta**2 * beta_hat
-        slower_mu = -half + np.sqrt(np.maximum(0, half**2 - square))
-        return np.asarray(np.exp(multiple * slower_mu).max(axis=0))
 
     def scaled(shares: FloatArray, alpha_hat: FloatArray, beta_hat: FloatArray) -> tuple[FloatArray, ...]:
         """Return the shares, and alpha_hat and beta_hat at them with every spread; shape (shares, 5, points)."""
         share = shares[:, np.newaxis, np.newaxis]
         return np.broadcast_arrays(share, share * of_alpha * alpha_hat, share**2 * (of_beta**2 * beta_hat))
 
-    def at_shares(shares: FloatArray, alpha_hat: FloatArray, beta_hat: FloatArray) -> FloatArray:
-        share, scaled_alpha, scaled_beta = scaled(shares, alpha_hat, beta_hat)
-        return np.asarray((modulus(scaled_alpha, scaled_beta) ** (1 / share)).max(axis=(0, 1)))
-
-    def below(bound: float | FloatArray, shares: FloatArray, alpha_hat: FloatArray, beta_hat: FloatArray) -> BoolArray:
-        share, scaled_alpha, scaled_beta = scaled(shares, alpha_hat, beta_hat)
-        return np.asarray(within(scaled_alpha, scaled_beta, bound**share).all(axis=(0, 1)))
-
     def objective(alpha_hat: FloatArray, beta_hat: FloatArray, reached: float) -> FloatArray:
-        worst = limit(alpha_hat, beta_hat)
+        half, square = of_alpha * alpha_hat / 2, of_beta**2 * beta_hat
+        slower_mu = -half + np.sqrt(np.maximum(0, half**2 - square))
+        worst: FloatArray = np.exp(multiple * slower_mu).max(axis=0)
         if np.isinf(reached) and worst.size > SCOUTS:
             reached = float(objective(alpha_hat[::SCOUTS], beta_hat[::SCOUTS], reached).min())
-        left = np.flatnonzero(worst <= reached)
+        left = kept = np.flatnonzero(worst <= reached)
         if np.isfinite(reached):
-            kept = left
-            for shares in (largest_step, smaller_steps):  # in this order: most points fail at the largest
-                kept = kept[below(reached * (1 + TOLD), shares, alpha_hat[kept], beta_hat[kept])]
+            for shares in (all_shares[:1], all_shares[1:]):  # most points fail at the largest
+                share, alphas, betas = scaled(shares, alpha_hat[kept], beta_hat[kept])
+                kept = kept[within(alphas, betas, (reached * (1 + TOLD)) ** share).all(axis=(0, 1))]
             if kept.size:  # next to a double pole even the point that was reached may seem larger
                 worst[np.setdiff1d(left, kept)] = np.inf
                 left = kept
-        if not left.size:
-            return worst
-
-        def complete(some: NDArray[np.intp]) -> None:
-            """Let the smaller steps count as well, where one of them is the worst."""
-            share, scaled_alpha, scaled_beta = scaled(smaller_steps, alpha_hat[some], beta_hat[some])
-            counts = ~within(scaled_alpha, scaled_beta, worst[some] ** share)
-            if counts.any():
-                values = np.zeros(share.shape)
-                values[counts] = modulus(scaled_alpha[counts], scaled_beta[counts]) ** (1 / share[counts])
-                worst[some] = np.maximum(worst[some], values.max(axis=(0, 1)))
-
-        worst[left] = np.maximum(worst[left], at_shares(largest_step, alpha_hat[left], beta_hat[left]))
-        best = left[np.argmin(worst[left])]
-        complete(np.array([best]))
-        reached = min(reached, float(worst[best]))
-        complete(left[(worst[left] <= reached) & (left != best)])
+        share, alphas, betas = scaled(all_shares, alpha_hat[left], beta_hat[left])
+        worst[left] = np.maximum(worst[left], (modulus(alphas, betas) ** (1 / share)).max(axis=(0, 1)))
         return worst
 
     return objective

@@ -105,7 +105,7 @@ def test_a_short_word_is_answered_with_its_own_kind_only(word: str) -> None:
 
 NOTHING_NEAR = """
 EBDF2 bdff2 BD2 HTT HH SI SYN ABX2 RKX B2B CNAB x solver sundials hermite θ 4 ...
-verlet-explicit explicit-bdf2 implicit-heun implicit-rk4 semi-implicit-verlet backward-heun forward-gauss
+verlet-explicit explicit-bdf2 implicit-heun semi-implicit-verlet backward-heun forward-gauss
 """
 """Letters near those of a method; most letters of implicit-heun are implicit-euler's, whose contrary it might mean."""
 

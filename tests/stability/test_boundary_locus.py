@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from bezstab.errors import NumericalError
-from bezstab.stability import Region, region
+from bezstab.stability import Region, best_point, region
 from tests.reference.companion_poles import radius
 from tests.reference.made_methods import multistep, runge_kutta
 
@@ -26,6 +26,9 @@ def test_an_arc_shorter_than_the_sampling_is_found() -> None:
     sliver = multistep("sliver", "1 -7/8 13/24 -2/3 -1/4 1/4", "0 -7/2 9/2 -1 5/2 -23/24")
     by_slices = 9.663030e-10  # whose ends are proven: sliced_areas takes minutes for it
     assert region(sliver, 0.8).area == pytest.approx(by_slices, rel=2e-6)
+    least = best_point(sliver)
+    assert least
+    assert region(sliver, (1 + 1e-5) * least.z_abs).area  # 1e-15 of the other: both arcs lie between two samples
 
 
 def test_two_roots_that_meet_on_the_circle_outside_every_region_leave_none() -> None:

@@ -40,6 +40,13 @@ def test_no_point_is_more_robust(name: str) -> None:
                 assert worst_decay(lookup(name), a, b, shares, 0.1) > best * (1 - 2e-6)
 
 
+def test_the_most_robust_feedback_of_a_method_whose_step_is_five_is_that_of_its_own_step() -> None:
+    """alpha and beta in 1/s are the same when five steps of h are one of 5 h, and so is the decay a step."""
+    of_step, of_five = choose(lookup("RK4"), "robust"), choose(lookup("RK4@5"), "robust")
+    assert (5 * of_five.alpha_hat, 25 * of_five.beta_hat) == pytest.approx((of_step.alpha_hat, of_step.beta_hat), 1e-6)
+    assert of_five.worst == pytest.approx(of_step.worst, 1e-9)
+
+
 @pytest.mark.parametrize("name", ["B3", "B8", "AB4"])
 @pytest.mark.slow_except("B3")
 def test_the_critical_choice_is_where_an_opposite_pole_is_as_large(name: str) -> None:
