@@ -379,7 +379,7 @@ def largest_step(method: str | Method, *, alpha: Number, beta: Number) -> float:
     InputError unless the numbers are finite. Source: the path of all steps through the plane of paper
     Eq. 17.
     """
-    return questions.largest_step(_method(method), _exact(alpha, "alpha"), _exact(beta, "beta")).h_limit
+    return questions.LargestStep(_method(method), _exact(alpha, "alpha"), _exact(beta, "beta")).h_limit
 
 
 def feedback_cost(

@@ -99,9 +99,9 @@ def _with_instead(given: "Iterable[Answer]") -> "Iterator[Answer]":
 
 def _check_without_step(methods: tuple[Method, ...], point: TypedPoint) -> bool:
     """Print the step up to which alpha and beta (1/s) are safe with each method; return whether each method has one."""
-    from bezstab.questions import largest_step, methods_for
+    from bezstab.questions import LargestStep, methods_for
 
     assert point.numbers
-    found = [largest_step(method, *point.numbers) for method in methods_for(methods, None, None)]
+    found = [LargestStep(method, *point.numbers) for method in methods_for(methods, None, None)]
     show_rows(LARGEST_STEPS, map(largest_step_row, found))
     return all(each.safe for each in found)

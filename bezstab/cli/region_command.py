@@ -69,7 +69,7 @@ def region(quality: str, grid: int | None, files: Files, **typed: Any) -> int:
     Example: bezstab region --method B4
     """
     from bezstab import show
-    from bezstab.questions import MapQuestion, map_answer
+    from bezstab.questions import MapAnswer, MapQuestion
     from bezstab.stability import QUALITY
 
     points = grid or QUALITY[quality]
@@ -88,7 +88,7 @@ def region(quality: str, grid: int | None, files: Files, **typed: Any) -> int:
     if question.compare:
         rows, status = _write_boundaries(question, files), 0
     else:
-        rows, status = of_each(question.methods, lambda method: _write_map(map_answer(question, method), files))
+        rows, status = of_each(question.methods, lambda method: _write_map(MapAnswer(question, method), files))
     show_rows(REGIONS, rows, () if question.levels else ("z_abs_below",))
     if question.motion:
         show_text(combined_words(question.motion))

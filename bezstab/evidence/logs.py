@@ -91,25 +91,20 @@ def parse_log(text: str, name: str) -> Log:
     if not filled:
         raise InputError(f"{name}: is empty")
     delimiter = _delimiter(filled[min(1, len(filled) - 1)][1])  # the first line may hold names, the last be cut off
-    cells = [_cells(line, delimiter) for _, line in filled]
-    numbers_of = {number: row for (number, _), row in zip(filled, cells, strict=True)}
-    names: tuple[str, ...] = ()
-    if not all(_is_number_or_missing(cell) for cell in cells[0]):
-        names = tuple(cell.strip() for cell in cells[0])
-        del numbers_of[filled[0][0]]
-    elif comments:
-        of_comment = _cells(comments[-1].lstrip("".join(COMMENTS)), delimiter)
-        if len(of_comment) == len(cells[0]):
-            names = tuple(cell.strip() for cell in of_comment)
-    width = len(cells[0])
-    if not numbers_of:
+    rows = [(number, _cells(line, delimiter)) for number, line in filled]
+    width = len(rows[0][1])
+    of_comment = _cells(comments[-1].lstrip("".join(COMMENTS)), delimiter) if comments else []
+    names = of_comment if len(of_comment) == width else [str(k) for k in range(1, width + 1)]
+    if not all(map(_is_number_or_missing, rows[0][1])):
+        _, names = rows.pop(0)
+    if not rows:
         raise InputError(f"{name}: has names, but no rows of numbers")
-    values = np.empty((len(numbers_of), width))
-    for place, (number, row) in enumerate(numbers_of.items()):
+    values = np.empty((len(rows), width))
+    for place, (number, row) in enumerate(rows):
         if len(row) != width:
             raise InputError(f"{name}, line {number}: {len(row)} cells, expected {width} as above")
         values[place] = _numbers(row, f"{name}, line {number}")
-    return Log(name, names or tuple(str(k) for k in range(1, width + 1)), values)
+    return Log(name, tuple(cell.strip() for cell in names), values)
 
 
 def _delimiter(line: str) -> str | None:

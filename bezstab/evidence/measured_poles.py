@@ -201,7 +201,8 @@ def measure_poles(
     found = []
     for i, (a, b) in enumerate(zip(alpha_hat.tolist(), beta_hat.tolist(), strict=True)):
         responses = difference[:, :, i], size[:, :, i]
-        measured, reason = _measured_pole(method, a, b, *responses)
+        predicted = complex(dominant_pole(method, a, b))
+        measured, reason = _measured_pole(predicted, poles(method, a, b), *responses)
         measured_verdict = _measured_verdict(measured, *responses, max(CLOSE, moving[i].shift(method, h)))
         if thrown_apart[i] and measured_verdict == "too close to call":  # so fast that no growth shows while linear
             measured_verdict, reason = "diverges", f"the feedback throws the mechanism apart within {AT_ONCE} steps"
@@ -210,7 +211,7 @@ def measure_poles(
                 method=method,
                 alpha_hat=a,
                 beta_hat=b,
-                predicted=complex(dominant_pole(method, a, b)),
+                predicted=predicted,
                 predicted_verdict=verdict(method, exact(a), exact(b)),
                 law_abs=moving[i].z_abs_moving,
                 law_verdict=moving[i].verdict,
@@ -251,33 +252,22 @@ def _kicked_responses(
 
 
 def _measured_pole(
-    method: Method, alpha_hat: float, beta_hat: float, difference: FloatArray, size: FloatArray
+    predicted: complex, all_poles: ComplexArray, difference: FloatArray, size: FloatArray
 ) -> tuple[complex | None, str]:
     """Return the dominant pole that responses of shape (steps, kicks) show, or None and why they show none."""
-    predicted = complex(dominant_pole(method, alpha_hat, beta_hat))
-    all_poles = poles(method, alpha_hat, beta_hat)
-    rival = _rival(all_poles, predicted)
+    # by its angle neither the dominant pole nor its conjugate
+    off_in_angle = np.abs(np.abs(np.angle(all_poles)) - np.angle(predicted))
+    rival = float(np.abs(all_poles[off_in_angle > SPREAD]).max(initial=0.0))
     # Over a window of SAMPLES steps the lesser of two such moduli does not even fall to 1/e of the other.
     if rival > (1 - 1 / SAMPLES) * abs(predicted):
         return None, f"another pole, of modulus {rival:.6g}, is too near to tell them apart"
     fit = fit_dominant_pole(difference, order=len(all_poles), sizes=size, limits=LINEAR)
     if isinstance(fit, Refusal):
         return None, fit.reason
-    if _is_another(fit.pole, predicted, all_poles):
+    is_a_pole = np.abs(all_poles - fit.pole).min() < SPREAD
+    if is_a_pole and abs(predicted - fit.pole) > SPREAD:
         return None, f"the kick hardly excites the dominant pole: what answers is one of modulus {abs(fit.pole):.6g}"
     return fit.pole, ""
-
-
-def _rival(z: ComplexArray, predicted: complex) -> float:
-    """Return the largest modulus of a pole that is neither the dominant one nor its conjugate, by its angle."""
-    off_in_angle = np.abs(np.abs(np.angle(z)) - np.angle(predicted))
-    return float(np.abs(z[off_in_angle > SPREAD]).max(initial=0.0))
-
-
-def _is_another(measured: complex, predicted: complex, all_poles: ComplexArray) -> bool:
-    """Return whether what was measured is a pole, but another than the dominant one or its conjugate."""
-    distances = np.abs(all_poles - measured)
-    return abs(predicted - measured) > SPREAD and bool(distances.min() < SPREAD)
 
 
 def _measured_verdict(

@@ -8,12 +8,13 @@ has them registered already. Everything is read at the model's own configuration
 import types
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import combinations_with_replacement, islice
 from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bezstab.errors import InputError
 from bezstab.stability import FloatArray
@@ -35,6 +36,7 @@ beyond the inverse is what anybody means."""
 MOST_ROWS = 300
 """Of one equality, such as a flex's: beyond, its masses are left out, and it is judged as contacts are."""
 
+IntArray = NDArray[np.int_]
 Integrator = Literal["Euler", "RK4", "implicit", "implicitfast"]
 INTEGRATORS: tuple[Integrator, ...] = ("Euler", "RK4", "implicit", "implicitfast")
 """In the order of MuJoCo's own numbers."""
@@ -269,43 +271,44 @@ def _equalities(loaded: _Loaded) -> Iterator[Constraint]:
 
 def _limits(loaded: _Loaded) -> Iterator[Constraint]:
     model = loaded.model
-    for joint in np.flatnonzero(model.jnt_limited).tolist():
-        solref, solimp = model.jnt_solref[joint], model.jnt_solimp[joint]
-        limit = _along_one(loaded, "joint", "limit", joint, model.jnt_dofadr[joint], solref, solimp)
-        ball = model.jnt_type[joint] == loaded.mujoco.mjtJoint.mjJNT_BALL  # whose axis depends on the configuration
-        yield replace(limit, jacobian=None, diagonal=None) if ball else limit
-    for tendon in np.flatnonzero(model.tendon_limited).tolist():
-        solref, solimp = model.tendon_solref_lim[tendon], model.tendon_solimp_lim[tendon]
-        yield _along_one(loaded, "tendon", "limit", tendon, tendon, solref, solimp)
+    joints, tendons = np.flatnonzero(model.jnt_limited), np.flatnonzero(model.tendon_limited)
+    of_joints = model.jnt_solref[joints], model.jnt_solimp[joints]
+    of_tendons = model.tendon_solref_lim[tendons], model.tendon_solimp_lim[tendons]
+    yield from _along_one(loaded, "joint limit", joints, model.jnt_dofadr[joints], *of_joints)
+    yield from _along_one(loaded, "tendon limit", tendons, tendons, *of_tendons)
 
 
 def _friction_losses(loaded: _Loaded) -> Iterator[Constraint]:
     model = loaded.model
-    for dof in np.flatnonzero(model.dof_frictionloss > 0).tolist():
-        joint, solref, solimp = model.dof_jntid[dof], model.dof_solref[dof], model.dof_solimp[dof]
-        yield _along_one(loaded, "joint", "friction", joint, dof, solref, solimp)
-    for tendon in np.flatnonzero(model.tendon_frictionloss > 0).tolist():
-        solref, solimp = model.tendon_solref_fri[tendon], model.tendon_solimp_fri[tendon]
-        yield _along_one(loaded, "tendon", "friction", tendon, tendon, solref, solimp)
+    dofs, tendons = np.flatnonzero(model.dof_frictionloss > 0), np.flatnonzero(model.tendon_frictionloss > 0)
+    of_tendons = model.tendon_solref_fri[tendons], model.tendon_solimp_fri[tendons]
+    yield from _along_one(
+        loaded, "joint friction", model.dof_jntid[dofs], dofs, model.dof_solref[dofs], model.dof_solimp[dofs]
+    )
+    yield from _along_one(loaded, "tendon friction", tendons, tendons, *of_tendons)
 
 
 def _along_one(
-    loaded: _Loaded, kind: str, what: str, number: int, place: int, solref: FloatArray, solimp: FloatArray
-) -> Constraint:
-    """Return the limit or the friction of a joint or tendon; `place` is that of its direction among all."""
+    loaded: _Loaded, kind: str, numbers: IntArray, places: IntArray, solrefs: FloatArray, solimps: FloatArray
+) -> Iterator[Constraint]:
+    """Yield limits or frictions of joints or tendons; `places` are those of their directions among all."""
     model = loaded.model
+    of, what = kind.split()
     directions, weights = loaded.joints, model.dof_invweight0
-    if kind == "tendon":
+    if of == "tendon":
         directions, weights = loaded.tendons, model.tendon_invweight0
-    return Constraint(
-        element=loaded.named(kind, number),
-        kind=f"{kind} {what}",
-        solref=_solref(solref),
-        solimp=_solimp(solimp),
-        jacobian=directions[[place]],
-        diagonal=weights[[place]].copy(),
-        positional=what == "limit",
-    )
+    for number, place, solref, solimp in zip(numbers, places, solrefs, solimps, strict=True):
+        # the axis of a ball's limit depends on the configuration
+        known = kind != "joint limit" or model.jnt_type[number] != loaded.mujoco.mjtJoint.mjJNT_BALL
+        yield Constraint(
+            element=loaded.named(of, number),
+            kind=kind,
+            solref=_solref(solref),
+            solimp=_solimp(solimp),
+            jacobian=directions[[place]] if known else None,
+            diagonal=weights[[place]] if known else None,
+            positional=what == "limit",
+        )
 
 
 def _contacts(loaded: _Loaded) -> Iterator[Constraint]:

@@ -38,9 +38,6 @@ KICK = 1e-3
 GROWN_TO = 1.0
 """m: |z_p| >= 1.1 takes the kick there within a hundred steps."""
 
-LAST_SHARE = 10
-"""The last tenth of a run is looked at for what remains."""
-
 ALONG_A_RAY = np.linspace(0, 2, 400)[1:]
 """In units of the region's extent: where the boundary is looked for first."""
 
@@ -90,7 +87,7 @@ def _witnessed(
     """Return what one of MuJoCo's integrators does at (alpha_hat, beta_hat), so many times the boundary; h in s."""
     model = mujoco.MjModel.from_xml_string(model_xml(mechanism.scene, integrator, h, *point))
     c = _run(mujoco, model, mechanism)
-    remaining = float(c[-RUN // LAST_SHARE :].max())
+    remaining = float(c[-RUN // 10 :].max())
     if len(c) < RUN:
         measured: Outcome = "diverges"
     elif remaining < KICK:

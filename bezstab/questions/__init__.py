@@ -5,7 +5,7 @@
 `cli` and `api` make questions and hand on answers; neither computes.
 """
 
-from bezstab.questions.answering import Answer, CheckedRole, Gain, LargestStep, answers, largest_step
+from bezstab.questions.answering import Answer, CheckedRole, Gain, LargestStep, answers
 from bezstab.questions.chains import Chain, ChainMap, chain_map, typed_chain
 from bezstab.questions.growing_runs import growing_run
 from bezstab.questions.held_drives import HeldAnswer, HeldQuestion, UsedUp, held_answers, held_gains
@@ -18,11 +18,8 @@ from bezstab.questions.regions import (
     MapAnswer,
     MapQuestion,
     RegionAnswer,
-    engine_marks,
     forced_errors_of,
-    map_answer,
     region_answer,
-    region_answers,
 )
 from bezstab.questions.runs import RunQuestion, run_answer
 from bezstab.questions.trades import FrontQuestion, TradeQuestion

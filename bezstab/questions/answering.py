@@ -375,19 +375,18 @@ def _check_expressible(chosen: Answer) -> None:
 
 @dataclass(frozen=True)
 class LargestStep:
-    """The step (s) up to which every step is stable with alpha and beta (1/s): infinite if all are, zero if none is."""
+    """The largest step with a method, and alpha and beta (1/s)."""
 
     method: Method
     alpha: Fraction
     beta: Fraction
-    h_limit: float
+
+    @cached_property
+    def h_limit(self) -> float:
+        """The step (s) up to which every step is stable: infinite if all are, zero if none is. As `stable_up_to`."""
+        return stable_up_to(self.method, self.alpha, self.beta)
 
     @property
     def safe(self) -> bool:
         """Whether small steps are stable at all."""
         return self.h_limit > 0
-
-
-def largest_step(method: Method, alpha: Fraction, beta: Fraction) -> LargestStep:
-    """Return the step up to which every step is stable with alpha and beta (1/s); errors as `stable_up_to`."""
-    return LargestStep(method, alpha, beta, stable_up_to(method, alpha, beta))

@@ -1,5 +1,6 @@
 """The motion that a question is about: how fast it is, and how the constraints of a scene turn with it."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -106,14 +107,21 @@ def turning_of(scene: str | Scene | None, speed: Fraction, h: Fraction | None) -
     return turning_normals(compiled_mechanism(moving), moving.duration)
 
 
-def turns_too_far(turning: TurningNormals | None, scene: str | Scene, speed: Fraction, h: Fraction) -> str | None:
-    """Return a warning where a scene's constraints turn too far in a step (h in s) for the first-order law."""
+def turn_too_far(
+    turnings: Mapping[Fraction, TurningNormals | None], scene: str | Scene | None, h: Fraction | None
+) -> list[str]:
+    """Return a warning for each speed at which a scene turns too far in a step (h in s) for the first-order law."""
+    if scene is None or h is None:
+        return []
     from bezstab.evidence import LAW_HOLDS
 
-    if turning is None or turning.kappa * float(h) <= LAW_HOLDS:
-        return None
-    begin = f"constraints of {scene_at_speed(scene, speed).name} turn by κh = {turning.kappa * float(h):.2g} a step"
-    return f"{begin}: beyond {LAW_HOLDS:g} the law fails"
+    turned = {speed: turning.kappa * float(h) for speed, turning in turnings.items() if turning}
+    return [
+        f"constraints of {scene_at_speed(scene, speed).name} turn by κh = {kappa_h:.2g} a step: beyond {LAW_HOLDS:g} "
+        "the law fails"
+        for speed, kappa_h in turned.items()
+        if kappa_h > LAW_HOLDS
+    ]
 
 
 def _motion_of_scene(scene: str | Scene, speed: Fraction, duration: Fraction | None) -> ConstraintMotion:

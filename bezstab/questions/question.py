@@ -13,7 +13,7 @@ from bezstab.goals import GOALS, SETTLING, UP_TO_LONGEST, Goal
 from bezstab.mechanism import Scene, TurningNormals
 from bezstab.methods import Method, check_one_step, lookup
 from bezstab.questions.chains import Chain, SweptConstraints, check_sweeps, constraints_of
-from bezstab.questions.motions import ReferenceMotion, check_speed, motion_of, turning_of, turns_too_far
+from bezstab.questions.motions import ReferenceMotion, check_speed, motion_of, turn_too_far, turning_of
 from bezstab.questions.points import GivenPoint, Meant, engine_holds, meant_in_seconds, point_of_engine
 from bezstab.units import check_step
 
@@ -191,9 +191,7 @@ class Question:
     @property
     def warnings(self) -> list[str]:
         """What is to be known before the answers."""
-        if self.scene is None or self.h is None:
-            return []
-        return list(filter(None, [turns_too_far(self.turning, self.scene, self.speed, self.h)]))
+        return turn_too_far({self.speed: self.turning}, self.scene, self.h)
 
     @cached_property
     def turning(self) -> TurningNormals | None:

@@ -1,9 +1,9 @@
 """Regions: how large they are, where errors shrink fastest, and the part of the plane that shows them.
 
-methods, levels, a window, an engine, a scene or a motion   →   MapQuestion   →   map_answer   →   MapAnswer, by method
+methods, levels, a window, an engine, a scene or a motion   →   MapQuestion   →   MapAnswer, by method
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -16,7 +16,7 @@ from bezstab.errors import InputError, NumericalError
 from bezstab.evidence import MovingRegion, moving_region
 from bezstab.mechanism import TurningNormals, load_scene
 from bezstab.methods import Method
-from bezstab.questions.motions import ReferenceMotion, motion_of, turning_of, turns_too_far
+from bezstab.questions.motions import ReferenceMotion, motion_of, turn_too_far, turning_of
 from bezstab.questions.question import methods_for
 from bezstab.stability import (
     BestPoint,
@@ -112,11 +112,6 @@ def region_answer(method: Method, level: float = 1.0) -> RegionAnswer:
     return RegionAnswer(region(method, level), *best_point_or_reason(method))
 
 
-def region_answers(method: Method, levels: Sequence[float]) -> list[RegionAnswer]:
-    """Return the answer about the stable region, and about that of each level below 1; errors as `region`."""
-    return [region_answer(method, level) for level in (1.0, *(level for level in levels if level < 1))]
-
-
 @dataclass(frozen=True)
 class ForcedErrors:
     """The errors of the fastest point of a method, and of the most accurate point that settles in time, on a motion."""
@@ -163,12 +158,6 @@ def forced_errors_of(method: Method, motion: ReferenceMotion) -> ForcedErrors:
     except (InputError, NumericalError) as error:
         return ForcedErrors(method, motion, best, None, f"no most accurate point: {error}")
     return ForcedErrors(method, motion, best, chosen, None)
-
-
-def engine_marks(engine: Engine, h: Fraction) -> dict[str, tuple[float, float]]:
-    """Return the engine's defaults and rules of thumb at a step of h (s), as points (alpha_hat, beta_hat) by label."""
-    points = {label: point(h) for label, point in engine.marks}
-    return {label: (float(alpha_hat), float(beta_hat)) for label, (alpha_hat, beta_hat) in points.items()}
 
 
 def _holding(shown: Extent, point: BestPoint | Choice | None) -> Extent:
@@ -245,10 +234,7 @@ class MapQuestion:
     @property
     def warnings(self) -> list[str]:
         """What is to be known before the answers."""
-        if self.scene is None or self.h is None:
-            return []
-        scene, h = self.scene, self.h
-        return list(filter(None, [turns_too_far(each, scene, speed, h) for speed, each in self.turnings.items()]))
+        return turn_too_far(self.turnings, self.scene, self.h)
 
     @cached_property
     def compared(self) -> list[RegionAnswer]:
@@ -262,8 +248,9 @@ class MapQuestion:
 
     @property
     def marks(self) -> dict[str, tuple[float, float]]:
-        """The points to mark: those of the engine."""
-        return engine_marks(self.engine, self.h) if self.engine and self.h else {}
+        """The points (alpha_hat, beta_hat) to mark, by label: the engine's defaults and rules of thumb."""
+        points = {label: point(self.h) for label, point in self.engine.marks} if self.engine and self.h else {}
+        return {label: (float(alpha_hat), float(beta_hat)) for label, (alpha_hat, beta_hat) in points.items()}
 
 
 @dataclass(frozen=True)
@@ -271,17 +258,18 @@ class MapAnswer:
     """One method's answer: its stable region and those of the levels below 1; the rest is found when asked for."""
 
     question: MapQuestion
-    regions: list[RegionAnswer]
+    method: Method
+
+    @cached_property
+    def regions(self) -> list[RegionAnswer]:
+        """The stable region, and that of each level below 1; errors as `region`."""
+        below = [float(level) for level in self.question.levels if level < 1]
+        return [region_answer(self.method, level) for level in (1.0, *below)]
 
     @property
     def stable(self) -> RegionAnswer:
         """The region where the method is stable."""
         return self.regions[0]
-
-    @property
-    def method(self) -> Method:
-        """The method."""
-        return self.stable.region.method
 
     @cached_property
     def moving(self) -> dict[float, MovingRegion]:
@@ -334,8 +322,3 @@ class MapAnswer:
         alpha_hat, beta_hat = self.axes
         error = combined_error(self.method, alpha_hat, beta_hat[:, np.newaxis], self.question.motion.omega_h)
         return np.where(np.abs(z) < 1, error, np.nan)
-
-
-def map_answer(question: MapQuestion, method: Method) -> MapAnswer:
-    """Return the answer for one method; errors as `region`."""
-    return MapAnswer(question, region_answers(method, [float(level) for level in question.levels]))

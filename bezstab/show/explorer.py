@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from fractions import Fraction
+from functools import partial
 from shlex import quote
 
 from matplotlib.backend_bases import KeyEvent, MouseEvent
@@ -38,7 +39,7 @@ class Explorer:
         self.background: object = None  # all that does not move, as pixels
         figure.canvas.mpl_connect("draw_event", self._remember_background)
         figure.canvas.mpl_connect("motion_notify_event", self._follow_mouse)
-        figure.canvas.mpl_connect("button_press_event", self._prove_clicked)
+        figure.canvas.mpl_connect("button_press_event", partial(self._follow_mouse, prove=True))
         figure.canvas.mpl_connect("key_press_event", self._answer_key)
         self._draw_map()
 
@@ -106,9 +107,6 @@ class Explorer:
         if event.inaxes is self.map and event.xdata is not None and event.ydata is not None:
             self.look(event.xdata, event.ydata, prove)
             self._show()
-
-    def _prove_clicked(self, event: MouseEvent) -> None:
-        self._follow_mouse(event, prove=True)
 
     def _answer_key(self, event: KeyEvent) -> None:
         if event.key == "n":

@@ -95,8 +95,3 @@ def test_a_scene_at_another_speed_says_so_and_at_its_own_is_the_same() -> None:
 def test_a_speed_that_is_none_is_refused(factor: float) -> None:
     with pytest.raises(InputError, match=r"speed .*: expected 1e-100 to 1e\+100"):
         at_speed(load_scene("four_bar"), factor)
-
-
-def test_what_nothing_moves_has_no_speed() -> None:
-    with pytest.raises(InputError, match="pendulum starts at rest and nothing drives it"):
-        at_speed(load_scene("pendulum"), 2.0)

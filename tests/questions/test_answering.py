@@ -7,7 +7,7 @@ import pytest
 from bezstab.engines import ENGINES, Drive
 from bezstab.errors import InputError
 from bezstab.methods import lookup
-from bezstab.questions import Answer, Question, answers, largest_step
+from bezstab.questions import Answer, LargestStep, Question, answers
 from bezstab.stability import choose, describe_point, feedback_cost
 
 SYM = (lookup("SYM"),)
@@ -89,7 +89,7 @@ def test_faster_decay_costs_and_slower_decay_gains() -> None:
 
 
 def test_the_largest_step_of_alpha_and_beta_ends_where_they_do() -> None:
-    found = largest_step(SYM[0], Fraction(60), Fraction(55))
+    found = LargestStep(SYM[0], Fraction(60), Fraction(55))
     h = Fraction(found.h_limit)
     assert 4 * 60 * h + 55**2 * h**2 == pytest.approx(4)  # 2 alpha_hat + beta_hat = 4
-    assert not largest_step(SYM[0], Fraction(0), Fraction(1)).safe
+    assert not LargestStep(SYM[0], Fraction(0), Fraction(1)).safe

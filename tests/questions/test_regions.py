@@ -4,12 +4,13 @@ import pytest
 
 from bezstab.engines import ENGINES
 from bezstab.methods import lookup
-from bezstab.questions import engine_marks, forced_errors_of, motion_of, region_answer, region_answers
+from bezstab.questions import MapAnswer, MapQuestion, forced_errors_of, motion_of, region_answer
 from bezstab.stability import combined_error, spectral_radius
 
 
 def test_the_best_point_is_inside_only_where_z_is_that_small() -> None:
-    stable, faster = region_answers(lookup("B4"), [1.0, 0.5])
+    question = MapQuestion(points=2, methods=(lookup("B4"),), levels=(Fraction(1), Fraction(1, 2)))
+    stable, faster = MapAnswer(question, lookup("B4")).regions
     assert stable.best == faster.best
     assert stable.best
     assert stable.best.z_abs > 0.5
@@ -47,5 +48,5 @@ def test_the_most_accurate_point_forces_less_than_the_fastest() -> None:
 
 
 def test_the_marks_of_an_engine_are_stable_points_with_its_own_method() -> None:
-    for point in engine_marks(ENGINES["box2d"], Fraction(1, 60)).values():
+    for point in MapQuestion(points=2, engine=ENGINES["box2d"], h=Fraction(1, 60)).marks.values():
         assert spectral_radius(lookup("SYM"), *point) < 1

@@ -32,9 +32,9 @@ def key(canvas: Any, letter: str) -> None:
 
 def test_moving_shows_poles_decay_and_numbers() -> None:
     explorer, canvas, _ = window("B4")
-    mouse(explorer, canvas, "motion_notify_event", 1.2, 0.3)
+    mouse(explorer, canvas, "motion_notify_event", 1.2345, 0.3456)
     point = [float(number) for number in explorer.typed]
-    assert point == pytest.approx([1.2, 0.3], abs=1e-6)
+    assert point == pytest.approx([1.2345, 0.3456], rel=1e-5)
     z = poles(lookup("B4"), *point)
     assert np.array(explorer.poles.get_xydata()) == pytest.approx(np.stack([z.real, z.imag], axis=1))
     decay = np.array(explorer.decay.get_ydata())
@@ -48,6 +48,7 @@ def test_a_click_proves() -> None:
     for beta_hat, verdict in ((0.5, "converges"), (3.0, "diverges")):
         mouse(explorer, canvas, "motion_notify_event", 1.0, beta_hat)
         assert "proven" not in explorer.text.get_text()
+        assert explorer.text.get_text().endswith("  stable" if verdict == "converges" else "unstable")
         mouse(explorer, canvas, "button_press_event", 1.0, beta_hat)
         assert f"{verdict} (proven)" in explorer.text.get_text()
 

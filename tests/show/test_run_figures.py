@@ -8,6 +8,7 @@ import pytest
 from bezstab.evidence import Cost, ErrorOf, Run, with_fronts
 from bezstab.mechanism import compiled_mechanism, load_scene, simulated
 from bezstab.methods import lookup
+from bezstab.show.arrays import history_arrays
 from bezstab.show.run_figures import history_figure, projection_figure, work_precision_figure
 from tests.show.drawn import lines_of
 
@@ -61,7 +62,7 @@ def test_the_projection_figure_shows_all_three_errors_of_every_way_to_hold_the_c
     assert len({(line.get_color(), line.get_marker(), line.get_markerfacecolor()) for line in axes.lines}) == 6
 
 
-def test_the_history_figure_shows_the_run() -> None:
+def test_the_history_figure_and_the_table_show_the_run() -> None:
     pendulum = compiled_mechanism(load_scene("pendulum"))
     run = simulated(pendulum, lookup("SYM"), h=0.002, duration=0.2, alpha_hat=0.5, beta_hat=0.1, perturb=1e-4)
     figure = history_figure(run)
@@ -69,3 +70,8 @@ def test_the_history_figure_shows_the_run() -> None:
     for axes, values in zip(figure.axes, shown, strict=True):
         assert np.array(axes.lines[0].get_xydata()).T.tolist() == [run.t.tolist(), values.tolist()]
     assert figure.axes[2].get_yscale() == "log"
+    table = history_arrays(run)
+    for place, name in enumerate(pendulum.scene.coordinates):
+        assert table[name].tolist() == run.q[:, place].tolist()
+        assert table[f"d/dt {name}"].tolist() == run.v[:, place].tolist()
+    assert table["cdot_1"].tolist() == run.cdot[:, 0].tolist()
