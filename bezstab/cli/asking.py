@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from bezstab.cli.command_group import AS_TYPED, NUMERICAL_TROUBLE
-from bezstab.cli.options import left_at_default
+from bezstab.cli.options import left_at_default, typed_options
 from bezstab.cli.output import for_reading, say, show_command, show_text, worked_out
 from bezstab.engines import Engine
 from bezstab.errors import NumericalError
@@ -131,4 +131,4 @@ def say_if_units_were_mistaken(question: Any) -> None:
     if meant == "at this step":
         say(f"{note}: bezstab {shlex.join(click.get_current_context().meta[AS_TYPED])} --physical")
     else:
-        say(f"{note}{' and your --h' if left_at_default('h') else ''}")
+        say(f"{note}{'' if '--h' in typed_options() else ' and your --h'}")

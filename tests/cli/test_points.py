@@ -81,6 +81,8 @@ def test_numbers_that_look_like_one_over_seconds_are_said_to() -> None:
     for command in ("poles", "check --method SYM", f"probe {DATA}/pendulum.csv"):  # and no step to read them at
         said = run(command, "--alpha 14217 --beta 16544").stderr
         assert "taken as α̂ and β̂, without unit; if they are in 1/s, add --physical and your --h\n" in said
+    with_step = "tradeoff --method SYM --h 0.002 --time 0.01 --alpha 14217 --beta 16544 --figure none --table none"
+    assert run(with_step).stderr.endswith("add --physical\n")
 
 
 def test_what_was_typed_is_shown_as_typed() -> None:
