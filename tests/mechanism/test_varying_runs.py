@@ -156,7 +156,7 @@ def test_the_times_are_sums_of_the_steps() -> None:
 
 
 def test_multipliers_are_those_of_the_step_that_begins() -> None:
-    run = run_with([2 * H, H], 3 * H, hold=True)
+    run = run_with([2 * H, H], 5 * H, hold=True)
     gains = feedback_gains(ALPHA_HAT, BETA_HAT, H)
     seen = observe(MECHANISM, run.t[1:2], run.q[1:2], run.v[1:2], *gains)
     assert run.multipliers[1] == pytest.approx(seen.multipliers[0], rel=1e-12)
