@@ -27,8 +27,8 @@ class Region(ReadOnlyArrays):
     ((alpha_hat_min, alpha_hat_max), (beta_hat_min, beta_hat_max)), infinite where there is no limit, None if the set
     is empty. `approached` has in the same places whether the region only comes near that end, towards infinity: no edge
     attains it. `fixed_poles` are those that neither alpha_hat nor beta_hat moves, where rho and sigma share a factor.
-    `bounded`: whether all limits are finite; if not, `area` is None. `view` has finite ranges that hold what there is
-    to see: the extent of a bounded region, of an unbounded one what has a shape where alpha_hat, beta_hat >= 0.
+    `area` is None if a limit is infinite. `view` has finite ranges that hold what there is to see: the extent of a
+    bounded region, of an unbounded one what has a shape where alpha_hat, beta_hat >= 0.
     """
 
     method: Method
@@ -37,7 +37,6 @@ class Region(ReadOnlyArrays):
     boundary: tuple[FloatArray, ...]
     extent: Extent | None
     fixed_poles: tuple[complex, ...] = ()
-    bounded: bool = True
     view: Extent | None = None
     approached: Approached = ATTAINED
 
@@ -46,6 +45,11 @@ class Region(ReadOnlyArrays):
         curves = f"{len(self.boundary)} {kind}{'' if len(self.boundary) == 1 else 's'}"
         size = "unbounded" if self.area is None else f"area {self.area:.6g}"
         return f"Region({self.method.name}: |z_p| < {self.level:g}, {size}, {curves})"
+
+    @property
+    def bounded(self) -> bool:
+        """Whether all limits are finite."""
+        return self.area is not None
 
     def contains(self, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> BoolArray:
         """Return whether |z_p| < level at each point, by the dominant pole itself.
@@ -91,7 +95,6 @@ def region(method: Method, level: float = 1.0) -> Region:
         shape.curves,
         shape.extent,
         stuck,
-        bounded=shape.area is not None,
         view=shape.view,
         approached=shape.approached,
     )
