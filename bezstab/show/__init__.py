@@ -68,7 +68,6 @@ from bezstab.show.rows import (
     engine_row,
     exact_rate_words,
     forced_rows,
-    forced_words,
     front_row,
     like_point_row,
     limit_row,
