@@ -80,7 +80,7 @@ from bezstab.show.rows import (
 )
 from bezstab.show.schemas import json_schema
 from bezstab.show.sentences import likeness_sentence, one_pole_sentence, passages_words
-from bezstab.show.varying_rows import sequence_text, varying_words
+from bezstab.show.varying_rows import varying_words
 
 if TYPE_CHECKING:
     from bezstab.show import plot
