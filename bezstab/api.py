@@ -625,16 +625,16 @@ def _drive(gains: Sequence[Number] | None) -> Drive | None:
 
 def _question(asked: dict[str, Any], **found: Any) -> questions.Question:
     """Return the question of `choose` or `check`: its keywords as they were given, and the fields that need several."""
-    exact = ("h", "h_min", "h_max", "settle", "omega", "omega_h")
+    exact = ("h", "h_min", "h_max", "settle", "omega", "omega_h", "mass_ratio")
     as_given = ("hold", "equal", "as_typed")
     as_read: dict[str, Any] = {name: _exact_if_given(asked[name], name) for name in exact if name in asked}
-    method, mass_ratio = asked["method"], _exact_if_given(asked["mass_ratio"], "mass_ratio")
+    method = asked["method"]
     return questions.Question(
         methods=() if method is None else (_method(method),),
         scene=_scene_or_name(asked["scene"]),
         speed=_exact(asked["speed"], "speed"),
         spread=_real(asked["spread"], "spread"),
-        chain=questions.typed_chain(_whole(asked["chain"], "chain"), mass_ratio),
+        chain=_whole(asked["chain"], "chain"),
         iterations=_whole(asked["iterations"], "iterations"),
         **as_read,
         **{name: asked[name] for name in as_given if name in asked},

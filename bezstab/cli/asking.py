@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from bezstab.cli.command_group import AS_TYPED, NUMERICAL_TROUBLE
-from bezstab.cli.options import left_at_default, typed_options
+from bezstab.cli.options import typed_options
 from bezstab.cli.output import for_reading, say, show_command, show_text, worked_out
 from bezstab.engines import Engine
 from bezstab.errors import NumericalError
-from bezstab.show import Row, motion_words
+from bezstab.methods import Method
+from bezstab.show import Row, motion_words, varying_words
 
 if TYPE_CHECKING:
     from bezstab.questions import Answer, Meant, Question
 
 Asked = TypeVar("Asked")
-Item = TypeVar("Item")
 
 
 def asked(kind: Callable[..., Asked], **typed: Any) -> Asked:
@@ -26,14 +26,10 @@ def asked(kind: Callable[..., Asked], **typed: Any) -> Asked:
     Without --method an engine or a drive has its own methods. If a point looks mistaken, a note says so. Errors as the
     class raises them.
     """
-    from bezstab.questions import typed_chain
-
     if isinstance(typed.get("engine"), tuple):
         typed["engine"], typed["values"] = typed["engine"]
-    if (typed.get("engine") or typed.get("drive")) and left_at_default("methods"):
+    if (typed.get("engine") or typed.get("drive")) and "--method" not in typed_options():
         typed["methods"] = ()
-    if "chain" in typed:
-        typed["chain"] = typed_chain(typed["chain"], typed.pop("mass_ratio"))
     point = typed.get("point")
     if point:
         typed["point"] = point.at(typed["h"] or (typed.get("h_max") if typed.get("h_min") else None))
@@ -60,16 +56,16 @@ def say_each(reasons: Iterable[str | None]) -> None:
             say(f"bezstab: {reason}")
 
 
-def of_each(items: Iterable[Item], show: Callable[[Item], Iterable[Row]]) -> tuple[list[Row], int]:
-    """Return the rows of all items, and an exit status: what cannot be found of one withholds no other's.
+def of_each(methods: Iterable[Method], show: Callable[[Method], Iterable[Row]]) -> tuple[list[Row], int]:
+    """Return the rows of all methods, and an exit status: what cannot be found of one withholds no other's.
 
     Why it cannot be found is said on standard error. NumericalError where that is so of all.
     """
     rows: list[Row] = []
     failed: list[NumericalError] = []
-    for item in items:
+    for method in methods:
         try:
-            rows += show(item)
+            rows += show(method)
         except NumericalError as error:
             failed.append(error)
     if failed and not rows:
@@ -112,7 +108,6 @@ def say_what_is_left_out(engine: Engine, *, many: bool = False) -> None:
 def say_varying(answers: "Iterable[Answer]") -> None:
     """Print a sentence about steps that vary, and the command of a run in which errors grow."""
     from bezstab.questions import growing_run
-    from bezstab.show import varying_words
 
     for answer in answers:
         if answer.varying:

@@ -63,7 +63,6 @@ def check(**typed: Any) -> bool:
     """
     from bezstab.questions import answers, check_speed
 
-    drive = typed["drive"]
     if held := held_asked(typed, "--every, --late and --filter"):
         return all(answer.safe for answer in show_held(held))
     if typed["point"].physical and typed_options().keys() <= OF_EVERY_STEP:
@@ -76,7 +75,7 @@ def check(**typed: Any) -> bool:
         without = left_out(question)
         show_rows(CHECKED, map(answer_row, given), without)
         say_varying(given)
-        show_sentences(map(costs_words, given if not drive else ()))
+        show_sentences(map(costs_words, given if not question.drive else ()))
         if instead := [answer for answer in found if answer.role == "instead"]:
             show_text("\nWhat `choose` gives instead:\n")
             show_rows(CHECKED, map(answer_row, instead), without)

@@ -9,7 +9,7 @@ import click
 
 from bezstab.cli.asking import asked_of_feedback, say_varying, show_below, show_sentences
 from bezstab.cli.held_drives import held_asked, show_held
-from bezstab.cli.options import INERTIA, NUMBER, SECONDS, SHARE, changed, command, left_at_default, option
+from bezstab.cli.options import INERTIA, NUMBER, SECONDS, SHARE, changed, command, option, typed_options
 from bezstab.cli.output import for_reading, progress, show_rows, show_text
 from bezstab.goals import GOALS, Goal
 from bezstab.methods import lookup
@@ -85,9 +85,9 @@ def choose(goal: Goal | None, equal: str | None, bandwidth: Fraction | None, **t
     from bezstab.questions import answers, usual_goal
 
     drive, settle = typed["drive"], typed["settle"]
-    gains_asked = bandwidth is not None or (drive is not None and settle is not None and goal is None)
+    settling = drive is not None and settle is not None and goal is None
     asked_by = "--bandwidth, --settle, --every, --late and --filter"
-    if held := held_asked(typed, asked_by, "--bandwidth", "--settle", always=gains_asked):
+    if held := held_asked(typed, asked_by, "--bandwidth", "--settle", always=settling):
         return _choose_held(held, bandwidth, settle)
     goal = goal or usual_goal(typed["engine"], drive)
     question = asked_of_feedback(goal=goal, equal=equal is not None, **typed)
@@ -116,9 +116,8 @@ def _choose_held(question: "HeldQuestion", bandwidth: Fraction | None, settle: F
     """
     from bezstab.questions import held_gains
 
-    methods = (lookup("SYM"),) if left_at_default("methods") else question.methods
-    drive = held_gains(
-        question.drive.inertia, question.h, question.timing, bandwidth=bandwidth, settle=settle, methods=methods
-    )
+    if "--method" not in typed_options():
+        question = replace(question, methods=(lookup("SYM"),))
+    drive = held_gains(question, bandwidth=bandwidth, settle=settle)
     show_text(f"kp = {typed_number(drive.kp)}, kd = {typed_number(drive.kd)}\n")
-    return all(answer.safe for answer in show_held(replace(question, drive=drive, methods=methods)))
+    return all(answer.safe for answer in show_held(replace(question, drive=drive)))

@@ -1,7 +1,6 @@
-"""Completion in the shell: names of methods, scenes and engines."""
+"""Completion in the shell: what bash needs beside click's own; the types of options say what is offered."""
 
 import shlex
-from collections.abc import Iterable
 from typing import Any
 
 from click.shell_completion import BashComplete, CompletionItem, add_completion_class
@@ -19,10 +18,3 @@ class QuotingBash(BashComplete):
         if item.type != "plain":
             return super().format_completion(item)
         return f"{item.type},{shlex.quote(item.value)}"
-
-
-def offered(names: Iterable[str], incomplete: str) -> "list[CompletionItem[Any]]":
-    """Return those of the names that begin with what was typed, in upper or lower case; files where none does."""
-    typed = incomplete.lower()
-    fitting: list[CompletionItem[Any]] = [CompletionItem(name) for name in names if name.lower().startswith(typed)]
-    return fitting or [CompletionItem(incomplete, type="file")]

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from bezstab.cli.options import left_at_default, refuse_beside, typed_options
+from bezstab.cli.options import OF_A_CONTROLLER, refuse_beside, typed_options
 from bezstab.cli.output import show_rows, show_text
 from bezstab.show import HELD, LATE_COMMANDS, NOT_JUDGED, held_row, timing_words
 
@@ -16,20 +16,20 @@ ABOUT_DRIVES = {"--pd", "--h", "--every", "--late", "--filter", "--method", "--f
 
 
 def held_asked(typed: dict[str, Any], asked: str, *allowed: str, always: bool = False) -> "HeldQuestion | None":
-    """Take the timing options out of `typed`. Return the question about such a drive, None if none of them was typed.
+    """Take the timing options out of `typed`. Return the question about such a drive.
 
-    With `always` there is a question without these options, too: every step then computes its torque and applies it.
+    None if no option about a controller was typed, unless `always`: every step then computes its torque and applies it.
     Without --method it is about all four ways of applying a drive. Errors as `HeldQuestion`; UsageError, which says
     what is `asked`, if an option was typed that is neither about drives nor `allowed`.
     """
     from bezstab.questions import HeldQuestion
 
     timing = {name: typed.pop(name) for name in ("every", "late", "filter_seconds")}
-    if not always and all(value is None for value in timing.values()):
+    if not always and typed_options().keys().isdisjoint(OF_A_CONTROLLER.options):
         return None
-    methods = () if left_at_default("methods") else tuple(typed["methods"])
     if typed["h"] is None:
         raise click.UsageError("--pd needs --h: the step in s")
+    methods = typed_options().get("--method", ())
     question = HeldQuestion(drive=typed["drive"], h=typed["h"], methods=methods, **timing)
     refuse_beside(asked, typed_options().keys() - {*ABOUT_DRIVES, *allowed}, "this answer is about the drive alone")
     return question

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from bezstab.cli.options import OF_A_CONTROLLER, ParsedType, changed, command, option
+from bezstab.cli.options import OF_A_CONTROLLER, ParsedType, command, option
 from bezstab.cli.output import for_reading, progress, show_rows, show_text
 from bezstab.errors import InputError
 from bezstab.rationals import rational
@@ -35,9 +35,7 @@ def _gains(text: str) -> "MotorGains":
         "Judge the motors of that name, or regular expression, with a controller's gains. Repeatable.",
         multiple=True,
     ),
-    changed("every", default=1, show_default=False),
-    changed("late", default="0", show_default=False),
-    "form",
+    *("every", "late", "form"),
     OF_A_CONTROLLER,
 )
 @click.argument("model", type=click.Path(path_type=Path))

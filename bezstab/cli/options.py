@@ -18,7 +18,7 @@ from bezstab.methods import REGISTRY, lookup
 from bezstab.rationals import rational
 from bezstab.show import FIGURE_FORMS, TABLE_FORMS, Format
 from bezstab.stabilising import STABILISE
-from bezstab.units import to_dimensionless
+from bezstab.units import LEAST_STEP, LONGEST_STEP, to_dimensionless
 
 if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
@@ -29,7 +29,6 @@ Option = Callable[..., click.Option]
 """`click.Option`, with all but what a command may change of the option."""
 
 MOST_IN_SEQUENCE = 10**6  # steps: a run of minutes
-SHORTEST = Fraction("1e-100")  # s, and the longest time's inverse: their squares are within float64
 USUAL_METHODS = ("B2", "B3", "B4", "AB2", "AB3", "AB4", "RK4@5", "SIE")
 """The methods that poles and explore show without --method: the Bezier methods and their usual alternatives."""
 
@@ -60,12 +59,16 @@ class ParsedType(click.ParamType):  # type: ignore[type-arg]  # generic since cl
     def shell_complete(
         self, ctx: click.Context, param: click.Parameter, incomplete: str
     ) -> "list[CompletionItem[Any]]":
-        """Return the names that begin with the typed text."""
+        """Return the names that begin with the typed text, in upper or lower case; files where none does."""
         if self.names is None:
             return []
-        from bezstab.cli.completion import offered
+        from click.shell_completion import CompletionItem
 
-        return offered(self.names(), incomplete)
+        typed = incomplete.lower()
+        fitting: list[CompletionItem[Any]] = [
+            CompletionItem(name) for name in self.names() if name.lower().startswith(typed)
+        ]
+        return fitting or [CompletionItem(incomplete, type="file")]
 
 
 def _scenes() -> Iterable[str]:
@@ -84,8 +87,8 @@ def _positive(text: str) -> Fraction:
 def _within_squares(text: str, unit: str) -> Fraction:
     """Return a positive number whose square is within float64; messages name the unit."""
     number = _positive(text)
-    if not SHORTEST <= number <= 1 / SHORTEST:
-        raise InputError(f"{text}: expected {float(SHORTEST):g} to {float(1 / SHORTEST):g} {unit}")
+    if not LEAST_STEP <= float(number) <= LONGEST_STEP:
+        raise InputError(f"{text}: expected {LEAST_STEP:g} to {LONGEST_STEP:g} {unit}")
     return number
 
 
@@ -152,7 +155,7 @@ def _choose_compiled(context: click.Context, parameter: click.Parameter, choice:
 
     InputError if numba is asked for and missing.
     """
-    if left_at_default(str(parameter.name)):
+    if parameter.opts[-1] not in typed_options():
         return
     from bezstab.compiling import COMPILED_CHOICE, check_numba
 
@@ -195,12 +198,26 @@ OPTIONS = {
         DRIVE,
         "A joint drive's gains and inertia (SI units), in place of --alpha and --beta; needs --h.",
     ),
-    "every": option("--every", int, "With --pd: the torque is computed every so many steps and held in between [1]."),
-    "late": option("--late", NUMBER, "With --pd: the torque is applied so many steps late. Fractions are allowed [0]."),
+    "every": option(
+        "--every",
+        int,
+        "With --pd: the torque is computed every so many steps and held in between [1].",
+        default=1,
+        show_default=False,
+    ),
+    "late": option(
+        "--late",
+        NUMBER,
+        "With --pd: the torque is applied so many steps late. Fractions are allowed [0].",
+        default="0",
+        show_default=False,
+    ),
     "filter_seconds": option(
         "--filter filter_seconds",
         NUMBER,
         "With --pd: the time constant in s of a first-order filter of the measured velocity [0].",
+        default="0",
+        show_default=False,
     ),
     "chain": option("--chain", int, "With --engine: ask about a straight chain of so many bodies."),
     "mass_ratio": option(
@@ -288,18 +305,17 @@ def typed_options() -> dict[str, Any]:
     """Return the values that the user gave the running command, each by the long name of its option."""
     context = click.get_current_context()
     names = {str(parameter.name): parameter.opts[-1] for parameter in context.command.params}
-    return {option: context.params.get(name) for name, option in names.items() if not left_at_default(name)}
+    return {
+        option: context.params.get(name)
+        for name, option in names.items()
+        if context.get_parameter_source(name) == click.core.ParameterSource.COMMANDLINE
+    }
 
 
 def refuse_beside(option: str, others: Collection[str], why: str) -> None:
     """Raise UsageError if one of the others was typed together with that option in the running command."""
     for other in sorted(typed_options().keys() & set(others)):
         raise click.UsageError(f"{other} does not go with {option}: {why}")
-
-
-def left_at_default(parameter: str) -> bool:
-    """Return whether the user has not given that parameter of the running command."""
-    return click.get_current_context().get_parameter_source(parameter) != click.core.ParameterSource.COMMANDLINE
 
 
 OF_A_CONTROLLER = Rule(

@@ -177,17 +177,20 @@ class Work:
     resume: bool
 
 
-def progress(items: Iterable[Item], label: str, length: int | None = None) -> Iterator[Item]:
-    """Yield the items, with a progress bar on standard error where that is a terminal; `length` is their number."""
-    hidden = not sys.stderr.isatty()
-    bar = click.progressbar(items, length=length, label=visible(label), hidden=hidden, file=sys.stderr)
+def progress(items: Iterable[Item], label: str | None, length: int | None = None) -> Iterator[Item]:
+    """Yield the items; `length` is their number. A terminal shows meanwhile how many are done, below a label, if any.
+
+    The bar is on standard error.
+    """
+    hidden = not (label and sys.stderr.isatty())
+    bar = click.progressbar(items, length=length, label=visible(label or ""), hidden=hidden, file=sys.stderr)
     with bar, if_stopped(bar.render_finish):  # which shows the cursor again
         yield from bar
 
 
 def worked_out(works: Sequence[Callable[[], Item]], label: str | None) -> list[Item]:
-    """Return what each of some works finds; a terminal shows meanwhile how many are done, unless there is no label."""
-    return [work() for work in (progress(works, label) if label else works)]
+    """Return what each of some works finds, with a bar as `progress` has it."""
+    return [work() for work in progress(works, label)]
 
 
 @contextmanager
@@ -201,14 +204,13 @@ def results_of_chunks(
     """
     from bezstab.evidence import chunk_store, completed_chunks, worker_pool
 
-    def say_damaged(file: Path) -> None:
-        say(f"bezstab: {file} is damaged: computed again")
-
     kept_in = path.with_name(f"{path.name}.chunks")
     kept = f"bezstab: what is finished lies in {kept_in}: --resume goes on from there"
     with worker_pool(work.workers, work.scheduler) as pool, chunk_store(kept_in, job, work.resume) as store:
         with if_stopped(partial(say, kept)):
-            arriving = completed_chunks(compute, chunks, pool, store, say_damaged)
+            arriving = completed_chunks(
+                compute, chunks, pool, store, lambda file: say(f"bezstab: {file} is damaged: computed again")
+            )
             results = dict(progress(arriving, path.name, len(chunks)))
             yield [results[number] for number in range(len(chunks))]
         store.discard()

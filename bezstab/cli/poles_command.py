@@ -6,7 +6,7 @@ from typing import Any
 from bezstab.cli.asking import asked_of_feedback, show_below
 from bezstab.cli.options import USUAL_METHODS, Rule, changed, command, flag
 from bezstab.cli.output import show_rows
-from bezstab.show import POLES, Row, added_cells, engine_cells, one_pole_sentence, pole_rows
+from bezstab.show import POLES, one_pole_sentence, pole_rows
 
 
 @command(
@@ -36,14 +36,14 @@ def poles(all_poles: bool, **typed: Any) -> None:
     poles_of = stability.poles if all_poles else stability.dominant_pole
     margins = question.drive is not None
     at_point = [each for each in answers(question, margins=margins) if each.goal == "as given"]
-    rows: list[Row] = []
-    for each in at_point:
-        z = poles_of(each.method, each.alpha_hat, each.beta_hat).reshape(-1)
-        added = {**engine_cells(each), **added_cells(each)}
-        rows += [{**row, **added} for row in pole_rows(each, z)]
+    rows = [
+        row
+        for each in at_point
+        for row in pole_rows(each, poles_of(each.method, each.alpha_hat, each.beta_hat).reshape(-1))
+    ]
     costs_shown = not (all_poles or question.drive)
     kind = replace(POLES, sentence=one_pole_sentence) if all_poles else POLES
     alpha_hat, beta_hat = map(float, question.given.point)
     without = () if costs_shown else ("total_error", "times_least")
     show_rows(kind, rows, without, f"α̂ = {alpha_hat:.10g}, β̂ = {beta_hat:.10g}")
-    show_below(question, at_point, motion=costs_shown)
+    show_below(question, at_point, motion=not all_poles)

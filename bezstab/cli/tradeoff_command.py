@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from bezstab.cli.asking import say_if_units_were_mistaken
-from bezstab.cli.options import POSITIVE, SECONDS, Rule, TypedPoint, changed, command, flag, left_at_default, option
+from bezstab.cli.options import POSITIVE, SECONDS, Rule, TypedPoint, changed, command, flag, option, typed_options
 from bezstab.cli.output import Files, Work, progress, results_of_chunks, show_rows, show_text, worked_out
 from bezstab.show import FRONTS, SWEPT, combined_words, front_row
 
@@ -83,7 +83,7 @@ def tradeoff(predicted: bool, point: TypedPoint, tolerance: Fraction, work: Work
 
     levels = typed.pop("levels")
     if predicted:
-        scene = None if left_at_default("scene") else typed["scene"]
+        scene = typed_options().get("--scene")
         of_fronts = {name: typed[name] for name in ("methods", "omega", "speed", "steps")}
         _show_fronts(FrontQuestion(**of_fronts, scene=scene, levels=levels), files)
         return

@@ -19,9 +19,6 @@ if TYPE_CHECKING:
 WHICH_POINTS = ("--alpha", "--points", "--map", "--witness")
 """Options each of which says what is verified."""
 
-OVER_THE_MOTION = ("followed", "map_error", "law_error", "floquet_error", "wrong_sides")
-"""What a summary leaves out without --floquet."""
-
 
 @command(
     changed("scene", default="slider_crank"),
@@ -114,7 +111,7 @@ def _show_measurements(question: "VerifyQuestion") -> None:
     if len(rows) > len(measured):  # of one point each there is nothing to sum up
         click.echo()
         summaries = map(evidence.measurement_summary, measured)
-        show_rows(SUMMARIES, map(SUMMARIES.row, summaries), () if floquet else OVER_THE_MOTION)
+        show_rows(SUMMARIES, map(SUMMARIES.row, summaries), () if floquet else ("followed",))
 
 
 def _write_map(question: "VerifyQuestion", method: "Method", across: int, work: Work, files: Files) -> Row:

@@ -72,7 +72,7 @@ class Chain:
         return Constraints(f"a chain of {self.bodies}{last}", masses, tuple(range(self.bodies)))
 
 
-def typed_chain(bodies: int | None, mass_ratio: Fraction | None) -> Chain | None:
+def chain_of(bodies: int | None, mass_ratio: Fraction | None) -> Chain | None:
     """Return the chain of so many bodies, None without a number; InputError for a mass ratio without a chain."""
     if bodies is not None:
         return Chain(bodies, Fraction(1) if mass_ratio is None else mass_ratio)

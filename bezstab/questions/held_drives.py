@@ -1,11 +1,11 @@
 """Drives whose torque is held for several steps of the physics, or applied late: are they safe, and with what margin?
 
 gains and inertia, h, timing   →   HeldQuestion   →   held_answers   →   what is used up, and what each may become
-inertia, bandwidth, timing     →   held_gains     →   gains to write
+HeldQuestion, bandwidth        →   held_gains     →   gains to write
 """
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
@@ -52,17 +52,16 @@ class HeldQuestion:
     """Is a drive safe whose torque is computed every few steps of h (s), applied late, or of a filtered velocity?
 
     The torque is computed `every` so many steps and applied so many steps `late`; the time constant of the filter is
-    in s. What is None is as in a controller that is as fast as the physics. Without `methods` all ways of applying a
-    drive are asked about. InputError as `Timing`, for a step that is not positive, and for a method that is no way of
-    applying a drive.
+    in s. Without `methods` all ways of applying a drive are asked about. InputError as `Timing`, for a step that is not
+    positive, and for a method that is no way of applying a drive.
     """
 
     drive: Drive
     h: Fraction
     methods: tuple[Method, ...] = ()
-    every: int | None = None
-    late: Fraction | None = None
-    filter_seconds: Fraction | None = None
+    every: int = 1
+    late: Fraction = Fraction(0)
+    filter_seconds: Fraction = Fraction(0)
 
     def __post_init__(self) -> None:
         check_step(self.h, "h")
@@ -77,10 +76,9 @@ class HeldQuestion:
     @cached_property
     def timing(self) -> Timing:
         """The same in steps."""
-        seconds = self.filter_seconds or Fraction(0)
-        if seconds < 0:
-            raise InputError(f"--filter {float(seconds):g}: expected 0 s or more")
-        return Timing(1 if self.every is None else self.every, self.late or Fraction(0), seconds / self.h)
+        if self.filter_seconds < 0:
+            raise InputError(f"--filter {float(self.filter_seconds):g}: expected 0 s or more")
+        return Timing(self.every, self.late, self.filter_seconds / self.h)
 
 
 @dataclass(frozen=True, repr=False)
@@ -175,21 +173,14 @@ def held_answers(question: HeldQuestion) -> Iterator[HeldAnswer]:
         )
 
 
-def held_gains(
-    inertia: Fraction,
-    h: Fraction,
-    timing: Timing,
-    *,
-    bandwidth: Fraction | None = None,
-    settle: Fraction | None = None,
-    methods: Sequence[Method] = (lookup("SYM"),),
-) -> Drive:
+def held_gains(question: HeldQuestion, *, bandwidth: Fraction | None = None, settle: Fraction | None = None) -> Drive:
     """Return critically damped gains for a bandwidth (Hz, the natural frequency) or a time to settle (s), to 3 digits.
 
         kp = inertia omega^2        kd = 2 inertia omega        omega = 2 pi bandwidth = 9.2334 / settle
 
-    They are proven stable in every method, and so is each gain alone MARGIN times as large. InputError where they are
-    not, with the largest bandwidth, or the shortest time, for which they are.
+    Of the question's drive only the inertia counts. The gains are proven stable in every method, and so is each gain
+    alone MARGIN times as large. InputError where they are not, with the largest bandwidth, or the shortest time, for
+    which they are.
     """
     if (bandwidth is None) == (settle is None):
         raise InputError("give --bandwidth or --settle, and only one of them")
@@ -200,20 +191,22 @@ def held_gains(
     if not wanted > 0:
         raise InputError(f"{asked}: expected a positive number")
 
+    inertia, h = question.drive.inertia, float(question.h)
+
     def with_margin(omega: float) -> bool:
-        return _safe_with_margin(_critical_drive(omega, inertia), h, timing, methods)
+        return _safe_with_margin(question, _critical_drive(omega, inertia))
 
     if with_margin(wanted):
         return _critical_drive(wanted, inertia)
 
     def holds(omega_h: FloatArray) -> BoolArray:
-        return np.array([with_margin(each / float(h)) for each in omega_h.tolist()])
+        return np.array([with_margin(each / h) for each in omega_h.tolist()])
 
     found = first_where(holds, OMEGA_H)
     refused = f"{asked}: not safe with a margin of {MARGIN:g}-fold at this rate and delay"
     if found is None:
         raise InputError(f"{refused}, nor is any that is slower")
-    largest = found[1] / float(h)
+    largest = found[1] / h
     hertz = f"up to {_rounded_down(largest / (2 * math.pi))} Hz"
     reach = hertz if settle is None else f"from {SETTLED / largest:.3g} s on"
     raise InputError(f"{refused}; {reach} is")
@@ -231,10 +224,12 @@ def _critical_drive(omega: float, inertia: Fraction) -> Drive:
     return Drive(kp, kd, inertia)
 
 
-def _safe_with_margin(drive: Drive, h: Fraction, timing: Timing, methods: Sequence[Method]) -> bool:
+def _safe_with_margin(question: HeldQuestion, drive: Drive) -> bool:
     """Return whether a drive is proven stable in every method, and with each gain alone MARGIN times as large."""
     more = exact(MARGIN)
     drives = (drive, Drive(more * drive.kp, drive.kd, drive.inertia), Drive(drive.kp, more * drive.kd, drive.inertia))
     return all(
-        held_verdict(method.name, *each.point(h), timing) == "converges" for method in methods for each in drives
+        held_verdict(method.name, *each.point(question.h), question.timing) == "converges"
+        for method in question.methods
+        for each in drives
     )

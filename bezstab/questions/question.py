@@ -12,7 +12,7 @@ from bezstab.errors import InputError
 from bezstab.goals import GOALS, SETTLING, UP_TO_LONGEST, Goal
 from bezstab.mechanism import Scene, TurningNormals
 from bezstab.methods import Method, check_one_step, lookup
-from bezstab.questions.chains import Chain, SweptConstraints, check_sweeps, constraints_of
+from bezstab.questions.chains import Chain, SweptConstraints, chain_of, check_sweeps, constraints_of
 from bezstab.questions.motions import ReferenceMotion, check_speed, motion_of, turn_too_far, turning_of
 from bezstab.questions.points import GivenPoint, Meant, engine_holds, meant_in_seconds, point_of_engine
 from bezstab.units import check_step
@@ -44,8 +44,9 @@ class Question:
     The motion has a rate `omega` (1/s) or `omega_h` (rad a step), or is that of a `scene`, `speed` times as fast as
     given there. Safe then means: safe while the scene moves. `spread` is the share by which alpha and beta may be off.
     `settle` (s) is the time in which errors fall to a thousandth. `equal` keeps alpha = beta. `as_typed` leaves out an
-    engine's clamps. With a `chain`, or a scene of several constraints, safe also means: stable while the engine sweeps
-    over them, `iterations` times in a step (None: the engine's own number).
+    engine's clamps. With a `chain` of so many bodies, the last `mass_ratio` times as heavy as each other one (None: 1),
+    or a scene of several constraints, safe also means: stable while the engine sweeps over them, `iterations` times in
+    a step (None: the engine's own number).
     InputError for arguments that do not go together.
     """
 
@@ -67,7 +68,8 @@ class Question:
     spread: float = 0.1
     settle: Fraction | None = None
     equal: bool = False
-    chain: Chain | None = None
+    chain: int | None = None
+    mass_ratio: Fraction | None = None
     iterations: int | None = None
 
     def __post_init__(self) -> None:
@@ -79,7 +81,7 @@ class Question:
         else:
             self._check_goal(self.goal)
         check_speed(self.scene, self.speed)
-        check_sweeps(self.chain, self.iterations, self.engine, self.scene, self.speed)
+        check_sweeps(self.links, self.iterations, self.engine, self.scene, self.speed)
         object.__setattr__(self, "methods", methods_for(self.methods, self.engine, self.drive))
         if self.steps:
             for method in self.methods:
@@ -179,12 +181,17 @@ class Question:
             return motion_of(None, None, Fraction(1), self.h, longest)  # the sweeps are what is asked about
 
     @cached_property
+    def links(self) -> Chain | None:
+        """The chain that is asked about; errors as `chain_of`."""
+        return chain_of(self.chain, self.mass_ratio)
+
+    @cached_property
     def swept(self) -> SweptConstraints | None:
         """The constraints that the engine sweeps over; None for one alone, and if it is not known how it sweeps."""
         if self.engine is None or self.engine.sweeping is None or self.h is None:
             return None
-        found = self.chain.constraints if self.chain else self.scene and constraints_of(self.scene, self.speed)
-        if not found or (found.count == 1 and not self.chain):
+        found = self.links.constraints if self.links else self.scene and constraints_of(self.scene, self.speed)
+        if not found or (found.count == 1 and not self.links):
             return None
         return SweptConstraints(self.engine, self.h, found, self.iterations or self.engine.sweeping.iterations)
 

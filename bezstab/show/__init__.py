@@ -7,15 +7,14 @@ from typing import TYPE_CHECKING
 
 from bezstab.lazy import lazy_names
 from bezstab.show.answer_rows import (
-    added_cells,
     alone_words,
     answer_row,
     combined_words,
     costs_words,
-    engine_cells,
     largest_step_row,
     left_out,
     motion_words,
+    pole_rows,
     trade_words,
 )
 from bezstab.show.blocks import block, fits, wrapped
@@ -74,7 +73,6 @@ from bezstab.show.rows import (
     method_row,
     nearest_rows,
     pole_cells,
-    pole_rows,
     region_row,
     whole_row,
 )

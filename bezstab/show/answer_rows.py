@@ -17,15 +17,18 @@ from bezstab.show.row_kinds import (
     EXCLUDES,
     LARGEST_STEPS,
     MOVING,
+    POLES,
     SETTING,
     SWEEPS,
     SWEPT_OVER,
     VARYING,
 )
+from bezstab.show.rows import pole_cells
 from bezstab.show.words import sweeps_words, times_words
 from bezstab.units import from_dimensionless
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
     from fractions import Fraction
 
     from bezstab.questions import Answer, LargestStep, Question, ReferenceMotion
@@ -50,7 +53,16 @@ OF_ONE_ALONE = (
 def answer_row(answer: Answer) -> Row:
     """Return all that an answer has as a row; keys of an engine, a drive, a scene, a range of steps where asked for."""
     kind = CHOICES if answer.role == "chosen" else CHECKED
-    return {**kind.row(answer), **_engine_cells(answer), **added_cells(answer)}
+    return {**kind.row(answer), **_engine_cells(answer), **_added_cells(answer)}
+
+
+def pole_rows(answer: Answer, poles: Iterable[complex]) -> list[Row]:
+    """Return a row for each pole of a method at the point of an answer (dimensionless), angles in degrees.
+
+    Keys of an engine, a drive, a scene where asked for.
+    """
+    added = {**_applied_cells(answer), **_added_cells(answer)}
+    return [{**POLES.row(answer, **pole_cells(z)), **added} for z in poles]
 
 
 def left_out(question: Question) -> tuple[str, ...]:
@@ -58,7 +70,7 @@ def left_out(question: Question) -> tuple[str, ...]:
     return (*(WITHOUT_ACCURACY if question.drive else ()), *(OF_ONE_ALONE if question.swept else ()))
 
 
-def added_cells(answer: Answer) -> dict[str, Value]:
+def _added_cells(answer: Answer) -> dict[str, Value]:
     """Return what a drive, a scene and a range of steps add to a row of an answer's point."""
     added: dict[str, Value] = {}
     if answer.gains:
@@ -76,7 +88,7 @@ def _engine_cells(answer: Answer) -> dict[str, Value]:
     """Return what an engine makes of its values, or the line to paste for a point that it was not given."""
     if not answer.question.engine:
         return {}
-    of_engine = engine_cells(answer) if answer.role != "chosen" else _swept_cells(answer)
+    of_engine = _applied_cells(answer) if answer.role != "chosen" else _swept_cells(answer)
     return {**of_engine, **cells((ENGINE_H_LIMIT, SETTING), answer)}
 
 
@@ -95,7 +107,7 @@ def alone_words(answer: Answer) -> str | None:
     return f"One constraint alone would get {alone.setting}: with the spread to spare that takes {takes}."
 
 
-def engine_cells(answer: Answer) -> dict[str, Value]:
+def _applied_cells(answer: Answer) -> dict[str, Value]:
     """Return what an engine does to its values, and what is left out; None for values that were not given."""
     if not answer.question.engine:
         return {}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from fractions import Fraction
 from functools import partial
 from types import SimpleNamespace
@@ -23,7 +23,6 @@ from bezstab.show.row_kinds import (
     LISTED_METHODS,
     MEMBERS,
     POLE,
-    POLES,
     REGIONS,
 )
 from bezstab.units import alpha_and_beta
@@ -37,13 +36,8 @@ NOT_KNOWN = "not known"
 if TYPE_CHECKING:  # so that a small row does not load what makes the large ones
     from bezstab.engines import Engine
     from bezstab.evidence import HalvedStep, LikePoint, Measurement
-    from bezstab.questions import Answer, ChainMap, RegionAnswer
+    from bezstab.questions import ChainMap, RegionAnswer
     from bezstab.stability import FrontPoint, Limit, Region
-
-
-def pole_rows(answer: Answer, poles: Iterable[complex]) -> list[Row]:
-    """Return a row for each pole of a method at the point of an answer (dimensionless), angles in degrees."""
-    return [POLES.row(answer, **pole_cells(z)) for z in poles]
 
 
 def pole_cells(z: complex) -> dict[str, Value]:

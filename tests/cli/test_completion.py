@@ -5,17 +5,17 @@ from click.shell_completion import CompletionItem, ShellComplete
 from click.testing import CliRunner
 
 from bezstab.cli import main
-from bezstab.cli.completion import QuotingBash, offered
+from bezstab.cli.completion import QuotingBash
 from bezstab.engines import ENGINES
 from bezstab.mechanism import shipped_scenes
 from bezstab.methods import REGISTRY, lookup
 
 
-def completions(words: str) -> list[str]:
-    """Return what is offered for the last word."""
+def completions(words: str, kind: str = "plain") -> list[str]:
+    """Return what is offered for the last word, of the kind that shells know as "plain" or "file"."""
     *before, incomplete = words.split(" ")
     shell = ShellComplete(main, {}, "bezstab", "_BEZSTAB_COMPLETE")
-    return [str(item.value) for item in shell.get_completions(before, incomplete) if item.type == "plain"]
+    return [str(item.value) for item in shell.get_completions(before, incomplete) if item.type == kind]
 
 
 @pytest.mark.parametrize(
@@ -39,7 +39,7 @@ def test_names_are_completed(words: str, expected: list[str]) -> None:
 def test_every_method_is_offered_and_is_one_and_files_where_no_name_fits() -> None:
     assert set(REGISTRY) <= set(completions("methods "))
     assert all(lookup(name) for name in completions("methods "))
-    assert [(item.value, item.type) for item in offered(["B4"], "own/meth")] == [("own/meth", "file")]
+    assert (completions("methods own/meth"), completions("methods own/meth", "file")) == ([], ["own/meth"])
 
 
 def test_bash_is_offered_what_it_can_read() -> None:

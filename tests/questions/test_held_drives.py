@@ -14,12 +14,18 @@ H = Fraction("0.002")
 INERTIA = Fraction("0.1")
 
 
-def explicit(kp: str, kd: str, timing: Timing) -> HeldAnswer:
+def asked(kp: str, kd: str, timing: Timing) -> HeldQuestion:
     drive = Drive(Fraction(kp), Fraction(kd), INERTIA)
-    (answer,) = held_answers(
-        HeldQuestion(drive=drive, h=H, methods=(lookup("SYM"),), every=timing.every, late=timing.late)
-    )
+    return HeldQuestion(drive=drive, h=H, methods=(lookup("SYM"),), every=timing.every, late=timing.late)
+
+
+def explicit(kp: str, kd: str, timing: Timing) -> HeldAnswer:
+    (answer,) = held_answers(asked(kp, kd, timing))
     return answer
+
+
+def gains(timing: Timing, **wanted: Fraction) -> Drive:
+    return held_gains(asked("0", "0", timing), **wanted)
 
 
 def test_by_default_all_four_ways_of_applying_a_drive_are_asked() -> None:
@@ -64,7 +70,7 @@ def test_fresh_is_told_beside_it() -> None:
 
 @pytest.mark.parametrize("timing", [Timing(), Timing(4), Timing(4, Fraction(1)), Timing(late=Fraction(5, 2))])
 def test_gains_for_a_bandwidth_are_critically_damped_and_safe_with_a_margin(timing: Timing) -> None:
-    drive = held_gains(INERTIA, H, timing, bandwidth=Fraction(5))
+    drive = gains(timing, bandwidth=Fraction(5))
     assert float(drive.kd) == pytest.approx(2 * float(drive.kp * INERTIA) ** 0.5, rel=1e-2)  # three digits
     assert float(drive.kp) == pytest.approx(0.1 * (2 * 3.14159265 * 5) ** 2, rel=5e-3)
     for factor in (Fraction(1), Fraction(5, 4)):
@@ -74,7 +80,7 @@ def test_gains_for_a_bandwidth_are_critically_damped_and_safe_with_a_margin(timi
 
 
 def test_a_time_to_settle_is_a_bandwidth() -> None:
-    drive = held_gains(INERTIA, H, Timing(4), settle=Fraction("0.5"))
+    drive = gains(Timing(4), settle=Fraction("0.5"))
     omega = float(drive.kp / INERTIA) ** 0.5
     assert (1 + omega * 0.5) * 2.718281828459045 ** (-omega * 0.5) == pytest.approx(1e-3, rel=0.02)
 
@@ -83,19 +89,19 @@ def test_a_time_to_settle_is_a_bandwidth() -> None:
 def test_what_cannot_be_reached_is_refused_with_what_can() -> None:
     timing = Timing(4, Fraction(1))
     with pytest.raises(InputError, match=r"--bandwidth 50 Hz: not safe .*; up to (\S+) Hz is") as refused:
-        held_gains(INERTIA, H, timing, bandwidth=Fraction(50))
+        gains(timing, bandwidth=Fraction(50))
     reach = str(refused.value).split("up to ")[1].split()[0]
-    held_gains(INERTIA, H, timing, bandwidth=Fraction(reach))
+    gains(timing, bandwidth=Fraction(reach))
     with pytest.raises(InputError):
-        held_gains(INERTIA, H, timing, bandwidth=Fraction(reach) * Fraction("1.02"))
+        gains(timing, bandwidth=Fraction(reach) * Fraction("1.02"))
     with pytest.raises(InputError, match=r"--settle 0\.01 s: not safe .* from \S+ s on is"):
-        held_gains(INERTIA, H, timing, settle=Fraction("0.01"))
+        gains(timing, settle=Fraction("0.01"))
 
 
 def test_bad_input_is_refused_in_a_line() -> None:
     with pytest.raises(InputError, match="--method RK4: expected a way of applying a drive"):
         HeldQuestion(drive=Drive(Fraction(1), Fraction(1), INERTIA), h=H, methods=(lookup("RK4"),))
     with pytest.raises(InputError, match="give --bandwidth or --settle"):
-        held_gains(INERTIA, H, Timing())
+        gains(Timing())
     with pytest.raises(InputError, match="--bandwidth 0 Hz: expected a positive number"):
-        held_gains(INERTIA, H, Timing(), bandwidth=Fraction(0))
+        gains(Timing(), bandwidth=Fraction(0))

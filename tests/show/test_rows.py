@@ -27,9 +27,10 @@ from bezstab.show import (
     render,
     row_kinds,
 )
+from bezstab.show.answer_rows import pole_rows
 from bezstab.show.arrays import map_arrays, untimed_arrays, write_arrays
 from bezstab.show.cells import LIMITS, filled, pole_text, safe_step_text, stable_steps_text, with_unbounded
-from bezstab.show.rows import pole_rows, region_row
+from bezstab.show.rows import region_row
 from bezstab.show.schemas import _row_schema
 
 KINDS = [kind for kinds in ROW_KINDS.values() for kind in kinds]
