@@ -44,14 +44,14 @@ def methods(methods: Sequence[Method], latex: bool) -> None:
         listed = [
             (group, [method_row(lookup(name), name, group.heading) for name in group.methods]) for group in GROUPS
         ]
+        rows = [row for _, of_group in listed for row in of_group]
         if form == "text":
             show_groups(
-                [("\n".join(filter(None, (group.heading, group.note))), rows) for group, rows in listed],
-                LISTED_METHODS.columns([row for _, rows in listed for row in rows], ("source",)),
+                [("\n".join(filter(None, (group.heading, group.note))), of_group) for group, of_group in listed],
+                LISTED_METHODS.columns(rows, ("source",)),
                 LISTED_METHODS.sentence,
             )
         else:
-            rows = [row for _, of_group in listed for row in of_group]
             show_rows(LISTED_METHODS, rows)
         return
     rows = [whole_row(region_answer(method), latex=latex) for method in methods]

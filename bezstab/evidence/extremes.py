@@ -28,7 +28,7 @@ from bezstab.mechanism import (
     simulate,
     state_function,
 )
-from bezstab.methods import LinearMultistep, Method, PredictorCorrector, evaluations, lookup, steps
+from bezstab.methods import LinearMultistep, Method, coefficient_table, evaluations, lookup, rho_and_sigma, steps
 from bezstab.stability import EPS, FloatArray, describe_point, poles, region, spectral_radius, verdict
 from bezstab.units import feedback_gains
 
@@ -94,12 +94,12 @@ def extreme_checks(full: bool) -> Iterator[Callable[[], Check]]:
     """Yield every check, to be called; without `full` fewer methods and shorter runs."""
     sizes = ALL_SIZES if full else SHORT_SIZES
     for method in map(lookup, ALL_METHODS if full else SHORT_METHODS):
-        if method.has_mu:  # whose poles are judged by pi(z, mu)
+        if coefficient_table(method):  # whose poles are judged by pi(z, mu)
             yield partial(_sizes, method, sizes)
             yield partial(_double_mu, method)
         yield partial(_boundary, method)
-        if isinstance(method.scheme, LinearMultistep) and steps(method) > 1:
-            yield partial(_double_root, method)
+        if steps(method) > 1 and (mapping := rho_and_sigma(method)):
+            yield partial(_double_root, method, *mapping)
     yield _triple_root
     for name, alpha_hat, beta_hat in ON_THE_EDGE:
         yield partial(_edge, name, alpha_hat, beta_hat)
@@ -153,10 +153,9 @@ def _double_mu(method: Method) -> Check:
     return _root_check("double μ: α̂² = 4β̂", method, (0.25, 0.015625), 12.0)
 
 
-def _double_root(method: Method) -> Check:
+def _double_root(method: Method, *mapping: Sequence[Fraction]) -> Check:
     """At d mu/dz = 0, rho' sigma = rho sigma', two roots meet; rounding alpha_hat, beta_hat parts them by 1e-8."""
-    assert isinstance(method.scheme, LinearMultistep)
-    rho, sigma = (np.array(part, float) for part in (method.scheme.rho, method.scheme.sigma))
+    rho, sigma = (np.array(part[::-1], float) for part in mapping)
     branch = np.roots(np.polysub(np.polymul(np.polyder(rho), sigma), np.polymul(rho, np.polyder(sigma))))
     mu = np.polyval(rho, branch) / np.polyval(sigma, branch)
     # Where a branch point is a root at 0, or mu is infinite or huge, nothing is to be learnt.
@@ -179,7 +178,7 @@ def _boundary(method: Method) -> Check:
     near = 1e-7  # what is promised; 1e-13 and better is seen
     if steps(method) > 6:
         near = 1e-6
-    if isinstance(method.scheme, PredictorCorrector):
+    if evaluations(method) > 1 and steps(method) > 1:
         near = 1e-3
     points = np.concatenate(region(method).boundary or (np.zeros((1, 2)),))[::7]
     off = float(np.abs(spectral_radius(method, *points.T) - 1).max())

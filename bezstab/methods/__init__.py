@@ -52,6 +52,7 @@ if TYPE_CHECKING:
         coefficient_table,
         mapping_equations,
         rational_feedback_roots,
+        rho_and_sigma,
     )
     from bezstab.methods.determinants import characteristic
     from bezstab.methods.formulas import characteristic_text, mapping_text, recursion_text, steady_error_text

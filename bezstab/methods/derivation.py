@@ -13,7 +13,7 @@ import sympy as sp
 
 from bezstab.methods.determinants import as_fraction, in_field
 from bezstab.methods.polynomials import MuTable, PlaneTable
-from bezstab.methods.schemes import Method, RungeKutta
+from bezstab.methods.schemes import Method
 
 Z, MU, ALPHA_HAT, BETA_HAT, S, H = sp.symbols("z mu alpha_hat beta_hat s h")
 
@@ -22,7 +22,7 @@ def coefficient_table(method: Method) -> MuTable:
     """Return C with pi(z, mu) = sum_kj C[k][j] z^k mu^j of one step of h on y' = lambda y, mu = h lambda; exact.
 
     `steps` + 1 rows, one column for each power of mu. Monic in z for mu = 0; for every mu unless implicit.
-    TypeError for a second-order scheme, which treats position and velocity differently and has no mu.
+    () of a second-order scheme, which treats position and velocity differently and has no mu.
     """
     return method.scheme.mu_table
 
@@ -32,15 +32,16 @@ def rho_and_sigma(method: Method) -> tuple[Sequence[Fraction], Sequence[Fraction
 
     None of other methods.
     """
-    if not method.has_mu or len(coefficient_table(method)[0]) != 2:
+    by_power_of_mu = list(zip(*coefficient_table(method), strict=True))
+    if len(by_power_of_mu) != 2:
         return None
-    rho, minus_sigma = zip(*coefficient_table(method), strict=True)
+    rho, minus_sigma = by_power_of_mu
     return rho, [-c for c in minus_sigma]
 
 
 @cache
 def characteristic_polynomial(method: Method) -> sp.Poly:
-    """Return pi(z, mu); errors as `coefficient_table`."""
+    """Return pi(z, mu); zero of a second-order scheme, as `coefficient_table`."""
     table = coefficient_table(method)
     terms = {(k, j): in_field(c) for k, row in enumerate(table) for j, c in enumerate(row) if c}
     return sp.Poly.from_dict(terms, Z, MU, domain=sp.QQ)
@@ -107,7 +108,7 @@ def _whole_powers(number: Fraction, most: int) -> list[int]:
 def branch_polynomial(method: Method) -> tuple[Fraction, ...]:
     """Return the polynomial in z, ascending, that is zero wherever two roots of pi(., mu) meet: Res_mu(pi, d pi/dz).
 
-    Exact. TypeError for a second-order scheme, as `coefficient_table`.
+    Exact; () of a second-order scheme, as `coefficient_table`.
     """
     if mapping := rho_and_sigma(method):
         rho, sigma = (sp.Poly([in_field(c) for c in reversed(part)], Z, domain=sp.QQ) for part in mapping)
@@ -120,8 +121,6 @@ def branch_polynomial(method: Method) -> tuple[Fraction, ...]:
 
 def rational_feedback_roots(method: Method, z: int) -> list[Fraction]:
     """Return the rational mu at which pi(., mu) has a root at z, exact; none of a second-order scheme."""
-    if not method.has_mu:
-        return []
     return [Fraction(int(mu.p), int(mu.q)) for mu in characteristic_polynomial(method).eval(Z, z).ground_roots()]
 
 
@@ -131,11 +130,11 @@ def mapping_equations(method: Method) -> list[sp.Equality]:
     One equation: solved for z of a Runge-Kutta method, for s of others whose pi is linear in mu, else left implicit;
     none for a second-order scheme, which has no such mapping.
     """
-    if not method.has_mu:
-        return []
     h = method.step_multiple * H
     pi = characteristic_polynomial(method)
-    if isinstance(method.scheme, RungeKutta):
+    if pi.is_zero:
+        return []
+    if method.scheme.mapping_gives_z:
         in_z = sp.Poly(pi.as_expr(), Z)
         return [sp.Eq(Z, (-in_z.nth(0) / in_z.nth(1)).subs(MU, h * S))]
     if pi.degree(MU) == 1:

@@ -51,13 +51,11 @@ def recursion_text(method: Method, latex: bool = False) -> str:
 
 def mapping_text(method: Method, latex: bool = False) -> str:
     """Return the s->z mapping (paper Eq. 14, Table 1); of a second-order scheme that it has none."""
-    if not method.has_mu:
-        return "none: positions and velocities have a formula each"
     sides = [
         f"{_written(_readable(equation.lhs), latex)} = {_written(_readable(equation.rhs), latex)}"
         for equation in mapping_equations(method)
     ]
-    return "; ".join(sides)
+    return "; ".join(sides) or "none: positions and velocities have a formula each"
 
 
 def characteristic_text(method: Method, latex: bool = False) -> str:

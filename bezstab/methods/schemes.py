@@ -10,16 +10,18 @@ A scheme is a formula, a method a scheme with its name, source, family and step:
 Whatever a scheme is, it says how many past points it uses (`steps`), whether a step solves equations (`implicit`), how
 often it evaluates (`evaluations`), and what its step is as equations for x, v and a (`second_order`), in which the
 state is y = (x, v) and its slope f = (v, a). On y' = lambda y all but a SecondOrder are a polynomial pi(z, mu),
-mu = h lambda: `mu_table`, where `has_mu`. All have their P(z; alpha_hat, beta_hat): `table`.
+mu = h lambda: `mu_table`. All have their P(z; alpha_hat, beta_hat), `table`, and say what exact motions leave over in a
+step, `left_over`, from which their order follows.
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
 from functools import cached_property
 from itertools import zip_longest
+from math import factorial
 
 from bezstab.errors import InputError
 from bezstab.methods.polynomials import (
@@ -30,6 +32,7 @@ from bezstab.methods.polynomials import (
     quotient_and_remainder,
     without_zeros,
 )
+from bezstab.methods.rooted_trees import tree_errors
 from bezstab.methods.schur import recursion_verdict
 from bezstab.methods.second_order import SecondOrder
 from bezstab.methods.step_equations import (
@@ -63,7 +66,7 @@ def _refuse_what_is_out_of_size(what: str, *coefficients: Fraction) -> None:
 class FirstOrder(ABC):
     """A scheme that steps position and velocity alike, and so has a pi(z, mu)."""
 
-    has_mu = True
+    mapping_gives_z = False  # but s, where pi is linear in mu
 
     @property
     @abstractmethod
@@ -76,6 +79,26 @@ class FirstOrder(ABC):
         from bezstab.methods.determinants import product_over_feedback  # loads sympy
 
         return product_over_feedback(self.mu_table)
+
+    @property
+    def by_power_of_z(self) -> MuTable:
+        """What each power of z is multiplied by: the coefficients of the powers of mu."""
+        return self.mu_table
+
+    def left_over(self, power: int) -> Iterator[Polynomial]:
+        """Yield what an exact motion leaves over, as `SecondOrder.left_over`: in v - mu x nothing.
+
+        On y' = lambda y the exact solution grows by e^mu in a step: pi(e^mu, mu) is what is left when it is put into
+        the method. z^k mu^j contributes c e^(k mu) mu^j, in which mu^power has c k^(power-j) / (power-j)!. Relative to
+        the slope of pi in z it is the local error; in P it is multiplied by mu - mu_2 = 2 mu + alpha_hat.
+        """
+        left = slope = ZERO
+        for k, row in enumerate(self.mu_table):
+            slope += k * row[0]
+            for j, c in enumerate(row[: power + 1]):
+                left += c * Fraction(k ** (power - j), factorial(power - j))
+        yield 2 * left / slope, left / slope
+        yield (ZERO,)
 
 
 @dataclass(frozen=True)
@@ -210,6 +233,7 @@ class RungeKutta(FirstOrder):
     weights: Coefficients
 
     steps = 1
+    mapping_gives_z = True
 
     def __post_init__(self) -> None:
         stages = len(self.weights)
@@ -268,6 +292,12 @@ class RungeKutta(FirstOrder):
         """Return the scheme: the roots of z - R(mu) all depend on mu."""
         return self
 
+    def left_over(self, power: int) -> Iterator[Polynomial]:
+        """Yield what linear motions leave over, then nonlinear ones: one term for each rooted tree."""
+        yield from super().left_over(power)
+        for error in tree_errors(self.tableau, self.weights, power):
+            yield (error,)
+
 
 PREDICTED = "predicted_"
 
@@ -319,11 +349,6 @@ class Method:
     def __post_init__(self) -> None:
         if not LEAST_STEP_MULTIPLE <= self.step_multiple <= LARGEST_STEP_MULTIPLE:
             raise InputError(f"step multiple {float(self.step_multiple):g}: expected 1e-6 to 1e6")
-
-    @property
-    def has_mu(self) -> bool:
-        """Whether position and velocity are stepped alike, so that the poles are those of y' = lambda y."""
-        return self.scheme.has_mu
 
 
 @dataclass(frozen=True)

@@ -21,6 +21,7 @@ An equation can be taken as soon as what it needs is known. Where some wait for 
 together, and the scheme is implicit: that is found here, not declared.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -51,7 +52,7 @@ class SecondOrder:
 
     equations: tuple[Equation, ...]
 
-    has_mu = False
+    mapping_gives_z = False  # nor s
 
     def __post_init__(self) -> None:
         self._check_names()
@@ -132,8 +133,13 @@ class SecondOrder:
 
     @property
     def mu_table(self) -> MuTable:
-        """Position and velocity may be stepped differently: no such polynomial, TypeError."""
-        raise TypeError("a second-order scheme has no pi(z, mu)")
+        """Position and velocity may be stepped differently: no such polynomial, ()."""
+        return ()
+
+    @property
+    def by_power_of_z(self) -> MuTable:
+        """What each power of z is multiplied by: the coefficients of the powers of alpha_hat and beta_hat."""
+        return tuple(tuple(c for row in in_plane for c in row) for in_plane in self.table)
 
     def divided(self, factor: Polynomial) -> "SecondOrder":
         """Return the scheme: its equations stay, whatever factor its P has for all alpha_hat and beta_hat."""
@@ -188,6 +194,19 @@ class SecondOrder:
         from bezstab.methods.determinants import responses  # loads sympy
 
         return responses(self.equations)
+
+    def left_over(self, power: int) -> Iterator[Polynomial]:
+        """Yield what an exact motion leaves over in P, of degree power + 1, and in v - mu x, of degree `power`.
+
+        The one is relative to the roots that stay, the other to x. Entry i of each belongs to mu^(n - i) alpha_hat^i,
+        beta_hat = -mu (alpha_hat + mu).
+        """
+        roots_that_stay = sum((comb(k, 2) * in_plane[0][0] for k, in_plane in enumerate(self.table)), ZERO)  # P''(1)/2
+        yield [c / roots_that_stay for c in defect(self.table, power + 1)]
+        position, velocity = self.responses
+        size_of_x = sum((in_plane[0][0] for in_plane in position), ZERO)
+        times_mu = [*defect(position, power - 1), ZERO]
+        yield [(v - x) / size_of_x for v, x in zip(defect(velocity, power), times_mu, strict=True)]
 
 
 def defect(table: PlaneTable, degree: int) -> list[Fraction]:

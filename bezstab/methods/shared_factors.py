@@ -9,9 +9,9 @@ from functools import cache
 
 import sympy as sp
 
-from bezstab.methods.derivation import Z, closed_loop_table, coefficient_table
+from bezstab.methods.derivation import Z, closed_loop_table
 from bezstab.methods.determinants import in_field
-from bezstab.methods.polynomials import MuTable, PlaneTable, polynomial_gcd, quotient_and_remainder, trimmed
+from bezstab.methods.polynomials import PlaneTable, polynomial_gcd, quotient_and_remainder, trimmed
 from bezstab.methods.schemes import Method
 
 
@@ -24,19 +24,12 @@ def shared_factor(method: Method) -> tuple[Fraction, ...]:
     algorithm, exact. A root of it at zero, an unused past value, is left out: it never decides.
     """
     shared: list[Fraction] = []
-    for polynomial in zip(*_by_power_of_z(method), strict=True):
+    for polynomial in zip(*method.scheme.by_power_of_z, strict=True):
         if any(polynomial):
             shared = polynomial_gcd(shared, polynomial) if shared else trimmed(polynomial)
     while len(shared) > 1 and shared[0] == 0:
         del shared[0]
     return tuple(shared)
-
-
-def _by_power_of_z(method: Method) -> MuTable:
-    """Return what each power of z, ascending, is multiplied by: the coefficients of the powers of mu, or of P's."""
-    if method.has_mu:
-        return coefficient_table(method)
-    return tuple(tuple(c for row in in_plane for c in row) for in_plane in closed_loop_table(method))
 
 
 @cache

@@ -80,7 +80,7 @@ def step_matrix(method: Method, alpha_hat: Fraction, beta_hat: Fraction, hold: b
     return StepMatrix(
         entries=tuple(tuple(_ascending(entry, lowest) for entry in row) for row in scaled),
         denominator=_ascending(below, lowest),
-        commuting=not hold and method.has_mu,
+        commuting=not hold and bool(method.scheme.mu_table),
     )
 
 

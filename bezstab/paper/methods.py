@@ -4,10 +4,10 @@ from fractions import Fraction
 from itertools import product
 
 from bezstab.methods import (
-    LinearMultistep,
     accuracy,
     characteristic_text,
     closed_loop_at,
+    coefficient_table,
     evaluations,
     lookup,
     mapping_text,
@@ -71,7 +71,7 @@ def findings() -> list[Finding]:
 
 def weights_of_b2() -> Finding:
     """Return whether Eq. 12 has the weights that follow from the Bernstein curve."""
-    weights = _multistep("B2").sigma[1:]
+    weights = _rho_and_sigma("B2")[1][1:]
     return finding(
         where="Eq. 12",
         claim="B2: y' = y + h/2 (3 f - f')",
@@ -83,15 +83,14 @@ def weights_of_b2() -> Finding:
 
 def mapping_of_b2() -> Finding:
     """Return whether Eq. 14 has the ρ and σ of B2."""
-    b2 = _multistep("B2")
-    rho, sigma = (f"[{', '.join(map(str, coefficients))}]" for coefficients in (b2.rho, b2.sigma))
-    rho_agrees = b2.rho == (Fraction(1), Fraction(-1), Fraction(0))
-    sigma_agrees = b2.sigma[0] == 0 and b2.sigma[1] == -3 * b2.sigma[2]
+    rho, sigma = _rho_and_sigma("B2")
+    rho_agrees = rho == (Fraction(1), Fraction(-1), Fraction(0))
+    sigma_agrees = sigma[0] == 0 and sigma[1] == -3 * sigma[2]
     return finding(
         where="Eq. 14",
         claim="B2: s = (2/h) z (z - 1) / (3 z - 1)",
         paper="ρ = z² - z, σ = (3 z - 1)/2",
-        here=f"ρ = {rho}, σ = {sigma}",
+        here=f"ρ = [{', '.join(map(str, rho))}], σ = [{', '.join(map(str, sigma))}]",
         holds=[rho_agrees and sigma_agrees],
     )
 
@@ -196,7 +195,7 @@ def positive_parameters_are_not_enough() -> Finding:
 
 def second_order_is_one_method() -> Finding:
     """Return whether B2 and AB2 have the same coefficients."""
-    same = _multistep("B2") == _multistep("AB2")
+    same = coefficient_table(lookup("B2")) == coefficient_table(lookup("AB2"))
     return finding(
         where="Section 5.1",
         claim="second order of both families is the same method",
@@ -234,7 +233,7 @@ def kinds_of_methods() -> Finding:
     )
 
 
-def _multistep(name: str) -> LinearMultistep:
-    scheme = lookup(name).scheme
-    assert isinstance(scheme, LinearMultistep)
-    return scheme
+def _rho_and_sigma(name: str) -> tuple[tuple[Fraction, ...], tuple[Fraction, ...]]:
+    """Return the coefficients of rho and of sigma, highest power of z first."""
+    rho, minus_sigma = zip(*reversed(coefficient_table(lookup(name))), strict=True)
+    return rho, tuple(-c for c in minus_sigma)

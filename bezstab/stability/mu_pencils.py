@@ -157,10 +157,7 @@ class MuPencil:
 
 @cache
 def mu_pencil_of(method: Method) -> MuPencil:
-    """Return the mu pencil of a method; NumericalError if its coefficients leave the range of float64.
-
-    TypeError for a second-order scheme, which has no pi(z, mu).
-    """
+    """Return the mu pencil of a method that has a mu; NumericalError if its coefficients leave float64's range."""
     table = _floats(method, coefficient_table(method))
     return MuPencil(
         method=method,

@@ -10,7 +10,7 @@ from functools import cache, partial
 
 import numpy as np
 
-from bezstab.methods import Method, without_shared_factor
+from bezstab.methods import Method, coefficient_table, without_shared_factor
 from bezstab.stability.arrays import BoolArray, ComplexArray, Extent, FloatArray
 from bezstab.stability.charts import Chart, mu_chart, plane_chart
 from bezstab.stability.far_limits import FarLimit, far_limit_through_mu, least_far_limit
@@ -56,7 +56,9 @@ def pencil_of(method: Method, free: bool = False) -> Pencil:
 
     free: without the poles that no parameters move.
     """
-    return _through_mu(without_shared_factor(method) if free else method) if method.has_mu else _through_p(method, free)
+    if coefficient_table(method):
+        return _through_mu(without_shared_factor(method) if free else method)
+    return _through_p(method, free)
 
 
 def _through_mu(method: Method) -> Pencil:

@@ -20,7 +20,7 @@ from bezstab.methods import (
     second_order_form,
     steps,
 )
-from bezstab.methods.orders import _trees
+from bezstab.methods.rooted_trees import _trees
 from tests.methods import kinds
 from tests.methods.kinds import EXPLICIT, FEW, sampled
 from tests.reference.made_methods import multistep, runge_kutta

@@ -59,12 +59,12 @@ METHOD = Field("method", "Name of the method", "method", kind="text")
 
 
 def test_one_line_makes_a_column_a_key_and_its_documentation() -> None:
-    new = Field("settles", "Whether errors settle", "settles", kind="truth", path="method.scheme.has_mu")
+    new = Field("solves", "Whether it is implicit", "solves", kind="truth", path="method.scheme.implicit")
     kind = replace(row_kinds.EXTREMES, fields=(METHOD, new))
-    rows = [cells(kind.fields, SimpleNamespace(method=lookup("B4")))]
-    assert render(rows, kind.columns(rows), "text").split() == ["method", "settles", "B4", "yes"]
-    assert render(rows, [], "csv").splitlines() == ["method,settles", "B4,True"]
-    assert _row_schema(kind)["properties"]["settles"] == {"description": "Whether errors settle.", "type": "boolean"}
+    rows = [cells(kind.fields, SimpleNamespace(method=lookup("bdf2")))]
+    assert render(rows, kind.columns(rows), "text").split() == ["method", "solves", "bdf2", "yes"]
+    assert render(rows, [], "csv").splitlines() == ["method,solves", "bdf2,True"]
+    assert _row_schema(kind)["properties"]["solves"] == {"description": "Whether it is implicit.", "type": "boolean"}
 
 
 ANSWER = next(answers(Question(methods=(lookup("B4"),), point=(Fraction(1, 2), Fraction(1, 10)))))

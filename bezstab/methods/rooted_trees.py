@@ -1,0 +1,73 @@
+r"""The conditions of order of Runge-Kutta methods, one for each rooted tree.
+
+The derivatives of y along y' = f(y) are sums of products of derivatives of f, one for each rooted tree: a vertex is an
+f, its branches are the arguments of that derivative of f (Hairer, Norsett & Wanner I, section II.2).
+
+    y'' = f' f   o        y''' = f''(f, f)   o   o     +   f' f' f   o
+                 |                            \ /                    |
+                 o                             o                     o
+                                                                     |
+                                                                     o
+
+A Runge-Kutta method's result has the same products with other factors. It is of order p if and only if they agree
+for every tree t of up to p vertices: sum_i b_i Phi_i(t) = 1 / gamma(t). Only linear problems have nothing but tall
+trees, which is why R(mu) alone does not tell the order.
+"""
+
+from collections.abc import Iterator, Sequence
+from fractions import Fraction
+from itertools import combinations_with_replacement
+from math import prod
+
+from bezstab.methods.polynomials import Polynomial
+from bezstab.rationals import ONE, ZERO
+
+Tableau = Sequence[Polynomial]
+
+Tree = tuple["Tree", ...]
+"""A rooted tree: the subtrees of its root, in a fixed order. () is a single vertex, ((),) one with a leaf on it."""
+
+
+def tree_errors(tableau: Tableau, weights: Polynomial, vertices: int) -> Iterator[Fraction]:
+    """Yield gamma(t) sum_i b_i Phi_i(t) - 1 for every rooted tree t of so many vertices."""
+    for tree in _trees(vertices):
+        terms = zip(weights, _stage_weights(tableau, tree), strict=True)
+        yield _density(tree) * sum((b * phi for b, phi in terms), ZERO) - 1
+
+
+def _stage_weights(tableau: Tableau, tree: Tree) -> list[Fraction]:
+    """Return Phi_i(t) for every stage i: the product over the root's subtrees t' of sum_j a_ij Phi_j(t')."""
+    product = [ONE] * len(tableau)
+    for subtree in tree:
+        inner = _stage_weights(tableau, subtree)
+        for i, row in enumerate(tableau):
+            product[i] *= sum((a * phi for a, phi in zip(row, inner, strict=True)), ZERO)
+    return product
+
+
+def _vertices(tree: Tree) -> int:
+    return 1 + sum(_vertices(subtree) for subtree in tree)
+
+
+def _density(tree: Tree) -> int:
+    """Return gamma(t): the product over the vertices of the size of the subtree each is root of."""
+    return _vertices(tree) * prod(_density(subtree) for subtree in tree)
+
+
+def _trees(order: int) -> Iterator[Tree]:
+    """Yield the rooted trees with `order` vertices, each once: 1, 1, 2, 4, 9, 20, ... of them."""
+    yield from _forests(order - 1, order - 1)
+
+
+def _forests(vertices: int, largest: int) -> Iterator[Tree]:
+    """Yield the unordered collections of trees with so many vertices together, none of more than `largest`.
+
+    Those of the largest size are chosen first, then what remains is filled with smaller ones: so each comes once.
+    """
+    if vertices == 0:
+        yield ()
+    for size in range(min(vertices, largest), 0, -1):
+        for copies in range(1, vertices // size + 1):
+            for chosen in combinations_with_replacement(list(_trees(size)), copies):
+                for rest in _forests(vertices - size * copies, size - 1):
+                    yield chosen + rest
