@@ -1,6 +1,7 @@
 """The command that holds predicted poles against measured ones: verify."""
 
 from functools import partial
+from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -84,14 +85,13 @@ def _show_forced_errors(question: "VerifyQuestion") -> int:
     """Print predicted and measured errors at shares of a point's gains; return whether all hold, or an exit status."""
     from bezstab import evidence, show
 
-    by_method = {
-        method.name: list(progress(question.forced_errors(method), method.name, len(evidence.SHARES)))
-        for method in question.methods
-    }
-    every_pair = [pair for pairs in by_method.values() for pair in pairs]
+    by_method = [
+        list(progress(question.forced_errors(method), method.name, len(evidence.SHARES))) for method in question.methods
+    ]
+    every_pair = list(chain.from_iterable(by_method))
     scene = question.mechanism.scene.name
     show_rows(FORCED, (row for pair in every_pair for row in show.forced_rows(scene, pair)))
-    show_text("\n" + "\n".join(show.forced_words(name, pairs) for name, pairs in by_method.items()))
+    show_text("\n" + "\n".join(map(evidence.forced_sentence, by_method)))
     outcomes = {pair.holds for pair in every_pair}
     return NUMERICAL_TROUBLE if None in outcomes else outcomes == {True}
 
@@ -100,14 +100,14 @@ def _show_measurements(question: "VerifyQuestion") -> None:
     """Print the poles measured at one point, else at random ones, and where there are several how well they agree."""
     from bezstab import evidence, show
 
-    mechanism, floquet = question.mechanism, question.floquet
+    scene, floquet = question.mechanism.scene.name, question.floquet
     measured = [question.measurements(method, partial(progress, label=method.name)) for method in question.methods]
-    rows = [MEASUREMENTS.row(each, scene=mechanism.scene.name) for of_method in measured for each in of_method]
+    rows = [MEASUREMENTS.row(each, scene=scene) for of_method in measured for each in of_method]
     show_rows(MEASUREMENTS, rows, () if floquet else ("right",))
     if not for_reading():
         return
     for of_method in measured if floquet else ():
-        show_text(show.exact_rate_words(mechanism, of_method))
+        show_text(show.exact_rate_words(of_method[0], question.no_period))
     if len(rows) > len(measured):  # of one point each there is nothing to sum up
         click.echo()
         summaries = map(evidence.measurement_summary, measured)

@@ -20,7 +20,7 @@ from bezstab.evidence.accuracy_costs import (
 from bezstab.evidence.chunk_stores import Arrays, chunk_store
 from bezstab.evidence.chunks import ATTEMPTS, completed_chunks
 from bezstab.evidence.extremes import Check, extreme_checks
-from bezstab.evidence.forced_runs import SHARES, HalvedStep, halved_steps
+from bezstab.evidence.forced_runs import SHARES, HalvedStep, forced_sentence, halved_steps
 from bezstab.evidence.linear_prediction import SPREAD, Fit, Refusal, fit_dominant_pole
 from bezstab.evidence.logs import Log, error_columns, log_from, parse_log, read_log, row_step, time_column
 from bezstab.evidence.measured_poles import (

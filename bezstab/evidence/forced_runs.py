@@ -74,8 +74,8 @@ class ForcedMotion:
 
     @property
     def quotient(self) -> float:
-        """Measured over predicted."""
-        return self.measured / self.predicted
+        """Measured over predicted; nan where there is nothing to compare."""
+        return math.nan if self.reason else self.measured / self.predicted
 
     @property
     def reason(self) -> str:
@@ -105,8 +105,8 @@ class HalvedStep:
 
     @property
     def observed_order(self) -> float:
-        """The order in h of what was measured, nan where a run broke down."""
-        return float(np.log2(self.whole.measured / self.half.measured))
+        """The order in h of what was measured; nan where there is nothing to compare."""
+        return math.nan if self.holds is None else float(np.log2(self.whole.measured / self.half.measured))
 
     @property
     def holds(self) -> bool | None:
@@ -114,6 +114,23 @@ class HalvedStep:
         if self.whole.reason or self.half.reason:
             return None
         return all(abs(run.quotient - 1) <= HOLDS for run in (self.whole, self.half))
+
+
+def forced_sentence(pairs: Sequence[HalvedStep]) -> str:
+    """Return in words whether a method forces what was predicted, and how that shrinks with the step."""
+    name = pairs[0].whole.method.name
+    kept = [pair for pair in pairs if pair.holds is not None]
+    if not kept:
+        return f"{name}: nothing could be compared."
+    quotients = [run.quotient for pair in kept for run in (pair.whole, pair.half)]
+    holds = "the prediction holds" if all(pair.holds for pair in kept) else "the prediction does NOT hold"
+    predicted, seen = [pair.predicted_order for pair in kept], [pair.observed_order for pair in kept]
+    left_out = len(pairs) - len(kept)
+    without = f" {left_out} of {len(pairs)} points could not be compared." if left_out else ""
+    return (
+        f"{name}: measured over predicted is {min(quotients):.3f} to {max(quotients):.3f}: {holds}. The order "
+        f"in h is {min(seen):.2f} to {max(seen):.2f}, predicted {min(predicted):.2f} to {max(predicted):.2f}.{without}"
+    )
 
 
 def halved_steps(
@@ -223,4 +240,4 @@ def _measured(
     if run.failure:
         return np.nan, run.failure
     seen = observe(mechanism, run.t, run.q, run.v, *gains)
-    return float(np.abs(seen.c[run.t >= COMPARED * duration]).max()), None
+    return float(seen.largest_c[run.t >= COMPARED * duration].max()), None

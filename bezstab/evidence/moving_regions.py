@@ -52,6 +52,11 @@ class MovingRegion(ReadOnlyArrays):
     growth: FloatArray
     excluded: BoolArray
 
+    @property
+    def outside_the_law(self) -> BoolArray:
+        """Where errors decay by a law that does not hold there; shape of `growth`."""
+        return self.excluded & (self.growth < 0)
+
     def __repr__(self) -> str:
         return f"MovingRegion({self.method.name}: area {self.area:.6g} at h = {self.h:g} s)"
 

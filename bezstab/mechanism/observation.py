@@ -35,9 +35,14 @@ class Observation(ReadOnlyArrays):
     pivots: FloatArray
 
     @property
+    def largest_c(self) -> FloatArray:
+        """The largest |c| of all constraints at each time (m or rad), shape (times,)."""
+        return np.asarray(np.abs(self.c).max(axis=1))
+
+    @property
     def c_max(self) -> float:
-        """The largest |c| of all constraints at all times (m or rad)."""
-        return float(np.abs(self.c).max())
+        """The largest of these."""
+        return float(self.largest_c.max())
 
     @property
     def cdot_max(self) -> float:

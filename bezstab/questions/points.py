@@ -1,15 +1,16 @@
-"""How a point is given: alpha_hat and beta_hat, an engine's own values, or a drive's gains."""
+"""How a point is given, by alpha_hat and beta_hat, an engine's values or a drive's gains; what a window shows of it."""
 
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cached_property
 from typing import Literal
 
 from bezstab.engines import Engine, Point
 from bezstab.errors import InputError
-from bezstab.methods import Method
-from bezstab.stability import verdict
+from bezstab.methods import Method, Verdict
+from bezstab.stability import ComplexArray, FloatArray, kick_response, poles, verdict
 from bezstab.units import feedback_gains, to_dimensionless
 
 SAME_GAINS = 1e-9
@@ -27,6 +28,33 @@ class GivenPoint:
     point: Point
     notes: tuple[str, ...] | None = None
     also: tuple[tuple[str, Point], ...] = ()
+
+
+@dataclass(frozen=True)
+class PlanePoint:
+    """What a method does to errors at a point (alpha_hat, beta_hat), exact: fast enough to follow a mouse."""
+
+    method: Method
+    point: Point
+
+    @cached_property
+    def poles(self) -> ComplexArray:
+        """All poles, the dominant one first, shape (degree,); errors as `poles`."""
+        return poles(self.method, *map(float, self.point))
+
+    @property
+    def stable(self) -> bool:
+        """Whether the dominant pole, in float64, lies inside the unit circle."""
+        return bool(abs(self.poles[0]) < 1)
+
+    @property
+    def verdict(self) -> Verdict:
+        """What errors do, proven."""
+        return verdict(self.method, *self.point)
+
+    def after_a_kick(self, steps: int) -> FloatArray:
+        """Return |c| from a unit kick on, shape (steps + 1,)."""
+        return abs(kick_response(self.poles, steps))
 
 
 def point_of_engine(engine: Engine, values: tuple[Fraction, ...], h: Fraction, *, as_typed: bool) -> GivenPoint:

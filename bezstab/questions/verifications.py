@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bezstab.evidence import HalvedStep, Measurement, halved_steps, measure_poles, random_points
-from bezstab.mechanism import Mechanism, Scene, compiled_mechanism
+from bezstab.mechanism import Driver, Mechanism, Scene, compiled_mechanism, revolution_period
 from bezstab.methods import Method
 from bezstab.questions.motions import scene_at_speed
 from bezstab.questions.points import Meant, meant_in_seconds
@@ -54,6 +54,13 @@ class VerifyQuestion:
     def mechanism(self) -> Mechanism:
         """The mechanism that runs; errors as `load_scene`."""
         return compiled_mechanism(scene_at_speed(self.scene, self.speed))
+
+    @property
+    def no_period(self) -> str:
+        """Why the drivers of the mechanism do not begin anew, in words; nothing where they do."""
+        if not any(isinstance(joint, Driver) for joint in self.mechanism.scene.joints):
+            return "nothing drives it"
+        return "its drivers have no common period" if revolution_period(self.mechanism) is None else ""
 
     def measurements(self, method: Method, bar: Callable[[Iterable[int]], Iterable[int]] = iter) -> list[Measurement]:
         """Return predicted and measured poles at the point, else at the random ones; `bar` shows the progress."""

@@ -67,7 +67,6 @@ from bezstab.show.rows import (
     engine_row,
     exact_rate_words,
     forced_rows,
-    forced_words,
     front_row,
     like_point_row,
     limit_row,
@@ -79,7 +78,7 @@ from bezstab.show.rows import (
 )
 from bezstab.show.schemas import json_schema
 from bezstab.show.sentences import likeness_sentence, one_pole_sentence, passages_words
-from bezstab.show.varying_rows import sequence_text, varying_words
+from bezstab.show.varying_rows import varying_words
 
 if TYPE_CHECKING:
     from bezstab.show import plot

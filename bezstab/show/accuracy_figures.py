@@ -49,8 +49,8 @@ def from_decay_scale(values: FloatArray) -> FloatArray:
 def accuracy_map_figure(shown: PlaneMap, omega_h: float, error: FloatArray, levels: Sequence[float] = ()) -> Figure:
     """Return contours of the forced error over the map of |z_p|, on logarithmic axes, with both best points.
 
-    The error, a share of the motion of omega_h rad a step, has the shape of the map, whose axes are > 0. Dashed are
-    further `levels` of |z_p|.
+    The error, a share of the motion of omega_h rad a step, has the shape of the map, whose axes are > 0; it is nan
+    where errors do not decay. Dashed are further `levels` of |z_p|.
     """
     region, z_abs = shown.region, shown.z_abs
     with styled():
@@ -65,8 +65,7 @@ def accuracy_map_figure(shown: PlaneMap, omega_h: float, error: FloatArray, leve
         bar = figure.colorbar(mesh, label="$|z_p|$", extend="both", format="{x:g}", ticks=TICKS)
         bar.ax.minorticks_off()
         white: dict[str, Any] = {"colors": "white", "linewidths": 0.7, "linestyles": "-"}
-        powers = np.log10(np.where(z_abs < 1, error, np.nan))
-        contours = axes.contour(x, y, powers, locator=MaxNLocator(MOST_CONTOURS, integer=True), **white)
+        contours = axes.contour(x, y, np.log10(error), locator=MaxNLocator(MOST_CONTOURS, integer=True), **white)
         contours.set_path_effects(HALO)
         axes.plot([], [], color="white", linewidth=0.7, path_effects=HALO, label="forced error / motion")  # a key
         boundary = plot.region(region, axes, shown.h, color="black", linestyle="-", label=f"$|z_p| = {region.level:g}$")

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
+from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
@@ -29,10 +30,11 @@ def chains_figure(engine: Engine, title: str, maps: Sequence[ChainMap]) -> Figur
     with styled():
         figure = column_figure(0.55 + 0.5 * len(maps))
         rows = figure.subplots(len(maps), 1, sharex=True, squeeze=False)[:, 0]
-        darkest = min(float(one.z_abs.min()) for one in maps)
+        shades = Normalize(vmax=LIGHTEST)
+        shades.autoscale_None([one.z_abs for one in maps])
         for axes, one in zip(rows, maps, strict=True):
             bodies, sweeps = (np.arange(1.0, count + 1) for count in one.z_abs.shape)
-            image = cells(axes, sweeps, bodies, one.z_abs, cmap="cividis", vmin=darkest, vmax=LIGHTEST)
+            image = cells(axes, sweeps, bodies, one.z_abs, cmap="cividis", norm=shades)
             # a cell is as wide as a sweep and as high as a body: the line runs along the edges of cells
             edge = [np.nan if fewest is None else fewest - 0.5 for fewest in one.stable_iterations]
             axes.step(

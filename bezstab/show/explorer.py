@@ -11,11 +11,12 @@ from matplotlib.patches import Circle
 
 from bezstab.errors import InputError
 from bezstab.methods import Method
+from bezstab.questions import PlanePoint
 from bezstab.show import plot
 from bezstab.show.columns import formatted
 from bezstab.show.rows import pole_cells
 from bezstab.show.style import ACCENT, COLOURS, styled
-from bezstab.stability import kick_response, poles, region, useful_window, verdict
+from bezstab.stability import region, useful_window
 from bezstab.units import alpha_and_beta
 
 POINTS = 150  # per axis of the map: it appears at once
@@ -74,16 +75,14 @@ class Explorer:
         The point is that of the six digits that the key p prints; with `prove` its verdict is exact.
         """
         self.typed = f"{alpha_hat:.6g}", f"{beta_hat:.6g}"
-        point = float(self.typed[0]), float(self.typed[1])
+        point = Fraction(self.typed[0]), Fraction(self.typed[1])
         alpha, beta = alpha_and_beta(*point, self.h)
-        z = poles(self.method, *point)
-        largest = pole_cells(z[0])
-        judgement = "stable" if abs(z[0]) < 1 else "unstable"
-        if prove:
-            judgement = f"{verdict(self.method, *map(Fraction, self.typed))} (proven)"
-        self.poles.set_data(z.real, z.imag)
-        self.decay.set_data(range(STEPS + 1), abs(kick_response(z, STEPS)))
-        self.cross.set_data([point[0]], [point[1]])
+        found = PlanePoint(self.method, point)
+        largest = pole_cells(found.poles[0])
+        judgement = f"{found.verdict} (proven)" if prove else "stable" if found.stable else "unstable"
+        self.poles.set_data(found.poles.real, found.poles.imag)
+        self.decay.set_data(range(STEPS + 1), found.after_a_kick(STEPS))
+        self.cross.set_data([[float(number)] for number in point])
         self.text.set_text(
             rf"$\hat\alpha$ = {self.typed[0]}   $\hat\beta$ = {self.typed[1]}   "
             f"α = {alpha:.6g}   β = {formatted(beta, '.6g')} 1/s at h = {self.h:g} s\n"

@@ -6,13 +6,13 @@ from functools import partial
 from operator import mul
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from bezstab.engines import DRIVE_METHODS
+from bezstab.show import plot
 from bezstab.show.held_rows import timing_words
-from bezstab.show.style import ABOVE_THE_AXES, ACCENT, cells, legend_below, new_axes, styled, title_lines
+from bezstab.show.style import ABOVE_THE_AXES, ACCENT, legend_below, new_axes, styled, title_lines
 
 if TYPE_CHECKING:
     from bezstab.questions import HeldAnswer
@@ -32,11 +32,10 @@ def held_figure(answer: HeldAnswer, points: int) -> Figure:
     with styled():
         title = f"{of_method}\n{title_lines(timing_words(question.timing, h))}"
         figure, axes = new_axes(title, "kd (N m s/rad)", "kp (N m/rad)", 1.1)
-        stable = np.ma.masked_greater_equal(found.z_abs, 1.0)
-        image = cells(axes, kd, kp, stable, cmap="cividis", vmax=1.0)
+        image = plot.modulus_map(kd, kp, found.z_abs, axes=axes)
         figure.colorbar(image, label="$|z_p|$ a step", location="bottom", shrink=0.8)
         handles = [Line2D([], [], color="black", label="$|z_p| = 1$")]
-        if found.z_abs.min() < 1 < found.z_abs.max():
+        if found.has_edge:
             axes.contour(kd, kp, found.z_abs, levels=[1.0], colors="black", linewidths=1.2)
         if found.law is not None:
             law: dict[str, Any] = {"color": "white", "linestyle": (0, (4, 4)), "linewidth": 1.0}

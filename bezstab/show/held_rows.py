@@ -20,8 +20,7 @@ NOT_JUDGED = "Not judged: a limit of the torque, friction, and what else the dri
 
 def held_row(answer: HeldAnswer) -> Row:
     """Return what one way of applying a held or late drive does as a row; limits as gains and as steps."""
-    filtered = float(answer.question.timing.filter_steps * answer.question.h)
-    return HELD.row(answer, drive=DRIVE_METHODS[answer.method.name], filter=filtered)
+    return HELD.row(answer, drive=DRIVE_METHODS[answer.method.name])
 
 
 def timing_words(timing: Timing, h: float) -> str:

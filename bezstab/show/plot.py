@@ -141,9 +141,8 @@ def moving_region(
     check_kind(moving, MovingRegion, "bezstab.evidence.moving_region")
     axes = _plane(axes, moving.method.name, h)
     x, y = plane_coordinates(moving.alpha_hat, moving.beta_hat, h)
-    outside_the_law = moving.excluded & (moving.growth < 0)
-    if hatched and outside_the_law.any():
-        axes.contourf(x, y, outside_the_law, levels=[0.5, 1.5], colors="none", hatches=["....."])
+    if hatched and moving.outside_the_law.any():
+        axes.contourf(x, y, moving.outside_the_law, levels=[0.5, 1.5], colors="none", hatches=["....."])
         axes.add_patch(Rectangle((0, 0), 0, 0, fill=False, hatch=".....", label="law does not hold"))  # a key
     edge: QuadContourSet = axes.contour(x, y, moving.growth, levels=[0.0], colors="black", linestyles=[dashes])
     axes.plot([], [], color="black", linestyle=dashes, label=label)
@@ -340,8 +339,9 @@ def largest_error(simulation: Simulation, axes: Axes | None = None, **line: Any)
     """
     axes = _run_axes(simulation, axes, "largest $|c|$ (SI)")
     axes.set_yscale("log", nonpositive="mask")
-    largest = np.abs(simulation.c).max(axis=1)
-    return _line(axes, (simulation.t, largest), line, linewidth=FINE, **line_at(len(axes.lines)))
+    return _line(
+        axes, (simulation.t, simulation.observation.largest_c), line, linewidth=FINE, **line_at(len(axes.lines))
+    )
 
 
 def _run_axes(simulation: Simulation, axes: Axes | None, name: str) -> Axes:

@@ -1267,7 +1267,12 @@ HELD = RowKind(
             "every", "Steps of the physics from one computation of the torque to the next", path="question.timing.every"
         ),
         number("late", "Steps of the physics until a torque is applied", path="question.timing.late"),
-        number("filter", "Time constant of the filter through which the velocity is seen", unit="s"),
+        number(
+            "filter",
+            "Time constant of the filter through which the velocity is seen",
+            unit="s",
+            path="question.filter_seconds",
+        ),
         INERTIA,
         KP.of("question.drive.kp"),
         KP_MAX.of("limits.kp.1"),

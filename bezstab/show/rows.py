@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 from fractions import Fraction
+from functools import partial
 from types import SimpleNamespace
 from typing import TYPE_CHECKING
 
@@ -35,7 +36,6 @@ NOT_KNOWN = "not known"
 if TYPE_CHECKING:  # so that a small row does not load what makes the large ones
     from bezstab.engines import Engine
     from bezstab.evidence import HalvedStep, LikePoint, Measurement
-    from bezstab.mechanism import Mechanism
     from bezstab.questions import ChainMap, RegionAnswer
     from bezstab.stability import FrontPoint, Limit, Region
 
@@ -152,50 +152,24 @@ def forced_rows(scene: str, pair: HalvedStep) -> list[Row]:
 
     None where there is nothing to compare; orders are between the two, and stand in the row of the smaller step.
     """
-    observed_order = None if pair.holds is None else pair.observed_order
+    of_pair = partial(FORCED.row, scene=scene, gain_share=pair.share)
     return [
-        FORCED.row(
-            run,
-            scene=scene,
-            gain_share=pair.share,
-            quotient=None if run.reason else run.quotient,
-            predicted_order=pair.predicted_order if run is pair.half else None,
-            observed_order=observed_order if run is pair.half else None,
-        )
-        for run in (pair.whole, pair.half)
+        of_pair(pair.whole, predicted_order=None, observed_order=None),
+        of_pair(pair.half, predicted_order=pair.predicted_order, observed_order=pair.observed_order),
     ]
 
 
-def forced_words(name: str, pairs: Sequence[HalvedStep]) -> str:
-    """Return in words whether the method of that name forces what was predicted, and how that shrinks with the step."""
-    kept = [pair for pair in pairs if pair.holds is not None]
-    if not kept:
-        return f"{name}: nothing could be compared."
-    quotients = [run.quotient for pair in kept for run in (pair.whole, pair.half)]
-    holds = "the prediction holds" if all(pair.holds for pair in kept) else "the prediction does NOT hold"
-    predicted, seen = ([getattr(pair, name) for pair in kept] for name in ("predicted_order", "observed_order"))
-    left_out = len(pairs) - len(kept)
-    without = f" {left_out} of {len(pairs)} points could not be compared." if left_out else ""
-    return (
-        f"{name}: measured over predicted is {min(quotients):.3f} to {max(quotients):.3f}: {holds}. The order "
-        f"in h is {min(seen):.2f} to {max(seen):.2f}, predicted {min(predicted):.2f} to {max(predicted):.2f}.{without}"
-    )
+def exact_rate_words(measurement: Measurement, no_period: str) -> str:
+    """Return along which motion the exact rates of a method are; why there are none, where the motion ends.
 
-
-def exact_rate_words(mechanism: Mechanism, measurements: Sequence[Measurement]) -> str:
-    """Return along which motion the exact rates of one method are; why there are none, where the motion ends."""
-    from bezstab.mechanism import Driver, revolution_period
-
-    name = measurements[0].method.name
-    if all(measurement.periodic for measurement in measurements):
+    `no_period` is why its drivers do not begin anew, in words.
+    """
+    name = measurement.method.name
+    if measurement.periodic:
         return (
             f"Exact rates of {name}: along the method's own motion, where there is none along the mechanism's motion."
         )
-    why = ""
-    if not any(isinstance(joint, Driver) for joint in mechanism.scene.joints):
-        why = ", as nothing drives it"
-    elif revolution_period(mechanism) is None:
-        why = ", as its drivers have no common period"
+    why = no_period and f", as {no_period}"
     shown = "What is shown is how errors grow over the run."
     return f"No rate of {name} is exact: the motion does not begin anew{why}. {shown}"
 

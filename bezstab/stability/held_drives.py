@@ -279,6 +279,11 @@ class HeldMap:
     z_abs: FloatArray
     law: FloatArray | None
 
+    @property
+    def has_edge(self) -> bool:
+        """Whether some gains on the map are stable and some are not."""
+        return bool(self.z_abs.min() < 1 < self.z_abs.max())
+
 
 BEYOND = 1.1
 """Of the largest stable gain: so far maps reach."""

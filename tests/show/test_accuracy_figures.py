@@ -20,7 +20,7 @@ def drawn_map(name: str) -> Axes:
     method = lookup(name)
     alpha_hat, beta_hat = np.geomspace(2e-3, 6, 61), np.geomspace(1e-6, 9, 61)
     z_abs = spectral_radius(method, alpha_hat, beta_hat[:, np.newaxis])
-    error = combined_error(method, alpha_hat, beta_hat[:, np.newaxis], OMEGA_H)
+    error = np.where(z_abs < 1, combined_error(method, alpha_hat, beta_hat[:, np.newaxis], OMEGA_H), np.nan)
     shown = PlaneMap(region=region(method), alpha_hat=alpha_hat, beta_hat=beta_hat, z_abs=z_abs)
     return accuracy_map_figure(shown, float(OMEGA_H), error, [0.99]).axes[0]
 
