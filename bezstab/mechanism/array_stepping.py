@@ -83,24 +83,23 @@ def array_steps(mechanism: Mechanism, names: tuple[str, ...]) -> TakeSteps:
     """Return the function that takes the steps of many runs, with these functions of a state."""
 
     def writing(name: str) -> Callable[..., float]:
-        function, rows = state_function(mechanism, name, np), len(CODES[name](mechanism.equations).given)
+        function, code = state_function(mechanism, name, np), CODES[name](mechanism.equations)
 
         def write(t: float, gains: FloatArray, state: FloatArray, found: FloatArray, *_others: Any) -> float:
-            for place, each in enumerate(function(t, *gains, *state[:rows])):
+            for place, each in enumerate(function(t, *gains, *state[: len(code.given)])):
                 found[place] = each
             return 1.0
 
-        return write
+        def write_some(t: float, gains: FloatArray, state: Any, found: Any, _variables: Any, lanes: BoolArray) -> float:
+            some = lanes[0]
+            # all runs have the same direction
+            for place, each in enumerate(function(t, *gains[:, some], *state[:2, ..., some], *state[2:, ..., :1])):
+                found[place, some] = each
+            return 1.0
 
-    def slope(t: float, gains: FloatArray, state: Any, found: Any, _variables: Any, lanes: BoolArray) -> float:
-        some = lanes[0]
-        # all runs have the same direction
-        changes = state_function(mechanism, "slope", np)(t, *gains[:, some], *state[:2, ..., some], *state[2:, ..., :1])
-        for place, each in enumerate(changes):
-            found[place, some] = each
-        return 1.0
+        return write_some if code.of_some_lanes else write
 
-    own: dict[str, Any] = {name: slope if name == "slope" else writing(name) for name in names}
+    own: dict[str, Any] = {name: writing(name) for name in names}
     own |= {"N": mechanism.size, "WIDTH": mechanism.size, "ALONE": False}
     own |= {
         function.__name__: function for function in (every, combine, copy, take, add_sizes, any_of, multiply, invert)

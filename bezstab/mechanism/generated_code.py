@@ -112,7 +112,7 @@ class StateCode:
 
     @property
     def of_some_lanes(self) -> bool:
-        """Whether machine code is told for which runs to compute it: slopes, which cost most, are seldom needed."""
+        """Whether it is told, of many runs, for which to compute it: slopes, which cost most, are seldom needed."""
         return len(self.given) > 2
 
 

@@ -15,7 +15,6 @@ trapezoidal rule:
     Found       A_1  = acceleration at position (X_0 + V_0 + 1/4 A_0) + 1/4 A_1, velocity (V_0 + 1/2 A_0) + 1/2 A_1
     Assigned    X_1  = X_0 + V_0 + 1/4 A_0 + 1/4 A_1
     Assigned    V_1  = V_0 + 1/2 A_0 + 1/2 A_1
-
 """
 
 from collections.abc import Mapping, Sequence

@@ -22,7 +22,7 @@ from bezstab.stability.closed_loop import largest_modulus
 from bezstab.stability.far_limits import FarLimit
 from bezstab.stability.least_modulus import least_on
 from bezstab.stability.pencils import Pencil, pencil_of
-from bezstab.stability.regions import Region, region
+from bezstab.stability.regions import Region, chart_of, region
 from bezstab.stability.searches import checked
 
 
@@ -109,8 +109,7 @@ def _searched(pencil: Pencil, stable: Region) -> BestPoint | FarLimit:
 
 def _from_grid(pencil: Pencil, stable: Region, limit: FarLimit, finer: int) -> BestPoint | FarLimit:
     """Return the same from one search; NumericalError if it fails its check."""
-    assert stable.view
-    chart = pencil.chart(stable.view, stable.boundary if stable.bounded else (), finer)
+    chart = chart_of(pencil, stable, finer)
     sampled, least = least_on(chart)
     if limit.z_abs < min(sampled, least.z_abs if least else math.inf) * (1 - DOUBLE):
         return limit
@@ -118,6 +117,7 @@ def _from_grid(pencil: Pencil, stable: Region, limit: FarLimit, finer: int) -> B
         raise NumericalError(f"{chart.name}: |z_p| = {sampled:.6g} was sampled, but no kink as low could be solved for")
     alpha_hat, beta_hat = chart.user_point(least.place)
     end = chart.other_end(least.z_abs, least.place)
+    assert stable.view
     check_best_point(pencil, least.z_abs, alpha_hat, beta_hat, stable.view, chart.anywhere)
     return BestPoint(
         method=stable.method,

@@ -29,7 +29,7 @@ from bezstab.stability.curve_choices import Curve, least_along, mildest_along
 from bezstab.stability.forced_errors import OMEGA_H
 from bezstab.stability.margins import Margins, stability_margins
 from bezstab.stability.pencils import Pencil, pencil_of
-from bezstab.stability.regions import Region, pole_place, region
+from bezstab.stability.regions import Region, chart_of, pole_place, region
 from bezstab.stability.root_finding import TOLD
 from bezstab.stability.searches import checked, first_where, zoom_on_minimum
 from bezstab.units import check_step
@@ -452,9 +452,7 @@ def _least(extent: Extent, objective: Objective, equal: bool, cut: bool, finer: 
 
 def _critical_point(method: Method, box: Extent) -> tuple[float, float]:
     """Return the fastest point whose dominant pole is double, real and positive; InputError if there is none."""
-    stable = region(method)
-    assert stable.view
-    chart = pencil_of(method, free=True).chart(stable.view, stable.boundary if stable.bounded else (), 1)
+    chart = chart_of(pencil_of(method, free=True), region(method))
     place = critical_place(chart, box)
     if place is None:
         raise InputError(f"{method.name}: no double pole is dominant: --goal critical has no answer")

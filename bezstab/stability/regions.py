@@ -10,8 +10,9 @@ from bezstab.errors import InputError
 from bezstab.methods import Method, fixed_poles
 from bezstab.read_only import ReadOnlyArrays
 from bezstab.stability.arrays import ROUNDING, BoolArray, Extent, FloatArray
+from bezstab.stability.charts import Chart
 from bezstab.stability.closed_loop import spectral_radius
-from bezstab.stability.pencils import pencil_of
+from bezstab.stability.pencils import Pencil, pencil_of
 from bezstab.stability.region_checks import check_region
 from bezstab.stability.searches import checked
 from bezstab.stability.shapes import ATTAINED, GOES_ON, Approached, Shape
@@ -98,6 +99,12 @@ def region(method: Method, level: float = 1.0) -> Region:
         view=shape.view,
         approached=shape.approached,
     )
+
+
+def chart_of(pencil: Pencil, stable: Region, finer: int = 1) -> Chart:
+    """Return a pencil's chart over what there is to see of a region that is not empty, with a grid so much finer."""
+    assert stable.view
+    return pencil.chart(stable.view, stable.boundary if stable.bounded else (), finer)
 
 
 def pole_place(z: complex) -> str:
