@@ -49,9 +49,6 @@ class MuPencil:
     table_by_mu: FloatArray
     multiple: float
 
-    def __repr__(self) -> str:
-        return f"MuPencil({self.method.name})"
-
     @property
     def degree(self) -> int:
         """How many poles there are, counted with their multiplicity."""
