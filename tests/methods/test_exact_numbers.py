@@ -2,12 +2,12 @@ from fractions import Fraction
 
 import mpmath as mp
 import pytest
-from bezstab.methods.recipes import exact_number
 from hypothesis import given
 from hypothesis import strategies as st
 
 from bezstab.errors import InputError
 from bezstab.methods.algebraic_numbers import DIGITS
+from bezstab.methods.recipes import exact_number
 
 small = st.integers(-9, 9)
 
