@@ -2,7 +2,7 @@ from fractions import Fraction
 
 import mpmath as mp
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from bezstab.errors import InputError
@@ -30,6 +30,7 @@ def test_what_is_equal_is_the_same_exactly(text: str, same: str) -> None:
     assert exact_number(text) == exact_number(same)
 
 
+@settings(deadline=None, max_examples=20)
 @given(small, small, small, small)
 def test_a_number_times_its_inverse_is_one(a: int, b: int, c: int, d: int) -> None:
     number = f"({a} + {b}*sqrt(2) + {c}*sqrt(3) + {d}*sqrt(6))".replace("+ -", "- ")
