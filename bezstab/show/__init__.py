@@ -62,7 +62,6 @@ from bezstab.show.row_kinds import (
     WITNESSED,
 )
 from bezstab.show.rows import (
-    NOT_KNOWN,
     chain_rows,
     engine_row,
     exact_rate_words,

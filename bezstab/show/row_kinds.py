@@ -350,7 +350,7 @@ MOVING = (
     ),
 )
 ACCURACY = (
-    OMEGA_H.of("motion.omega_h"),
+    OMEGA_H.of("question.motion.omega_h"),
     number(
         "accurate_alpha_hat",
         "Where the goal accurate chooses to be, in alpha_hat",
