@@ -18,7 +18,7 @@ from bezstab.show.answer_rows import (
     trade_words,
 )
 from bezstab.show.blocks import block, fits, wrapped
-from bezstab.show.cells import pole_text, with_unbounded
+from bezstab.show.cells import pole_text
 from bezstab.show.columns import (
     Column,
     Format,

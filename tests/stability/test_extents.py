@@ -7,7 +7,8 @@ import pytest
 
 from bezstab.methods import Method, lookup, recipe
 from bezstab.questions import region_answer
-from bezstab.show import region_row, with_unbounded
+from bezstab.show import region_row
+from bezstab.show.cells import with_unbounded
 from bezstab.stability import region
 from tests.methods.kinds import sampled
 from tests.reference.extents import contradictions
