@@ -31,7 +31,7 @@ def check_step(h: Fraction | float, name: str = "h") -> None:
     is_number = isinstance(h, int | float | Fraction) or getattr(h, "shape", None) == ()
     if isinstance(h, bool) or not is_number:
         raise InputError(f"{name} = {shown(h)}: expected one number, in s")
-    if not LEAST_STEP <= h <= LONGEST_STEP:
+    if not (h <= LONGEST_STEP and float(h) >= LEAST_STEP):  # 1/10^100 is a little below the float 1e-100
         raise InputError(f"{name} = {float(h):g} s: expected {LEAST_STEP:g} to {LONGEST_STEP:g} s")
 
 
