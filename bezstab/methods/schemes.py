@@ -318,32 +318,17 @@ Scheme = LinearMultistep | PredictorCorrector | RungeKutta | SecondOrder
 
 
 @dataclass(frozen=True)
-class Family:
-    """What a method is by its coefficients, whatever it is called: B4 is number 4 of the family "Bezier".
-
-    name: "Bezier", "Adams-Bashforth", "Adams-Bashforth-Moulton", "Runge-Kutta", "SIE" or "symplectic Euler".
-    number: which member; 0 where a method is alone in its family.
-    """
-
-    name: str
-    number: int
-
-
-@dataclass(frozen=True)
 class Method:
     """A scheme with its name and source; each of its steps spans `step_multiple` of the user's h (RK4@5: five).
 
-    `family` is None for a scheme that belongs to no family known here. It takes part in equality, as what is
-    remembered for a method (a start, a colour) may depend on it. `digits`: irrational coefficients have been replaced
-    by rationals good to so many digits, which is what is proven about; None where the coefficients are the method's.
-    InputError for a step multiple outside 1e-6 to 1e6.
+    `digits`: irrational coefficients have been replaced by rationals good to so many digits, which is what is proven
+    about; None where the coefficients are the method's. InputError for a step multiple outside 1e-6 to 1e6.
     """
 
     name: str
     scheme: Scheme
     source: str
     step_multiple: Fraction = ONE
-    family: Family | None = None
     digits: int | None = None
 
     def __post_init__(self) -> None:
