@@ -18,7 +18,7 @@ from bezstab.show.answer_rows import (
     trade_words,
 )
 from bezstab.show.blocks import block, fits, wrapped
-from bezstab.show.cells import pole_text, with_unbounded
+from bezstab.show.cells import pole_text
 from bezstab.show.columns import (
     Column,
     Format,
@@ -62,7 +62,6 @@ from bezstab.show.row_kinds import (
     WITNESSED,
 )
 from bezstab.show.rows import (
-    NOT_KNOWN,
     chain_rows,
     engine_row,
     exact_rate_words,
