@@ -10,7 +10,7 @@ from bezstab.methods import GROUPS, Method, lookup
 from bezstab.show import (
     LISTED_METHODS,
     NAMED_METHODS,
-    Column,
+    Field,
     Row,
     column,
     method_row,
@@ -71,6 +71,6 @@ def methods(methods: Sequence[Method], latex: bool) -> None:
         show_text("\nSteady errors are shares of a motion of ω rad/s, to leading order in θ = iωh.")
 
 
-def property_column(key: str, row: Row) -> Column:
+def property_column(key: str, row: Row) -> Field:
     """Return the column of a key as a row is read from top to bottom: numbers to ten digits."""
     return column(key.replace("_", " "), key, ".10g" if isinstance(row[key], float) else "")

@@ -14,13 +14,12 @@ import click
 from bezstab.cli.terminal import text_width
 from bezstab.files import output_directory, write_whole
 from bezstab.show import (
-    Column,
+    Field,
     Format,
     Row,
     RowKind,
-    Sentence,
+    Text,
     block,
-    finite,
     fits,
     render,
     visible,
@@ -68,14 +67,14 @@ def show_rows(kind: RowKind, found: Iterable[Row], without: Collection[str] = ()
         click.echo(answer)
 
 
-def show_blocks(rows: Sequence[Row], columns: Sequence[Column], sentence: Sentence | None = None) -> None:
+def show_blocks(rows: Sequence[Row], columns: Sequence[Field], sentence: Text | None = None) -> None:
     """Print a block of lines for each row, below its sentence, on standard output."""
-    blocks = [block(row, columns, text_width(), sentence(finite(row)) if sentence else "") for row in rows]
+    blocks = [block(row, columns, text_width(), sentence(row) if sentence else "") for row in rows]
     click.echo("\n\n".join(blocks))
 
 
 def show_groups(
-    groups: Sequence[tuple[str, Sequence[Row]]], columns: Sequence[Column], sentence: Sentence | None = None
+    groups: Sequence[tuple[str, Sequence[Row]]], columns: Sequence[Field], sentence: Text | None = None
 ) -> None:
     """Print groups of rows for reading, each below its heading, all in one table's columns if that is not too wide."""
     table = render([row for _, rows in groups for row in rows], columns, "text")

@@ -73,6 +73,6 @@ def show_findings(findings: "list[Finding]") -> None:
 
     rows = finding_rows(findings)
     if chosen_format() == "text":
-        show_blocks(rows, CLAIMS.columns(rows), CLAIMS.sentence)
+        show_blocks(rows, CLAIMS.columns(rows))
     else:
         show_rows(CLAIMS, rows)
