@@ -17,8 +17,8 @@ from bezstab.show.answer_rows import (
     pole_rows,
     trade_words,
 )
-from bezstab.show.cells import pole_text, with_unbounded
-from bezstab.show.fields import Field, Row, RowKind, Text, cells, column, formatted, visible
+from bezstab.show.cells import pole_text
+from bezstab.show.fields import Field, Row, RowKind, cells, column, formatted, visible
 from bezstab.show.file_forms import FIGURE_FORMS, TABLE_FORMS
 from bezstab.show.held_rows import LATE_COMMANDS, NOT_JUDGED, held_row, timing_words
 from bezstab.show.row_kinds import (
@@ -50,7 +50,6 @@ from bezstab.show.row_kinds import (
     WITNESSED,
 )
 from bezstab.show.rows import (
-    NOT_KNOWN,
     chain_rows,
     engine_row,
     exact_rate_words,

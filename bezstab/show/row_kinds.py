@@ -342,7 +342,7 @@ MOVING = (
     ),
 )
 ACCURACY = (
-    OMEGA_H.of("motion.omega_h"),
+    OMEGA_H.of("question.motion.omega_h"),
     number(
         "accurate_alpha_hat",
         "Where the goal accurate chooses to be, in alpha_hat",
@@ -661,19 +661,24 @@ LISTED_METHODS = RowKind(
 )
 NAMED_METHODS = RowKind(
     "a method that was named",
-    fields=(
-        *LISTED_METHODS.fields[:-1],
-        text("recursion", "The method's recursion"),
-        text("mapping", "The method's mapping from s to z"),
-        text("characteristic_polynomial", "Polynomial in z whose roots are the poles"),
-        text(
-            "steady_error",
-            "What the method forces on a constraint that moves as e^(i omega t), as a share of that motion: "
-            "the first term in theta = i omega h where alpha_hat and beta_hat are held",
-        ),
-        text("steady_velocity_error", "The same of the velocity, as a share of that of the motion"),
-        ORDER_LEFT,
-        *REGIONS.fields[1:],
+    fields=tuple(
+        field.shown(
+            field.key.replace("_", " "), text=unbounded_text(field.key, ".10g" if field.kind == "number" else "")
+        )
+        for field in (
+            *LISTED_METHODS.fields[:-1],
+            text("recursion", "The method's recursion"),
+            text("mapping", "The method's mapping from s to z"),
+            text("characteristic_polynomial", "Polynomial in z whose roots are the poles"),
+            text(
+                "steady_error",
+                "What the method forces on a constraint that moves as e^(i omega t), as a share of that motion: "
+                "the first term in theta = i omega h where alpha_hat and beta_hat are held",
+            ),
+            text("steady_velocity_error", "The same of the velocity, as a share of that of the motion"),
+            ORDER_LEFT,
+            *REGIONS.fields[1:],
+        )
     ),
     sentence=whole_method_sentence,
 )

@@ -31,9 +31,6 @@ from bezstab.units import alpha_and_beta
 EXCLUDED_SHOWN = 5
 """Methods that do not fit and are shown where people read, the nearest; rows for programs have all."""
 
-NOT_KNOWN = "not known"
-"""How the reason begins where the search for a best point failed."""
-
 if TYPE_CHECKING:  # so that a small row does not load what makes the large ones
     from bezstab.engines import Engine
     from bezstab.evidence import HalvedStep, LikePoint, Measurement
@@ -109,7 +106,7 @@ def region_row(answer: RegionAnswer) -> Row:
     from bezstab.show.best_point_text import best_point_words
 
     region, inside = answer.region, answer.inside
-    reason = None if inside else f"{NOT_KNOWN}: {answer.trouble}" if answer.trouble else _nowhere(answer)
+    reason = None if inside else f"not known: {answer.trouble}" if answer.trouble else _nowhere(answer)
     where = best_point_words(inside) if inside else reason
     return REGIONS.row(answer, approached=_approached(region), best_where=where, best_reason=reason)
 
