@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bezstab.show.columns import Row
-from bezstab.show.fields import cells
+from bezstab.show.fields import Row, cells
 from bezstab.show.row_kinds import ACCURACY
 from bezstab.show.rows import region_row
 from bezstab.stability import ComplexArray, Region
