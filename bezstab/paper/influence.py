@@ -8,9 +8,8 @@ from itertools import combinations, pairwise, product
 import numpy as np
 from matplotlib.figure import Figure
 
-from bezstab.methods import lookup
 from bezstab.paper.experiments import STEP, Experiment, experiment
-from bezstab.paper.findings import Finding, finding
+from bezstab.paper.findings import Finding
 from bezstab.paper.printed import FASTER_LEVEL, TABLE_5
 from bezstab.paper.reports import Progress, Report, captioned_table
 from bezstab.show import Field, Row, column, column_figure, line_at, pole_cells, pole_text, styled
@@ -93,9 +92,7 @@ def report(progress: Progress) -> Report:
 def kicked_runs() -> Iterator[Experiment]:
     """Yield the six cases of B4 at 1 ms."""
     for case in TABLE_4:
-        yield experiment(
-            lookup("B4"), h=STEP, duration=DURATION, alpha_hat=case.alpha_hat, beta_hat=case.beta_hat, kick=KICK
-        )
+        yield experiment("B4", case.alpha_hat, case.beta_hat, duration=DURATION, kick=KICK)
 
 
 def behaviours(runs: Iterable[Experiment]) -> list[Behaviour]:
@@ -172,7 +169,7 @@ def descriptions(observed: Sequence[Behaviour]) -> list[Finding]:
     """Return what section 5.2.2 says of each case."""
     negative, slow, slow_waving, fast, fast_waving, outside = observed
     return [
-        finding(
+        Finding(
             where="Table 4",
             claim="cases 1 and 6 diverge: α̂ < 0, or outside the region",
             paper="“it is expected to observe a divergent response as the parameter α̂ is negative and |z_p| is "
@@ -180,7 +177,7 @@ def descriptions(observed: Sequence[Behaviour]) -> list[Finding]:
             here=_shown(negative, outside),
             holds=[_diverges(negative) and _diverges(outside)],
         ),
-        finding(
+        Finding(
             where="Table 4",
             claim="cases 2 and 3 converge slowly; 3 oscillates, 2 does not significantly",
             paper="“low convergence speeds, since the size of the dominant pole is close to one in both cases. … case "
@@ -190,7 +187,7 @@ def descriptions(observed: Sequence[Behaviour]) -> list[Finding]:
                 0.95 < slow.rate < 1 and 0.95 < slow_waving.rate < 1 and slow_waving.crossings > 10 > slow.crossings
             ],
         ),
-        finding(
+        Finding(
             where="Table 4",
             claim="cases 4 and 5 converge fast; 5 oscillates, 4 hardly",
             paper="“high convergence speeds … case 5 shows oscillations, while case 4 exhibits either fewer number of "
@@ -207,7 +204,7 @@ def unit_circle_decides(observed: Sequence[Behaviour]) -> Finding:
         min(case.rate, case.rate_of_cdot) > 1 if abs(case.pole) > 1 else max(case.rate, case.rate_of_cdot) < 1
         for case in observed
     ]
-    return finding(
+    return Finding(
         where="Section 4",
         claim="c and ċ diverge or converge as |z_p| says",
         paper="“c and ċ diverge if |z_p| > 1 …, and converge to zero if |z_p| < 1 for all of the poles”",
@@ -225,7 +222,7 @@ def smaller_poles_are_faster(observed: Sequence[Behaviour]) -> Finding:
     shown = ", ".join(f"{abs(case.pole):.4f} {case.fallen} and {case.cdot_fallen}" for case in converging)
     in_order = all(_is_faster(first, second) for first, second in pairwise(converging))
     apart = (pair for pair in combinations(converging, 2) if abs(pair[1].pole) - abs(pair[0].pole) > APART)
-    return finding(
+    return Finding(
         where="Section 4",
         claim="the smaller |z_p|, the faster",
         paper="“the smaller the magnitude of |z_p|, the faster c and ċ converge to zero”",
@@ -244,7 +241,7 @@ def regions_h_are_faster(observed: Sequence[Behaviour]) -> Finding:
     def steps(cases: Sequence[Behaviour]) -> str:
         return ", ".join(f"{case.fallen} and {case.cdot_fallen}" for case in cases)
 
-    return finding(
+    return Finding(
         where="Section 5.1",
         claim="in the regions H errors vanish faster",
         paper="“by choosing α̂ and β̂ in these regions, the error of constraint and its derivative converge to zero "
@@ -267,7 +264,7 @@ def angle_is_the_frequency(observed: Sequence[Behaviour]) -> Finding:
         f"{np.degrees(np.angle(case.pole)):.0f} seen {c:.0f} and {cdot:.0f}"
         for case, (c, cdot) in zip(waving, seen, strict=True)
     )
-    return finding(
+    return Finding(
         where="Section 4",
         claim="the smaller the angle of z_p, the lower the frequency",
         paper="“the smaller the magnitude of ∠z_p (angle of z_p), the smaller the frequency of oscillations of c and "
@@ -281,7 +278,7 @@ def derivative_behaves_alike(observed: Sequence[Behaviour]) -> Finding:
     """Return by what the derivative changes a step, and how often it crosses zero: as the cases are described?"""
     of_cdot = [replace(case, rate=case.rate_of_cdot, crossings=case.crossings_of_cdot) for case in observed]
     shown = ", ".join(f"{case.rate:.3f} ({case.crossings})" for case in of_cdot)
-    return finding(
+    return Finding(
         where="Figs 7, 8",
         claim="the derivative confirms Table 4 as well",
         paper="“the errors for both the first kinematic constraint and its derivative, which confirm the data listed "
@@ -293,15 +290,14 @@ def derivative_behaves_alike(observed: Sequence[Behaviour]) -> Finding:
 
 def dominant_pole_is_seen_late() -> Finding:
     """Return how AB4 falls from a kick where its dominant pole is hardly excited: first as another pole says."""
-    case = TABLE_5[1]
-    alpha_hat, beta_hat = float(case.alpha_hat), float(case.beta_hat)
-    run = experiment(lookup("AB4"), h=STEP, duration=1.0, alpha_hat=alpha_hat, beta_hat=beta_hat, kick=KICK)
+    alpha_hat, beta_hat = TABLE_5[1].point
+    run = experiment("AB4", alpha_hat, beta_hat, duration=1.0, kick=KICK)
     moduli = np.unique(np.abs(poles(run.method, alpha_hat, beta_hat)).round(4))
     largest, next_to_it = float(moduli[-1]), float(moduli[-2])
     early = int(np.flatnonzero(np.abs(run.c) > 1e-3 * KICK)[-1]) + 1
     late = _rate(run.c[len(run.c) // 2 :])
     alone = np.log(1e-3) / np.log(abs(run.pole))
-    return finding(
+    return Finding(
         where="Section 5.1",
         claim="only the dominant pole matters",
         paper="“only the dominant eigenvalue, which has the largest |z_p|, is considered since it has the greatest "
@@ -316,11 +312,10 @@ def dominant_pole_is_seen_late() -> Finding:
 def physics_decides() -> Finding:
     """Return what B4 makes of the energy, which nothing changes, with parameters of cases 4 and 6."""
     proper, improper = (
-        experiment(lookup("B4"), h=STEP, duration=DURATION, alpha_hat=case.alpha_hat, beta_hat=case.beta_hat)
-        for case in (TABLE_4[3], TABLE_4[5])
+        experiment("B4", case.alpha_hat, case.beta_hat, duration=DURATION) for case in (TABLE_4[3], TABLE_4[5])
     )
     kept, left = (run.observation.energy[-1] / run.observation.energy[0] for run in (proper, improper))
-    return finding(
+    return Finding(
         where="Section 3",
         claim="wrong parameters give results against physics",
         paper="“improper selection of the Baumgarte coefficients can lead to unacceptable results in terms of the "

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from fractions import Fraction
 
 PARTS = (
     "table1",
@@ -52,6 +53,16 @@ class PrintedCase:
     alpha_hat: str
     beta_hat: str
     poles: Mapping[str, PrintedPole]
+
+    @property
+    def exact(self) -> tuple[Fraction, Fraction]:
+        """The parameters as they are printed."""
+        return Fraction(self.alpha_hat), Fraction(self.beta_hat)
+
+    @property
+    def point(self) -> tuple[float, float]:
+        """The parameters as floats."""
+        return float(self.alpha_hat), float(self.beta_hat)
 
 
 TABLE_5 = (
