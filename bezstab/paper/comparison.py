@@ -1,7 +1,6 @@
 """Table 5 with Fig. 9: four methods at three points (section 5.2.3)."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import astuple
 from fractions import Fraction
 from functools import partial
 
@@ -101,8 +100,7 @@ def pole_row(run: Experiment, printed: PrintedPole) -> Row:
     A printed number that is not the pole's is marked.
     """
     marked = [
-        text if wrong is None else f"{text}*"
-        for text, wrong in zip(astuple(printed), misprints(printed, run.pole), strict=True)
+        text if wrong is None else f"{text}*" for text, wrong in zip(printed, misprints(printed, run.pole), strict=True)
     ]
     return {
         "alpha_hat": run.alpha_hat,
@@ -161,13 +159,8 @@ def matching_numbers(runs: Sequence[Experiment]) -> str:
 
 def misprints(printed: PrintedPole, pole: complex) -> list[str | None]:
     """Return for each number of a printed pole what is wrong with it; None where it is the pole's to as many digits."""
-    pairs = [
-        (printed.real, pole.real),
-        (printed.imaginary, pole.imag),
-        (printed.modulus, abs(pole)),
-        (printed.angle, float(np.degrees(np.angle(pole)))),
-    ]
-    return [_misprint(text, value) for text, value in pairs]
+    values = pole.real, pole.imag, abs(pole), float(np.degrees(np.angle(pole)))
+    return [_misprint(text, value) for text, value in zip(printed, values, strict=True)]
 
 
 def _misprint(text: str, value: float) -> str | None:
@@ -387,11 +380,9 @@ def matching_poles(name: str, table_5: Sequence[PrintedCase]) -> int:
     """Return how many of the poles printed for "Euler semi-implicit" are those of a method."""
     matches = 0
     for case in table_5:
-        printed = case.poles["SIE"]
+        real, _, modulus, _ = map(float, case.poles["SIE"])
         pole = complex(dominant_pole(lookup(name), *case.point))
-        same_modulus = abs(abs(pole) - float(printed.modulus)) < LAST_DIGIT
-        same_real_part = abs(pole.real - float(printed.real)) < LAST_DIGIT
-        matches += same_modulus and same_real_part
+        matches += abs(abs(pole) - modulus) < LAST_DIGIT and abs(pole.real - real) < LAST_DIGIT
     return matches
 
 
