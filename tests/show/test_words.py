@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bezstab.methods import lookup
-from bezstab.show.best_point_text import best_point_words, falling_words
+from bezstab.show.result_sentences import best_point_words, falling_words
 from bezstab.show.words import change_words, seconds_words, times_words
 from bezstab.stability import FarLimit, best_point
 
