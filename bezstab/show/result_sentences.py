@@ -231,10 +231,8 @@ def _way(limit: FarLimit) -> str:
         return f"{grows} grows" + ("" if ratio is None else f" at {stays} = {limit.point(1.0)[q == 0]:.6g}")
     times = "" if ratio is None or f"{ratio:.6g}" == "1" else f"{ratio:.6g} "
     equal = "like" if ratio is None else "="
-    if p > 0 and q > 0:
-        return f"α̂ and β̂ grow, {_power('α̂', q)} {equal} {times}{_power('β̂', p)}"
-    grows, falls, power, other = ("β̂", "α̂", q, -p) if q > 0 else ("α̂", "β̂", p, -q)
-    return f"{grows} grows and {falls} falls, {_power(falls, power)} like 1/{_power(grows, other)}"
+    grow = "α̂ and β̂ grow" if p > 0 and q > 0 else "β̂ grows and α̂ falls" if q > 0 else "α̂ grows and β̂ falls"
+    return f"{grow}, {_power('α̂', q)} {equal} {times}{_power('β̂', p)}"
 
 
 def _power(name: str, exponent: int) -> str:

@@ -13,7 +13,7 @@ from bezstab.engines import DRIVE_METHODS, witness_of
 from bezstab.errors import InputError
 from bezstab.methods import Method, evaluations, implicit, steps
 from bezstab.show.cells import LIMITS
-from bezstab.show.fields import Row, Value, cells
+from bezstab.show.fields import Field, Row, Value, cells
 from bezstab.show.result_sentences import best_point_words, falling_words
 from bezstab.show.row_kinds import (
     ACCURACY,
@@ -243,7 +243,7 @@ def engine_row(engine: Engine, point: tuple[Fraction, Fraction] | None, h: Fract
 def answer_row(answer: Answer) -> Row:
     """Return all that an answer has as a row; keys of an engine, a drive, a scene, a range of steps where asked for."""
     kind = CHOICES if answer.role == "chosen" else CHECKED
-    return {**kind.row(answer), **_engine_cells(answer), **_added_cells(answer)}
+    return {**kind.row(answer), **_added_cells(answer, ENGINE_H_LIMIT, SETTING)}
 
 
 def pole_rows(answer: Answer, poles: Iterable[complex]) -> list[Row]:
@@ -251,7 +251,7 @@ def pole_rows(answer: Answer, poles: Iterable[complex]) -> list[Row]:
 
     Keys of an engine, a drive, a scene where asked for.
     """
-    added = {**_applied_cells(answer), **_added_cells(answer)}
+    added = _added_cells(answer)
     return [{**POLES.row(answer, **pole_cells(z)), **added} for z in poles]
 
 
@@ -260,9 +260,17 @@ def left_out(question: Question) -> tuple[str, ...]:
     return (*(WITHOUT_ACCURACY if question.drive else ()), *(OF_ONE_ALONE if question.swept else ()))
 
 
-def _added_cells(answer: Answer) -> dict[str, Value]:
-    """Return what a drive, a scene and a range of steps add to a row of an answer's point."""
+def _added_cells(answer: Answer, *of_engine: Field) -> dict[str, Value]:
+    """Return what an engine, a drive, a scene and a range of steps add to a row of an answer's point.
+
+    Of an engine it is what it does to its values, over what it sweeps, and the fields `of_engine`.
+    """
     added: dict[str, Value] = {}
+    if answer.question.engine:
+        if answer.role != "chosen":
+            added |= _applied_cells(answer)
+        swept_over = SWEPT_OVER if answer.swept else SWEPT_OVER[:1]
+        added |= cells((SWEEPS, *swept_over, *of_engine), answer)
     if answer.gains:
         added |= cells(DRIVE, answer, {"drive": DRIVE_METHODS.get(answer.method.name)})
     if answer.moving:
@@ -274,28 +282,12 @@ def _added_cells(answer: Answer) -> dict[str, Value]:
     return added
 
 
-def _engine_cells(answer: Answer) -> dict[str, Value]:
-    """Return what an engine makes of its values, or the line to paste for a point that it was not given."""
-    if not answer.question.engine:
-        return {}
-    of_engine = _applied_cells(answer) if answer.role != "chosen" else _swept_cells(answer)
-    return {**of_engine, **cells((ENGINE_H_LIMIT, SETTING), answer)}
-
-
-def _swept_cells(answer: Answer) -> dict[str, Value]:
-    """Return whether an engine sweeps, over what, and what its sweeps make of many constraints where they are asked."""
-    return cells((SWEEPS, *SWEPT_OVER) if answer.swept else (SWEEPS, SWEPT_OVER[0]), answer)
-
-
 def _applied_cells(answer: Answer) -> dict[str, Value]:
     """Return what an engine does to its values, and what is left out; None for values that were not given."""
-    if not answer.question.engine:
-        return {}
+    if answer.role != "given" or answer.goal != "as given":
+        return {"applied": None, "excludes": None}
     notes = answer.question.given.notes
-    applied = "as typed" if notes is None else "; ".join(notes)
-    untyped = answer.role != "given" or answer.goal != "as given"
-    found = dict.fromkeys(("applied", "excludes")) if untyped else {"applied": applied}
-    return {**cells((APPLIED, EXCLUDES), answer, found), **_swept_cells(answer)}
+    return cells((APPLIED, EXCLUDES), answer, {"applied": "as typed" if notes is None else "; ".join(notes)})
 
 
 def largest_step_row(found: LargestStep) -> Row:
