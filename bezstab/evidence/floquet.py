@@ -5,8 +5,8 @@ Over a revolution of N steps, each of which takes small changes by a matrix M_k 
     change after = Q change before,      Q = M_{N-1} ... M_1 M_0,      |z| = (largest |eigenvalue| of Q)^(1/N):
 
 a Floquet multiplier, exact but for what the motion itself is computed with. A run that does not begin anew has no
-eigenvalues; there it is the growth of the constraints' errors after a kick of the position, over the later two thirds
-of the steps after which they still stand out from what the free motion, which does not decay, has made of the kick.
+eigenvalues; there it is the growth of the constraints' errors after a kick of the position, by least squares over the
+later two thirds of the steps in which they stand out from what the free motion, which does not decay, makes of it.
 
 Of all steps of a motion, of `points` with gains of their own, arrays have the shape (steps, points, quantities, n).
 """
@@ -194,6 +194,8 @@ def _rates_of_errors(course: Course, jacobians: FloatArray, sizes: Sequence[Floa
         stands_out[k] = error > STANDS_OUT * np.sqrt((mass @ moved**2).sum(axis=1))
         log_scale += _rescaled(changes)
     lost = np.where(stands_out.all(axis=0), course.steps, np.argmin(stands_out, axis=0))
-    last = np.maximum(lost - 1, 1)
-    first, point = (FIRST_SHARE * last).astype(int), np.arange(points)
-    return np.asarray(np.exp((log_errors[last, point] - log_errors[first, point]) / (last - first)))
+    growth = np.empty(points)
+    for point, end in enumerate(np.maximum(lost, 2)):
+        first = int(FIRST_SHARE * end)
+        growth[point], _ = np.polyfit(np.arange(first, end), log_errors[first:end, point], 1)
+    return np.exp(growth)
