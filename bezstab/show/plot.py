@@ -250,7 +250,7 @@ def open_edges(region: Region, axes: Axes, h: float | None = None, inset: float 
     Each edge gives a line with arrows on it, `inset` (a share of the axes' sides) inside the axes, where the region
     is. Returned are these lines; none for a bounded region.
     """
-    if region.bounded or region.extent is None:
+    if region.extent is None:
         return []
     along = np.linspace(inset, 1 - inset, ALONG_AN_EDGE)
     drawn: list[Line2D] = []
@@ -311,9 +311,8 @@ def family(members: Sequence[Member], quantity: Quantity = "area", axes: Axes | 
     order of accuracy or error constant, which says something between members of one order alone.
     """
     axes = _axes(axes, "", "steps $n$", quantity)
-    values = [attrgetter(QUANTITIES[quantity])(member) for member in members]
-    known = [np.nan if value is None else float(value) for value in values]
-    return _line(axes, ([member.n for member in members], known), line, marker=".")
+    values = np.array([attrgetter(QUANTITIES[quantity])(member) for member in members], float)  # nan for None
+    return _line(axes, ([member.n for member in members], values), line, marker=".")
 
 
 def history(
@@ -406,7 +405,7 @@ def work_precision(
     axes = _axes(axes, "", COST_LABELS[against], ERROR_LABELS[error])
     axes.set(xscale="log", yscale="log")
     shown = [(run.cost(against), known) for run in runs if (known := run.error(error)) is not None and known > floor]
-    costs, errors = [cost for cost, _ in shown], [known for _, known in shown]
+    costs, errors = np.reshape(shown, (-1, 2)).T
     return _line(axes, (costs, errors), line, label=runs[0].method.name, **marked_line_at(len(axes.lines)))
 
 
