@@ -31,7 +31,6 @@ from bezstab.show.style import (
     DASHES,
     DIVERGES,
     cells,
-    level_line,
     line_at,
     marked_line_at,
     new_axes,
@@ -144,7 +143,9 @@ def moving_region(
     if hatched and moving.outside_the_law.any():
         axes.contourf(x, y, moving.outside_the_law, levels=[0.5, 1.5], colors="none", hatches=["....."])
         axes.add_patch(Rectangle((0, 0), 0, 0, fill=False, hatch=".....", label="law does not hold"))  # a key
-    return level_line(axes, x, y, moving.growth, 0.0, label, linestyle=dashes)
+    axes.plot([], [], color="black", linestyle=dashes, label=label)  # a contour has no label of its own
+    edge: QuadContourSet = axes.contour(x, y, moving.growth, levels=[0.0], colors="black", linestyles=[dashes])
+    return edge
 
 
 def spectral_radius(

@@ -9,7 +9,6 @@ import numpy as np
 from matplotlib import style
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.contour import QuadContourSet
 from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
 from matplotlib.legend import Legend
@@ -143,23 +142,6 @@ def _outer_edges(points: FloatArray) -> tuple[float, float]:
     """Return the ends of the cells around the first and the last of evenly spaced points."""
     half = (points[1] - points[0]) / 2
     return points[0] - half, points[-1] + half
-
-
-def level_line(
-    axes: Axes,
-    x: FloatArray,
-    y: FloatArray,
-    values: FloatArray,
-    level: float,
-    label: str,
-    color: str = "black",
-    linestyle: Any = "-",
-    linewidth: float | None = None,
-) -> QuadContourSet:
-    """Draw where values of shape (y.size, x.size) are at a level, labelled, and return it."""
-    axes.plot([], [], color=color, linestyle=linestyle, linewidth=linewidth, label=label)  # a contour has no label
-    look: dict[str, Any] = {"colors": [color], "linestyles": [linestyle], "linewidths": linewidth}
-    return axes.contour(x, y, values, levels=[level], **look)
 
 
 def line_at(place: int) -> dict[str, Any]:
