@@ -6,7 +6,7 @@
 """
 
 from bezstab.questions.answering import Answer, CheckedRole, Gain, LargestStep, answers
-from bezstab.questions.chains import Chain, ChainMap, chain_map
+from bezstab.questions.chains import ChainMap, chain_map
 from bezstab.questions.growing_runs import growing_run
 from bezstab.questions.held_drives import HeldAnswer, HeldQuestion, UsedUp, held_answers, held_gains
 from bezstab.questions.log_probes import ColumnAnswer, LogQuestion, check_told, log_answers

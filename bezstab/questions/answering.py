@@ -9,7 +9,7 @@ for, and then kept:
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal, cast
@@ -304,8 +304,7 @@ def answers(question: Question, *, margins: bool = True) -> Iterator[Answer]:
 def _answer(question: Question, role: Role, choice: Choice, point: Point | None = None) -> Answer:
     """Return a choice as an answer; without an exact `point` it is that of the floats."""
     exactly = point or (Fraction(choice.alpha_hat), Fraction(choice.beta_hat))
-    own = {each.name: getattr(choice, each.name) for each in fields(Choice)}
-    return Answer(question=question, role=role, point=exactly, **own)
+    return Answer(question=question, role=role, point=exactly, **vars(choice))
 
 
 def _choice(
