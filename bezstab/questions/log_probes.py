@@ -85,7 +85,7 @@ class LogQuestion:
     @cached_property
     def row_step(self) -> float | None:
         """The time between rows in s; None without a column of times."""
-        return _row_step(self.log, time_column(self.log, self.time))
+        return row_step(self.log, time_column(self.log, self.time))
 
     @cached_property
     def own_steps(self) -> dict[Method, int | None]:
@@ -194,10 +194,6 @@ def _columns_called(names: Sequence[str], other: Log, log: Log, places: Sequence
 
 def _check_same_step(other: Log, log: Log) -> None:
     """Raise InputError where two logs have columns of times with different steps."""
-    own, others = _row_step(log, time_column(log)), _row_step(other, time_column(other))
+    own, others = row_step(log, time_column(log)), row_step(other, time_column(other))
     if own is not None and others is not None and abs(own - others) > SAME_STEP * own:
         raise InputError(f"--minus: {other.name} has rows every {others:.6g} s, {log.name} every {own:.6g} s")
-
-
-def _row_step(log: Log, time: int | None) -> float | None:
-    return None if time is None else row_step(log, time)
