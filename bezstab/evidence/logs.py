@@ -173,7 +173,8 @@ def _plain(column: str) -> str:
 def row_step(log: Log, time: int | None) -> float | None:
     """Return the time between two rows in s; the name of the time column may say another unit (UNITS).
 
-    None without a time column. InputError, naming the row, where times are missing, do not rise, or are uneven by more than their own rounding.
+    None without a time column. InputError, naming the row, where times are missing, do not rise, or are uneven by more
+    than their own rounding.
     """
     if time is None:
         return None
