@@ -18,7 +18,6 @@ from bezstab.show import (
     Row,
     RowKind,
     block,
-    finite,
     fits,
     render,
     visible,
@@ -69,7 +68,7 @@ def show_rows(
     columns, sentence = kind.columns(rows, without) if for_reading() else [], kind.sentence
     answer = render(rows, columns, form)
     if form == "text" and rows and (in_blocks or len(rows) == 1 or not fits(answer, text_width())):
-        blocks = [block(row, columns, text_width(), sentence(finite(row)) if sentence else "") for row in rows]
+        blocks = [block(row, columns, text_width(), sentence(row) if sentence else "") for row in rows]
         answer = "\n\n".join(blocks)
     click.echo(answer)
 

@@ -20,7 +20,7 @@ import sympy as sp
 
 from bezstab.errors import InputError, shown
 from bezstab.methods.algebraic_numbers import decimal_root
-from bezstab.methods.second_order import MOST_EQUATIONS, SecondOrder
+from bezstab.methods.second_order import SecondOrder
 from bezstab.methods.step_equations import (
     ACCELERATION,
     POSITION,
@@ -40,6 +40,7 @@ QUANTITY = re.compile(r"([A-Za-z_]\w*?)(\d+)?(?:\[(.+)\])?", re.ASCII)
 FUNCTION = "acceleration"
 SQUARE_ROOT = "sqrt"
 
+MOST_EQUATIONS = 60  # some 20 stages
 LONGEST = 2000  # characters of one text
 LONGEST_NAME = 30  # characters of a quantity's name
 DEEPEST = 20  # parentheses within each other
@@ -63,11 +64,14 @@ def exact_number(text: str) -> Fraction:
 def recipe(equations: Mapping[str, str]) -> SecondOrder:
     """Return the scheme of equations given as text, result by right-hand side; h = 1.
 
-    InputError, naming the equation and the word, for what is not linear, and what `SecondOrder` refuses.
+    InputError, naming the equation and the word, for what is not linear, and what `SecondOrder` and its `check_motion`
+    refuse.
     """
     if len(equations) > MOST_EQUATIONS:
         raise InputError(f"{len(equations)} equations: expected at most {MOST_EQUATIONS}")
-    return SecondOrder(tuple(_equation(result, text) for result, text in equations.items()))
+    scheme = SecondOrder(tuple(_equation(result, text) for result, text in equations.items()))
+    scheme.check_motion()
+    return scheme
 
 
 def _equation(result: str, text: str) -> Equation:

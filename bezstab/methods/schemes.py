@@ -21,7 +21,6 @@ from decimal import Decimal
 from fractions import Fraction
 from functools import cached_property
 from itertools import zip_longest
-from math import factorial
 
 from bezstab.errors import InputError
 from bezstab.methods.polynomials import (
@@ -73,12 +72,15 @@ class FirstOrder(ABC):
     def mu_table(self) -> MuTable:
         """pi(z, mu)."""
 
-    @cached_property
+    @property
+    @abstractmethod
+    def second_order(self) -> SecondOrder:
+        """The equations of a step."""
+
+    @property
     def table(self) -> PlaneTable:
         """P(z; alpha_hat, beta_hat) for a step of h: the product of pi(z, mu) over both mu of the feedback."""
-        from bezstab.methods.determinants import product_over_feedback  # loads sympy
-
-        return product_over_feedback(self.mu_table)
+        return self.second_order.table
 
     @property
     def by_power_of_z(self) -> MuTable:
@@ -86,19 +88,8 @@ class FirstOrder(ABC):
         return self.mu_table
 
     def left_over(self, power: int) -> Iterator[Polynomial]:
-        """Yield what an exact motion leaves over, as `SecondOrder.left_over`: in v - mu x nothing.
-
-        On y' = lambda y the exact solution grows by e^mu in a step: pi(e^mu, mu) is what is left when it is put into
-        the method. z^k mu^j contributes c e^(k mu) mu^j, in which mu^power has c k^(power-j) / (power-j)!. Relative to
-        the slope of pi in z it is the local error; in P it is multiplied by mu - mu_2 = 2 mu + alpha_hat.
-        """
-        left = slope = ZERO
-        for k, row in enumerate(self.mu_table):
-            slope += k * row[0]
-            for j, c in enumerate(row[: power + 1]):
-                left += c * Fraction(k ** (power - j), factorial(power - j))
-        yield 2 * left / slope, left / slope
-        yield (ZERO,)
+        """Yield what linear motions leave over, as `SecondOrder.left_over`."""
+        return self.second_order.left_over(power)
 
 
 @dataclass(frozen=True)

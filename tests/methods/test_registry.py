@@ -68,10 +68,10 @@ def test_a_misspelt_name_suggests_the_right_one(name: str, misspell: Callable[[s
 
 
 def test_a_suggestion_heeds_the_name_and_not_the_step_multiple() -> None:
-    assert "did you mean B5?" in refusal("b 5@12")
+    assert "did you mean B5?" in refusal("b:5@12")
 
 
-@pytest.mark.parametrize("text", ["", "@5", "x", "RK4 ", "B0", "a\nb", "B４"])
+@pytest.mark.parametrize("text", ["", "@5", "x", "B0", "a\nb", "B４"])
 def test_an_unknown_name_is_refused_in_one_line_that_names_it(text: str) -> None:
     message = refusal(text)
     assert repr(text.rpartition("@")[0] or text) in message or repr(text) in message
@@ -121,7 +121,7 @@ def test_some_names_stand_for_the_same_step(given: str, explicit: str) -> None:
         ("hht(1/5)", "alpha = 1/5: expected -1/3 to 0"),
         ("hht(beta=0)", "expected hht(alpha) or hht(alpha=...)"),
         ("newmark(beta=1/4,beta=1/2)", "newmark(beta=...,gamma=...)"),
-        ("Semi-Implicit-Euler(1)", "SYM has no parameters"),
+        ("Semi-Implicit-Euler(1)", "'Semi-Implicit-Euler' has no parameters"),
         ("newmark(1/4,1/2)x", "did you mean newmark"),
     ],
 )
