@@ -14,7 +14,7 @@ from matplotlib.colors import FuncNorm, Normalize
 from matplotlib.figure import Figure
 from matplotlib.path import Path
 from matplotlib.patheffects import AbstractPathEffect, withStroke
-from matplotlib.ticker import MaxNLocator
+from matplotlib.ticker import FixedLocator, MaxNLocator
 
 from bezstab.engines import DRIVE_METHODS
 from bezstab.methods import STEP_FAMILIES
@@ -350,9 +350,8 @@ def error_front_figure(fronts: Sequence[Sequence[FrontPoint]]) -> Figure:
             drawn = [point for point in front if point.z_abs_below >= FASTEST_DRAWN]
             x, y = [point.z_abs_below for point in drawn], [point.combined_error for point in drawn]
             axes.plot(x, y, label=front[0].method.name, **marked_line_at(place))
-        limits = axes.get_xlim()
-        axes.set_xticks(TICKS, [f"{tick:g}" for tick in TICKS])
-        axes.set_xlim(limits)  # which ticks beyond them would widen
+        axes.xaxis.set_major_locator(FixedLocator(TICKS))
+        axes.xaxis.set_major_formatter("{x:g}")
         legend_below(figure)
         return figure
 

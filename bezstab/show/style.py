@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
 from matplotlib.legend import Legend
 from matplotlib.lines import Line2D
-from matplotlib.ticker import MaxNLocator
+from matplotlib.ticker import FixedLocator, MaxNLocator
 from numpy.typing import ArrayLike, NDArray
 
 from bezstab.show.file_forms import FIGURE_FORMS
@@ -115,11 +115,9 @@ def mark_in_alpha_and_beta(axes: Axes) -> None:
     The region keeps its shape; only what is written at its axes changes. Below beta^2 = 0 there is no real beta.
     """
     axes.xaxis.set_major_formatter(lambda two_alpha, _: f"{two_alpha / 2:g}")
-    top = max(axes.get_ylim()[1], 0) ** 0.5
-    beta = [
-        value for value in MaxNLocator(4).tick_values(0, top) if value <= top
-    ]  # so few that the first two are apart
-    axes.set_yticks(np.square(beta), [f"{value:g}" for value in beta])
+    beta = MaxNLocator(4).tick_values(0, max(axes.get_ylim()[1], 0) ** 0.5)  # so few that the first two are apart
+    axes.yaxis.set_major_locator(FixedLocator([value**2 for value in beta]))
+    axes.yaxis.set_major_formatter(lambda beta_squared, _: f"{beta_squared**0.5:g}")
     axes.set(xlabel=r"$\alpha$ (1/s)", ylabel=r"$\beta$ (1/s), even in $\beta^2$")
 
 
