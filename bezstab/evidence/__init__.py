@@ -37,7 +37,6 @@ from bezstab.evidence.moving_mechanisms import (
     MovingPole,
     MovingVerdict,
     growth_rates,
-    moving_pole,
     moving_poles,
 )
 from bezstab.evidence.moving_regions import MovingRegion, moving_growth, moving_modulus, moving_region

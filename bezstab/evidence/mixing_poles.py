@@ -57,7 +57,7 @@ class NearestPoles:
 
     def mix(self, turned: float) -> BoolArray:
         """Return which poles a motion moves too near to their neighbours for the first-order law; turned: kappa h."""
-        return ~(turned * np.abs(self.shift) < self.room)
+        return ~(turned < self.mixing_from())
 
     def reach(self, turned: float) -> FloatArray:
         """Return the modulus that neither of each pair exceeds; turned: kappa h of the method's own step."""

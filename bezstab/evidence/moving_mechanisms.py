@@ -126,26 +126,6 @@ def _step_polynomials(turning: TurningNormals) -> FloatArray:
     return np.stack(powers, axis=1)
 
 
-def tabulated_rates(turning: TurningNormals, chi: ComplexArray) -> FloatArray:
-    """Return growth_rates for very many chi, between the entries of a motion's table.
-
-    Lambda depends on the motion and chi alone, is the same at conjugates, and grows in proportion far out. Linear
-    between neighbours, which are 2 % apart in |chi| and 3 degrees in angle: good to about 1e-3 of Lambda, where the law
-    itself leaves out terms of |chi| kappa h.
-    """
-    table = _growth_table(turning)
-    radius = np.abs(chi)
-    beyond = np.maximum(1, radius / LARGEST_CHI)
-    row = np.interp(radius / beyond, table.radii, np.arange(RADII))
-    column = np.interp(np.abs(np.angle(chi)), table.angles, np.arange(ANGLES))
-    i = np.minimum(row.astype(int), RADII - 2)
-    k = np.minimum(column.astype(int), ANGLES - 2)
-    u, v = row - i, column - k
-    near = (1 - v) * table.entries(i, k) + v * table.entries(i, k + 1)
-    far = (1 - v) * table.entries(i + 1, k) + v * table.entries(i + 1, k + 1)
-    return np.asarray(beyond * ((1 - u) * near + u * far))
-
-
 class _GrowthTable:
     """Lambda (1/s) at |chi| = `radii` and arg chi = `angles`, over half the circle, of one motion.
 
@@ -158,7 +138,24 @@ class _GrowthTable:
         self.angles = np.linspace(0, np.pi, ANGLES)
         self.rates = np.full((RADII, ANGLES), np.nan)  # not a number: not asked for yet
 
-    def entries(self, i: NDArray[np.intp], k: NDArray[np.intp]) -> FloatArray:
+    def between(self, chi: ComplexArray) -> FloatArray:
+        """Return `growth_rates` for very many chi, between the entries of the table; shape of chi, a row.
+
+        Lambda depends on the motion and chi alone, is the same at conjugates, and grows in proportion far out. Linear
+        between neighbours, which are 2 % apart in |chi| and 3 degrees in angle: good to about 1e-3 of Lambda, where the
+        law itself leaves out terms of |chi| kappa h.
+        """
+        radius = np.abs(chi)
+        beyond = np.maximum(1, radius / LARGEST_CHI)
+        row = np.interp(radius / beyond, self.radii, np.arange(RADII))
+        column = np.interp(np.abs(np.angle(chi)), self.angles, np.arange(ANGLES))
+        i, k = np.minimum(row.astype(int), RADII - 2), np.minimum(column.astype(int), ANGLES - 2)
+        u, v = row - i, column - k
+        corners = np.array([[i, i, i + 1, i + 1], [k, k + 1, k, k + 1]])
+        shares = np.array([(1 - u) * (1 - v), (1 - u) * v, u * (1 - v), u * v])
+        return np.asarray(beyond * (shares * self._entries(*corners)).sum(axis=0))
+
+    def _entries(self, i: NDArray[np.intp], k: NDArray[np.intp]) -> FloatArray:
         """Return the entries of radii i and angles k, of one shape."""
         wanted = np.zeros(self.rates.shape, bool)
         wanted[i, k] = True
@@ -243,7 +240,7 @@ def first_order_law(
 ) -> Law:
     """Return what a motion makes of the poles at a row of points; h in s, the rest dimensionless.
 
-    `tabulated`: by the motion's table (`tabulated_rates`), for very many points. There a pole so far from one that no
+    `tabulated`: by the motion's table, for very many points. There a pole so far from one that no
     motion of this kappa could bring it there keeps its |z| at rest. NumericalError if a pole leaves the range of
     float64.
     """
@@ -259,27 +256,21 @@ def first_order_law(
     growth, sure = np.where(counts, 0.0, -np.inf), np.full(z.shape, -np.inf)
     if tabulated:
         matters = known & (np.abs(at_rest) < np.abs(np.where(known, chi, 0)) * turning.largest_norm * step)
-        growth[matters] = step * tabulated_rates(turning, chi[matters])
+        growth[matters] = step * _growth_table(turning).between(chi[matters])
     else:
         growth[known], sure[known] = step * np.array(growth_rates(turning, chi[known]))
     return Law(nearest, turned, at_rest, chi, known, mixing, growth, sure)
 
 
-def moving_pole(method: Method, turning: TurningNormals, h: float, alpha_hat: float, beta_hat: float) -> MovingPole:
-    """Return what becomes of the poles at one point on a mechanism that moves, h in s; as `moving_poles`."""
-    (found,) = moving_poles(method, turning, h, np.array([alpha_hat]), np.array([beta_hat]))
-    return found
-
-
 def moving_poles(
-    method: Method, turning: TurningNormals, h: float, alpha_hat: FloatArray, beta_hat: FloatArray
+    method: Method, turning: TurningNormals, h: float, alpha_hat: ArrayLike, beta_hat: ArrayLike
 ) -> list[MovingPole]:
-    """Return what becomes of the poles at each of a row of points on a mechanism that moves; h in s.
+    """Return what becomes of the poles at one point, or each of a row of them, on a mechanism that moves; h in s.
 
     Theory: the first-order law of the moving mechanism (docstring of this file). NumericalError if a pole leaves the
     range of float64.
     """
-    law = first_order_law(method, turning, h, alpha_hat, beta_hat)
+    law = first_order_law(method, turning, h, *(np.atleast_1d(np.asarray(each)) for each in (alpha_hat, beta_hat)))
     nearest, turned = law.nearest, law.turned
     alone = law.known & ~law.mixing
     worst = np.full(law.chi.shape, -np.inf)
