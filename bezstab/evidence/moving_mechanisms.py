@@ -20,7 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 from bezstab.evidence.mixing_poles import NearestPoles, nearest_poles
 from bezstab.mechanism import TurningNormals
 from bezstab.methods import Method
-from bezstab.stability import BoolArray, ComplexArray, FloatArray
+from bezstab.stability import BoolArray, ComplexArray, FloatArray, bisected
 
 LAW_HOLDS = 0.1  # rad, kappa h: at twice that terms beside chi, too, have been seen to turn 0.94 into 1.05
 
@@ -183,30 +183,29 @@ class Law:
     """What the first-order law makes of the poles at a row of points; of shape (points, poles), the dominant one first.
 
     `at_rest` is ln|z| a step, `growth` h Lambda of each pole and `sure` what of it is sure (`growth_rates`),
-    minus infinity of a pole that does not count: too small ever to lead, or the conjugate of one that counts. `mixing`
-    are those that the law moves too near to their neighbours, or to no finite place; these come as far as their `reach`
-    (`mixing_poles`), whatever the law says. `turned` is kappa h of the method's own step.
+    minus infinity of a pole that does not count: too small ever to lead, or the conjugate of one that counts. Others
+    are `known` where chi is finite. `turned` is kappa h of the method's own step.
     """
 
     nearest: NearestPoles
     turned: float
     at_rest: FloatArray
     chi: ComplexArray
+    counts: BoolArray
     known: BoolArray
-    mixing: BoolArray
     growth: FloatArray
     sure: FloatArray
 
-    @property
-    def moving(self) -> FloatArray:
-        """ln|z| a step over the motion by the law alone."""
-        return self.at_rest + self.growth
+    def mixing(self, times: FloatArray | float = 1.0) -> BoolArray:
+        """Return which poles the law moves too near to their neighbours, or to no finite place, so `times` as fast."""
+        turned = times * self.turned
+        return self.counts & self.nearest.mix(turned) & (self.nearest.reach(turned) > 0)
 
-    @property
-    def furthest(self) -> FloatArray:
-        """The same of poles that do not mix, and of those that do what they reach."""
+    def furthest(self, times: FloatArray | float = 1.0) -> FloatArray:
+        """Return ln|z| a step over the motion: by the law, and of poles that mix as far as they reach."""
         with np.errstate(divide="ignore", invalid="ignore"):
-            return np.where(self.mixing, np.log(self.nearest.reach(self.turned)), self.moving)
+            reached = np.log(self.nearest.reach(times * self.turned))
+        return np.where(self.mixing(times), reached, self.at_rest + times * self.growth)
 
     @property
     def rate(self) -> FloatArray:
@@ -216,17 +215,32 @@ class Law:
         """
         with np.errstate(divide="ignore"):
             at_rest = np.log(self.nearest.z_abs)
-        of_each = np.where(self.mixing, np.minimum(self.moving, self.furthest), self.moving)
+        by_the_law = self.at_rest + self.growth
+        of_each = np.where(self.mixing(), np.minimum(by_the_law, self.furthest()), by_the_law)
         return np.asarray(np.maximum(at_rest, of_each.max(axis=1)))
 
     @property
     def double(self) -> BoolArray:
         """Where the pole that comes furthest is one that mixes; shape (points,)."""
-        return self.leading(self.mixing)
+        return self.leading(self.mixing())
 
     def leading(self, values: NDArray[Value]) -> NDArray[Value]:
         """Return what the pole that comes furthest has of values of shape (points, poles); shape (points,)."""
-        return np.asarray(values[np.arange(len(values)), np.argmax(self.furthest, axis=1)])
+        return np.asarray(values[np.arange(len(values)), np.argmax(self.furthest(), axis=1)])
+
+    def safe_speeds(self) -> FloatArray:
+        """Return so many times as fast the mechanism may move until a pole comes as far as one; shape (points,).
+
+        But not beyond LAW_HOLDS; not a number where it does so at rest.
+        """
+        decays = self.at_rest.max(axis=1) < 0
+        if self.turned == 0:
+            return np.where(decays, np.inf, np.nan)
+        fastest = np.full(decays.shape, LAW_HOLDS / self.turned)
+        speeds, _ = bisected(
+            lambda times: self.furthest(times.reshape(-1, 1)).max(axis=1)[np.newaxis] >= 0, 0 * fastest, fastest
+        )
+        return np.where(decays, speeds, np.nan)
 
 
 def first_order_law(
@@ -249,9 +263,7 @@ def first_order_law(
     turned = turning.kappa * step
     with np.errstate(all="ignore"):
         at_rest, chi = np.log(np.abs(z)), nearest.shift / z
-        reach = nearest.reach(turned)
     counts = nearest.may_lead & (z.imag >= 0)  # of a conjugate pair both grow alike
-    mixing = counts & nearest.mix(turned) & (reach > 0)
     known = counts & np.isfinite(chi)
     growth, sure = np.where(counts, 0.0, -np.inf), np.full(z.shape, -np.inf)
     if tabulated:
@@ -259,7 +271,7 @@ def first_order_law(
         growth[matters] = step * _growth_table(turning).between(chi[matters])
     else:
         growth[known], sure[known] = step * np.array(growth_rates(turning, chi[known]))
-    return Law(nearest, turned, at_rest, chi, known, mixing, growth, sure)
+    return Law(nearest, turned, at_rest, chi, counts, known, growth, sure)
 
 
 def moving_poles(
@@ -272,38 +284,22 @@ def moving_poles(
     """
     law = first_order_law(method, turning, h, *(np.atleast_1d(np.asarray(each)) for each in (alpha_hat, beta_hat)))
     nearest, turned = law.nearest, law.turned
-    alone = law.known & ~law.mixing
+    mixing, furthest = law.mixing(), law.furthest()
+    alone = law.known & ~mixing
     worst = np.full(law.chi.shape, -np.inf)
     worst[alone] = law.at_rest[alone] + h * float(method.step_multiple) * momentary_rates(turning, law.chi[alone])
-    highest = np.where(law.mixing, law.furthest, np.maximum(worst, law.moving)).max(axis=1)
+    highest = np.maximum(worst, furthest).max(axis=1)
     with np.errstate(all="ignore"):
         of_one = (np.abs(law.chi) * turned) ** 2 if turned else np.zeros(law.chi.shape)  # at rest however large chi is
-        unsure = law.leading(np.where(law.mixing, nearest.left_out(turned), of_one))
+        unsure = law.leading(np.where(mixing, nearest.left_out(turned), of_one))
         highest = np.maximum(highest, np.log(nearest.z_abs))
         lowest_of_pair = np.log(np.maximum(law.leading(2 * nearest.middle - nearest.reach(turned)), 0))
-    lowest_alone = np.where(law.mixing, -np.inf, law.at_rest + law.sure).max(axis=1)
+    lowest_alone = np.where(mixing, -np.inf, law.at_rest + law.sure).max(axis=1)
     lowest = np.where(law.double, lowest_of_pair, lowest_alone)
     settled = ((highest < -unsure) & (turned <= LAW_HOLDS)) | (lowest > unsure)
     columns = (
         *(nearest.z_abs, np.full(len(settled), turning.kappa), law.leading(np.abs(law.chi))),
         *(np.exp(law.rate), np.exp(highest), law.double, settled),
-        _safe_speeds(nearest, law.at_rest, law.growth, turned),
+        law.safe_speeds(),
     )
     return [MovingPole(*values) for values in zip(*(column.tolist() for column in columns), strict=True)]
-
-
-def _safe_speeds(nearest: NearestPoles, at_rest: FloatArray, growth: FloatArray, turned: float) -> FloatArray:
-    """Return by what growth and `turned`, kappa h, both proportional to the speed, can be multiplied; shape (points,).
-
-    Until growth equals a pole's decay or, where that is beyond what the law is good for, until the reach of it and its
-    neighbour is one; but not beyond LAW_HOLDS.
-    """
-    if turned == 0:
-        return np.where(at_rest.max(axis=1) < 0, np.inf, np.nan)
-    with np.errstate(all="ignore"):
-        by_the_law = np.where(growth > 0, -at_rest / growth, np.inf) * turned
-    ends = nearest.mixing_from()
-    estimated = np.fmax(ends, nearest.reaching_one_at())
-    limits = np.where(np.isneginf(growth), np.inf, np.where(by_the_law <= ends, by_the_law, estimated))
-    speeds = np.minimum(limits.min(axis=1), LAW_HOLDS) / turned
-    return np.where(at_rest.max(axis=1) < 0, speeds, np.nan)
