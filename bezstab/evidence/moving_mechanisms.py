@@ -27,7 +27,6 @@ LAW_HOLDS = 0.1  # rad, kappa h: at twice that terms beside chi, too, have been 
 LARGEST_CHI = 32.0  # of the table: ten times what is seen on a boundary; further out the law does not hold at any speed
 RADII, ANGLES = 101, 61
 AT_A_TIME = 1024  # chi whose Y stay in a core's cache through all steps, and points with the distances of their poles
-RESCALED = 20  # steps between two looks at how large Y has grown: e^(32 kappa T / 10) at most, within float64
 
 Value = TypeVar("Value", bound=np.generic)
 
@@ -87,18 +86,25 @@ def _growth_rates_of_row(turning: TurningNormals, chi: ComplexArray) -> FloatArr
     """Return both growth rates (1/s) of a row of chi, shape (2, chi.size)."""
     beyond = np.maximum(1, np.abs(chi) / LARGEST_CHI)
     factor = chi / beyond
-    size = turning.rates.shape[1]
+    rates, size = turning.rates, turning.rates.shape[1]
+    step = 2 * turning.duration / (len(rates) - 1)
     grown = np.zeros((size, size, chi.size), complex)  # chi last: K multiplies them all at once
     grown[range(size), range(size)] = 1
     log_scale = np.zeros(chi.size)
-    for number, powers in enumerate(_step_polynomials(turning)):
-        terms = (powers.reshape(-1, size) @ grown.reshape(size, -1).view(float)).view(complex)
-        first, second, third, fourth = terms.reshape(4, size, size, -1)
-        grown = grown + factor * (first + factor * (second + factor * (third + factor * fourth)))
-        if number % RESCALED == 0:
-            largest = np.abs(grown).max(axis=(0, 1))
-            grown /= largest
-            log_scale += np.log(largest)
+
+    def change(k: FloatArray, y: ComplexArray) -> ComplexArray:
+        """Return step K (chi Y)."""
+        return np.asarray(step * np.tensordot(k, factor * y, 1))
+
+    for start, middle, end in zip(rates[:-1:2], rates[1::2], rates[2::2], strict=True):
+        first = change(start, grown)
+        second = change(middle, grown + first / 2)
+        third = change(middle, grown + second / 2)
+        fourth = change(end, grown + third)
+        grown = grown + (first + 2 * second + 2 * third + fourth) / 6
+        largest = np.abs(grown).max(axis=(0, 1))  # or it would run into infinity
+        grown /= largest
+        log_scale += np.log(largest)
     grown = grown.transpose(2, 0, 1)
     if turning.closed:
         multiplied = sure = np.abs(np.linalg.eigvals(grown)).max(axis=-1)
@@ -107,23 +113,6 @@ def _growth_rates_of_row(turning: TurningNormals, chi: ComplexArray) -> FloatArr
         multiplied = np.linalg.norm(np.linalg.solve(after, grown @ before), ord=2, axis=(-2, -1))
         sure = np.minimum(multiplied, np.linalg.norm(grown, ord=2, axis=(-2, -1)))
     return beyond * (np.log([multiplied, sure]) + log_scale) / turning.duration
-
-
-def _step_polynomials(turning: TurningNormals) -> FloatArray:
-    """Return what chi, chi^2, chi^3 and chi^4 are multiplied by in each of the rule's steps; shape (steps, 4, m, m).
-
-    The step is Y + chi (A_1 Y + chi (A_2 Y + chi (A_3 Y + chi A_4 Y))), and the A are the same at every chi.
-    """
-    step = 2 * turning.duration / (len(turning.rates) - 1)
-    start, middle, end = turning.rates[:-1:2], turning.rates[1::2], turning.rates[2::2]
-    twice = middle @ middle
-    powers = [
-        step / 6 * (start + 4 * middle + end),
-        step**2 / 6 * (middle @ start + twice + end @ middle),
-        step**3 / 12 * (twice @ start + end @ twice),
-        step**4 / 24 * (end @ twice @ start),
-    ]
-    return np.stack(powers, axis=1)
 
 
 class _GrowthTable:
