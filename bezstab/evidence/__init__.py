@@ -15,7 +15,6 @@ from bezstab.evidence.accuracy_costs import (
     measured_runs,
     sweep_compiled,
     swept_runs,
-    with_fronts,
 )
 from bezstab.evidence.chunk_stores import Arrays, chunk_store
 from bezstab.evidence.chunks import ATTEMPTS, completed_chunks
