@@ -29,7 +29,7 @@ from bezstab.mechanism import (
     state_function,
 )
 from bezstab.methods import LinearMultistep, Method, coefficient_table, evaluations, lookup, rho_and_sigma, steps
-from bezstab.stability import EPS, describe_point, poles
+from bezstab.stability import critical_damping_limit, poles
 from bezstab.units import feedback_gains
 
 EXPECTED = "15 less those of each pole's condition number"
@@ -51,7 +51,7 @@ H = 1e-3
 POINT = (0.3, 0.04)
 """alpha_hat, beta_hat: inside every region but those of AB6 and up."""
 
-STIFF = Fraction(5000)
+STIFF = 5000.0
 """1/s, alpha = beta: so strong that truncation errors stay far below the kick."""
 
 KICK = 1e-6
@@ -193,10 +193,9 @@ def _largest_in_each_block(method: Method, count: int, gains: tuple[float, float
 def _step(name: str, times: float) -> Check:
     """With alpha and beta in 1/s held, a kick decays below the largest stable step and grows above it."""
     method = lookup(name)
-    some_step = Fraction(1, 10**5)  # s: stable for every method, so that its margin tells the largest
-    margins = describe_point(method, "", 2 * STIFF * some_step, (STIFF * some_step) ** 2).margins
-    assert margins
-    h = times * margins.h * float(some_step)
+    limit = critical_damping_limit(method)
+    assert limit
+    h = times * limit / STIFF
     left, failure = _left_of_a_kick(method, h)
     seen = failure or f"what the kick of {KICK:g} m changes in c: {left:.0e} m"
     case = f"{name}, {times:g} of the largest"
@@ -209,7 +208,7 @@ def _step(name: str, times: float) -> Check:
 def _left_of_a_kick(method: Method, h: float) -> tuple[float, str | None]:
     """Return what a kick changes in c (m) after 3000 steps of h (s), and why its run failed if it did."""
     mechanism = compiled_mechanism(load_scene("slider_crank"))
-    gains = (2 * float(STIFF), float(STIFF) ** 2)
+    gains = 2 * STIFF, STIFF**2
     kicked, calm = (
         simulate(mechanism, method, h, 3000 * h, gains, perturbed_state(mechanism, kick)) for kick in (KICK, 0.0)
     )
@@ -261,35 +260,17 @@ def _speed(rpm: int) -> Check:
 
 
 def _masses(ratio: float) -> Check:
-    """Multipliers in float64 against the same elimination in a hundred digits."""
+    """Multipliers in float64 against the same elimination in a hundred digits; rounding the state costs them five."""
     scene = load_scene("slider_crank")
     *others, slider = scene.bodies
     mechanism = compiled_mechanism(replace(scene, bodies=(*others, replace(slider, mass=ratio * others[-1].mass))))
-    two_alpha, beta_squared = feedback_gains(*POINT, H)
+    gains, m = feedback_gains(*POINT, H), mechanism.constraints
     q, v = initial_state(mechanism)
-    state = np.concatenate((q, v)).tolist()
-    elimination, m = state_function(mechanism, "observations", mp.mp), mechanism.constraints
-
-    def precise_multipliers(entries: Sequence[mp.mpf]) -> Sequence[mp.mpf]:
-        precise = [mp.mpf(entry) for entry in entries]
-        q, v = precise[: mechanism.size], precise[mechanism.size :]
-        return elimination(mp.mpf(0), mp.mpf(two_alpha), mp.mpf(beta_squared), q, v)[2 * m : 3 * m]
-
-    def shown_digits(relative_error: mp.mpf) -> float:
-        return float(-mp.log10(max(relative_error, mp.mpf(10) ** -17)))
-
+    seen = observe(mechanism, np.zeros(1), q[np.newaxis], v[np.newaxis], *gains).multipliers[0]
     with mp.workdps(DIGITS):
-        exact = precise_multipliers(state)
-        largest = max(abs(multiplier) for multiplier in exact)
-        moved = mp.mpf(0)
-        for k, value in enumerate(state):  # by one rounding
-            nearby = [*state[:k], value * (1 + EPS), *state[k + 1 :]]
-            other = precise_multipliers(nearby)
-            moved += max(abs(a - b) for a, b in zip(other, exact, strict=True))
-        seen = observe(mechanism, np.zeros(1), q[np.newaxis], v[np.newaxis], two_alpha, beta_squared)
-        floats = seen.multipliers[0].tolist()
-        error = max(abs(a - b) for a, b in zip(floats, exact, strict=True))
-        digits = shown_digits(error / largest)
-        needed = shown_digits(10 * moved / largest)
-    expected = f"{needed:.1f} digits of λ: what ten roundings of the state leave"
-    return Check("mass ratios", f"slider {ratio:g} of the rod", expected, f"{digits:.1f}", digits >= needed)
+        precise = [list(map(mp.mpf, each)) for each in (gains, q.tolist(), v.tolist())]
+        found = state_function(mechanism, "observations", mp.mp)(mp.mpf(0), *precise[0], *precise[1:])
+        exact = found[2 * m : 3 * m]
+        error = max(abs(a - b) for a, b in zip(seen.tolist(), exact, strict=True))
+        digits = float(-mp.log10(error / max(map(abs, exact)) + mp.mpf(10) ** -17))
+    return Check("mass ratios", f"slider {ratio:g} of the rod", "11 digits of λ", f"{digits:.1f}", digits >= 11)

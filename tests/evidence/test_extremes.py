@@ -11,8 +11,8 @@ import pytest
 
 from bezstab.evidence import Check, extreme_checks, extremes, root_digits
 from bezstab.mechanism import Observation, observe
-from bezstab.methods import lookup
-from bezstab.stability import Choice, describe_point, poles
+from bezstab.methods import Method, lookup
+from bezstab.stability import critical_damping_limit, poles
 from tests.evidence.samples import of_campaign
 
 SIZES = partial(extremes._sizes, lookup("B4"), (1.0,))
@@ -52,10 +52,8 @@ def test_a_part_of_all_of_it_holds() -> None:
     assert [found for check in some if not (found := check()).held] == []
 
 
-def longer(*arguments: Any) -> Choice:
-    choice = describe_point(*arguments)
-    assert choice.margins
-    return replace(choice, margins=replace(choice.margins, h=1.3 * choice.margins.h))
+def longer(method: Method) -> float:
+    return 1.3 * (critical_damping_limit(method) or 0.0)
 
 
 def off(*arguments: Any) -> Observation:
@@ -68,7 +66,7 @@ def off(*arguments: Any) -> Observation:
     [
         # AB4 diverges there, slowly
         (partial(extremes._long_run, "AB4", 10**4, stabilized=True), extremes, "POINT", (0.5, 0.101)),
-        (partial(extremes._step, "SYM", 0.9), extremes, "describe_point", longer),
+        (partial(extremes._step, "SYM", 0.9), extremes, "critical_damping_limit", longer),
         (partial(extremes._masses, 1.0), extremes, "observe", off),
         (SIZES, root_digits, "poles", lambda *arguments: poles(*arguments) * (1 + 1e-11)),
         (SIZES, root_digits, "poles", lambda *_: np.full(8, 0.5 + 0.1j)),  # some poles are missing
