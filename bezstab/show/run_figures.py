@@ -64,7 +64,7 @@ def history_figure(simulation: Simulation) -> Figure:
 def work_precision_figure(swept: SweptRuns, scene: str, error: ErrorOf) -> Figure:
     """Return an error of each run (SI) against its cost, discs behind the Pareto front, failed runs on top.
 
-    The trajectory's is not drawn up to that of the reference. The energy's drift has no front.
+    The trajectory's is not drawn up to that of the reference.
     """
     runs, floor = swept.runs, swept.reference_error if error == "trajectory" else 0.0
     with styled():
@@ -76,8 +76,7 @@ def work_precision_figure(swept: SweptRuns, scene: str, error: ErrorOf) -> Figur
             plot.work_precision(own, error, floor, axes, swept.against, **marked_line_at(place))
             failed = [run.cost(swept.against) for run in own if run.failure]
             axes.plot(failed, [top] * len(failed), "x", color=line_at(place)["color"], markersize=4)
-        front = swept.constraint_front if error == "constraint" else swept.trajectory_front
-        if front:
+        if front := swept.front(error):
             discs = {"marker": "o", "linestyle": "none", "color": "0.8", "markersize": 10, "zorder": 1.5}
             of_front = [runs[number] for number in front]
             plot.work_precision(of_front, error, floor, axes, swept.against, label="front", **discs)
