@@ -219,7 +219,7 @@ def _largest_in_each_tenth(method: Method, count: int, gains: tuple[float, float
     mechanism = compiled_mechanism(load_scene("slider_crank"))
     q, v = initial_state(mechanism)
     largest = np.zeros(10)
-    compiled = runs_compiled(mechanism, method, count * evaluations(method))
+    compiled = runs_compiled(count * evaluations(method))
     blocks = march(mechanism, method, H, gains, np.concatenate([q, v]), "rk4", count, How(compiled))
     k = 0
     for block in blocks:

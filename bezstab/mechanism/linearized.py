@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from bezstab.mechanism.compiled import Mechanism, acceleration_function, state_function
+from bezstab.mechanism.compiled import IMAGINARY_STEP, Mechanism, acceleration_function
 
 FloatArray = NDArray[np.float64]
 
@@ -19,18 +19,17 @@ def linearized_acceleration(
     q and v have shape (..., n); t (s) and the gains 2 alpha (1/s) and beta^2 (1/s^2; paper Eqs 6 and 9) broadcast
     against (...).
     """
-    size = mechanism.size
-    acceleration, slope = acceleration_function(mechanism, np), state_function(mechanism, "slope", np)
-    directions = np.split(np.eye(2 * size)[:, :, np.newaxis], 2)
+    size, acceleration = mechanism.size, acceleration_function(mechanism, np)
+    directions = 1j * IMAGINARY_STEP * np.eye(2 * size)[:, :, np.newaxis]
     shape = np.broadcast_shapes(q.shape[:-1], *map(np.shape, (t, two_alpha, beta_squared)))
     scalars = [np.broadcast_to(each, shape).ravel() for each in (t, two_alpha, beta_squared)]
-    q, v = (np.broadcast_to(each, (*shape, size)).reshape(-1, size) for each in (q, v))
-    accelerations = np.empty(q.shape)
-    jacobians = np.empty((*q.shape, 2 * size))
-    for first in range(0, len(q), AT_A_TIME):
+    states = np.concatenate([np.broadcast_to(each, (*shape, size)) for each in (q, v)], axis=-1).reshape(-1, 2 * size)
+    accelerations = np.empty((len(states), size))
+    jacobians = np.empty((*accelerations.shape, 2 * size))
+    for first in range(0, len(states), AT_A_TIME):
         some = slice(first, first + AT_A_TIME)
-        state = [*(each[some] for each in scalars), *(np.ascontiguousarray(each[some].T) for each in (q, v))]
-        for k, (found, changes) in enumerate(zip(acceleration(*state), slope(*state, *directions), strict=True)):
-            accelerations[some, k] = found
-            jacobians[some, k] = np.transpose(changes)
+        ahead = states[some].T[:, np.newaxis] + directions
+        for k, changed in enumerate(acceleration(*(each[some] for each in scalars), *np.split(ahead, 2))):
+            accelerations[some, k] = np.transpose(changed)[..., 0].real
+            jacobians[some, k] = np.transpose(changed).imag / IMAGINARY_STEP
     return accelerations.reshape(*shape, size), jacobians.reshape(*shape, size, 2 * size)

@@ -69,11 +69,6 @@ class Program:
         """Whether there are equations to solve."""
         return any(waiting for _, _, waiting in self.groups)
 
-    @property
-    def explicit_evaluations(self) -> int:
-        """The number of evaluations in a turn that are not Newton's."""
-        return sum(last - first for first, last, waiting in self.groups if not waiting)
-
 
 @cache
 def program_of(scheme: SecondOrder) -> Program:
