@@ -4,7 +4,8 @@ Nothing is ever executed: an entry is a text, a number, an exact number written 
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, TypeVar
+from fractions import Fraction
+from typing import Any
 
 from bezstab.errors import InputError
 
@@ -14,9 +15,6 @@ LEAST = 1e-100  # of a number that is not 0, and of the inverse of the largest: 
 LISTED = 200  # characters of the keys that are there, where one is missing
 SIZE = "0 or of size 1e-100 to 1e100"
 RATIONAL_STRINGS = 'rational strings like "175/108"'
-
-Exact = TypeVar("Exact")
-"""A number as the reader of its text makes it."""
 
 
 class TomlTable:
@@ -79,16 +77,16 @@ class TomlTable:
                 raise self.mistake(f"{key} names {name!r}, which is not among {', '.join(allowed)}")
         return {name: float(number) for name, number in entries.items()}
 
-    def exact_numbers(self, key: str, read: Callable[[str], Exact]) -> tuple[Exact, ...]:
+    def exact_numbers(self, key: str, read: Callable[[str], Fraction]) -> tuple[Fraction, ...]:
         """Return a list of exact numbers, each written as a text ("175/108", "-0.5", "2") and read by `read`."""
         return self._exact(key, self.entry(key, _are_texts, f"a list of {RATIONAL_STRINGS}"), read)
 
-    def exact_rows(self, key: str, read: Callable[[str], Exact]) -> tuple[tuple[Exact, ...], ...]:
+    def exact_rows(self, key: str, read: Callable[[str], Fraction]) -> tuple[tuple[Fraction, ...], ...]:
         """Return a list of such lists."""
         rows = self.entry(key, _are_lists_of_texts, f"a list of rows, each a list of {RATIONAL_STRINGS}")
         return tuple(self._exact(key, row, read) for row in rows)
 
-    def _exact(self, key: str, texts: Sequence[str], read: Callable[[str], Exact]) -> tuple[Exact, ...]:
+    def _exact(self, key: str, texts: Sequence[str], read: Callable[[str], Fraction]) -> tuple[Fraction, ...]:
         try:
             return tuple(read(text) for text in texts)
         except InputError as error:

@@ -3,7 +3,6 @@
 import cmath
 import math
 from collections.abc import Callable
-from functools import cache
 from typing import Any
 
 import numpy as np
@@ -14,7 +13,6 @@ from bezstab.mechanism.registers import BoolArray, FloatArray, Room, Rows, Steps
 from bezstab.mechanism.stepping import TakeSteps, read
 
 
-@cache
 def array_steps(mechanism: Mechanism, lanes: int) -> TakeSteps:
     """Return the function that takes the steps of so many runs together."""
     n = mechanism.size
@@ -32,9 +30,9 @@ def array_steps(mechanism: Mechanism, lanes: int) -> TakeSteps:
     def take_steps(rows: Rows, steps: Steps, room: Room, states: FloatArray, told: FloatArray) -> None:
         # Python reads numbers of lists faster than those of arrays
         lists = {name: each.tolist() for name, each in rows._asdict().items() if name in QUICKLY}
-        listed = steps._replace(times=list(steps.times), lengths=steps.lengths.tolist())
+        listed: Any = {"times": list(steps.times), "lengths": steps.lengths.tolist()}
         with np.errstate(all="ignore"):  # what runs into infinity is judged by its numbers
-            taken(rows._replace(**lists), listed, room, states, told)
+            taken(rows._replace(**lists), steps._replace(**listed), room, states, told)
 
     return take_steps
 
@@ -101,7 +99,7 @@ def _on_numbers(mechanism: Mechanism, name: str, library: Any, judged: bool) -> 
 
 
 def _many_runs(mechanism: Mechanism, lanes: int) -> dict[str, Callable[..., Any]]:
-    """Return what takes all lanes at once: accelerations, slopes where they are asked for, and what tells lanes apart."""
+    """Return what takes all lanes at once: accelerations, slopes of some, and what tells lanes apart."""
     function, of_lanes = state_function(mechanism, "accelerations", np), (2, mechanism.size, lanes)
 
     def accelerations(t: Any, gains: FloatArray, room: Room) -> float:
@@ -123,5 +121,11 @@ def _many_runs(mechanism: Mechanism, lanes: int) -> dict[str, Callable[..., Any]
     def add_sizes(factor: float, values: FloatArray, sizes: FloatArray) -> None:
         sizes += factor * np.abs(values).reshape(-1, lanes).sum(axis=0)
 
-    lanewise: dict[str, Callable[..., Any]] = {"take": take, "add_sizes": add_sizes, "any_of": np.any}
-    return {"accelerations": accelerations, "slope": slope, "every_lane": every} | lanewise
+    return {
+        "accelerations": accelerations,
+        "slope": slope,
+        "every_lane": every,
+        "take": take,
+        "add_sizes": add_sizes,
+        "any_of": np.any,
+    }

@@ -64,7 +64,19 @@ def runs_compiled(evaluations: int, together: bool = False) -> bool:
     return numba_is_installed() and evaluations >= WORTH_COMPILING * (CHEAPER_TOGETHER if together else 1)
 
 
-CALLED_OFTEN = ("accelerations", "arguments", "combine", "copy", "take", "add_sizes", "correct", "guess", "residual", "scale", "shift")
+CALLED_OFTEN = (
+    "accelerations",
+    "arguments",
+    "combine",
+    "copy",
+    "take",
+    "add_sizes",
+    "correct",
+    "guess",
+    "residual",
+    "scale",
+    "shift",
+)
 """What the loop calls from several places; what it calls from one becomes a part of what calls it."""
 
 
@@ -78,8 +90,8 @@ def machine_steps(mechanism: Mechanism, solving: bool, projecting: bool, stride:
     numba = compiler()
     n = mechanism.size
     codes = {name: CODES[name](mechanism.equations) for name in ("accelerations", "corrections")[: 1 + projecting]}
-    sizes: dict[str, Any] = {"N": n, "STRIDE": stride, "WIDTH": n * stride, "SOLVING": solving, "PROJECTING": projecting}
-    file = _kept_file((*sizes.values(), *(code.lines for code in codes.values())))
+    own: dict[str, Any] = {"N": n, "STRIDE": stride, "WIDTH": n * stride, "SOLVING": solving, "PROJECTING": projecting}
+    file = _kept_file((*own.values(), *(code.lines for code in codes.values())))
 
     def made(function: Any) -> Any:
         """Return a function as machine code that other machine code calls, under a name of the scene's own.
@@ -97,9 +109,9 @@ def machine_steps(mechanism: Mechanism, solving: bool, projecting: bool, stride:
             of_a_lane = _by_operations(operations(code, places), n, stride, made(take_operations))
         else:
             of_a_lane = compiled_source(machine_source(name, code, stride), np)[f"{name}_of"]
-        sizes[f"{name}_of"] = made(of_a_lane)
+        own[f"{name}_of"] = made(of_a_lane)
     # numba keeps what is called from a text with a file, if it has nothing but that text from around it
-    take = compiled_source(TAKE, np, {"take_steps": read(sizes, made)}, str(file))["take"]
+    take = compiled_source(TAKE, np, {"take_steps": read(own, made)}, str(file))["take"]
     take.__name__ = take.__qualname__ = f"take_{file.parent.name}"
     steps = numba.njit(error_model="numpy", _nrt=False, no_cfunc_wrapper=True, cache=_keep(file))(take)
     return steps, np.array([key if isinstance(key, float) else 0.0 for key in places])

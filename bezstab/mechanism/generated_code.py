@@ -379,7 +379,7 @@ def operations(code: StateCode, places: dict[str | float, int]) -> Operations:
         match node:
             case ast.Name(id=variable):
                 return place_of(variable)
-            case ast.Constant(value=number):
+            case ast.Constant(value=int() | float() as number):
                 return place_of(float(number))
             case ast.UnaryOp(operand=operand):
                 kind, operands = MINUS, [place_of(0.0), computed(operand, f"{name}-")]

@@ -27,12 +27,13 @@ from bezstab.mechanism.stepping import (
     UNSOLVED,
 )
 from bezstab.methods import (
-    STEP_FAMILIES,
     Method,
     SecondOrder,
     adams_bashforth,
+    bezier,
     evaluations,
     implicit,
+    is_bezier,
     lookup,
     second_order_form,
 )
@@ -239,7 +240,8 @@ def resume(
     *states, calm = (_for_batch(state, batch) for state in given)
     carried, start, repeated = carried_quantities(mechanism, method, h, gains, states, calm, how.counts)
     spread_gains = np.array([[np.broadcast_to(gain, batch).ravel() for gain in gains]], np.float64)
-    steps = Steps(start + h * np.arange(count + repeated), np.broadcast_to(h, count + repeated), spread_gains)
+    times = start + h * np.arange(count + repeated, dtype=np.float64)
+    steps = Steps(times, np.broadcast_to(np.float64(h), times.shape), spread_gains)
     # of turns whose states are in the history already only what they give beyond them matters: the next needs it
     for block in steps_in_blocks(mechanism, method, steps, carried, batch, how):
         left_out = min(repeated, len(block.states))
@@ -377,8 +379,7 @@ def _starters(method: Method, start: Start) -> list[tuple[Method, int]]:
     if needed == 0:
         return []
     if start == "ramp":
-        named = {family.name: family.make for family in STEP_FAMILIES.values()}
-        make = named.get(method.family.name if method.family else "", adams_bashforth)
+        make = bezier if is_bezier(method.scheme) else adams_bashforth
         return [(lookup(f"bdf{n}") if implicit(method) else make(n), 1) for n in range(1, needed + 1)]
     explicit_one, implicit_one = {"rk4": ("RK4", "gauss4"), "euler": ("RK1", "implicit-euler")}[start]
     return [(lookup(implicit_one if implicit(method) else explicit_one), needed)]

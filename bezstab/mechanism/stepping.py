@@ -2,9 +2,9 @@
 
 This text is read in two ways: by numba as machine code (`compiled_stepping`), and by Python with numpy's arrays
 (`array_stepping`). Each gives some names a meaning of its own: the mechanism's functions, the numbers that say how its
-registers are laid out (`registers`), and what it does faster as a whole than place by place. All else is said here once.
-Where Python takes all lanes at a time, a number is an array over them: a choice between two values is a comparison or
-`take`, not a branch.
+registers are laid out (`registers`), and what it does faster as a whole than place by place. All else is said here
+once. Where Python takes all lanes at a time, a number is an array over them: a choice between two values is a
+comparison or `take`, not a branch.
 
 The equations of an implicit step are solved by Newton's method, in all lanes at a time. The unknowns are accelerations,
 and the residual of each is r(A) = A - h^2 acceleration(X(A), V(A)). Its Jacobian is taken along one unknown after the
@@ -60,16 +60,12 @@ every, every_lane = range, range
 """The places of a register, or the lanes, so many: one after the other or, of numpy's arrays, all at once."""
 
 
-def accelerations_of(
-    t: float, gains: FloatArray, state: FloatArray, found: FloatArray, variables: FloatArray, lane: int
-) -> float:
-    """Stand for the generated function that writes a lane's accelerations, and returns its least relative pivot."""
+def accelerations_of(t: float, gains: FloatArray, state: Any, found: Any, variables: Any, lane: int) -> float:
+    """Stand for the generated function that writes a lane's accelerations, real or complex; return the least pivot."""
     raise NotImplementedError
 
 
-def corrections_of(
-    t: float, gains: FloatArray, state: FloatArray, found: FloatArray, variables: FloatArray, lane: int
-) -> float:
+def corrections_of(t: float, gains: FloatArray, state: Any, found: Any, variables: Any, lane: int) -> float:
     """Stand for the generated function that writes corrections of a lane's state, and returns the least pivot."""
     raise NotImplementedError
 
@@ -142,10 +138,10 @@ def add_sizes(factor: float, values: FloatArray, sizes: FloatArray) -> None:
 
 def any_of(lanes: BoolArray) -> bool:
     """Return whether something is so in any lane."""
+    some = False
     for lane in range(len(lanes)):
-        if lanes[lane]:
-            return True
-    return False
+        some = some or lanes[lane]
+    return some
 
 
 def multiply(inverse: FloatArray, count: int, residuals: FloatArray, products: FloatArray) -> None:
@@ -161,29 +157,34 @@ def multiply(inverse: FloatArray, count: int, residuals: FloatArray, products: F
 
 
 def invert(matrices: FloatArray, size: int, lanes: BoolArray, found: FloatArray) -> None:
-    """Write the inverses of some lanes' matrices, which get lost, by Gauss-Jordan elimination with row pivoting."""
+    """Write the inverses of some lanes' matrices, which get lost themselves."""
     for lane in range(len(lanes)):
         if lanes[lane]:
-            for i in range(size):
-                for j in range(size):
-                    found[i, j, lane] = 1.0 if i == j else 0.0
-            for column in range(size):
-                largest = column
-                for i in range(column + 1, size):
-                    if abs(matrices[i, column, lane]) > abs(matrices[largest, column, lane]):
-                        largest = i
-                pivot = matrices[largest, column, lane]
-                for table in (matrices, found):
+            invert_one(matrices[:, :, lane], size, found[:, :, lane])
+
+
+def invert_one(matrix: FloatArray, size: int, found: FloatArray) -> None:
+    """Write the inverse of a matrix, by Gauss-Jordan elimination with row pivoting; it gets lost itself."""
+    for i in range(size):
+        for j in range(size):
+            found[i, j] = 1.0 if i == j else 0.0
+    for column in range(size):
+        largest = column
+        for i in range(column + 1, size):
+            if abs(matrix[i, column]) > abs(matrix[largest, column]):
+                largest = i
+        pivot = matrix[largest, column]
+        for table in (matrix, found):
+            for j in range(size):
+                above, below = table[column, j], table[largest, j]
+                table[largest, j] = above
+                table[column, j] = below / pivot
+        for i in range(size):
+            factor = matrix[i, column]
+            if i != column and factor != 0:
+                for table in (matrix, found):
                     for j in range(size):
-                        above, below = table[column, j, lane], table[largest, j, lane]
-                        table[largest, j, lane] = above
-                        table[column, j, lane] = below / pivot
-                for i in range(size):
-                    factor = matrices[i, column, lane]
-                    if i != column and factor != 0:
-                        for table in (matrices, found):
-                            for j in range(size):
-                                table[i, j, lane] -= factor * table[column, j, lane]
+                        table[i, j] -= factor * table[column, j]
 
 
 # A step
@@ -403,8 +404,8 @@ def project(
 
 
 TEXT = (
-    *(accelerations, slope, combine, take, add_sizes, any_of, multiply, invert, scale, copy, arguments),
-    *(evaluate, finish, solve, guess, residual, correct, renew, advance, shift, project, take_steps),
+    *(accelerations, slope, combine, take, add_sizes, any_of, multiply, invert, invert_one, scale, copy),
+    *(arguments, evaluate, finish, solve, guess, residual, correct, renew, advance, shift, project, take_steps),
 )
 """What is read in two ways."""
 

@@ -13,14 +13,7 @@ from bezstab.questions.log_probes import ColumnAnswer, LogQuestion, check_told, 
 from bezstab.questions.motions import ReferenceMotion, check_speed, motion_of
 from bezstab.questions.points import Meant, PlanePoint
 from bezstab.questions.question import Question, methods_for, usual_goal
-from bezstab.questions.regions import (
-    ForcedErrors,
-    MapAnswer,
-    MapQuestion,
-    RegionAnswer,
-    forced_errors_of,
-    region_answer,
-)
+from bezstab.questions.regions import MapAnswer, MapQuestion, RegionAnswer, region_answer
 from bezstab.questions.runs import RunQuestion, run_answer
 from bezstab.questions.trades import FrontQuestion, TradeQuestion
 from bezstab.questions.verifications import VerifyQuestion

@@ -19,7 +19,6 @@ from bezstab.errors import InputError, NumericalError
 from bezstab.goals import UP_TO_LONGEST, Goal
 from bezstab.methods import Method
 from bezstab.questions.chains import ALONE, SweptAnswer
-from bezstab.questions.points import all_points
 from bezstab.questions.question import Question, usual_goal
 from bezstab.rationals import rational
 from bezstab.stability import (
@@ -177,7 +176,7 @@ class Answer(Choice):
             return None
         values, as_typed = self._engine_values(engine, h), self.question.as_typed and self.role == "given"
         return largest_stable_step(
-            self.method, lambda step: all_points(engine, values, step, as_typed=as_typed), float(h)
+            self.method, lambda step: engine.applied(values, step, as_typed=as_typed).points, float(h)
         )
 
     def _engine_values(self, engine: Engine, h: Fraction) -> tuple[Fraction, ...]:

@@ -7,14 +7,14 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 
-from bezstab.engines import DRIVE_METHODS, Drive, Engine, Point
+from bezstab.engines import DRIVE_METHODS, Applied, Drive, Engine, Point
 from bezstab.errors import InputError
 from bezstab.goals import GOALS, SETTLING, UP_TO_LONGEST, Goal
 from bezstab.mechanism import Scene, TurningNormals
 from bezstab.methods import Method, check_one_step, lookup
 from bezstab.questions.chains import Chain, SweptConstraints, chain_of, check_sweeps, constraints_of
 from bezstab.questions.motions import ReferenceMotion, check_speed, motion_of, turn_too_far, turning_of
-from bezstab.questions.points import GivenPoint, Meant, engine_holds, meant_in_seconds, point_of_engine
+from bezstab.questions.points import Meant, engine_holds, meant_in_seconds
 from bezstab.units import check_step
 
 WHICH_METHOD = (
@@ -137,14 +137,14 @@ class Question:
             )
 
     @cached_property
-    def given(self) -> GivenPoint:
-        """The point that is asked about."""
+    def given(self) -> Applied:
+        """The point that is asked about, and those at which the same values must be safe, too."""
         if self.values is not None and self.engine and self.h is not None:
-            return point_of_engine(self.engine, self.values, self.h, as_typed=self.as_typed)
+            return self.engine.applied(self.values, self.h, as_typed=self.as_typed)
         if self.drive and self.h is not None:
-            return GivenPoint(self.drive.point(self.h))
+            return Applied(self.drive.point(self.h), None)
         assert self.point
-        return GivenPoint(self.point)
+        return Applied(self.point, None)
 
     @property
     def meant_in_seconds(self) -> Meant | None:

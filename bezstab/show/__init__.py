@@ -17,20 +17,8 @@ from bezstab.show.answer_rows import (
     pole_rows,
     trade_words,
 )
-from bezstab.show.blocks import block, fits, wrapped
-from bezstab.show.cells import pole_text, with_unbounded
-from bezstab.show.columns import (
-    Column,
-    Format,
-    Row,
-    column,
-    finite,
-    formatted,
-    render,
-    shown_width,
-    visible,
-)
-from bezstab.show.fields import Field, RowKind, Sentence, cells
+from bezstab.show.cells import pole_text
+from bezstab.show.fields import Field, Row, RowKind, cells, column, formatted, visible
 from bezstab.show.file_forms import FIGURE_FORMS, TABLE_FORMS
 from bezstab.show.held_rows import LATE_COMMANDS, NOT_JUDGED, held_row, timing_words
 from bezstab.show.row_kinds import (
@@ -62,7 +50,6 @@ from bezstab.show.row_kinds import (
     WITNESSED,
 )
 from bezstab.show.rows import (
-    NOT_KNOWN,
     chain_rows,
     engine_row,
     exact_rate_words,
@@ -78,6 +65,7 @@ from bezstab.show.rows import (
 )
 from bezstab.show.schemas import json_schema
 from bezstab.show.sentences import likeness_sentence, one_pole_sentence, passages_words
+from bezstab.show.tables import Format, block, fits, render, shown_width, wrapped
 from bezstab.show.varying_rows import varying_words
 
 if TYPE_CHECKING:

@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING
 
 from bezstab.engines import DRIVE_METHODS
 from bezstab.rationals import typed_number
-from bezstab.show.columns import Row, Value
-from bezstab.show.fields import cells
+from bezstab.show.fields import Row, Value, cells
 from bezstab.show.row_kinds import (
     APPLIED,
     CHECKED,
@@ -24,7 +23,7 @@ from bezstab.show.row_kinds import (
     VARYING,
 )
 from bezstab.show.rows import pole_cells
-from bezstab.show.words import sweeps_words, times_words
+from bezstab.show.words import counted, times_words
 from bezstab.units import from_dimensionless
 
 if TYPE_CHECKING:
@@ -103,7 +102,7 @@ def alone_words(answer: Answer) -> str | None:
     if alone is None:
         return None
     needed = alone.sweeps_to_spare
-    takes = "no number of sweeps that was tried" if needed is None else sweeps_words(needed)
+    takes = "no number of sweeps that was tried" if needed is None else counted(needed, "sweep")
     return f"One constraint alone would get {alone.setting}: with the spread to spare that takes {takes}."
 
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, BinaryIO
 import numpy as np
 from numpy.typing import NDArray
 
-from bezstab.show.columns import Row, Value
+from bezstab.show.fields import Row, Value
 from bezstab.show.row_kinds import FIELDS
 from bezstab.stability import ComplexArray, FloatArray, Region
 from bezstab.units import feedback_gains

@@ -1,13 +1,10 @@
 """What a cell of a table shows where it takes more than a format: texts made of a row."""
 
-from collections.abc import Callable
 from decimal import ROUND_FLOOR, Context
 from string import Formatter
 
-from bezstab.show.columns import MISSING, Row, Value, formatted
+from bezstab.show.fields import MISSING, Row, Text, Value, formatted
 from bezstab.show.words import times_words
-
-Text = Callable[[Row], str]
 
 MOST_FIXED = 1e6  # a modulus from here on is shown with an exponent
 

@@ -13,7 +13,7 @@ from bezstab.errors import InputError
 from bezstab.methods import Method
 from bezstab.questions import PlanePoint
 from bezstab.show import plot
-from bezstab.show.columns import formatted
+from bezstab.show.fields import formatted
 from bezstab.show.rows import pole_cells
 from bezstab.show.style import ACCENT, COLOURS, styled
 from bezstab.stability import region, useful_window

@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from bezstab.engines import DRIVE_METHODS
-from bezstab.show.columns import Row
+from bezstab.show.fields import Row
 from bezstab.show.row_kinds import HELD
+from bezstab.show.words import seconds_words
 
 if TYPE_CHECKING:
     from bezstab.questions import HeldAnswer
@@ -27,14 +28,10 @@ def timing_words(timing: Timing, h: float) -> str:
     """Return how a controller works in words: the torque is computed every 8 ms and applied 2 ms late."""
     words = "The torque is computed in every step"
     if timing.every > 1:
-        words = f"The torque is computed every {timing.every} steps ({_milliseconds(timing.every * h)})"
+        words = f"The torque is computed every {timing.every} steps ({seconds_words(timing.every * h)})"
     if timing.late:
         late = float(timing.late)
-        words += f" and applied {late:g} step{'s' * (late > 1)} ({_milliseconds(late * h)}) late"
+        words += f" and applied {late:g} step{'s' * (late > 1)} ({seconds_words(late * h)}) late"
     if timing.filter_steps:
-        words += f", with the velocity filtered over {_milliseconds(float(timing.filter_steps) * h)}"
+        words += f", with the velocity filtered over {seconds_words(float(timing.filter_steps) * h)}"
     return f"{words}."
-
-
-def _milliseconds(seconds: float) -> str:
-    return f"{1e3 * seconds:.4g} ms"

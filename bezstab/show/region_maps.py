@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bezstab.show.columns import Row
-from bezstab.show.fields import cells
+from bezstab.show.fields import Row, cells
 from bezstab.show.row_kinds import ACCURACY
 from bezstab.show.rows import region_row
 from bezstab.stability import ComplexArray, Region
@@ -77,8 +76,8 @@ def _seconds(question: MapQuestion) -> float | None:
 def map_rows(answer: MapAnswer) -> list[Row]:
     """Return a row for the stable region, or for it at each speed of the scene, and one for each level below 1."""
     stable, *faster = [region_row(each) for each in answer.regions]
-    if answer.forced:
-        forced = cells(ACCURACY, answer.forced)
+    if answer.question.motion:
+        forced = cells(ACCURACY, answer)
         return [{**row, **forced} for row in (stable, *faster)]
     if not answer.moving:
         return [stable, *faster]

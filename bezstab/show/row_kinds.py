@@ -32,20 +32,12 @@ from bezstab.show.fields import Field, RowKind, integer, number, text, truth
 from bezstab.show.sentences import (
     answer_sentence,
     chain_sentence,
-    check_sentence,
-    cost_sentence,
-    engine_sentence,
-    finding_sentence,
-    forced_sentence,
-    front_sentence,
     held_sentence,
     measurement_sentence,
-    member_sentence,
     method_sentence,
     region_sentence,
     run_sentence,
     step_sentence,
-    summary_sentence,
     verdict_map_sentence,
     whole_method_sentence,
     witness_sentence,
@@ -350,7 +342,7 @@ MOVING = (
     ),
 )
 ACCURACY = (
-    OMEGA_H.of("motion.omega_h"),
+    OMEGA_H.of("question.motion.omega_h"),
     number(
         "accurate_alpha_hat",
         "Where the goal accurate chooses to be, in alpha_hat",
@@ -669,19 +661,24 @@ LISTED_METHODS = RowKind(
 )
 NAMED_METHODS = RowKind(
     "a method that was named",
-    fields=(
-        *LISTED_METHODS.fields[:-1],
-        text("recursion", "The method's recursion"),
-        text("mapping", "The method's mapping from s to z"),
-        text("characteristic_polynomial", "Polynomial in z whose roots are the poles"),
-        text(
-            "steady_error",
-            "What the method forces on a constraint that moves as e^(i omega t), as a share of that motion: "
-            "the first term in theta = i omega h where alpha_hat and beta_hat are held",
-        ),
-        text("steady_velocity_error", "The same of the velocity, as a share of that of the motion"),
-        ORDER_LEFT,
-        *REGIONS.fields[1:],
+    fields=tuple(
+        field.shown(
+            field.key.replace("_", " "), text=unbounded_text(field.key, ".10g" if field.kind == "number" else "")
+        )
+        for field in (
+            *LISTED_METHODS.fields[:-1],
+            text("recursion", "The method's recursion"),
+            text("mapping", "The method's mapping from s to z"),
+            text("characteristic_polynomial", "Polynomial in z whose roots are the poles"),
+            text(
+                "steady_error",
+                "What the method forces on a constraint that moves as e^(i omega t), as a share of that motion: "
+                "the first term in theta = i omega h where alpha_hat and beta_hat are held",
+            ),
+            text("steady_velocity_error", "The same of the velocity, as a share of that of the motion"),
+            ORDER_LEFT,
+            *REGIONS.fields[1:],
+        )
     ),
     sentence=whole_method_sentence,
 )
@@ -697,12 +694,17 @@ MEMBERS = RowKind(
         ORDER.shown("order of accuracy"),
         ERROR_CONSTANT.shown("error constant", ".6f"),
     ),
-    sentence=member_sentence,
 )
 CHAINS = RowKind(
     "a chain of bodies in an engine that sweeps",
     fields=(
-        number("chain_mass_ratio", "Mass of the last body of the chain over that of each other", "last mass", "g"),
+        number(
+            "chain_mass_ratio",
+            "Mass of the last body of the chain over that of each other",
+            "last mass",
+            "g",
+            path="mass_ratio",
+        ),
         integer("chain_bodies", "Bodies of the chain, the first held by the world", "bodies"),
         SWEPT_ITERATIONS,
         SWEPT_Z_ABS,
@@ -861,7 +863,6 @@ ENGINES_LISTED = RowKind(
         text("swept_excludes", "What is left out of how it sweeps", null=NO_SWEEPS, path="sweeping.excludes"),
     ),
     sometimes=("method",),
-    sentence=engine_sentence,
 )
 SIMULATIONS = RowKind(
     "a run",
@@ -1019,7 +1020,6 @@ SUMMARIES = RowKind(
             "on the wrong side of one: at rest, law, exact",
         ),
     ),
-    sentence=summary_sentence,
 )
 VERDICT_MAPS = RowKind(
     "a map of simulated verdicts",
@@ -1096,7 +1096,6 @@ FORCED = RowKind(
         OBSERVED_ORDER,
         REASON.shown("not compared"),
     ),
-    sentence=forced_sentence,
 )
 WITNESSED = RowKind(
     "a run of an engine that is not ours",
@@ -1196,7 +1195,6 @@ SWEPT = RowKind(
         FAILURE,
     ),
     sometimes=("z_abs",),
-    sentence=cost_sentence,
 )
 FRONTS = RowKind(
     "the least error that a method can force with |z_p| at most so large",
@@ -1218,7 +1216,6 @@ FRONTS = RowKind(
             ".2e",
         ),
     ),
-    sentence=front_sentence,
 )
 EXTREMES = RowKind(
     "a check",
@@ -1229,7 +1226,6 @@ EXTREMES = RowKind(
         text("seen", "What came out", "seen"),
         truth("held", "Whether what came out is what was expected", "held", form="NO"),
     ),
-    sentence=check_sentence,
 )
 CLAIMS = RowKind(
     "a claim of the paper",
@@ -1245,7 +1241,6 @@ CLAIMS = RowKind(
             values_of=("paper.findings.Agreement",),
         ),
     ),
-    sentence=finding_sentence,
 )
 _APPLIED, KP, KP_MAX, KD, INERTIA, KD_MAX, _ = DRIVE
 HELD = RowKind(

@@ -13,15 +13,16 @@ from bezstab.engines import witness_of
 from bezstab.errors import InputError
 from bezstab.methods import Method, evaluations, implicit, steps
 from bezstab.show.cells import LIMITS
-from bezstab.show.columns import Row, Value
-from bezstab.show.fields import cells
+from bezstab.show.fields import Row, Value, cells
 from bezstab.show.row_kinds import (
+    CHAINS,
     ENGINES_LISTED,
     FORCED,
     FRONTS,
     LIKE_POINT,
     LISTED_METHODS,
     MEMBERS,
+    METHOD,
     POLE,
     REGIONS,
 )
@@ -29,9 +30,6 @@ from bezstab.units import alpha_and_beta
 
 EXCLUDED_SHOWN = 5
 """Methods that do not fit and are shown where people read, the nearest; rows for programs have all."""
-
-NOT_KNOWN = "not known"
-"""How the reason begins where the search for a best point failed."""
 
 if TYPE_CHECKING:  # so that a small row does not load what makes the large ones
     from bezstab.engines import Engine
@@ -63,8 +61,8 @@ def method_row(method: Method, name: str = "", group: str | None = None) -> Row:
         "steps": steps(method),
         "evaluations": evaluations(method),
         "order": order,
-        "error_constant": float(constant),
-        "error_constant_exact": str(constant) if method.digits is None else None,
+        "error_constant": constant,
+        "error_constant_exact": constant if method.digits is None else None,
         "implicit": implicit(method),
         "order_position_forces": by_force.position[0],
         "order_velocity_forces": by_force.velocity[0],
@@ -72,12 +70,11 @@ def method_row(method: Method, name: str = "", group: str | None = None) -> Row:
     return cells(LISTED_METHODS.fields if group else LISTED_METHODS.fields[:-1], method, found)
 
 
-def formula_row(method: Method, latex: bool = False) -> Row:
-    """Return one method's recursion, s->z mapping, characteristic polynomial (paper Tables 1 and 2), steady errors.
+def whole_row(answer: RegionAnswer, *, latex: bool) -> Row:
+    """Return all that is known of one method: method_row, its formulas (as text or LaTeX), and region_row.
 
-    As text. `steady_error` is that of constraints, `steady_velocity_error` that of their velocities, each as a share of
-    the motion's; `order_left` the order of constraint errors where alpha_hat and beta_hat are held, at most the
-    method's own.
+    They are the recursion, s->z mapping, characteristic polynomial (paper Tables 1 and 2) and steady errors.
+    NumericalError as `region_row`.
     """
     from bezstab.methods import (  # loads sympy
         characteristic_text,
@@ -87,24 +84,17 @@ def formula_row(method: Method, latex: bool = False) -> Row:
     )
     from bezstab.stability import order_left
 
+    method = answer.region.method
     return {
-        "method": method.name,
+        **method_row(method),
         "recursion": recursion_text(method, latex),
         "mapping": mapping_text(method, latex),
         "characteristic_polynomial": characteristic_text(method, latex),
         "steady_error": steady_error_text(method, "x", latex),
         "steady_velocity_error": steady_error_text(method, "v", latex),
         "order_left": order_left(method),
+        **region_row(answer),
     }
-
-
-def whole_row(answer: RegionAnswer, *, latex: bool) -> Row:
-    """Return all that is known of one method: method_row, formula_row (as text or LaTeX) and region_row.
-
-    NumericalError as `region_row`.
-    """
-    method = answer.region.method
-    return {**method_row(method), **formula_row(method, latex), **region_row(answer)}
 
 
 def region_row(answer: RegionAnswer) -> Row:
@@ -116,7 +106,7 @@ def region_row(answer: RegionAnswer) -> Row:
     from bezstab.show.best_point_text import best_point_words
 
     region, inside = answer.region, answer.inside
-    reason = None if inside else f"{NOT_KNOWN}: {answer.trouble}" if answer.trouble else _nowhere(answer)
+    reason = None if inside else f"not known: {answer.trouble}" if answer.trouble else _nowhere(answer)
     where = best_point_words(inside) if inside else reason
     return REGIONS.row(answer, approached=_approached(region), best_where=where, best_reason=reason)
 
@@ -143,8 +133,8 @@ def _nowhere(answer: RegionAnswer) -> str | None:
 
 def limit_row(limit: Limit) -> Row:
     """Return the row of the Bezier family's limit, of order two, which has no number of steps."""
-    found = {key: getattr(limit, key) for key in ("area", "alpha_hat_max", "beta_hat_max")}
-    return MEMBERS.row(limit, steps=None, method="B∞", order=2, **found)
+    extent = {"alpha_hat_max": limit.alpha_hat_max, "beta_hat_max": limit.beta_hat_max}
+    return MEMBERS.row(limit, steps=None, method="B∞", order=2, area=limit.area, **extent)
 
 
 def forced_rows(scene: str, pair: HalvedStep) -> list[Row]:
@@ -187,7 +177,7 @@ def nearest_rows(likenesses: Sequence[Row]) -> list[Row]:
 
 def like_point_row(column: str, point: LikePoint, h: float | None) -> Row:
     """Return a point at which a method has the pole in a column of a log, with h (s) in 1/s too."""
-    return {"column": column, "method": point.method.name, **cells(LIKE_POINT, point, _in_seconds(point, h))}
+    return {"column": column, **cells((METHOD, *LIKE_POINT), point, _in_seconds(point, h))}
 
 
 def front_row(point: FrontPoint, h: float | None) -> Row:
@@ -205,15 +195,10 @@ def chain_rows(engine: Engine, found: ChainMap) -> list[Row]:
     """Return a row for each number of bodies of a map, with the engine's own number of sweeps."""
     assert engine.sweeping
     own = engine.sweeping.iterations
+    of_bodies = enumerate(zip(found.z_abs[:, own - 1], found.stable_iterations, strict=True), start=1)
     return [
-        {
-            "chain_mass_ratio": found.mass_ratio,
-            "chain_bodies": bodies,
-            "swept_iterations": own,
-            "swept_z_abs": float(found.z_abs[bodies - 1, own - 1]),
-            "stable_iterations": fewest,
-        }
-        for bodies, fewest in enumerate(found.stable_iterations, start=1)
+        CHAINS.row(found, chain_bodies=bodies, swept_iterations=own, swept_z_abs=z_abs, stable_iterations=fewest)
+        for bodies, (z_abs, fewest) in of_bodies
     ]
 
 

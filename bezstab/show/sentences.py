@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from bezstab.show.cells import diverged_text, order_text, safe_step_text, step_limit
-from bezstab.show.columns import Row, Value, formatted
-from bezstab.show.words import change_words, growth_words, safety_words, seconds_words, sweeps_words
+from bezstab.show.cells import order_text, safe_step_text, step_limit
+from bezstab.show.fields import Row, formatted
+from bezstab.show.words import change_words, counted, growth_words, safety_words, seconds_words
 
 if TYPE_CHECKING:
     from bezstab.engines import Point
@@ -42,13 +42,6 @@ def step_sentence(row: Row) -> str:
     if limit == "none":
         return "Not safe at small steps."
     return "Safe at any h." if limit == "unlimited" else f"Safe up to h = {limit} s."
-
-
-def engine_sentence(row: Row) -> str:
-    """Return what to write for the point, or what the engine calls the feedback where none is given."""
-    if row["setting"] is None:
-        return f"In {row['engine']} the feedback is set by {row['parameters']}."
-    return f"At this point: {row['setting']}."
 
 
 CAUSES = {
@@ -98,14 +91,10 @@ def _changes(row: Row) -> list[str]:
         end = "on" if kd_max is None else f"to {kd_max:.3g}"
         changes.append(f"kd from {kd_min:.3g} {end}")
     if row["every_max"] is not None:
-        changes.append(f"a torque every {_steps(row['every_max'])}")
+        changes.append("a torque every step" if row["every_max"] == 1 else f"a torque every {row['every_max']} steps")
     if row["late_max"] is not None:
-        changes.append(f"at most {_steps(row['late_max'])} late")
+        changes.append(f"at most {counted(row['late_max'], 'step')} late")
     return changes
-
-
-def _steps(number: Value) -> str:
-    return "step" if number == 1 else f"{number} steps"
 
 
 def one_pole_sentence(row: Row) -> str:
@@ -128,9 +117,9 @@ def region_sentence(row: Row) -> str:
 def method_sentence(row: Row) -> str:
     """Return what a method is: explicit or not, its order, what a step of it costs."""
     kind = "implicit" if row["implicit"] else "explicit"
-    count = "1 evaluation" if row["evaluations"] == 1 else f"{row['evaluations']} evaluations"
     each = "iteration" if row["implicit"] else "step"
-    return f"{row['method']} is {kind}, of order {order_text(row)}, with {count} in each {each}."
+    cost = counted(row["evaluations"], "evaluation")
+    return f"{row['method']} is {kind}, of order {order_text(row)}, with {cost} in each {each}."
 
 
 def whole_method_sentence(row: Row) -> str:
@@ -139,30 +128,10 @@ def whole_method_sentence(row: Row) -> str:
     return f"{method_sentence(row)} With α̂ and β̂ held as h shrinks, constraint errors {left}."
 
 
-def member_sentence(row: Row) -> str:
-    """Return how large a member's region is, and how fast errors can shrink in it."""
-    if row["area"] is None or row["best_z_abs"] is None:
-        return f"{row['method']} is stable nowhere."
-    return f"{row['method']} has a region of area {row['area']:.3g} and a least |z_p| of {row['best_z_abs']:.3g}."
-
-
 def run_sentence(row: Row) -> str:
     """Return how long a run of a mechanism went well, and how far it stayed from its constraints."""
     how = "broke down after" if row["failure"] else "went through to"
     return f"{row['method']} {how} {seconds_words(row['time'])}; the largest |c| is {formatted(row['c_max'], '.1e')}."
-
-
-def cost_sentence(row: Row) -> str:
-    """Return what one run costs and what it buys."""
-    with_step = f"{row['method']} with h = {seconds_words(row['h'])}"
-    if row["failure"]:
-        return f"{with_step} diverged."
-    return f"{with_step}: a trajectory error of {diverged_text(row)} for {row['run_evaluations']} evaluations."
-
-
-def check_sentence(row: Row) -> str:
-    """Return whether what was expected came out."""
-    return "As expected." if row["held"] else "NOT as expected."
 
 
 def measurement_sentence(row: Row) -> str:
@@ -176,11 +145,6 @@ def measurement_sentence(row: Row) -> str:
     return f"Predicted |z| {predicted}, measured {measured}: {ends[agree]}."
 
 
-def summary_sentence(row: Row) -> str:
-    """Return at how many points the poles could be measured, and how many verdicts were wrong."""
-    return f"{row['method']}: {row['measured']} of {row['points']} points measured, {row['wrong']} wrong verdicts."
-
-
 def verdict_map_sentence(row: Row) -> str:
     """Return how many runs gave a verdict, how many of these are as predicted, and how many others must not differ."""
     if not row["judged_runs"]:
@@ -189,39 +153,20 @@ def verdict_map_sentence(row: Row) -> str:
     return f"{row['method']}: {given}; {row['disagreeing']} that are not too close to call differ."
 
 
-def forced_sentence(row: Row) -> str:
-    """Return what was measured of a run, over what was predicted."""
-    at = f"{row['method']} at {row['gain_share']:g} of the gains, steps of {row['h']:g} s"
-    if row["reason"]:
-        return f"{at}: not compared: {row['reason']}."
-    return f"{at}: |c| is {formatted(row['quotient'], '.3f')} times what was predicted."
-
-
 def witness_sentence(row: Row) -> str:
     """Return what the other engine did against what was predicted."""
     as_predicted = "as" if row["measured_verdict"] == row["predicted_verdict"] else "NOT as"
     return f"MuJoCo's {row['integrator']}: {row['measured_verdict']}, {as_predicted} predicted."
 
 
-def front_sentence(row: Row) -> str:
-    """Return how little a method can force while errors decay so fast."""
-    error, z_abs = formatted(row["combined_error"], ".1e"), formatted(row["z_abs_below"], ".4g")
-    return f"With |z_p| of {z_abs} at most {row['method']} forces {error} of the motion at least."
-
-
-def finding_sentence(row: Row) -> str:
-    """Return whether a claim is confirmed."""
-    return f"{row['agreement'].capitalize()}."
-
-
 def chain_sentence(row: Row) -> str:
     """Return from how many sweeps a chain is stable, and what a step does with the engine's own number of them."""
     z_abs, stable = row["swept_z_abs"], row["stable_iterations"]
-    enough = "with no number that was tried" if stable is None else f"from {sweeps_words(stable)}"
-    count = "1 body" if row["chain_bodies"] == 1 else f"{row['chain_bodies']} bodies"
-    bodies = count if row["chain_mass_ratio"] == 1 else f"{count}, the last {row['chain_mass_ratio']:g} times as heavy"
-    own = sweeps_words(row["swept_iterations"])
-    return f"{bodies}: stable {enough}. With {own} each step multiplies the error by {z_abs:.4f}."
+    enough = "with no number that was tried" if stable is None else f"from {counted(stable, 'sweep')}"
+    heavier = "" if row["chain_mass_ratio"] == 1 else f", the last {row['chain_mass_ratio']:g} times as heavy"
+    own = counted(row["swept_iterations"], "sweep")
+    bodies = counted(row["chain_bodies"], "body", "bodies")
+    return f"{bodies}{heavier}: stable {enough}. With {own} each step multiplies the error by {z_abs:.4f}."
 
 
 def likeness_sentence(like: Sequence[Likeness], point: Point) -> str:

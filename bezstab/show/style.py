@@ -8,6 +8,7 @@ from typing import Any, BinaryIO, TypeVar
 import numpy as np
 from matplotlib import style
 from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
 from matplotlib.legend import Legend
@@ -78,7 +79,9 @@ def styled() -> AbstractContextManager[None]:
 
 def column_figure(height: float = 1.0) -> Figure:
     """Return an empty figure of column width, its height in column widths."""
-    return Figure(figsize=(COLUMN_WIDTH, height * COLUMN_WIDTH), layout="constrained")
+    figure = Figure(figsize=(COLUMN_WIDTH, height * COLUMN_WIDTH), layout="constrained")
+    FigureCanvasAgg(figure)  # which remembers the sizes of texts, while legends are tried
+    return figure
 
 
 def new_axes(title: str, xlabel: str, ylabel: str, height: float = 1.0) -> tuple[Figure, Axes]:

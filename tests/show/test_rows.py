@@ -30,6 +30,7 @@ from bezstab.show import (
 from bezstab.show.answer_rows import pole_rows
 from bezstab.show.arrays import map_arrays, untimed_arrays, write_arrays
 from bezstab.show.cells import LIMITS, filled, pole_text, safe_step_text, stable_steps_text, with_unbounded
+from bezstab.show.row_kinds import Z_ABS
 from bezstab.show.rows import region_row
 from bezstab.show.schemas import _row_schema
 
@@ -86,7 +87,7 @@ def test_json_and_csv_keep_every_digit_and_text_rounds() -> None:
         "NO",
         "-",
     ]
-    infinite = [{**ROWS[0], "z_abs": math.inf}]
+    infinite = [{**ROWS[0], **cells((Z_ABS,), SimpleNamespace(pole=complex(math.inf)))}]
     assert json.loads(render(infinite, COLUMNS, "json")) == [{**ROWS[0], "z_abs": None}]
     assert " -  " in render(infinite, COLUMNS, "text")
 
