@@ -49,7 +49,6 @@ from bezstab.evidence.pareto import pareto_front
 from bezstab.evidence.probed_poles import (
     Likeness,
     LikePoint,
-    Probe,
     ProbedPole,
     kicked_responses,
     likenesses,

@@ -60,10 +60,10 @@ class Field:
     """One value of a row: its key in JSON and CSV, its meaning and kind, where it is from, and how a table shows it.
 
     A table shows it in a column below `heading`, unless that is empty, in the format `form`, or as the `text` made of
-    the row. `unit` is "" where it has none. `null` says when there is no value, "" for never. `values_of` names types
-    that list all that a text can be, such as "evidence.MovingVerdict". `path` leads to it in the result by attributes
-    and places, such as "margins.alpha.0", or "t.-1" for the last time. By default it is the attribute that has the
-    key's name.
+    the row. `unit` is "" where it has none. `null` says when there is no value, "" for never. `values_of` names the
+    types that list all that a text can be, such as "evidence.MovingVerdict", with a space between two. `path` leads to
+    it in the result by attributes and places, such as "margins.alpha.0", or "t.-1" for the last time. By default it is
+    the attribute that has the key's name.
     """
 
     key: str
@@ -74,7 +74,7 @@ class Field:
     text: Text | None = None
     unit: str = ""
     null: str = ""
-    values_of: tuple[str, ...] = ()
+    values_of: str = ""
     path: str = ""
 
     @property
@@ -86,7 +86,7 @@ class Field:
     @property
     def values(self) -> tuple[str, ...]:
         """All that a text can be, where there are few; loads what has the types that say so."""
-        named = [name.rpartition(".") for name in self.values_of]
+        named = [name.rpartition(".") for name in self.values_of.split()]
         types = [getattr(import_module(f"bezstab.{module}"), name) for module, _, name in named]
         return tuple(dict.fromkeys(value for each in types for value in get_args(each)))
 
