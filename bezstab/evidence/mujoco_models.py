@@ -146,7 +146,7 @@ def read_mujoco_model(path: Path) -> ModelData:
     try:
         with path.open("rb"):  # for the system's own words on why not
             pass
-        with _silent(mujoco):
+        with silent(mujoco):
             return model_data(mujoco, mujoco.MjModel.from_xml_path(str(path)))
     except OSError as error:
         raise InputError(f"MuJoCo model {path}: {error.strerror}") from None
@@ -155,7 +155,7 @@ def read_mujoco_model(path: Path) -> ModelData:
 
 
 @contextmanager
-def _silent(mujoco: types.ModuleType) -> Iterator[None]:
+def silent(mujoco: types.ModuleType) -> Iterator[None]:
     """Keep MuJoCo from printing its warnings, and from writing them into a file of the current directory."""
     mujoco.set_mju_user_warning(lambda _: None)
     try:
