@@ -178,7 +178,7 @@ class _Sum:
         best = cls.of(samples, z)
         for _ in range(ITERATIONS):
             change = -np.linalg.lstsq(best.slopes, best.left_over.ravel(), rcond=None)[0]
-            following = cls.of(samples, _moved(best.z, change))
+            following = cls.of(samples, _moved(best.z, np.asarray(change)))
             gained = best.squares - following.squares
             if gained > 0:
                 best = following
@@ -249,7 +249,7 @@ def _signal_vectors(samples: FloatArray) -> FloatArray:
 def _shifting_poles(vectors: FloatArray) -> ComplexArray:
     """Return poles that nearly fit: they multiply sums of powers shifted by a row."""
     z = np.linalg.eigvals(np.linalg.lstsq(vectors[:-1], vectors[1:], rcond=None)[0])
-    return np.where(np.abs(z) < NEGLIGIBLE, NEGLIGIBLE, z).astype(complex)
+    return np.asarray(np.where(np.abs(z) < NEGLIGIBLE, NEGLIGIBLE, z), complex)
 
 
 def _moved(z: ComplexArray, change: ComplexArray | FloatArray) -> ComplexArray:
