@@ -142,33 +142,6 @@ class LikePoint:
         return f"LikePoint({self.method.name}: alpha_hat = {self.alpha_hat:.6g}, beta_hat = {self.beta_hat:.6g})"
 
 
-@dataclass(frozen=True, repr=False)
-class Probe:
-    """What a log says: the pole, and what was asked of it besides.
-
-    `likenesses` say how far each method's pole is from it at the point that was given, the nearest first; `points` are
-    those at which the methods that were named without a point have it. Either is empty if it was not asked for.
-    """
-
-    found: ProbedPole
-    likenesses: tuple[Likeness, ...]
-    points: tuple[LikePoint, ...]
-
-    def __repr__(self) -> str:
-        answers = f"{len(self.likenesses)} likenesses, {len(self.points)} points"
-        return f"Probe({self.found!r}, {answers})"
-
-    @property
-    def pole(self) -> complex | None:
-        """The dominant pole per row, None if none is claimed."""
-        return self.found.pole
-
-    @property
-    def fitting(self) -> tuple[str, ...]:
-        """The names of the methods that fit, the nearest first."""
-        return tuple(one.method.name for one in self.likenesses if one.fits)
-
-
 def probed_pole(c: ArrayLike, minus: ArrayLike | None = None, differenced: bool = False) -> ProbedPole:
     """Return the dominant pole in samples of an error at equal distances in time, dimensionless, per sample.
 

@@ -107,7 +107,7 @@ def array_steps(mechanism: Mechanism, names: tuple[str, ...]) -> TakeSteps:
     take_steps = read(own)
 
     def taken(rows: Rows, steps: Steps, *others: Any) -> tuple[int, float, float]:
-        listed = in_lists(steps)._replace(gains=steps.gains)
+        listed = in_lists(steps)._replace(times=steps.times, gains=steps.gains)
         return take_steps(in_lists(rows), listed, *others)
 
     return taken

@@ -19,12 +19,13 @@ from bezstab.mechanism.second_order_memory import check_after_step, memory
 from bezstab.mechanism.start import initial_state
 from bezstab.mechanism.stepping import BLOWN_UP, EVALUATIONS, ITERATIONS, PROJECTIONS
 from bezstab.methods import (
-    STEP_FAMILIES,
     Method,
     SecondOrder,
     adams_bashforth,
+    bezier,
     evaluations,
     implicit,
+    is_bezier,
     lookup,
     second_order_form,
 )
@@ -400,8 +401,7 @@ def _starters(method: Method, start: Start) -> list[tuple[Method, int]]:
     if needed == 0:
         return []
     if start == "ramp":
-        named = {family.name: family.make for family in STEP_FAMILIES.values()}
-        make = named.get(method.family.name if method.family else "", adams_bashforth)
+        make = bezier if is_bezier(method.scheme) else adams_bashforth
         return [(lookup(f"bdf{n}") if implicit(method) else make(n), 1) for n in range(1, needed + 1)]
     explicit_one, implicit_one = {"rk4": ("RK4", "gauss4"), "euler": ("RK1", "implicit-euler")}[start]
     return [(lookup(implicit_one if implicit(method) else explicit_one), needed)]

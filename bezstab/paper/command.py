@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import click
 
 from bezstab.cli.options import command, option
-from bezstab.cli.output import Files, chosen_format, for_reading, progress, show_blocks, show_rows, write_file
+from bezstab.cli.output import Files, for_reading, progress, show_rows, write_file
 from bezstab.files import output_directory
 from bezstab.paper.printed import PARTS
 
@@ -71,8 +71,4 @@ def show_findings(findings: "list[Finding]") -> None:
     from bezstab.paper.ledger import finding_rows
     from bezstab.show import CLAIMS
 
-    rows = finding_rows(findings)
-    if chosen_format() == "text":
-        show_blocks(rows, CLAIMS.columns(rows), CLAIMS.sentence)
-    else:
-        show_rows(CLAIMS, rows)
+    show_rows(CLAIMS, finding_rows(findings), in_blocks=True)

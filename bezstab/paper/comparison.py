@@ -17,7 +17,7 @@ from bezstab.paper.printed import COMPARED, TABLE_5, PrintedCase, PrintedPole
 from bezstab.paper.reports import Progress, Report, captioned_table
 from bezstab.rationals import exact
 from bezstab.show import (
-    Column,
+    Field,
     Row,
     column,
     column_figure,
@@ -41,7 +41,7 @@ PRINTED_POLES = [
     column("α̂", "alpha_hat", "g"),
     column("β̂", "beta_hat", "g"),
     column("method", "method"),
-    Column("dominant pole", pole_text),
+    Field("z_real", "", "dominant pole", text=pole_text),
     column("|z_p|", "z_abs", ".4f"),
     column("∠z_p (deg)", "z_angle_deg", ".3f"),
     column("as printed (*: not ours)", "printed"),

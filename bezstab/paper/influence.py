@@ -13,7 +13,7 @@ from bezstab.paper.experiments import STEP, Experiment, experiment
 from bezstab.paper.findings import Finding, finding
 from bezstab.paper.printed import FASTER_LEVEL, TABLE_5
 from bezstab.paper.reports import Progress, Report, captioned_table
-from bezstab.show import Column, Row, column, column_figure, line_at, pole_cells, pole_text, styled
+from bezstab.show import Field, Row, column, column_figure, line_at, pole_cells, pole_text, styled
 from bezstab.stability import FloatArray, poles
 
 KICK = 1e-3  # m: Table 4 is about decay and growth, so there must be something that decays or grows
@@ -49,7 +49,7 @@ BEHAVIOURS = [
     column("described as", "described"),
     column("α̂", "alpha_hat", "g"),
     column("β̂", "beta_hat", "g"),
-    Column("dominant pole", pole_text),
+    Field("z_real", "", "dominant pole", text=pole_text),
     column("|z_p|", "z_abs", ".4f"),
     column("∠z_p (deg)", "z_angle_deg", ".2f"),
     column("seen: |z|", "rate", ".4f"),

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from bezstab.paper.experiments import Experiment
 from bezstab.paper.findings import Finding
-from bezstab.show import Column, Row, render
+from bezstab.show import Field, Row, render
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -29,6 +29,6 @@ class Report:
     aside: str = ""
 
 
-def captioned_table(caption: str, rows: Sequence[Row], columns: Sequence[Column]) -> str:
+def captioned_table(caption: str, rows: Sequence[Row], columns: Sequence[Field]) -> str:
     """Return a table as Markdown below its caption."""
     return f"{caption}\n\n{render(rows, columns, 'markdown')}\n"
