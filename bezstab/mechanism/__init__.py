@@ -21,7 +21,6 @@ from bezstab.mechanism.runner import (
     Trajectory,
     march,
     resume,
-    resume_in_groups,
     simulate,
     states_needed,
 )

@@ -121,9 +121,7 @@ class TradeQuestion:
         """The runs to make: of each method with each treatment."""
         rate, of_all = self.rate, (self.moving, self.step_sizes, float(self.duration))
         reference = self.reference
-        compiled = all(
-            sweep_compiled(self.moving, self.methods, *of_all[1:], self.repeats, after) for _, after in self.treatments
-        )
+        compiled = sweep_compiled(self.methods, self.step_sizes, float(self.duration), self.repeats)
         return [
             Sweep(method, *of_all, point, self.physical, self.repeats, reference, rate, compiled, after)
             for method in dict.fromkeys(self.methods)
