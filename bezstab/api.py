@@ -24,10 +24,10 @@ from bezstab.engines import Drive, engine_and_values, engine_named
 from bezstab.errors import InputError, shown
 from bezstab.goals import Goal
 from bezstab.mechanism import Scene, Simulation
-from bezstab.methods import REGISTRY, Method, Verdict, lookup
+from bezstab.methods import Method, Verdict, lookup
 from bezstab.rationals import exact, rational, within_float64
 from bezstab.stabilising import Stabilise
-from bezstab.units import to_dimensionless
+from bezstab.units import check_step, to_dimensionless
 
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -482,10 +482,11 @@ def verify(
     InputError for a scene that cannot start, and unless the points are given in one of the two ways.
     Source: opposite kicks and linear prediction (Prony).
     """
-    points = np.broadcast_arrays(*_plane_arrays({**point, "h": h}))
-    asked = _method(method)
-    question = questions.VerifyQuestion(scene=_scene(scene), methods=(asked,), h=_real(h, "h"), point=points)
-    return question.measurements(asked)
+    alpha_hat, beta_hat = np.broadcast_arrays(*_plane_arrays({**point, "h": h}))
+    step = _real(h, "h")
+    check_step(step)
+    kicked = mechanism.compiled_mechanism(_scene(scene))
+    return evidence.measure_poles(kicked, _method(method), step, alpha_hat.ravel(), beta_hat.ravel())
 
 
 @_spelled_out
@@ -498,7 +499,7 @@ def probe(
     every: int = 1,
     turning: float | None = None,
     **point: Unpack[PointAtStep[Number]],
-) -> evidence.Probe:
+) -> questions.Probe:
     """Return the dominant pole in samples of a decaying error, and which integrator could have made them.
 
     c: samples of one constraint error in any unit, shape (samples,), or (samples, responses) of one
@@ -517,22 +518,20 @@ def probe(
 
     InputError unless point, shapes and h fit together. Source: linear prediction (Prony).
     """
-    h = point.get("h")
-    given = _plane_point(point) if point.keys() - {"h"} else None
-    if turning is not None and h is None:
-        raise InputError("turning in 1/s needs the step h in s")
-    turned = None if turning is None or h is None else _real(turning, "turning") * float(_exact(h, "h"))
-    c = stability.real_array(c, "c")
-    minus = None if minus is None else stability.real_array(minus, "minus")
     if methods is not None and (isinstance(methods, str | Method) or not isinstance(methods, Iterable)):
         raise InputError(f"methods = {shown(methods)}: expected a list of methods")
-    found = evidence.probed_pole(c, minus, differenced)
-    if given is None:
-        named = [_method(name) for name in methods or ()]
-        points = [one for own in named for one in evidence.points_like(found, own, every)]
-        return evidence.Probe(found, (), tuple(points))
-    compared = {_method(name): every for name in (REGISTRY if methods is None else methods)}
-    return evidence.Probe(found, tuple(evidence.likenesses(found, compared, *given, turned)), ())
+    h = _exact_if_given(point.get("h"), "h")
+    with _in_keywords():
+        question = questions.PoleQuestion(
+            point=_plane_point(point) if point.keys() - {"h"} else None,
+            methods=tuple(map(_method, methods or ())),
+            every=every,
+            h=None if h is None else float(h),
+            turning=_exact_if_given(turning, "turning"),
+        )
+    c = stability.real_array(c, "c")
+    minus = None if minus is None else stability.real_array(minus, "minus")
+    return questions.Probe(question, "c", evidence.probed_pole(c, minus, differenced))
 
 
 @_spelled_out
@@ -546,7 +545,7 @@ def probe_step(
     methods: Sequence[str | Method] | None = None,
     turning: float | None = None,
     **point: Unpack[PointAtStep[Number]],
-) -> evidence.Probe:
+) -> questions.Probe:
     """Return what `probe` does, for a simulator of your own: a function that takes a state to the next.
 
     step: a function of an array, the state, that returns the next one. It is called six times `steps`

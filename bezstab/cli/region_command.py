@@ -104,7 +104,7 @@ def _write_map(answer: "MapAnswer", files: Files) -> list[Row]:
         z = np.array(list(progress(answer.dominant_poles(), answer.method.name, len(answer.axes[1]))))
         of_what = "accuracy" if answer.question.motion else answer.question.scene
         path = files.path("region", answer.method.name, of_what)
-        files.write(path, lambda: show.map_figure(answer, z), lambda: show.map_table(answer, z))
+        files.write(path, lambda: show.map_figure(answer, z), lambda: show.map_arrays(answer, z))
     return show.map_rows(answer)
 
 
@@ -113,6 +113,11 @@ def _write_boundaries(question: "MapQuestion", files: Files) -> list[Row]:
     from bezstab import show
 
     regions = [answer.region for answer in question.compared]
+    shown = (question.alpha_range, question.beta_range, question.seconds, question.alpha_beta)
     path = files.path("compare", *(method.name for method in question.methods))
-    files.write(path, lambda: show.compared_figure(question, regions), lambda: show.compared_table(question, regions))
+    files.write(
+        path,
+        lambda: show.comparison_figure(regions, *shown),
+        lambda: show.boundary_arrays(regions, question.seconds),
+    )
     return [region_row(answer) for answer in question.compared]

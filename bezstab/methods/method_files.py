@@ -7,10 +7,11 @@ from bezstab.errors import InputError, shown
 from bezstab.files import read_toml
 from bezstab.methods.algebraic_numbers import DIGITS
 from bezstab.methods.schemes import LinearMultistep, Method, RungeKutta, Scheme
-from bezstab.toml_tables import TomlTable
+from bezstab.toml_tables import TomlTable, a_text, as_it_is, list_of, table_of
 
 EXAMPLE = "x0 + v0 + 1/2 a0"
 EQUATIONS = f"a table of equations like x1 = {EXAMPLE!r}"
+RATIONAL_STRINGS = 'a list of rational strings like "175/108"'
 
 MOST_STAGES = 40  # of a tableau: its exact P takes 3 s
 MOST_STEPS = 100  # of a multistep method: its region takes 20 s
@@ -38,21 +39,23 @@ def _parse_scheme(table: TomlTable, keys: list[str]) -> Scheme:
     """Return the scheme by the table or the pair of keys that the file has; InputError for other keys."""
     from bezstab.methods.recipes import exact_number, recipe  # loads sympy
 
+    row = list_of(lambda text: exact_number(a_text(text)))
     match keys:
         case ["update"]:
-            equations = table.entry("update", lambda value: isinstance(value, dict), EQUATIONS)
+            equations = table.entry("update", table_of(as_it_is), EQUATIONS)
             for result, text in equations.items():
                 if not isinstance(text, str):
                     raise InputError(f"update: {shown(result)} = {shown(text)}: expected a text like {EXAMPLE!r}")
             return recipe(equations)
         case ["rho", "sigma"]:
-            rho, sigma = table.exact_numbers("rho", exact_number), table.exact_numbers("sigma", exact_number)
+            rho, sigma = (tuple(table.entry(key, row, RATIONAL_STRINGS)) for key in keys)
             _refuse_more_than(MOST_STEPS, len(rho) - 1, "steps")
             return LinearMultistep(rho, sigma)
         case ["A", "b"]:
-            tableau, weights = table.exact_rows("A", exact_number), table.exact_numbers("b", exact_number)
+            tableau = table.entry("A", list_of(row), f"a list of rows, each {RATIONAL_STRINGS}")
+            weights = table.entry("b", row, RATIONAL_STRINGS)
             _refuse_more_than(MOST_STAGES, len(weights), "stages")
-            return RungeKutta(tableau, weights)
+            return RungeKutta(tuple(map(tuple, tableau)), tuple(weights))
     found = shown(", ".join(keys) or "none")[1:-1]
     raise InputError(f"expected the keys rho and sigma, or A and b, or the table update, but found {found}")
 

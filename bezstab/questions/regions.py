@@ -154,6 +154,11 @@ class MapQuestion:
         if self.accuracy and low <= 0:
             raise InputError(f"{typed}: the axes of --accuracy are logarithmic, and begin above 0")
 
+    @property
+    def seconds(self) -> float | None:
+        """The step (s) in float64."""
+        return None if self.h is None else float(self.h)
+
     @cached_property
     def motion(self) -> ReferenceMotion | None:
         """The motion on which errors are told; None where they are not asked about. Errors as `motion_of`."""

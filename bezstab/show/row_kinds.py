@@ -115,7 +115,7 @@ PREDICTED_Z_REAL, PREDICTED_Z_IMAG, PREDICTED_Z_ABS, PREDICTED_Z_ANGLE_DEG = pol
 MEASURED_Z_REAL, MEASURED_Z_IMAG, MEASURED_Z_ABS, MEASURED_Z_ANGLE_DEG = pole_fields(
     "measured", "measured in the simulation", null=NOT_MEASURED
 )
-VERDICT = text("verdict", "What errors do, proven on the numbers as typed", "verdict", values_of=("methods.Verdict",))
+VERDICT = text("verdict", "What errors do, proven on the numbers as typed", "verdict", values_of="methods.Verdict")
 SAFE = truth("safe", "Whether every error is proven to shrink; with --scene, on the moving mechanism as well")
 KAPPA = number(
     "kappa",
@@ -211,7 +211,7 @@ TIMES_LEAST_VELOCITY = number(
     null="where errors do not decay, or it is not known, or that point is not",
     path="cost.times_least_velocity",
 )
-ROLE = text("role", "Whether the point was given, or is what to take instead", values_of=("questions.CheckedRole",))
+ROLE = text("role", "Whether the point was given, or is what to take instead", values_of="questions.CheckedRole")
 H_FACTOR = number(
     "h_factor",
     "Factor on h up to which this alpha and beta are stable",
@@ -246,7 +246,7 @@ FACTORIZATIONS = integer(
     "Factorizations of C_q M^-1 C_q^T in the whole run: one for each evaluation, and those of projections",
     "factorizations",
 )
-STABILISE = text("stabilise", "What holds the constraints", "held by", values_of=("stabilising.Stabilise",))
+STABILISE = text("stabilise", "What holds the constraints", "held by", values_of="stabilising.Stabilise")
 C_MAX = number("c_max", "Largest constraint error", "largest |c| (m, rad)", ".3e", unit="m or rad")
 CDOT_MAX = number(
     "cdot_max", "Largest rate of the constraint error", "largest |ċ| (m/s, rad/s)", ".3e", unit="m/s or rad/s"
@@ -270,13 +270,13 @@ PREDICTED_VERDICT = text(
     "predicted_verdict",
     "Verdict predicted for the mechanism at rest",
     "predicted verdict",
-    values_of=("methods.Verdict",),
+    values_of="methods.Verdict",
 )
 MEASURED_VERDICT = text(
     "measured_verdict",
     "Verdict of the simulation",
     "measured verdict",
-    values_of=("evidence.MeasuredVerdict", "evidence.Outcome"),
+    values_of="evidence.MeasuredVerdict evidence.Outcome",
 )
 REASON = text(
     "reason",
@@ -330,7 +330,7 @@ MOVING = (
         "moving_verdict",
         "What errors do on the moving mechanism",
         "moving verdict",
-        values_of=("evidence.MovingVerdict",),
+        values_of="evidence.MovingVerdict",
         path="verdict",
     ),
     number(
@@ -448,7 +448,7 @@ DRIVE = (
         "used up",
         text=used_up_text,
         null="where none has one",
-        values_of=("questions.Gain",),
+        values_of="questions.Gain",
         path="gains.used_up",
     ),
 )
@@ -457,7 +457,7 @@ VARYING = (
         "varying",
         "Whether errors decay for every sequence of steps",
         "varying steps",
-        values_of=("stability.Varying",),
+        values_of="stability.Varying",
     ),
     number("varying_h_min", "Smallest step of such a sequence", unit="s", path="h_min"),
     number("varying_h_max", "Largest step of such a sequence", unit="s", path="h_max"),
@@ -618,7 +618,7 @@ REGIONS = RowKind(
         text(
             "stable_for_all",
             "Whether all alpha_hat, beta_hat > 0 are stable",
-            values_of=("stability.StableForAll",),
+            values_of="stability.StableForAll",
         ),
         number(
             "unconditional_damping_ratio",
@@ -840,7 +840,7 @@ ENGINES_LISTED = RowKind(
             "level",
             "Where the engine's feedback acts",
             "level",
-            values_of=("engines.Level",),
+            values_of="engines.Level",
         ),
         METHOD.shown("method", text=lambda row: row["method"] or "yours"),
         text("parameters", "What the engine calls the feedback's parameters", "parameters"),
@@ -932,7 +932,7 @@ MEASUREMENTS = RowKind(
         text(
             "law_verdict",
             "Verdict predicted by the first-order law of the motion",
-            values_of=("evidence.MovingVerdict",),
+            values_of="evidence.MovingVerdict",
         ),
         number(
             "floquet_z_abs",
@@ -1238,7 +1238,7 @@ CLAIMS = RowKind(
             "agreement",
             "Whether the claim is confirmed",
             "agreement",
-            values_of=("paper.findings.Agreement",),
+            values_of="paper.findings.Agreement",
         ),
     ),
 )
@@ -1301,7 +1301,7 @@ HELD = RowKind(
             "What an unstable drive would be stable without, or which number of a stable one is nearest to its end",
             "used up",
             null="where none has an end",
-            values_of=("questions.UsedUp",),
+            values_of="questions.UsedUp",
             path="used_up",
         ),
     ),

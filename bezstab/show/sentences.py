@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from bezstab.show.cells import order_text, safe_step_text, step_limit
@@ -10,14 +9,7 @@ from bezstab.show.fields import Row, formatted
 from bezstab.show.words import change_words, counted, growth_words, safety_words, seconds_words
 
 if TYPE_CHECKING:
-    from bezstab.engines import Point
-    from bezstab.evidence import Likeness
-
-NAMED = 3
-"""Excluded methods that a sentence names; of more it gives the number and the nearest."""
-
-FASTER = 3.0
-"""Times what is allowed for: so much faster a mechanism may turn than somebody guessed."""
+    pass
 
 
 def answer_sentence(row: Row) -> str:
@@ -167,60 +159,3 @@ def chain_sentence(row: Row) -> str:
     own = counted(row["swept_iterations"], "sweep")
     bodies = counted(row["chain_bodies"], "body", "bodies")
     return f"{bodies}{heavier}: stable {enough}. With {own} each step multiplies the error by {z_abs:.4f}."
-
-
-def likeness_sentence(like: Sequence[Likeness], point: Point) -> str:
-    """Return in words which methods a measured pole fits at a point, the nearest first, and which are excluded."""
-    at = f"({float(point[0]):.6g}, {float(point[1]):.6g})"
-    fitting = [one for one in like if one.fits]
-    excluded = [one for one in like if not one.fits]
-    if not fitting:
-        return _nothing_fits(like[0], at)
-    first = fitting[0]
-    equal = first.same_as.split(", ") if first.same_as else []
-    parts = [f"this behaves like {first.method.name} at {at} to {max(first.distance, first.error):.1g}"]
-    if not first.dominant:
-        parts[0] += ", by a lesser pole of it"
-    if equal:
-        parts.append(f"{_listed(equal)} {'has' if len(equal) == 1 else 'have'} the same poles there")
-    others = [one.method.name for one in fitting[1:] if one.method.name not in equal]
-    if others:
-        parts.append(f"{_listed(others)} {'cannot be told from it' if len(others) == 1 else 'cannot be told apart'}")
-    if excluded:
-        names = [one.method.name for one in excluded]
-        if len(names) <= NAMED:
-            parts.append(f"{_listed(names)} {'is' if len(names) == 1 else 'are'} excluded")
-        else:
-            parts.append(f"{len(names)} others are excluded, the nearest {names[0]}, {excluded[0].distance:.1g} off")
-    return "; ".join(parts) + "."
-
-
-def _nothing_fits(nearest: Likeness, at: str) -> str:
-    """Return in words that nothing fits, or that it cannot be told: where the motion may well be faster than said."""
-    off = f"the nearest is {nearest.method.name}, {nearest.distance:.1g} off where {nearest.allowed:.1g} is allowed"
-    if nearest.distance - nearest.error < FASTER * (nearest.allowed - nearest.error):
-        return (
-            f"what this is at {at} cannot be told: {off}, and it would fit if the mechanism turned up to {FASTER:.0f} "
-            "times as fast as is allowed for (--turning)."
-        )
-    return (
-        f"nothing fits at {at}: {off}. Is α, β or h another, does the mechanism turn much faster (--turning), or are "
-        "there several steps from row to row (--every)?"
-    )
-
-
-def _listed(names: Sequence[str]) -> str:
-    """Return names as 'A', 'A and B' or 'A, B and C'."""
-    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"
-
-
-MOST_LISTED = 20  # times in a message
-
-
-def passages_words(times: Sequence[float]) -> str:
-    """Return where a run has gone through singular configurations, and what that means; times in s."""
-    listed = ", ".join(f"{time:.6g}" for time in times[:MOST_LISTED])
-    more = ", ..." if len(times) > MOST_LISTED else ""
-    what = "a singular configuration" if len(times) == 1 else f"{len(times)} singular configurations"
-    where = f"the run goes through {what}, at t = {listed}{more} s"
-    return f"{where}: there the motion can branch, and which way it goes is left to rounding"
