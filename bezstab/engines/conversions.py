@@ -25,13 +25,19 @@ Curve = Callable[[Any], tuple[Any, Any]]
 class Applied:
     """The point that an engine makes of values, what it did to them (sentences), and points it also takes, labelled.
 
-    Points are (alpha_hat, beta_hat), exact and dimensionless. `also` is for feedback that changes with the size of the
-    error: safe is what is safe at those points, too.
+    Points are (alpha_hat, beta_hat), exact and dimensionless. `notes` are None where values were taken as typed, or no
+    engine gave the point. `also` is for feedback that changes with the size of the error: safe is what is safe at those
+    points, too.
     """
 
     point: Point
-    notes: tuple[str, ...] = ()
+    notes: tuple[str, ...] | None = ()
     also: tuple[tuple[str, Point], ...] = ()
+
+    @property
+    def points(self) -> list[Point]:
+        """All of them."""
+        return [self.point, *(point for _, point in self.also)]
 
 
 @dataclass(frozen=True)
@@ -69,21 +75,18 @@ class Engine:
     sweeping: Sweeping | None = None
 
     def point(self, values: tuple[Fraction, ...], h: Fraction) -> Point:
-        """Return (alpha_hat, beta_hat) for values as typed, in their order and the engine's units; h in s.
+        """Return (alpha_hat, beta_hat) for values as typed; InputError as for `applied`."""
+        return self.applied(values, h, as_typed=True).point
 
-        InputError for another number of values, for those that mean nothing and for a point outside float64's range.
+    def applied(self, values: tuple[Fraction, ...], h: Fraction, *, as_typed: bool = False) -> Applied:
+        """Return what the engine makes of values, in their order and the engine's units, at a step of h (s).
+
+        The point is that after its clamps and scaling, which are left out where `as_typed`. InputError for another
+        number of values, for those that mean nothing and for a point outside float64's range.
         """
         self._check_number(values)
-        return self._within_range(self.read(h, *values))
-
-    def applied(self, values: tuple[Fraction, ...], h: Fraction) -> Applied:
-        """Return what the engine makes of such values: the point after its clamps and scaling, and what they did.
-
-        InputError as for `point`.
-        """
-        self._check_number(values)
-        if self.apply is None:
-            return Applied(self._within_range(self.read(h, *values)))
+        if as_typed or self.apply is None:
+            return Applied(self._within_range(self.read(h, *values)), None if as_typed else ())
         made = self.apply(h, *values)
         return Applied(
             self._within_range(made.point),
