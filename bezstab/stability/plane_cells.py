@@ -115,10 +115,6 @@ def _split(curve: CurveTable) -> list[list[tuple[float, float]]]:
 def _real_roots(coefficients: FloatArray, count: int) -> FloatArray:
     """Return so many real roots of each polynomial, ascending; coefficients ascending, shape (n + 1, lines)."""
     with np.errstate(all="ignore"):
-        if len(coefficients) == 2:
-            return np.asarray(-coefficients[:1] / coefficients[1])
-        if len(coefficients) == 3:
-            return _quadratic_places(*coefficients)
         lost = ~np.isfinite(coefficients[:-1] / coefficients[-1]).all(axis=0)
         roots = companion_roots(coefficients).T
         x = np.sort(_most_real(roots, count), axis=1).T
@@ -129,13 +125,6 @@ def _real_roots(coefficients: FloatArray, count: int) -> FloatArray:
             step = value / slope
             x = x - np.where(np.abs(step) < allowed, step, 0)
         return np.where(lost, np.inf, x)
-
-
-def _quadratic_places(constant: FloatArray, linear: FloatArray, square: FloatArray) -> FloatArray:
-    """Return both real roots, ascending: touching where rounding makes the discriminant negative."""
-    further = -(linear / 2 + np.copysign(np.sqrt(np.maximum(0, linear**2 / 4 - square * constant)), linear))
-    roots = np.stack([further / square, np.where(further == 0, 0, constant / further)])
-    return np.where(np.isfinite(roots).all(axis=0), np.sort(roots, axis=0), np.inf)
 
 
 def _most_real(roots: ComplexArray, count: int) -> FloatArray:
