@@ -26,7 +26,7 @@ from bezstab.rationals import exact
 from bezstab.stability.arrays import DOUBLE, ROUNDING, SAME, ComplexArray, Extent, FloatArray
 from bezstab.stability.exact_sums import double_polynomial, split
 from bezstab.stability.quadratures import integrals
-from bezstab.stability.root_finding import companion_roots
+from bezstab.stability.root_finding import STEPS, companion_roots
 from bezstab.stability.searches import least_between
 from bezstab.stability.shapes import USUAL_SIZE, Approached, Shape, joined
 
@@ -75,18 +75,19 @@ class Edges:
         """Return alpha_hat of one crossing with lines in a cell's strip, to rounding; the shape of beta_hat.
 
         On a level at which a crossing of the same curve is lost, it is taken just beside, in the strip. An eigenvalue
-        is made exact by a step of Newton's method with the curve's exact value, unless two roots meet.
+        is made exact by Newton's method with the curve's exact value, unless two roots meet.
         """
         number, k = crossing
         levels = np.clip(beta_hat, *self._known_span(cell, number))
         place = _real_roots(
             self._coefficients(number, levels), sum(curve == number for curve, _ in cell.strip.crossings)
         )[k]
-        with np.errstate(all="ignore"):
-            high, rest = double_polynomial(self._split[number], place, levels)
-            step = (high + rest) / np.polynomial.polynomial.polyval2d(place, levels, self._slopes[number])
-        found: FloatArray = place - np.where(np.abs(step) < DOUBLE * np.abs(place), step, 0)
-        return found
+        for _ in range(STEPS):
+            with np.errstate(all="ignore"):
+                high, rest = double_polynomial(self._split[number], place, levels)
+                step = (high + rest) / np.polynomial.polynomial.polyval2d(place, levels, self._slopes[number])
+            place = place - np.where(np.abs(step) < DOUBLE * np.abs(place), step, 0)
+        return np.asarray(place)
 
     def corner(self, crossing: Crossing, cell: Cell, level: float) -> float:
         """Return alpha_hat at an end of the strip: where two meet, which float64 parts, the middle of both."""

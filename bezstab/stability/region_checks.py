@@ -113,6 +113,8 @@ def _check_edge(name: str, shape: Shape, curve: FloatArray, inside: Verdicts, pr
     length = np.hypot(*along.T)
     kept = (length > SAME) & (_seen(shape, points[1:-1]) | (shape.area is not None))
     points, along = points[1:-1][kept], along[kept] / length[kept, np.newaxis]
+    if len(points) <= CORNER:
+        return
     # just to either side, as far as verdicts tell; of a small curve that is far away points are known to less
     offset = np.maximum(TOLD * size, ROUNDING * away) * np.stack([-along[:, 1], along[:, 0]], axis=1)
 
