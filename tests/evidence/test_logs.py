@@ -5,8 +5,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 from numpy.typing import ArrayLike
 
 from bezstab.errors import InputError
@@ -39,9 +37,7 @@ def test_columns_without_names_are_numbered() -> None:
     assert time_column(parse_log("1 1\n0.5 2\n0.25 3\n", "log")) is None
 
 
-@given(st.lists(st.floats(allow_nan=False), min_size=1))
-def test_numbers_are_read_as_they_were_written_and_have_many_spellings(column: list[float]) -> None:
-    assert parse_log("\n".join(["a", *map(repr, column)]), "log").values[:, 0].tolist() == column
+def test_numbers_have_many_spellings() -> None:
     log = parse_log("1;+2,5;.5;3.;-1E-3;1e+05;NaN;;-inf\n", "log")
     assert log.values[0].tolist() == pytest.approx([1, 2.5, 0.5, 3, -1e-3, 1e5, np.nan, np.nan, -np.inf], nan_ok=True)
 

@@ -121,9 +121,3 @@ def test_responses_with_noise_of_different_sizes_are_weighed_by_it() -> None:
     assert abs(fit.poles[0].pole - 0.8 * np.exp(0.6j)) < fit.poles[0].uncertainty
     both[150:, 1] = np.nan
     assert (fitted(both) or fit).samples <= 150
-
-
-def test_the_unit_of_the_samples_does_not_matter() -> None:
-    c = two_poles(200, 0.8, 0.6, 0.3, 0.0) + white(np.random.default_rng(7), 1e-4, 200)
-    poles_found = {fit.poles for exponent in (-900, 0, 900) if (fit := fitted(np.ldexp(c, exponent)))}
-    assert len(poles_found) == 1
