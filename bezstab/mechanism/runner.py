@@ -15,7 +15,7 @@ from bezstab.mechanism.compiled import SINGULAR, Mechanism, acceleration_functio
 from bezstab.mechanism.compiled_stepping import LANES, machine_steps, runs_compiled
 from bezstab.mechanism.programs import program_of
 from bezstab.mechanism.registers import MOST_ITERATIONS, Steps, room_of, rows_of
-from bezstab.mechanism.second_order_memory import check_after_step, memory
+from bezstab.mechanism.second_order_memory import memory
 from bezstab.mechanism.start import initial_state
 from bezstab.mechanism.stepping import (
     BLOWN_UP,
@@ -136,9 +136,8 @@ def simulate(
     not solve ends the run, and `failure` says so. `compiled` says whether machine code takes the steps; by default that
     is as BEZSTAB_COMPILED says, or where it pays. What is done `after` a step is done to each new state,
     those of the start too.
-    InputError for a start that has blown up before, where numba is asked for and missing, and as `check_after_step`.
+    InputError for a start that has blown up before, where numba is asked for and missing, and as `memory`.
     """
-    check_after_step(method, after)
     whole_step = h * float(method.step_multiple)
     count = round(duration / whole_step)
     first = checked_start(initial_state(mechanism) if state is None else state)
@@ -238,16 +237,11 @@ def resume(
     given = [np.asarray(state) for state in (*history, history[-1] if undisturbed is None else undisturbed)]
     batch = np.broadcast_shapes(*(state.shape[1:] for state in given), *map(np.shape, gains))
     *states, calm = (_for_batch(state, batch) for state in given)
-    carried, start, repeated = carried_quantities(mechanism, method, h, gains, states, calm, how.counts)
+    carried = carried_quantities(mechanism, method, h, gains, states, calm, how.counts)
     spread_gains = np.array([[np.broadcast_to(gain, batch).ravel() for gain in gains]], np.float64)
-    times = start + h * np.arange(count + repeated, dtype=np.float64)
+    times = h * np.arange(len(states) - 1, len(states) - 1 + count, dtype=np.float64)
     steps = Steps(times, np.broadcast_to(np.float64(h), times.shape), spread_gains)
-    # of turns whose states are in the history already only what they give beyond them matters: the next needs it
-    for block in steps_in_blocks(mechanism, method, steps, carried, batch, how):
-        left_out = min(repeated, len(block.states))
-        repeated -= left_out
-        if len(block.states) > left_out or block.cause:
-            yield Block(block.states[left_out:], block.pivots[left_out:], block.cause)
+    yield from steps_in_blocks(mechanism, method, steps, carried, batch, how)
 
 
 def _for_batch(state: FloatArray, batch: tuple[int, ...]) -> FloatArray:
@@ -314,18 +308,17 @@ def carried_quantities(
     history: Sequence[FloatArray],
     undisturbed: FloatArray,
     counts: FloatArray,
-) -> tuple[FloatArray, float, int]:
-    """Return what a method carries into its first turn after `history`, when that begins, and what it repeats.
+) -> FloatArray:
+    """Return what a method carries into its first turn after `history`, as on a motion through its states.
 
-    That is a time in s, and a number of turns. It is as on a motion through the states of the history: helpers are
-    what belongs to position, velocity and acceleration, and accelerations those of the states. Shape
+    Helpers are what belongs to position, velocity and acceleration, and accelerations those of the states. Shape
     (quantities, n lanes), in units in which h = 1.
     """
     scheme = second_order_form(method.scheme)
     remembered = memory(scheme)
     n = mechanism.size
     acceleration = acceleration_function(mechanism, np)
-    first = len(history) - 1 - remembered.newest
+    newest = len(history) - 1
     # those of a method with steps of its own have been evaluated by the steps before
     counted = implicit(method) or isinstance(method.scheme, SecondOrder)
 
@@ -333,18 +326,18 @@ def carried_quantities(
     def accelerations(place: int) -> FloatArray:
         """Return qddot at a place of the history."""
         counts[EVALUATIONS] += counted
-        state = undisturbed if place == len(history) - 1 else history[place]
+        state = undisturbed if place == newest else history[place]
         return np.stack(np.broadcast_arrays(*acceleration(place * h, *gains, state[:n], state[n:])))
 
     carried = []
     for shares, step in zip(remembered.shares, remembered.state_steps, strict=True):
         by_q, by_v, by_a = (float(share) * h**power for power, share in enumerate(shares))
-        state = history[first + step]
+        state = history[newest + step]
         entries = by_q * state[:n] + by_v * state[n:]
         if by_a:
-            entries = entries + by_a * accelerations(first + step)
+            entries = entries + by_a * accelerations(newest + step)
         carried.append(np.broadcast_to(entries, (n, *history[-1].shape[1:])).reshape(-1))
-    return np.array(carried), first * h, remembered.newest
+    return np.array(carried)
 
 
 def breakdown(state: FloatArray, pivot: float = 1.0, unsolved: float = 0.0, unsettled: float = 0.0) -> str | None:

@@ -131,7 +131,7 @@ def simulated(
 
     h (s) is the user's step, a method's own is its step multiple of that. What is done `after` each step goes with
     alpha_hat = beta_hat = 0. InputError for a scene that cannot start, an h outside 1e-100 to 1e100 s, a duration below
-    a step or above 1e8 of them, another `start`, and as `check_after_step`; NumericalError where the scene cannot be
+    a step or above 1e8 of them, another `start`, and as `memory`; NumericalError where the scene cannot be
     perturbed; what goes wrong on the way is the run's `failure`. Paper Eqs 6 to 9.
     """
     check_step(h)

@@ -52,7 +52,7 @@ def simulated_with_steps(
     steps = _steps(method, sequence, duration, lambda step: feedback_gains(alpha_hat, beta_hat, step if hold else h))
     count, length, gains = len(steps.lengths), float(steps.lengths[0]), steps.gains[..., 0]
     how = How(runs_compiled(count * evaluations(method)), judged=True, after=after)
-    carried, *_ = carried_quantities(mechanism, method, length, (gains[0, 0], gains[0, 1]), [first], first, how.counts)
+    carried = carried_quantities(mechanism, method, length, (gains[0, 0], gains[0, 1]), [first], first, how.counts)
     blocks = steps_in_blocks(mechanism, method, steps._replace(times=steps.times[:-1]), carried, (), how)
     trajectory = recorded(mechanism, method, first, steps.times, blocks, how)
     taken = len(trajectory.t) - 1

@@ -16,7 +16,6 @@ from bezstab.mechanism import (
     Scene,
     Simulation,
     Start,
-    check_after_step,
     compiled_mechanism,
     simulated,
     simulated_with_steps,
@@ -53,7 +52,6 @@ class RunQuestion:
     start: Start = "rk4"
 
     def __post_init__(self) -> None:
-        check_after_step(self.method, self.after)
         if self.sequence:
             check_one_step(self.method)
         elif self.hold:

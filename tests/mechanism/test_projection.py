@@ -9,7 +9,6 @@ import pytest
 from bezstab.errors import InputError
 from bezstab.mechanism import (
     Mechanism,
-    check_after_step,
     compiled_mechanism,
     constraint_jacobian,
     initial_state,
@@ -23,7 +22,7 @@ from bezstab.methods import Method, evaluations, implicit, lookup, steps
 from bezstab.stabilising import after_step
 from tests.evidence.samples import of_campaign
 from tests.mechanism.test_runner import measured_order
-from tests.mechanism.test_second_order_memory import LEAPFROG, STOERMER
+from tests.mechanism.test_second_order_memory import LEAPFROG
 from tests.mechanism.test_stepping import KINDS, assert_alike, step_for
 from tests.reference.one_coordinate_motion import shown_order
 from tests.reference.plain_projection import saddle_solution
@@ -197,5 +196,3 @@ def test_a_position_from_which_newtons_method_finds_none_ends_a_run() -> None:
 def test_bad_input_is_refused() -> None:
     with pytest.raises(InputError, match="iterations 0: expected at least 1"):
         after_step("projection", 0)
-    with pytest.raises(InputError, match="stoermer has its position a step ahead of its velocity"):
-        check_after_step(Method("stoermer", STOERMER, source=""), PROJECTED)
