@@ -29,4 +29,3 @@ from bezstab.mechanism.scenes import COORDINATES, GROUND, Body, Driver, Force, R
 from bezstab.mechanism.second_order_memory import Memory, memory
 from bezstab.mechanism.simulation import MOST_STEPS, Simulation, simulated
 from bezstab.mechanism.start import constraint_errors, constraint_jacobian, initial_state, perturbed_state
-from bezstab.mechanism.varying_runs import simulated_with_steps

@@ -150,6 +150,23 @@ def simulate(
     )
 
 
+def simulate_steps(
+    mechanism: Mechanism, method: Method, steps: Steps, state: tuple[FloatArray, FloatArray], after: AfterStep
+) -> Trajectory:
+    """Return the run of a one-step method by steps of lengths of their own; else as `simulate`.
+
+    The next state follows from the last and, with some methods, an acceleration stored beside it. Inside a second-order
+    scheme h = 1, where positions, h v and h^2 a are carried: a step r times as long as the one before begins with r
+    times that h v and r^2 times that h^2 a. The acceleration itself is what it was, whatever the gains do.
+    """
+    first, length = checked_start(state), float(steps.lengths[0])
+    how = How(runs_compiled(len(steps.lengths) * evaluations(method)), judged=True, after=after)
+    two_alpha, beta_squared = steps.gains[0, :, 0].tolist()
+    carried = carried_quantities(mechanism, method, length, (two_alpha, beta_squared), [first], first, how.counts)
+    times = np.append(steps.times, steps.times[-1] + steps.lengths[-1])
+    return recorded(mechanism, method, first, times, steps_in_blocks(mechanism, method, steps, carried, (), how), how)
+
+
 def checked_start(state: tuple[FloatArray, FloatArray]) -> FloatArray:
     """Return q and v as one state, shape (2n,). InputError where no run could go on from there."""
     first = np.concatenate(state).astype(np.float64)
@@ -238,9 +255,9 @@ def resume(
     batch = np.broadcast_shapes(*(state.shape[1:] for state in given), *map(np.shape, gains))
     *states, calm = (_for_batch(state, batch) for state in given)
     carried = carried_quantities(mechanism, method, h, gains, states, calm, how.counts)
-    spread_gains = np.array([[np.broadcast_to(gain, batch).ravel() for gain in gains]], np.float64)
+    of_lanes = np.array([np.broadcast_to(gain, batch).ravel() for gain in gains], np.float64)
     times = h * np.arange(len(states) - 1, len(states) - 1 + count, dtype=np.float64)
-    steps = Steps(times, np.broadcast_to(np.float64(h), times.shape), spread_gains)
+    steps = Steps(times, np.broadcast_to(np.float64(h), count), np.broadcast_to(of_lanes, (count, *of_lanes.shape)))
     yield from steps_in_blocks(mechanism, method, steps, carried, batch, how)
 
 
@@ -271,8 +288,7 @@ def steps_in_blocks(
     at_once = max(1, NUMBERS_OF_A_BLOCK // (2 * n * stride))
     for first in range(0, len(steps.times), at_once):
         some = slice(first, first + at_once)
-        times, lengths = steps.times[some], np.ascontiguousarray(steps.lengths[some])
-        gains = steps.gains if len(steps.gains) == 1 else steps.gains[some]
+        times, lengths, gains = (np.ascontiguousarray(each[some]) for each in steps)
         parts, told = [], np.zeros((len(times), 6))
         for group, room in zip(groups, rooms, strict=True):
             found = np.empty((len(times), 2, n * stride), carried.dtype)

@@ -15,7 +15,7 @@ from bezstab.mechanism import (
     load_scene,
     observe,
     simulate,
-    simulated_with_steps,
+    simulated,
     state_function,
 )
 from bezstab.methods import Method, evaluations, implicit, lookup, steps
@@ -153,7 +153,7 @@ def test_more_iterations_come_closer() -> None:
 
 
 def test_steps_of_different_lengths_are_projected_too() -> None:
-    run = simulated_with_steps(
+    run = simulated(
         scene("driven_four_bar"),
         lookup("hht"),
         sequence=(1e-3, 3e-3),
