@@ -50,6 +50,7 @@ class RunQuestion:
     start: Start = "rk4"
 
     def __post_init__(self) -> None:
+        after_step(self.stabilise, self.iterations)  # which refuses what does not go together
         if self.sequence:
             check_one_step(self.method)
         elif self.hold:

@@ -69,6 +69,8 @@ class TradeQuestion:
     def __post_init__(self) -> None:
         if self.omega is not None and self.numbers and self.against != "projection":
             raise InputError("--omega does not go with --alpha and --beta: points are chosen for that motion")
+        # which refuses what does not go together
+        after_step("projection" if self.against == "projection" else self.stabilise, self.iterations)
         longest = self.step_sizes[-1] * float(max(method.step_multiple for method in self.methods))
         most = MOST_SWEPT * self.step_sizes[0]
         if not longest <= self.duration <= most:
