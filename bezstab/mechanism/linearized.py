@@ -25,9 +25,6 @@ from bezstab.stabilising import NOTHING
 
 FloatArray = NDArray[np.float64]
 
-AT_A_TIME = 200
-"""States: what is computed of them along all directions, some hundred arrays, stays in a core's cache."""
-
 
 class StepsTaken(NamedTuple):
     """Steps side by side (h = 1): what each hands on to the next, (steps, quantities, n), its new state, (steps, 2, n).
@@ -104,15 +101,8 @@ def acceleration_jacobians(
     against (...).
     """
     size = mechanism.size
-    slope = state_function(mechanism, "slope", np)
-    directions = np.split(np.eye(2 * size)[:, :, np.newaxis], 2)
-    shape = q.shape[:-1]
-    scalars = [np.broadcast_to(each, shape).ravel() for each in (t, two_alpha, beta_squared)]
-    q, v = q.reshape(-1, size), v.reshape(-1, size)
-    jacobians = np.empty((*q.shape, 2 * size))
-    for first in range(0, len(q), AT_A_TIME):
-        some = slice(first, first + AT_A_TIME)
-        state = [*(each[some] for each in scalars), *(np.ascontiguousarray(each[some].T) for each in (q, v))]
-        for k, changes in enumerate(slope(*state, *directions)):
-            jacobians[some, k] = np.transpose(changes)
-    return jacobians.reshape(*shape, size, 2 * size)
+    directions = np.split(np.eye(2 * size).reshape(2 * size, 2 * size, *[1] * (q.ndim - 1)), 2)
+    state = t, two_alpha, beta_squared, np.moveaxis(q, -1, 0), np.moveaxis(v, -1, 0)
+    changes = state_function(mechanism, "slope", np)(*state, *directions)
+    shape = 2 * size, *q.shape[:-1]
+    return np.moveaxis(np.stack([np.broadcast_to(each, shape) for each in changes]), (0, 1), (-2, -1))
