@@ -20,22 +20,13 @@ CORRECTIONS = 12  # of Newton's method
 PERIODIC = 1e-10  # m, rad: what a revolution may leave
 
 
-def runner_multipliers(mechanism: Mechanism, method: Method, count: int, alpha_hat: float, beta_hat: float) -> float:
-    """Return the largest multiplier's modulus per step, of `count` steps over a revolution, by complex steps.
-
-    For methods that carry no accelerations of their own, and where errors do not grow, so that the run
-    stays where the motion is.
-    """
-    _, linearized = _revolution(mechanism, method, count, alpha_hat, beta_hat, _on_the_motion(mechanism, method, count))
-    return float(np.abs(np.linalg.eigvals(linearized)).max() ** (1 / count))
-
-
 def runner_motion(
     mechanism: Mechanism, method: Method, count: int, alpha_hat: float, beta_hat: float
 ) -> tuple[FloatArray, float] | None:
-    """Return where a run of such a method comes back to itself after a revolution, and |z| per step there.
+    """Return where a run of `count` steps comes back to itself after a revolution, and |z| per step there.
 
-    That is the states from which the run goes on, oldest first. None if Newton's method does not find it.
+    That is the states from which the run goes on, oldest first. For methods that carry no accelerations of their own.
+    None if Newton's method does not find it.
     """
     start = _on_the_motion(mechanism, method, count)
     along = motion(mechanism, 1.0)
