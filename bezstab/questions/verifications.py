@@ -17,7 +17,6 @@ from bezstab.methods import Method
 from bezstab.questions.motions import scene_at_speed
 from bezstab.questions.points import Meant, meant_in_seconds
 from bezstab.stability import choose
-from bezstab.units import check_step
 
 RANDOM_POINTS = 20
 
@@ -28,7 +27,7 @@ class VerifyQuestion:
 
     The scene moves `speed` times as fast as given there. Without a `point` (alpha_hat, beta_hat) so many random
     `points` are taken, RANDOM_POINTS unless told. With `floquet` the exact prediction for a moving mechanism is asked
-    about as well. InputError for a step that is not positive.
+    about as well.
     """
 
     scene: str | Scene
@@ -38,9 +37,6 @@ class VerifyQuestion:
     point: Point | None = None
     points: int | None = None
     floquet: bool = False
-
-    def __post_init__(self) -> None:
-        check_step(self.h)
 
     @property
     def meant_in_seconds(self) -> Meant | None:

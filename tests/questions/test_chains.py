@@ -5,7 +5,6 @@ from itertools import pairwise
 import pytest
 
 from bezstab.engines import ENGINES, hard_velocity_step
-from bezstab.errors import InputError
 from bezstab.mechanism import Scene, parse_scene
 from bezstab.questions import Question, answers
 from bezstab.questions.chains import constraints_of, constraints_of_chain
@@ -123,10 +122,3 @@ def test_one_constraint_of_a_scene_is_one_alone() -> None:
     (answer,) = answers(Question(engine=CHIPMUNK, values=DEFAULT, h=Fraction(1, 240), scene="pendulum"))
     assert answer.swept is None
     assert answer.swept_over == "one constraint alone"
-
-
-def test_a_chain_needs_an_engine_that_sweeps() -> None:
-    with pytest.raises(InputError, match="--chain needs --engine"):
-        Question(point=(Fraction(1), Fraction(1)), chain=2, methods=())
-    with pytest.raises(InputError, match="mujoco solves all constraints together"):
-        Question(engine=ENGINES["mujoco"], values=(Fraction("0.02"), Fraction(1)), h=Fraction(1, 60), chain=2)
