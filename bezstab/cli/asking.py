@@ -44,8 +44,7 @@ def asked_of_feedback(**typed: Any) -> "Question":
     from bezstab.questions import Question
 
     question = asked(Question, **typed)
-    worked_out([lambda: question.turning, lambda: question.motion], typed["scene"])
-    say_each(question.warnings)
+    say_each(worked_out(lambda: question.warnings, typed["scene"]))
     return question
 
 

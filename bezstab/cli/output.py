@@ -178,9 +178,10 @@ def progress(items: Iterable[Item], label: str | None, length: int | None = None
         yield from bar
 
 
-def worked_out(works: Sequence[Callable[[], Item]], label: str | None) -> list[Item]:
-    """Return what each of some works finds, with a bar as `progress` has it."""
-    return [work() for work in progress(works, label)]
+def worked_out(work: Callable[[], Item], label: str | None) -> Item:
+    """Return what some work finds, with a bar as `progress` has it."""
+    (found,) = [each() for each in progress([work], label)]
+    return found
 
 
 @contextmanager

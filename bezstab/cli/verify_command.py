@@ -65,7 +65,7 @@ def verify(across: int | None, accuracy: bool, witness: str | None, work: Work, 
     from bezstab.questions import VerifyQuestion
 
     question = asked(VerifyQuestion, **typed)
-    worked_out([lambda: question.mechanism], typed["scene"])
+    worked_out(lambda: question.mechanism, typed["scene"])
     if accuracy:
         return _show_forced_errors(question)
     if witness:

@@ -193,8 +193,10 @@ class Question:
 
     @property
     def warnings(self) -> list[str]:
-        """What is to be known before the answers."""
-        return turn_too_far({self.speed: self.turning}, self.scene, self.h)
+        """What is to be known before the answers; errors as `turning` and `motion`, which they need."""
+        found = turn_too_far({self.speed: self.turning}, self.scene, self.h)
+        _ = self.motion
+        return found
 
     @cached_property
     def turning(self) -> TurningNormals | None:
