@@ -122,23 +122,23 @@ class Run:
 
 @dataclass(frozen=True)
 class SweptRuns:
-    """All runs of a sweep over methods and steps, each method's with the largest step first, and what the best are.
+    """All runs of a sweep over methods and steps, each method's with the largest step first.
 
-    The fronts are indices of runs, ascending in cost, that no other run beats: by the trajectory's error, and by the
-    largest |c|. A run that failed is on neither. `reference_error` (SI) is how well the true motion is known. Costs are
-    `against` what they are counted in.
+    `reference_error` (SI) is how well the true motion is known. Costs are `against` what they are counted in.
     """
 
-    runs: tuple[Run, ...]
-    trajectory_front: tuple[int, ...]
-    constraint_front: tuple[int, ...]
+    runs: Sequence[Run]
     reference_error: float
     against: Cost = "evaluations"
+
+    def front(self, of: ErrorOf) -> list[int]:
+        """Return the Pareto front by an error: indices of runs, ascending in cost, that no other run beats."""
+        return pareto_front((run.cost(self.against), run.error(of)) for run in self.runs)
 
     @property
     def front_labels(self) -> list[str]:
         """For each run on which fronts it is: T by trajectory error, c by constraint error, "T c", or nothing."""
-        fronts = {"T": self.trajectory_front, "c": self.constraint_front}
+        fronts = {"T": self.front("trajectory"), "c": self.front("constraint")}
         return [
             " ".join(letter for letter, front in fronts.items() if index in front) for index in range(len(self.runs))
         ]
@@ -268,19 +268,3 @@ def _observed_order(larger: Run, h: float, error: float | None, reference_error:
     if not larger.trajectory_error or not error or error <= ABOVE_REFERENCE * reference_error:
         return None
     return float(np.log(larger.trajectory_error / error) / np.log(larger.h / h))
-
-
-def with_fronts(runs: Sequence[Run], reference_error: float, against: Cost = "evaluations") -> SweptRuns:
-    """Return the runs of several methods, whose sweeps share a reference, with the Pareto fronts they make up.
-
-    The reference's error in SI; the others as in `SweptRuns`.
-    """
-    trajectory = [(run.cost(against), run.error("trajectory")) for run in runs]
-    constraint = [(run.cost(against), run.error("constraint")) for run in runs]
-    return SweptRuns(
-        runs=tuple(runs),
-        trajectory_front=tuple(pareto_front(trajectory)),
-        constraint_front=tuple(pareto_front(constraint)),
-        reference_error=reference_error,
-        against=against,
-    )

@@ -129,9 +129,11 @@ class Answer(Choice):
         """How the motion of the scene changes the poles."""
         if self.question.turning is None or self.question.h is None:
             return None
-        from bezstab.evidence import moving_pole
+        from bezstab.evidence import moving_poles
 
-        return moving_pole(self.method, self.question.turning, float(self.question.h), self.alpha_hat, self.beta_hat)
+        turning, h = self.question.turning, float(self.question.h)
+        (pole,) = moving_poles(self.method, turning, h, self.alpha_hat, self.beta_hat)
+        return pole
 
     @cached_property
     def varying(self) -> VaryingSteps | None:

@@ -28,7 +28,6 @@ from bezstab.evidence import (
     sweep_compiled,
     sweep_sentences,
     swept_runs,
-    with_fronts,
 )
 from bezstab.mechanism import Scene, check_after_step
 from bezstab.methods import Method
@@ -134,7 +133,7 @@ class TradeQuestion:
     def swept(self, measured: Sequence[Mapping[str, NDArray[np.generic]]]) -> SweptRuns:
         """Return what the runs of all sweeps have measured, as `measured_runs` returns it for each, and the fronts."""
         runs = chain.from_iterable(swept_runs(*each) for each in zip(self.sweeps, measured, strict=True))
-        return with_fronts(list(runs), self.reference.error, self.against)
+        return SweptRuns(list(runs), self.reference.error, self.against)
 
     def sentences(self, swept: SweptRuns, tolerance: float) -> list[str]:
         """Return in words what runs are compared with, what those within a tolerance (m, rad) cost, and who wins."""

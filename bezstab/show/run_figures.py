@@ -63,7 +63,7 @@ def history_figure(simulation: Simulation) -> Figure:
 def work_precision_figure(swept: SweptRuns, scene: str, error: ErrorOf, floor: float = 0.0) -> Figure:
     """Return an error of each run (SI) against its cost, discs behind the Pareto front, failed runs on top.
 
-    Errors up to `floor`, that of the reference, are not drawn. The energy's drift has no front.
+    Errors up to `floor`, that of the reference, are not drawn.
     """
     runs = swept.runs
     with styled():
@@ -75,8 +75,7 @@ def work_precision_figure(swept: SweptRuns, scene: str, error: ErrorOf, floor: f
             plot.work_precision(own, error, floor, axes, swept.against, **marked_line_at(place))
             failed = [run.cost(swept.against) for run in own if run.failure]
             axes.plot(failed, [top] * len(failed), "x", color=line_at(place)["color"], markersize=4)
-        front = swept.constraint_front if error == "constraint" else swept.trajectory_front
-        if front:
+        if front := swept.front(error):
             discs = {"marker": "o", "linestyle": "none", "color": "0.8", "markersize": 10, "zorder": 1.5}
             of_front = [runs[number] for number in front]
             plot.work_precision(of_front, error, floor, axes, swept.against, label="front", **discs)

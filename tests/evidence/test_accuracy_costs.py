@@ -6,9 +6,10 @@ import pytest
 from bezstab.evidence import (
     METHODS,
     Cost,
+    ErrorOf,
+    SweptRuns,
     summary,
     sweep_compiled,
-    with_fronts,
 )
 from bezstab.evidence.sweep_summaries import cost_for
 from bezstab.mechanism import load_scene
@@ -103,10 +104,10 @@ def test_a_run_that_fails_is_kept_and_says_so() -> None:
 def test_a_sweep_knows_its_fronts(against: Cost) -> None:
     runs = [*swept("B2", (0.004, 0.0125), SOFT), *swept("AB4", (0.004, 0.0125), SOFT)]
     assert any(run.failure for run in runs)  # AB4 at the larger step
-    whole = with_fronts(runs, reference().error, against)
-    fronts = (whole.trajectory_front, "trajectory_error", "T"), (whole.constraint_front, "c_max", "c")
-    for front, error, letter in fronts:
-        points = [(run.cost(against), None if run.failure else getattr(run, error)) for run in whole.runs]
+    whole = SweptRuns(runs, reference().error, against)
+    of: ErrorOf
+    for of, letter in (("trajectory", "T"), ("constraint", "c")):
+        front, points = whole.front(of), [(run.cost(against), run.error(of)) for run in runs]
         assert {points[index] for index in front} == undominated(points)
         assert [index for index, label in enumerate(whole.front_labels) if letter in label] == sorted(front)
 

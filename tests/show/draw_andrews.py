@@ -7,7 +7,7 @@ import json
 import sys
 from pathlib import Path
 
-from bezstab.evidence import ErrorOf, Run, with_fronts
+from bezstab.evidence import ErrorOf, Run, SweptRuns
 from bezstab.mechanism import load_scene
 from bezstab.methods import lookup
 from bezstab.show import save, work_precision_figure
@@ -26,7 +26,7 @@ def main(folder: Path) -> None:
         )
         for row in rows
     ]
-    swept = with_fronts(runs, 0.0, "time")
+    swept = SweptRuns(runs, 0.0, "time")
     errors: tuple[ErrorOf, ...] = ("trajectory", "constraint")
     for name in errors:
         figure = work_precision_figure(swept, load_scene("andrews").name, name)
