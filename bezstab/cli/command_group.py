@@ -24,9 +24,6 @@ SECTIONS: Mapping[str, Sequence[str]] = {
 ELSEWHERE: Mapping[str, str] = {"paper": "bezstab.paper.command"}
 """The module of each command that is an extension: nothing imports it, the group finds it by name."""
 
-COMPLETE = "_BEZSTAB_COMPLETE"
-"""Environment variable in which a shell says that it wants to complete a command."""
-
 AS_TYPED = "bezstab.as_typed"
 """In the meta data of a context: the words of the command line."""
 
@@ -66,11 +63,9 @@ class BezstabGroup(click.Group):
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write a heading for each section and a sentence for each command."""
-        longest = max(map(len, self.list_commands(ctx)))
         for heading, names in SECTIONS.items():
             with formatter.section(heading):
-                sentences = [(_loaded(name).help or "").partition("\n")[0] for name in names]
-                formatter.write_dl([(name.ljust(longest), said) for name, said in zip(names, sentences, strict=True)])
+                formatter.write_dl([(name, (_loaded(name).help or "").partition("\n")[0]) for name in names])
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run the command that was typed; matplotlib, which warns if it finds no home, is silent."""
@@ -85,8 +80,6 @@ class BezstabGroup(click.Group):
 
     def main(self, *args: Any, **kwargs: Any) -> NoReturn:
         """Run the command line and exit."""
-        if COMPLETE in os.environ:  # the shell asks what it may offer
-            importlib.import_module("bezstab.cli.completion")
         try:
             status = super().main(*args, **{**kwargs, "standalone_mode": False})
         except click.ClickException as error:
