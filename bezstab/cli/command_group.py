@@ -24,9 +24,6 @@ SECTIONS: Mapping[str, Sequence[str]] = {
 ELSEWHERE: Mapping[str, str] = {"paper": "bezstab.paper.command"}
 """The module of each command that is an extension: nothing imports it, the group finds it by name."""
 
-AS_TYPED = "bezstab.as_typed"
-"""In the meta data of a context: the words of the command line."""
-
 NUMERICAL_TROUBLE = 3
 """Exit status if a part of an answer could not be found, or a run broke down; a message says why."""
 
@@ -47,11 +44,6 @@ class BezstabGroup(click.Group):
     Ctrl-C, 143 after TERM, 129 when the terminal is gone (bezstab.stopping), 141 where nobody reads the answer any more
     (`| head`).
     """
-
-    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        """Take the command line apart, and keep its words."""
-        ctx.meta[AS_TYPED] = tuple(args)
-        return super().parse_args(ctx, args)
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Return the names of all commands in the order of their sections."""

@@ -30,7 +30,7 @@ def test_against_projection_each_method_runs_with_feedback_and_with_projection()
 
 def test_numbers_look_like_one_over_seconds_only_where_they_are_not() -> None:
     strong = replace(QUESTION, numbers=(Fraction(50), Fraction(60)))
-    assert (strong.meant_in_seconds, replace(strong, physical=True).meant_in_seconds) == ("at another step", None)
+    assert (strong.meant_in_seconds, replace(strong, physical=True).meant_in_seconds) == (True, False)
 
 
 def test_smaller_steps_cost_more_and_err_less() -> None:
