@@ -144,26 +144,16 @@ class SweptRuns:
         ]
 
 
-def sweep_compiled(
-    scene: Scene,
-    methods: Sequence[Method],
-    step_sizes: Sequence[float],
-    duration: float,
-    repeats: int,
-    after: AfterStep = NOTHING,
-) -> bool:
+def sweep_compiled(methods: Sequence[Method], step_sizes: Sequence[float], duration: float, repeats: int) -> bool:
     """Return whether the runs of a sweep are compiled: all or none, so that their times can be compared.
 
-    `runs_compiled` says so for each method's runs together, step sizes and duration in s, with this `after` each step.
-    By default none are where one is not. InputError as `runs_compiled`.
+    `runs_compiled` says so for each method's runs together, step sizes and duration in s. By default none are where one
+    is not. InputError as `runs_compiled`.
     """
-    mechanism = compiled_mechanism(scene)
     user_steps = repeats * sum(duration / h for h in step_sizes)
-    wanted = [
-        runs_compiled(mechanism, method, round(user_steps / float(method.step_multiple)) * evaluations(method), after)
-        for method in methods
-    ]
-    return all(wanted)
+    return all(
+        runs_compiled(round(user_steps / float(method.step_multiple)) * evaluations(method)) for method in methods
+    )
 
 
 def measured_runs(sweep: Sweep) -> dict[str, NDArray[np.generic]]:

@@ -183,7 +183,7 @@ def _long_run(name: str, count: int, stabilized: bool) -> Check:
 def _largest_in_each_block(method: Method, count: int, gains: tuple[float, float]) -> list[float]:
     """Return the largest |c| (m) met in each block of a run of the slider-crank, whose states need not be kept."""
     mechanism = compiled_mechanism(load_scene("slider_crank"))
-    compiled = runs_compiled(mechanism, method, count * evaluations(method))
+    compiled = runs_compiled(count * evaluations(method))
     start = np.concatenate(initial_state(mechanism))
     blocks = march(mechanism, method, H, gains, start, "rk4", count, How(compiled))
     positions = (block.states[:, : mechanism.size].T for block in blocks)

@@ -15,13 +15,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from bezstab.mechanism.array_stepping import array_steps
-from bezstab.mechanism.compiled import Mechanism, state_function
-from bezstab.mechanism.compiled_stepping import functions_called
+from bezstab.mechanism.compiled import IMAGINARY_STEP, Mechanism, acceleration_function
 from bezstab.mechanism.programs import program_of
 from bezstab.mechanism.registers import Steps, room_of, rows_of
-from bezstab.mechanism.runner import no_counts
 from bezstab.methods import Method, second_order_form
-from bezstab.stabilising import NOTHING
 
 FloatArray = NDArray[np.float64]
 
@@ -48,17 +45,17 @@ def steps_taken(
     `carried` is what each starts with, in units in which h = 1, (steps, quantities, n) in the order of `memory`. What
     Newton's method does not solve is no number.
     """
-    program = program_of(second_order_form(method.scheme))
-    rows = rows_of(program)
+    rows = rows_of(program_of(second_order_form(method.scheme)))
     by_step = np.ascontiguousarray(np.moveaxis(carried, 0, 2))
-    room = room_of(rows, by_step[:, :, np.newaxis], h, 1, no_counts(), 1)
-    states = np.empty((1, 2, mechanism.size, len(carried)))
-    take_steps = array_steps(mechanism, functions_called(program.implicit, NOTHING))
-    side_by_side = Steps(times[np.newaxis], np.array([h]), np.zeros(1, np.int64), gains[np.newaxis])
+    room = room_of(rows, by_step, h, len(carried))
+    found, told = np.empty((1, 2, by_step[0].size)), np.zeros((1, 6))
+    array_steps(mechanism, len(carried))(
+        rows, Steps(times[np.newaxis], np.array([h]), gains[np.newaxis]), room, found, told
+    )
+    registers, states = room.registers.reshape(-1, *by_step.shape[1:]), found.reshape(2, *by_step.shape[1:])
+    evaluations, quantities = len(rows.moments), len(by_step)
     with np.errstate(all="ignore"):  # what runs into infinity shows in the numbers
-        take_steps(rows, side_by_side, room, False, states, np.empty(1))
-        evaluations, quantities = len(rows.moments), len(by_step)
-        known = np.concatenate([by_step, room.registers[quantities : quantities + evaluations]])
+        known = np.concatenate([by_step, registers[quantities : quantities + evaluations]])
         places = np.moveaxis(np.tensordot(rows.table[: 2 * evaluations], known, 1), 2, 0)
         moments = np.add.outer(times, h * rows.moments)
         two_alpha, beta_squared = gains[:, :, np.newaxis]
@@ -66,8 +63,8 @@ def steps_taken(
             mechanism, moments, two_alpha, beta_squared, places[:, ::2], places[:, 1::2] / h
         )
     jacobians *= np.repeat([h**2, h], mechanism.size)
-    states[:, 1] *= h
-    return StepsTaken(np.moveaxis(room.registers[:quantities], 2, 0), np.moveaxis(states[0], 2, 0), jacobians)
+    states[1] *= h
+    return StepsTaken(np.moveaxis(registers[:quantities], 2, 0), np.moveaxis(states, 2, 0), jacobians)
 
 
 def changes_handed_on(method: Method, jacobians: FloatArray, changes: FloatArray) -> FloatArray:
@@ -103,16 +100,15 @@ def acceleration_jacobians(
     q and v have shape (..., n); t (s) and the gains 2 alpha (1/s) and beta^2 (1/s^2; paper Eqs 6 and 9) broadcast
     against (...).
     """
-    size = mechanism.size
-    slope = state_function(mechanism, "slope", np)
-    directions = np.split(np.eye(2 * size)[:, :, np.newaxis], 2)
+    size, acceleration = mechanism.size, acceleration_function(mechanism, np)
+    directions = 1j * IMAGINARY_STEP * np.eye(2 * size)[:, :, np.newaxis]
     shape = q.shape[:-1]
     scalars = [np.broadcast_to(each, shape).ravel() for each in (t, two_alpha, beta_squared)]
-    q, v = q.reshape(-1, size), v.reshape(-1, size)
-    jacobians = np.empty((*q.shape, 2 * size))
-    for first in range(0, len(q), AT_A_TIME):
+    states = np.concatenate([q, v], axis=-1).reshape(-1, 2 * size)
+    jacobians = np.empty((len(states), size, 2 * size))
+    for first in range(0, len(states), AT_A_TIME):
         some = slice(first, first + AT_A_TIME)
-        state = [*(each[some] for each in scalars), *(np.ascontiguousarray(each[some].T) for each in (q, v))]
-        for k, changes in enumerate(slope(*state, *directions)):
-            jacobians[some, k] = np.transpose(changes)
+        ahead = states[some].T[:, np.newaxis] + directions
+        for k, changed in enumerate(acceleration(*(each[some] for each in scalars), *np.split(ahead, 2))):
+            jacobians[some, k] = np.transpose(changed).imag / IMAGINARY_STEP
     return jacobians.reshape(*shape, size, 2 * size)

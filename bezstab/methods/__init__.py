@@ -43,7 +43,6 @@ if TYPE_CHECKING:
         H,
         S,
         Z,
-        branch_polynomial,
         closed_loop_at,
         closed_loop_polynomial,
         closed_loop_table,

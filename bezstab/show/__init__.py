@@ -11,7 +11,6 @@ from bezstab.show.fields import Field, Row, RowKind, cells, column, formatted, v
 from bezstab.show.file_forms import FIGURE_FORMS, TABLE_FORMS
 from bezstab.show.result_sentences import (
     LATE_COMMANDS,
-    NOT_JUDGED,
     alone_words,
     combined_words,
     costs_words,
@@ -96,7 +95,7 @@ if TYPE_CHECKING:
         region_figure,
         verdict_figure,
     )
-    from bezstab.show.run_figures import history_figure, trade_figures, work_precision_figure
+    from bezstab.show.run_figures import history_figure, trade_figures
     from bezstab.show.style import DASHES, column_figure, legend_below, line_at, save, styled
 
 __getattr__ = lazy_names(__name__)

@@ -7,7 +7,6 @@ import math
 import unicodedata
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
-from fractions import Fraction
 from functools import partial
 from importlib import import_module
 from typing import Any, Literal, get_args
@@ -120,25 +119,22 @@ class Field:
         return value
 
     def plain(self, value: Any) -> Value:
-        """Return a value as a row has it: numbers and texts as they are, None for what is not finite.
+        """Return a value as a row has it, by its kind; None for what is missing or not finite.
 
         An exact number is float64, or text. A method or a scene is its name; several texts are one, with commas
-        between them. TypeError, naming the key and the type, for anything else.
+        between them.
         """
-        if self.kind == "numbers" and value is not None:
-            return [float(number) for number in value]
-        if self.kind == "text rows" and value is not None:
-            return [[str(number) for number in row] for row in value]
-        if isinstance(value, Fraction):
-            return str(value) if self.kind == "text" else float(value)
-        if isinstance(value, tuple) and self.kind == "text":
-            return ", ".join(value)
-        if value is None or isinstance(value, str | float | int):
-            return None if isinstance(value, float) and not math.isfinite(value) else value
-        name = getattr(value, "name", None)
-        if isinstance(name, str):  # a method, a scene
-            return name
-        raise TypeError(f"{self.key} is a {type(value).__name__}: no row knows how to show it")
+        if value is None or (isinstance(value, float) and not math.isfinite(value)):
+            return None
+        match self.kind:
+            case "numbers":
+                return [float(number) for number in value]
+            case "text rows":
+                return [[str(number) for number in row] for row in value]
+            case "text":
+                return ", ".join(value) if isinstance(value, tuple) else str(getattr(value, "name", value))
+            case _:  # truth is an integer, too
+                return value if isinstance(value, int) else float(value)
 
 
 number = partial(Field, kind="number")

@@ -14,7 +14,7 @@ from matplotlib.colors import FuncNorm, Normalize
 from matplotlib.figure import Figure
 from matplotlib.path import Path
 from matplotlib.patheffects import AbstractPathEffect, withStroke
-from matplotlib.ticker import MaxNLocator
+from matplotlib.ticker import FixedLocator, MaxNLocator
 
 from bezstab.engines import DRIVE_METHODS
 from bezstab.methods import STEP_FAMILIES
@@ -28,7 +28,6 @@ from bezstab.show.style import (
     cells,
     column_figure,
     legend_below,
-    level_line,
     line_at,
     mark_in_alpha_and_beta,
     marked_line_at,
@@ -202,8 +201,10 @@ def accuracy_map_figure(shown: PlaneMap, omega_h: float, error: FloatArray, leve
         boundary = plot.region(region, axes, shown.h, color="black", linestyle="-", label=f"$|z_p| = {region.level:g}$")
         boundary.set_data(np.transpose(Path(boundary.get_xydata()).interpolated(PARTS).vertices))
         for number, level in enumerate(levels, start=1):
-            look: dict[str, Any] = {"linestyle": DASHES[number % 4], "linewidth": 0.8}
-            level_line(axes, x, y, z_abs, level, f"$|z_p| = {level:.4g}$", **look)
+            dashes = DASHES[number % 4]
+            axes.contour(x, y, z_abs, levels=[level], colors="black", linewidths=0.8, linestyles=[dashes])
+            label = f"$|z_p| = {level:.4g}$"  # the key of what has none
+            axes.plot([], [], color="black", linewidth=0.8, linestyle=dashes, label=label)
         shown.draw_points(axes)
         for text in axes.clabel(contours, fmt="$10^{%d}$", fontsize=6, colors="black", inline=False):
             box = {"boxstyle": "round,pad=0.1", "facecolor": "white", "edgecolor": "none"}
@@ -275,7 +276,8 @@ def held_figure(answer: HeldAnswer, points: int) -> Figure:
         image = plot.modulus_map(kd, kp, found.z_abs, axes=axes)
         figure.colorbar(image, label="$|z_p|$ a step", location="bottom", shrink=0.8)
         if found.has_edge:
-            level_line(axes, kd, kp, found.z_abs, 1.0, "$|z_p| = 1$")
+            axes.contour(kd, kp, found.z_abs, levels=[1.0], colors="black", linewidths=1.2)
+            axes.plot([], [], color="black", label="$|z_p| = 1$")  # a key
         if found.law is not None:
             law: dict[str, Any] = {"color": "white", "linestyle": (0, (4, 4)), "linewidth": 1.0}
             axes.plot(kd, kp_of_one * found.law, label="closed form", **law)
@@ -348,9 +350,8 @@ def error_front_figure(fronts: Sequence[Sequence[FrontPoint]]) -> Figure:
             drawn = [point for point in front if point.z_abs_below >= FASTEST_DRAWN]
             x, y = [point.z_abs_below for point in drawn], [point.combined_error for point in drawn]
             axes.plot(x, y, label=front[0].method.name, **marked_line_at(place))
-        limits = axes.get_xlim()
-        axes.set_xticks(TICKS, [f"{tick:g}" for tick in TICKS])
-        axes.set_xlim(limits)  # which ticks beyond them would widen
+        axes.xaxis.set_major_locator(FixedLocator(TICKS))
+        axes.xaxis.set_major_formatter("{x:g}")
         legend_below(figure)
         return figure
 

@@ -31,7 +31,6 @@ from bezstab.show.style import (
     DASHES,
     DIVERGES,
     cells,
-    level_line,
     line_at,
     marked_line_at,
     new_axes,
@@ -144,7 +143,9 @@ def moving_region(
     if hatched and moving.outside_the_law.any():
         axes.contourf(x, y, moving.outside_the_law, levels=[0.5, 1.5], colors="none", hatches=["....."])
         axes.add_patch(Rectangle((0, 0), 0, 0, fill=False, hatch=".....", label="law does not hold"))  # a key
-    return level_line(axes, x, y, moving.growth, 0.0, label, linestyle=dashes)
+    axes.plot([], [], color="black", linestyle=dashes, label=label)  # a contour has no label of its own
+    edge: QuadContourSet = axes.contour(x, y, moving.growth, levels=[0.0], colors="black", linestyles=[dashes])
+    return edge
 
 
 def spectral_radius(
@@ -250,7 +251,7 @@ def open_edges(region: Region, axes: Axes, h: float | None = None, inset: float 
     Each edge gives a line with arrows on it, `inset` (a share of the axes' sides) inside the axes, where the region
     is. Returned are these lines; none for a bounded region.
     """
-    if region.bounded or region.extent is None:
+    if region.extent is None:
         return []
     along = np.linspace(inset, 1 - inset, ALONG_AN_EDGE)
     drawn: list[Line2D] = []
@@ -311,9 +312,8 @@ def family(members: Sequence[Member], quantity: Quantity = "area", axes: Axes | 
     order of accuracy or error constant, which says something between members of one order alone.
     """
     axes = _axes(axes, "", "steps $n$", quantity)
-    values = [attrgetter(QUANTITIES[quantity])(member) for member in members]
-    known = [np.nan if value is None else float(value) for value in values]
-    return _line(axes, ([member.n for member in members], known), line, marker=".")
+    values = np.array([attrgetter(QUANTITIES[quantity])(member) for member in members], float)  # nan for None
+    return _line(axes, ([member.n for member in members], values), line, marker=".")
 
 
 def history(
@@ -406,7 +406,7 @@ def work_precision(
     axes = _axes(axes, "", COST_LABELS[against], ERROR_LABELS[error])
     axes.set(xscale="log", yscale="log")
     shown = [(run.cost(against), known) for run in runs if (known := run.error(error)) is not None and known > floor]
-    costs, errors = [cost for cost, _ in shown], [known for _, known in shown]
+    costs, errors = np.reshape(shown, (-1, 2)).T
     return _line(axes, (costs, errors), line, label=runs[0].method.name, **marked_line_at(len(axes.lines)))
 
 

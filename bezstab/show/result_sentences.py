@@ -35,9 +35,9 @@ MOST_LISTED = 20  # times in a message
 TIMES = {2: "double", 3: "triple"}
 
 LATE_COMMANDS = (
-    "A target that comes late only delays the motion. A torque or a measurement that comes late takes stability."
+    "A target that comes late only delays the motion. A torque or a measurement that comes late takes stability. "
+    "Not judged: a limit of the torque, friction, and what else the drive is connected to."
 )
-NOT_JUDGED = "Not judged: a limit of the torque, friction, and what else the drive is connected to."
 
 
 def costs_words(answer: Answer) -> str | None:

@@ -9,12 +9,11 @@ import numpy as np
 from matplotlib import style
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.contour import QuadContourSet
 from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
 from matplotlib.legend import Legend
 from matplotlib.lines import Line2D
-from matplotlib.ticker import MaxNLocator
+from matplotlib.ticker import FixedLocator, MaxNLocator
 from numpy.typing import ArrayLike, NDArray
 
 from bezstab.show.file_forms import FIGURE_FORMS
@@ -116,11 +115,9 @@ def mark_in_alpha_and_beta(axes: Axes) -> None:
     The region keeps its shape; only what is written at its axes changes. Below beta^2 = 0 there is no real beta.
     """
     axes.xaxis.set_major_formatter(lambda two_alpha, _: f"{two_alpha / 2:g}")
-    top = max(axes.get_ylim()[1], 0) ** 0.5
-    beta = [
-        value for value in MaxNLocator(4).tick_values(0, top) if value <= top
-    ]  # so few that the first two are apart
-    axes.set_yticks(np.square(beta), [f"{value:g}" for value in beta])
+    beta = MaxNLocator(4).tick_values(0, max(axes.get_ylim()[1], 0) ** 0.5)  # so few that the first two are apart
+    axes.yaxis.set_major_locator(FixedLocator([value**2 for value in beta]))
+    axes.yaxis.set_major_formatter(lambda beta_squared, _: f"{beta_squared**0.5:g}")
     axes.set(xlabel=r"$\alpha$ (1/s)", ylabel=r"$\beta$ (1/s), even in $\beta^2$")
 
 
@@ -143,23 +140,6 @@ def _outer_edges(points: FloatArray) -> tuple[float, float]:
     """Return the ends of the cells around the first and the last of evenly spaced points."""
     half = (points[1] - points[0]) / 2
     return points[0] - half, points[-1] + half
-
-
-def level_line(
-    axes: Axes,
-    x: FloatArray,
-    y: FloatArray,
-    values: FloatArray,
-    level: float,
-    label: str,
-    color: str = "black",
-    linestyle: Any = "-",
-    linewidth: float | None = None,
-) -> QuadContourSet:
-    """Draw where values of shape (y.size, x.size) are at a level, labelled, and return it."""
-    axes.plot([], [], color=color, linestyle=linestyle, linewidth=linewidth, label=label)  # a contour has no label
-    look: dict[str, Any] = {"colors": [color], "linestyles": [linestyle], "linewidths": linewidth}
-    return axes.contour(x, y, values, levels=[level], **look)
 
 
 def line_at(place: int) -> dict[str, Any]:

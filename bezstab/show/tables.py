@@ -29,8 +29,7 @@ def render(rows: Sequence[Row], columns: Sequence[Field], form: Format) -> str:
     if form == "csv":
         return _comma_separated(rows, list(nothing))
     headings = [column.heading for column in columns]
-    lines = [headings, *([column.cell(row) for column in columns] for row in rows)]
-    return _markdown(lines) if form == "markdown" else _aligned(lines)
+    return _table([headings, *([column.cell(row) for column in columns] for row in rows)], form)
 
 
 def _comma_separated(rows: Sequence[Row], keys: Sequence[str]) -> str:
@@ -43,20 +42,16 @@ def _comma_separated(rows: Sequence[Row], keys: Sequence[str]) -> str:
     return text.getvalue().rstrip("\n")
 
 
-def _aligned(lines: Sequence[Sequence[str]]) -> str:
-    return "\n".join(GAP.join(line).rstrip() for line in _padded(lines))
-
-
-def _markdown(lines: Sequence[Sequence[str]]) -> str:
-    padded = _padded([[cell.replace("|", "\\|") for cell in line] for line in lines])
-    rule = ["-" * shown_width(cell) for cell in padded[0]]
-    return "\n".join(f"| {' | '.join(line)} |" for line in (padded[0], rule, *padded[1:]))
-
-
-def _padded(lines: Sequence[Sequence[str]]) -> list[list[str]]:
-    """Return the cells filled up with spaces to the width of their column."""
-    widths = [max(map(shown_width, column)) for column in zip(*lines, strict=True)]
-    return [[_filled_up(cell, width) for cell, width in zip(line, widths, strict=True)] for line in lines]
+def _table(lines: list[list[str]], form: Format) -> str:
+    """Return lines of cells, the first the headings, with each cell as wide as its column."""
+    if form == "markdown":
+        lines = [[cell.replace("|", "\\|") for cell in line] for line in lines]
+    widths = [max(map(shown_width, cells)) for cells in zip(*lines, strict=True)]
+    padded = [[_filled_up(cell, width) for cell, width in zip(line, widths, strict=True)] for line in lines]
+    if form == "markdown":
+        rule = ["-" * width for width in widths]
+        return "\n".join(f"| {' | '.join(line)} |" for line in (padded[0], rule, *padded[1:]))
+    return "\n".join(GAP.join(line).rstrip() for line in padded)
 
 
 def _filled_up(text: str, width: int) -> str:

@@ -12,7 +12,6 @@ from bezstab.evidence import (
     sweep_compiled,
 )
 from bezstab.evidence.sweep_summaries import cost_for
-from bezstab.mechanism import load_scene
 from bezstab.methods import accuracy, evaluations, lookup
 from bezstab.rationals import exact
 from bezstab.stability import choose
@@ -123,4 +122,4 @@ def test_all_runs_of_a_sweep_are_compiled_or_none(monkeypatch: pytest.MonkeyPatc
         ("no", [fast], 1e-5, False),
     ):
         monkeypatch.setenv("BEZSTAB_COMPILED", choice)
-        assert sweep_compiled(load_scene("four_bar"), methods, (1e-3, least_step), 1.0, 3) is expected
+        assert sweep_compiled(methods, (1e-3, least_step), 1.0, 3) is expected

@@ -15,7 +15,7 @@ from bezstab.units import feedback_gains
 AnyArray = NDArray[Any]  # of real or complex numbers
 
 EPSILON = 1e-30
-ENDLESS = 10**9  # steps, of which some are taken
+ENDLESS = 10**5  # steps, of which some are taken
 CORRECTIONS = 12  # of Newton's method
 PERIODIC = 1e-10  # m, rad: what a revolution may leave
 REVOLUTIONS, SETTLED = 30, 1e-9  # m, rad: what the last of so many may still change

@@ -55,7 +55,7 @@ def test_the_projection_figure_shows_all_three_errors_of_every_way_to_hold_the_c
         for method in ("B2", "SYM")
         for number, (stabilise, advised) in enumerate(ways)
     ]
-    figure = projection_figure(SweptRuns(runs, 0.0, "projection"), "made up", 0.0)
+    figure = projection_figure(SweptRuns(runs, 0.0, "projection"), "made up")
     for axes, share in zip(figure.axes, (1, 0.1, 2), strict=True):
         drawn = [point for line in axes.lines for point in np.array(line.get_xydata()).tolist()]
         assert np.array(drawn) == pytest.approx(np.array([(20 + 2 * k, share * 10.0**-k) for k in range(3)] * 2))
