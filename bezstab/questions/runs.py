@@ -44,7 +44,7 @@ class RunQuestion:
     speed: Fraction = Fraction(1)
     stabilise: Stabilise = "baumgarte"
     iterations: int | None = None
-    sequence: Sequence[Fraction] = ()
+    sequence: Sequence[Fraction] | None = None
     hold: bool = False
     perturb: float | Fraction = 0
     start: Start = "rk4"
@@ -88,6 +88,6 @@ def run_answer(question: RunQuestion) -> Simulation:
         perturb=float(question.perturb),
         start=question.start,
         after=question.after,
-        sequence=[float(step) for step in question.sequence],
+        sequence=[float(step) for step in question.sequence or ()],
         hold=question.hold,
     )
