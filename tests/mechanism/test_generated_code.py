@@ -17,8 +17,14 @@ from bezstab.mechanism import (
     parse_scene,
     state_function,
 )
-from bezstab.mechanism.compiled_stepping import _by_operations, take_operations
-from bezstab.mechanism.generated_code import CODES, acceleration_code, operations, state_source
+from bezstab.mechanism.generated_code import (
+    CODES,
+    acceleration_code,
+    by_operations,
+    operations,
+    state_source,
+    take_operations,
+)
 from bezstab.methods import REGISTRY, accuracy, lookup, steps
 from tests.evidence.samples import of_campaign
 from tests.mechanism.test_scenes import pendulum
@@ -114,7 +120,7 @@ def test_single_operations_are_the_text_to_the_last_bit() -> None:
         places: dict[str | float, int] = {}
         for name in ("accelerations", "corrections"):
             code = CODES[name](mechanism.equations)
-            function = _by_operations(operations(code, places), n, 2, take_operations)
+            function = by_operations(operations(code, places), n, 2, take_operations)
             variables = np.array([key if isinstance(key, float) else 0.0 for key in places]).astype(moved.dtype)
             found = np.zeros(2 * len(code.results), moved.dtype)
             function(0.0, np.array([gains, gains]).T, moved, found, variables, 1)
