@@ -29,10 +29,10 @@ MOST_STEPS = 10**8
 class Simulation(ReadOnlyArrays):
     """A run at one point of the plane, with steps of h (s), and the constraint errors along it; SI units.
 
-    t has shape (times,), q and v (times, coordinates), c, cdot and multipliers (times, constraints). Of energy and work,
-    (times,): `driver_work` is what the drivers have put in since the start, `force_work` what constant forces and
-    torques have put in and dampers taken out, and `energy_drift` what no work explains, an error. `failure` says when and why the run ended early; None if
-    it did not.
+    t has shape (times,), q and v (times, coordinates), c, cdot and multipliers (times, constraints). Of energy and
+    work, (times,): `driver_work` is what the drivers have put in since the start, `force_work` what constant forces and
+    torques have put in and dampers taken out, and `energy_drift` what no work explains, an error. `failure` says when
+    and why the run ended early; None if it did not.
     """
 
     trajectory: Trajectory
