@@ -16,7 +16,8 @@ from functools import partial
 from itertools import product
 
 import numpy as np
-from numpy.polynomial.polynomial import polyval2d
+from numpy.polynomial.polynomial import polyval, polyval2d
+from numpy.typing import NDArray
 
 from bezstab.stability.arrays import SAME, ComplexArray, Extent, FloatArray
 from bezstab.stability.mu_pencils import MuPencil, all_inside, largest_root_in_z, roots_in_mu
@@ -25,6 +26,8 @@ from bezstab.stability.searches import zoom_on_minimum
 
 Place = tuple[float, float]
 """Both parameters of a chart."""
+Points = NDArray[np.inexact]
+"""Real or complex."""
 
 SPACINGS = 120  # of a grid along either axis: every valley is seen
 FAR = (1e4, 1e2)  # alpha_hat, sqrt(beta_hat) where a region goes on: a damping of infinity by 1e-4 moves least values
@@ -38,8 +41,8 @@ ARC_ZOOM_POINTS, ARC_ZOOMS = 65, 7  # each by 1/32: the curve's end, to rounding
 class Chart:
     """What a search needs to know of a method.
 
-    `coefficients` returns, from both parameters, the polynomial's coefficients in z, ascending, and their slopes by
-    either parameter; shape (3, degree + 1). `modulus` returns the largest |z| over points of shape (..., 2), `fold`
+    `coefficients` returns the polynomial's coefficients in z, ascending, at points (..., 2), real or complex; shape
+    (degree + 1, ...). `modulus` returns the largest |z| over points of shape (..., 2), `fold`
     such points moved to where least values are looked for, `user_point` alpha_hat and beta_hat of a place. `edges` are
     the numbers, 0 or 1, of the parameters that may be zero at a least value. `real`: whether the coefficients are, so
     that poles come in conjugate pairs; else they are on the edge where the second parameter is zero. `anywhere`:
@@ -48,7 +51,7 @@ class Chart:
     """
 
     name: str
-    coefficients: Callable[[float, float], ComplexArray]
+    coefficients: Callable[[Points], Points]
     modulus: Callable[[FloatArray], FloatArray]
     fold: Callable[[FloatArray], FloatArray]
     user_point: Callable[[Place], tuple[float, float]]
@@ -70,10 +73,8 @@ def mu_chart(pencil: MuPencil, view: Extent, curves: Sequence[FloatArray], finer
     rightmost = 0.0 if pencil.implicit else reach / 4
     points = finer * SPACINGS + 1
 
-    def coefficients(x: float, y: float) -> ComplexArray:
-        powers = complex(x, y) ** np.arange(pencil.table.shape[1])
-        slope = pencil.table_by_mu @ powers[:-1]
-        return np.stack([pencil.table @ powers, slope, 1j * slope])
+    def coefficients(points: Points) -> Points:
+        return np.asarray(polyval(points[..., 0] + 1j * points[..., 1], pencil.table.T))
 
     def modulus(points: FloatArray) -> FloatArray:
         mu = points[..., 0] + 1j * points[..., 1]
@@ -107,10 +108,9 @@ def plane_chart(pencil: PlanePencil, view: Extent, curves: Sequence[FloatArray],
     if not curves:
         high = np.maximum(high, FAR)
     points = finer * SPACINGS + 1
-    tables = [np.moveaxis(each, 0, -1) for each in (pencil.table, *pencil.slopes[1:])]
 
-    def coefficients(x: float, y: float) -> ComplexArray:
-        return np.array([polyval2d(x, y, each) for each in tables], complex)
+    def coefficients(points: Points) -> Points:
+        return np.asarray(polyval2d(points[..., 0], points[..., 1], np.moveaxis(pencil.table, 0, -1)))
 
     def modulus(points: FloatArray) -> FloatArray:
         alpha_hat, beta_hat = points.reshape(-1, 2).T

@@ -9,7 +9,7 @@ import numpy as np
 
 from bezstab.stability.arrays import EPS, Extent
 from bezstab.stability.charts import Chart, Place
-from bezstab.stability.least_modulus import Active, other_poles, solved
+from bezstab.stability.least_modulus import Cluster, solved
 
 STEP = 1 / 100  # of the pole, from one place to the next; the last is halved until it is rounding
 ASIDE = 1e-7  # of mu: a double mu splits by 1e-8 in float64, which must not let a rival of equal modulus win
@@ -36,10 +36,8 @@ def critical_place(chart: Chart, box: Extent) -> Place | None:
 
 def _double_at(chart: Chart, pole: float, near: Place) -> Place | None:
     """Return the place near another one where a pole is double; None if there is none, or a larger pole."""
-    double = [Active(complex(pole), multiplicity=2 if chart.real else 1, real=True)]
-    held = {2: pole} if chart.real else {1: 0.0, 2: pole}
-    found = solved(chart, near, double, held)
-    if found is None or np.abs(np.subtract(found.parameters, near)).max() > NEARBY * (1 + np.abs(near).max()):
+    double = Cluster(complex(pole), count=2, real=True) if chart.real else Cluster(complex(pole), real=True)
+    found = solved(chart, near, [double], edges=() if chart.real else (1,), pole=pole)
+    if found is None or np.abs(np.subtract(found.place, near)).max() > NEARBY * (1 + np.abs(near).max()):
         return None
-    others = other_poles(chart, found.parameters, np.array([pole], complex), double)
-    return found.parameters if others is not None and np.abs(others).max(initial=0.0) < pole else None
+    return found.place if np.abs(found.others).max(initial=0.0) < pole else None
