@@ -36,7 +36,7 @@ HOPEFUL = 1.01  # times the least solution: the zoom on a minimum above it has n
 AS_LARGE = 0.9  # of the largest |z|: what else may be as large at the least value near a start
 NEWTON_STEPS = 16  # from a narrowed minimum three to ten lead to its kink; most sets have none there
 NEARBY = 0.5  # of the largest |z|: poles so near may be one multiple pole, which float64 and the zoom's end part
-RADIUS = 1e-4  # of circles, of the parameters' size: what is left out of slopes is its eighth power
+RADII = (1e-2, 1e-3, 1e-4, 1e-5)  # of circles, of the parameters' size: the first beyond which no poles meet nearby
 ON_CIRCLE: ComplexArray = np.exp(2j * np.pi * np.arange(8) / 8)
 SMALL = 1e-3  # a parameter below it is as if of that size
 
@@ -147,13 +147,16 @@ def _taylor(functions: Callable[[ComplexArray], ComplexArray], place: FloatArray
     """Return values, both slopes and all four second slopes at a place, in units of the scale; shape (functions, 7).
 
     functions: analytic, take points (..., 2) and return (functions, ...). By Cauchy's formula, on circles along either
-    parameter and along both at once.
+    parameter and along both at once, on which the series of the functions has come to its end.
     """
     directions = np.array([[1, 0], [0, 1], [1, 1]])
-    points = place + RADIUS * scale * directions[:, np.newaxis] * ON_CIRCLE[:, np.newaxis]
-    series = np.fft.fft(functions(points), axis=-1) / len(ON_CIRCLE)
-    value, (by_x, by_y, _) = series[:, 0, 0], series[..., 1].T / RADIUS
-    twice_x, twice_y, twice_both = 2 * series[..., 2].T / RADIUS**2
+    for radius in RADII:
+        points = place + radius * scale * directions[:, np.newaxis] * ON_CIRCLE[:, np.newaxis]
+        series = np.fft.fft(functions(points), axis=-1) / len(ON_CIRCLE)
+        if np.abs(series[..., -1]).max() <= SAME * np.abs(series[..., 1:]).max():
+            break
+    value, (by_x, by_y, _) = series[:, 0, 0], series[..., 1].T / radius
+    twice_x, twice_y, twice_both = 2 * series[..., 2].T / radius**2
     mixed = (twice_both - twice_x - twice_y) / 2
     return np.stack([value, by_x, by_y, twice_x, mixed, mixed, twice_y], axis=-1)
 
