@@ -27,9 +27,7 @@ from bezstab.stability.pencils import Pencil, pencil_of
 from bezstab.stability.searches import bisected
 
 Modulus = Callable[[FloatArray, FloatArray], FloatArray]
-"""|z_p|, or what takes its place, over arrays of alpha_hat and beta_hat."""
-Objective = Callable[[FloatArray, FloatArray, float], FloatArray]
-"""What is to be least, over rows of alpha_hat and beta_hat; above the last argument it may say any larger value."""
+"""|z_p|, or what takes its place and is to be least, over arrays of alpha_hat and beta_hat of one shape."""
 
 SAMPLES = 400  # over the region's box: a few thousandths of what the search itself looks at
 NEIGHBOURS = 32  # on each ring
@@ -78,29 +76,18 @@ def check_best_point(
 
 
 def check_least(
-    method: Method,
-    objective: Objective,
-    alpha_hat: float,
-    beta_hat: float,
-    extent: Extent,
-    *,
-    equal: bool = False,
-    cut: bool = False,
+    method: Method, objective: Modulus, alpha_hat: float, beta_hat: float, extent: Extent, *, cut: bool = False
 ) -> None:
     """Raise NumericalError if an objective is smaller at a sampled point with alpha, beta > 0 than at the answer.
 
-    equal: only alpha = beta is an answer; cut: only points within the extent are.
+    cut: only points within the extent are answers.
     """
     alpha_hats, beta_hats = sampled_points(extent, alpha_hat, beta_hat)
-    if equal:
-        near = alpha_hat * np.concatenate([1 + RINGS, 1 - RINGS])
-        alpha_hats = np.concatenate([near, np.linspace(0, extent[0][1], SAMPLES + 1)[1:]])
-        beta_hats = alpha_hats**2 / 4
     kept = (alpha_hats > 0) & (beta_hats > 0)
     if cut:
         kept &= (alpha_hats <= extent[0][1]) & (beta_hats <= extent[1][1])
-    values = objective(alpha_hats[kept], beta_hats[kept], np.inf)
-    here = float(objective(np.array([alpha_hat]), np.array([beta_hat]), np.inf)[0])
+    values = objective(alpha_hats[kept], beta_hats[kept])
+    here = float(objective(np.array([alpha_hat]), np.array([beta_hat]))[0])
     least = int(np.argmin(values))
     if values[least] < here * (1 - DOUBLE) - SAME:
         place = f"({alpha_hats[kept][least]:.6g}, {beta_hats[kept][least]:.6g})"

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from bezstab.stability.arrays import SAME, ComplexArray, Extent, FloatArray
 from bezstab.stability.mu_pencils import MuPencil, all_inside, largest_root_in_z, roots_in_mu
 from bezstab.stability.plane_pencils import PlanePencil, largest_plane_root
-from bezstab.stability.searches import zoom_on_minimum
+from bezstab.stability.searches import least_between
 
 Place = tuple[float, float]
 """Both parameters of a chart."""
@@ -34,7 +34,6 @@ FAR = (1e4, 1e2)  # alpha_hat, sqrt(beta_hat) where a region goes on: a damping 
 NEAR = (8.0, 64.0)  # alpha_hat, beta_hat: corners of a region may lie a thousandfold further out, least values do not
 ARC_SAMPLES = 513  # of theta, where a curve of equal |z_p| is looked for, a tenth of them at least
 ARC_SHARE = 1 / 10  # of the samples lie on such a curve, if there is one; a kink shows at isolated theta only
-ARC_ZOOM_POINTS, ARC_ZOOMS = 65, 7  # each by 1/32: the curve's end, to rounding
 
 
 @dataclass(frozen=True)
@@ -161,15 +160,8 @@ def _other_end(pencil: MuPencil, z_abs: float, place: Place) -> Place | None:
     _, sampled = distances(theta)
     if (sampled >= 0).sum() < ARC_SHARE * theta.size:
         return None
-    furthest = theta[np.argmax(sampled.max(axis=0))]
-    end, _ = zoom_on_minimum(
-        lambda points: -distances(points[:, 0])[1].max(axis=0),
-        np.array([furthest]),
-        np.array([theta[1] - theta[0]]),
-        points=ARC_ZOOM_POINTS,
-        shrink=2 / (ARC_ZOOM_POINTS - 1),
-        rounds=ARC_ZOOMS,
-    )
-    locus, distance = distances(end)
+    furthest, spacing = theta[np.argmax(sampled.max(axis=0))], theta[1] - theta[0]
+    end, _ = least_between(lambda theta: -distances(theta)[1].max(axis=0), furthest - spacing, furthest + spacing)
+    locus, distance = distances(end[np.newaxis])
     far = complex(locus[np.argmax(distance[:, 0]), 0])
     return far.real, far.imag

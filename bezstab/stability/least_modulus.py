@@ -29,13 +29,14 @@ import numpy as np
 from bezstab.stability.arrays import DOUBLE, EPS, SAME, TRIPLE, ComplexArray, FloatArray
 from bezstab.stability.charts import Chart, Place
 from bezstab.stability.root_finding import companion_roots
-from bezstab.stability.searches import zoom_on_minimum
+from bezstab.stability.searches import lowest_minima
 
 STARTS = 8  # of a grid's local minima, the lowest
-HOPEFUL = 1.01  # times the least solution: the zoom on a minimum above it has not stopped so far short
+HOPEFUL = 0.01  # above the least solution: the zoom on another minimum has not stopped so far short
 AS_LARGE = 0.9  # of the largest |z|: what else may be as large at the least value near a start
 NEWTON_STEPS = 16  # from a narrowed minimum three to ten lead to its kink; most sets have none there
-NEARBY = 0.5  # of the largest |z|: poles so near may be one multiple pole, which float64 and the zoom's end part
+NEARBY = 0.5  # of the parameters' size, and of the largest |z|: what is flat leads further, to no minimum nearby, and
+# poles so near may be one multiple pole, which float64 and the zoom's end part
 RADII = (1e-2, 1e-3, 1e-4, 1e-5)  # of circles, of the parameters' size: the first beyond which no poles meet nearby
 ON_CIRCLE: ComplexArray = np.exp(2j * np.pi * np.arange(8) / 8)
 SMALL = 1e-3  # a parameter below it is as if of that size
@@ -59,13 +60,10 @@ class Solved:
     others: ComplexArray
 
 
-def solved(
-    chart: Chart, start: Place, active: Sequence[Cluster], edges: Sequence[int] = (), pole: float | None = None
-) -> Solved | None:
+def solved(chart: Chart, start: Place, active: Sequence[Cluster], edges: Sequence[int]) -> Solved | None:
     """Return what Newton's method reaches from a start; None if it does not settle.
 
-    edges: the parameters, 0 or 1, that are zero; pole: what the first cluster's |z| is to be, where it is given.
-    Whether the poles found are the largest the caller asks.
+    edges: the parameters, 0 or 1, that are zero. Whether the poles found are the largest the caller asks.
     """
     scale = np.maximum(np.abs(start), SMALL)
     z = np.array([cluster.z for cluster in active])
@@ -86,18 +84,16 @@ def solved(
 
     def equations(place: FloatArray) -> FloatArray:
         nonlocal z
-        series = _taylor(of_clusters, place, scale)
+        series = taylor(of_clusters, place, scale)
         log_z, apart = series[: len(z)], series[len(z) :]
         z = z * np.exp(log_z[:, 0])
         log_z[:, 0] = np.log(np.abs(z))
         given = [[place[edge] / scale[edge], *np.eye(6)[edge]] for edge in edges]
-        if pole is not None:
-            given.append(log_z[0] - [np.log(pole), 0, 0, 0, 0, 0, 0])
         parts = [np.reshape(given, (-1, 7)), log_z[1:] - log_z[0], apart, -1j * apart[apart_in_plane]]
         conditions = np.concatenate(parts).real
         return np.concatenate([conditions[:, :3], _without_slope(log_z[0].real, conditions)])
 
-    place = _newton(equations, start, scale)
+    place = newton(equations, start, scale)
     if place is None:
         return None
     others = _poles_at(chart, np.array(place))
@@ -113,7 +109,7 @@ def solved(
 def _without_slope(least: FloatArray, conditions: FloatArray) -> FloatArray:
     """Return the equations by which a function has no slope where conditions hold, none if they leave no freedom.
 
-    Both arguments, and what is returned but for second slopes, as of `_taylor`.
+    Both arguments, and what is returned but for second slopes, as of `taylor`.
     """
     if len(conditions) > 1:
         return np.empty((0, 3))
@@ -124,7 +120,7 @@ def _without_slope(least: FloatArray, conditions: FloatArray) -> FloatArray:
     return np.array([[along @ across, *(curvature @ across + along @ turning)]])
 
 
-def _newton(equations: Callable[[FloatArray], FloatArray], start: Place, scale: FloatArray) -> Place | None:
+def newton(equations: Callable[[FloatArray], FloatArray], start: Place, scale: FloatArray) -> Place | None:
     """Return where equations hold; None if the way from the start does not lead there.
 
     They are given by rows: what is to vanish at a place, and its slopes by both parameters, in units of the scale.
@@ -143,7 +139,7 @@ def _newton(equations: Callable[[FloatArray], FloatArray], start: Place, scale: 
     return None
 
 
-def _taylor(functions: Callable[[ComplexArray], ComplexArray], place: FloatArray, scale: FloatArray) -> ComplexArray:
+def taylor(functions: Callable[[ComplexArray], ComplexArray], place: FloatArray, scale: FloatArray) -> ComplexArray:
     """Return values, both slopes and all four second slopes at a place, in units of the scale; shape (functions, 7).
 
     functions: analytic, take points (..., 2) and return (functions, ...). By Cauchy's formula, on circles along either
@@ -182,11 +178,11 @@ def least_on(chart: Chart) -> tuple[float, Least | None]:
     NumericalError if a root leaves the range of float64.
     """
     solutions: list[Least] = []
-    minima = sorted(_local_minima(chart), key=lambda minimum: minimum[0])
-    for value, place in minima:
-        if all(value < HOPEFUL * each.z_abs for each in solutions):
-            solutions += _solutions(chart, place)
-    return minima[0][0], _best(chart, solutions)
+    places, values = lowest_minima(chart.modulus, chart.axes, STARTS, fold=chart.fold)
+    for number in np.argsort(values, kind="stable").tolist():
+        if all(values[number] < each.z_abs + HOPEFUL for each in solutions):
+            solutions += _solutions(chart, places[number])
+    return float(values.min()), _best(chart, solutions)
 
 
 def _best(chart: Chart, solutions: list[Least]) -> Least | None:
@@ -203,34 +199,6 @@ def _best(chart: Chart, solutions: list[Least]) -> Least | None:
         return all(each.place[edge] for edge in chart.edges), each.z_abs > 0, -each.multiplicity, each.place[1]
 
     return min(filter(alike, solutions), key=preferred)
-
-
-def _local_minima(chart: Chart) -> list[tuple[float, FloatArray]]:
-    """Return the lowest local minima on the chart's grid, each narrowed by smaller grids: values and places."""
-    x, y = chart.axes
-    grid = np.stack(np.meshgrid(x, y), axis=-1)
-    sampled = chart.modulus(grid)
-    padded = np.pad(sampled, 1, mode="edge")
-    around = np.min([np.roll(padded, (i, j), (0, 1)) for i in (-1, 0, 1) for j in (-1, 0, 1)], axis=0)[1:-1, 1:-1]
-    rows, columns = np.nonzero(sampled <= around)
-    lowest = np.argsort(sampled[rows, columns], kind="stable")[:STARTS]
-    rows, columns = rows[lowest], columns[lowest]
-    places, values = zoom_on_minimum(
-        chart.modulus,
-        grid[rows, columns],
-        np.stack([_spacings(x)[columns], _spacings(y)[rows]], axis=-1),
-        turned=True,
-        patient=True,
-        fold=chart.fold,
-    )
-    return list(zip(values.tolist(), places, strict=True))
-
-
-def _spacings(axis: FloatArray) -> FloatArray:
-    """Return the larger distance of each of an axis' points from its neighbours."""
-    between = np.diff(axis)
-    spacings: FloatArray = np.maximum(np.append(between[0], between), np.append(between, between[-1]))
-    return spacings
 
 
 def _active_sets(chart: Chart, z: ComplexArray) -> Iterator[tuple[list[Cluster], tuple[int, ...]]]:
@@ -266,7 +234,7 @@ def _solutions(chart: Chart, start: FloatArray) -> Iterator[Least]:
     for active, edges in _active_sets(chart, z):
         found = solved(chart, first, active, edges)
         place = _folded(chart, found.place) if found else None
-        if found is None or place is None:
+        if found is None or place is None or np.abs(start - place).max() > NEARBY * max(*np.abs(start), SMALL):
             continue
         z_abs = float(np.abs(found.z).max())
         if np.abs(found.others).max(initial=0.0) <= z_abs * (1 + DOUBLE):
@@ -299,12 +267,12 @@ def _all_zero(chart: Chart, start: Place) -> Iterator[Least]:
     for touching in (True, False):
 
         def equations(place: FloatArray, touching: bool = touching) -> FloatArray:
-            last, *others = _taylor(coefficients, place, scale)
+            last, *others = taylor(coefficients, place, scale)
             of_last = np.column_stack([last[1:3], last[3:].reshape(2, 2)]) if touching else [last[:3]]
             rows = np.concatenate([of_last, np.reshape(others, (-1, 7))[:, :3]])
             return np.concatenate([rows.real, rows.imag])
 
-        found = _newton(equations, start, scale)
+        found = newton(equations, start, scale)
         place = _folded(chart, found) if found else None
         if place and _vanish(chart, place):
             yield Least(0.0, place, np.zeros(1, complex), len(chart.coefficients(np.array(place))) - 1)
