@@ -61,13 +61,13 @@ def accurate_point(
         values[usable] = error(2 * alpha_h[usable], beta_h[usable] ** 2)
         return values
 
-    def axes(count: int) -> list[FloatArray]:
-        return [np.linspace(first, last, count) for first, last in zip(low, high, strict=True)]
-
-    best, least = zoom_from_grid(errors, axes(FIRST_GRID), fold=lambda points: np.clip(points, low, high))
+    best, least = zoom_from_grid(
+        errors, (low + high) / 2, (high - low) / 2, FIRST_GRID, fold=lambda points: np.clip(points, low, high)
+    )
     if np.isinf(least):
         raise InputError(f"{method.name}: no feedback settles so fast if α and β are off by a share of {spread:g}")
-    sampled = errors(grid_of(axes(SAMPLES)).reshape(-1, len(low))).min()
+    axes = [np.linspace(first, last, SAMPLES) for first, last in zip(low, high, strict=True)]
+    sampled = errors(grid_of(axes).reshape(-1, len(axes))).min()
     if sampled < least * (1 - BETTER):
         raise NumericalError(f"{method.name}: the point chosen forces {float(least):.9g}, another {sampled:.9g}")
     return 2 * float(np.exp(best[0])), float(np.exp(best[-1])) ** 2

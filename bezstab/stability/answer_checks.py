@@ -76,13 +76,24 @@ def check_best_point(
 
 
 def check_least(
-    method: Method, objective: Modulus, alpha_hat: float, beta_hat: float, extent: Extent, *, cut: bool = False
+    method: Method,
+    objective: Modulus,
+    alpha_hat: float,
+    beta_hat: float,
+    extent: Extent,
+    *,
+    equal: bool = False,
+    cut: bool = False,
 ) -> None:
     """Raise NumericalError if an objective is smaller at a sampled point with alpha, beta > 0 than at the answer.
 
-    cut: only points within the extent are answers.
+    equal: only alpha = beta is an answer; cut: only points within the extent are.
     """
     alpha_hats, beta_hats = sampled_points(extent, alpha_hat, beta_hat)
+    if equal:
+        near = alpha_hat * np.concatenate([1 + RINGS, 1 - RINGS])
+        alpha_hats = np.concatenate([near, np.linspace(0, extent[0][1], SAMPLES + 1)[1:]])
+        beta_hats = alpha_hats**2 / 4
     kept = (alpha_hats > 0) & (beta_hats > 0)
     if cut:
         kept &= (alpha_hats <= extent[0][1]) & (beta_hats <= extent[1][1])

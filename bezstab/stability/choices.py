@@ -28,10 +28,11 @@ from bezstab.stability.forced_errors import OMEGA_H
 from bezstab.stability.margins import Margins, stability_margins
 from bezstab.stability.pencils import Pencil, pencil_of
 from bezstab.stability.regions import Region, chart_of, pole_place, region
-from bezstab.stability.searches import checked, zoom_from_grid
+from bezstab.stability.searches import checked, first_where, zoom_from_grid
 from bezstab.units import check_step
 
 THOUSANDFOLD = 1e-3  # what "settled" means for the constraint error
+SAMPLES = 4000  # along a line: |z_p| has no features as narrow as that
 FIRST_GRID = 52  # points per axis of the first grid over the region's box: every valley is seen
 GRID = 49  # points per axis of a zoom: few fine grids take less time than many coarse ones, and lose no valley
 ZOOM = 0.32  # from one grid to the next: eight spacings to either side of its best point
@@ -122,13 +123,14 @@ def choose(
     pencil = pencil_of(method, free=True)  # a pole that no parameters move must not hide the others
     at_rest = modulus is None
     modulus = modulus or partial(largest_modulus, pencil)
-    line = _damped_critically(box)
     if goal == "accurate":
         point = _accurate(method, box, modulus, omega_h, rate, spread, equal, along)
         cut = cut and not along
     elif goal == "gentle":
-        of_all = partial(largest_modulus, pencil_of(method)) if at_rest else modulus
-        point, cut = _gentle(method, along, line, of_all, rate or 0.0), False
+        of_all = partial(largest_modulus, pencil_of(method)) if at_rest and not along else modulus
+        rate = 0.0 if rate is None else rate
+        point = mildest_along(along, of_all, rate, method.name) if along else _gentle(method, of_all, box, rate)
+        cut = False
     elif goal == "critical":
         if along:
             raise InputError(
@@ -144,22 +146,15 @@ def choose(
         point, cut = (best.alpha_hat, best.beta_hat), False
     elif goal == "robust" or goal == "fastest":  # noqa: PLR1714 (what the type checker follows)
         objective = _slowest(method, modulus, spread) if goal == "robust" else modulus
-        if along or equal:
-            point, cut = least_along(along or line, objective), cut and not along
-        else:  # of the fastest where |z_p| falls on as the feedback grows, or for a mechanism that moves
-            point = _checked_least(pencil, box, objective, cut)
+        # without a curve of the fastest where |z_p| falls on as the feedback grows, or for a mechanism that moves
+        point = least_along(along, objective) if along else _checked_least(pencil, box, objective, equal, cut)
+        cut = cut and not along
     else:
         assert_never(goal)
     choice = describe_point(method, goal, exact(point[0]), exact(point[1]), spread, margins)
     if choice.verdict != "converges":
         raise NumericalError(f"{method.name}: the point {point} found for {goal} is not stable")
     return replace(choice, searched=SEARCHED) if cut else choice
-
-
-def _damped_critically(box: Extent) -> Curve:
-    """Return the curve alpha = beta up to the end of a region's box."""
-    strongest = min(box[0][1] / 2, math.sqrt(box[1][1]))
-    return lambda share: (2 * strongest * share, (strongest * share) ** 2)
 
 
 def _accurate(
@@ -326,43 +321,47 @@ def _slowest(method: Method, modulus: Modulus, spread: float) -> Modulus:
     return objective
 
 
-def _checked_least(pencil: Pencil, extent: Extent, objective: Modulus, cut: bool) -> tuple[float, float]:
+def _checked_least(pencil: Pencil, extent: Extent, objective: Modulus, equal: bool, cut: bool) -> tuple[float, float]:
     """Return where the objective is least; NumericalError if after a finer search, too, a sampled point is better."""
 
     def found(finer: int) -> tuple[float, float]:
-        alpha_hat, beta_hat = _least(extent, objective, cut, finer)
-        check_least(pencil.method, objective, alpha_hat, beta_hat, extent, cut=cut)
+        alpha_hat, beta_hat = _least(extent, objective, equal, cut, finer)
+        check_least(pencil.method, objective, alpha_hat, beta_hat, extent, equal=equal, cut=cut)
         return alpha_hat, beta_hat
 
     return checked(found)
 
 
-def _least(extent: Extent, objective: Modulus, cut: bool, finer: int) -> tuple[float, float]:
-    """Return where the objective is least over the region's box.
+def _least(extent: Extent, objective: Modulus, equal: bool, cut: bool, finer: int) -> tuple[float, float]:
+    """Return where the objective is least over the region's box; with `equal` on the line alpha = beta.
 
     `finer`: so many times the points along an axis of the first grid, and so many times the zooms, each by a lesser
     factor. Its valleys are narrow, curved and have kinks for beds: the grids wait where a valley leads on, but out of a
     box that cuts off the region they are not led (`cut`).
     """
     largest = np.array([extent[0][1] / 2, math.sqrt(extent[1][1])])  # alpha h and beta h
+    if equal:
+        largest = largest.min(keepdims=True)
 
     def over_positive_points(points: FloatArray) -> FloatArray:
         values = np.full(points.shape[:-1], np.inf)
         positive = (points > 0).all(axis=-1)
-        alpha, beta = points[positive].T  # times h
+        alpha, beta = points[positive].T[[0, -1]]  # times h; with `equal` the same
         values[positive] = objective(2 * alpha, beta**2)
         return values
 
     best, _ = zoom_from_grid(
         over_positive_points,
-        [np.linspace(0, end, finer * FIRST_GRID) for end in largest],
+        largest / 2,
+        largest / 2,
+        finer * (SAMPLES if equal else FIRST_GRID),
         points=GRID,
         shrink=ZOOM ** (1 / finer),
         rounds=finer * ZOOMS,
         patient=True,
         fold=(lambda points: np.minimum(points, largest)) if cut else None,
     )
-    return 2 * float(best[0]), float(best[1]) ** 2
+    return 2 * float(best[0]), float(best[-1]) ** 2
 
 
 def _critical_point(method: Method, box: Extent) -> tuple[float, float]:
@@ -378,10 +377,12 @@ def _critical_point(method: Method, box: Extent) -> tuple[float, float]:
     return found
 
 
-def _gentle(method: Method, along: Curve | None, line: Curve, modulus: Modulus, rate: float) -> tuple[float, float]:
-    """Return the mildest point with |z_p| <= rate along a curve, else along the line of critical damping."""
-    where = "of the engine's settings" if along else "with alpha = beta"
-    point = mildest_along(along or line, modulus, rate, f"{where} {method.name}")
-    if not along:
-        check_gentle(method, modulus, point[0], rate)
-    return point
+def _gentle(method: Method, modulus: Modulus, extent: Extent, rate: float) -> tuple[float, float]:
+    """Return the smallest alpha = beta with |z_p| <= rate; InputError without one, NumericalError if it is not that."""
+    alpha = np.linspace(0, extent[0][1] / 2, SAMPLES)  # times h, as beta
+    found = first_where(lambda alpha: modulus(2 * alpha, alpha**2) <= rate, alpha)
+    if found is None:
+        name, best = method.name, modulus(2 * alpha, alpha**2).min()
+        raise InputError(f"--settle: with alpha = beta {name} has at best |z_p| = {best:.6g}, needed {rate:.6g}")
+    check_gentle(method, modulus, 2 * found[1], rate)
+    return 2 * found[1], found[1] ** 2

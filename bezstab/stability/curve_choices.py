@@ -20,7 +20,7 @@ from bezstab.stability.searches import first_where, least_between
 Curve = Callable[[Any], tuple[Any, Any]]
 """alpha_hat and beta_hat over arrays of shares of the way."""
 
-SAMPLES = 4000  # |z_p| has no features as narrow as that, and what is narrower the zoom finds
+SAMPLES = 1000  # |z_p| has no features as narrow as that, and what is narrower the zoom finds
 
 
 def least_along(curve: Curve, objective: Modulus) -> tuple[float, float]:
@@ -50,16 +50,11 @@ def least_along(curve: Curve, objective: Modulus) -> tuple[float, float]:
 
 
 def mildest_along(curve: Curve, modulus: Modulus, rate: float, name: str) -> tuple[float, float]:
-    """Return the mildest point (alpha_hat, beta_hat) of a curve, so called, with |z_p| <= rate.
-
-    InputError without one; NumericalError as `least_along`.
-    """
+    """Return the mildest point (alpha_hat, beta_hat) of a curve with |z_p| <= rate; InputError without one."""
     samples = np.linspace(0, 1, SAMPLES + 1)[1:]
     found = first_where(lambda shares: modulus(*_points(curve, shares)) <= rate, samples)
     if found is None:
-        fastest = least_along(curve, modulus)
-        least = modulus(*(np.array([each]) for each in fastest))[0]
-        raise InputError(f"--settle: {name} has at best |z_p| = {least:.6g}, needed {rate:.6g}")
+        raise InputError(f"--settle: no setting of the engine has |z_p| <= {rate:.6g} with {name}")
     return _point(curve, found[1])
 
 

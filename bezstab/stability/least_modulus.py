@@ -35,8 +35,8 @@ STARTS = 8  # of a grid's local minima, the lowest
 HOPEFUL = 0.01  # above the least solution: the zoom on another minimum has not stopped so far short
 AS_LARGE = 0.9  # of the largest |z|: what else may be as large at the least value near a start
 NEWTON_STEPS = 16  # from a narrowed minimum three to ten lead to its kink; most sets have none there
-NEARBY = 0.5  # of the parameters' size, and of the largest |z|: what is flat leads further, to no minimum nearby, and
-# poles so near may be one multiple pole, which float64 and the zoom's end part
+NEARBY = 0.5  # of the parameters' size, and of the largest |z|: poles so near may be one multiple pole, which float64
+# and the zoom's end part
 RADII = (1e-2, 1e-3, 1e-4, 1e-5)  # of circles, of the parameters' size: the first beyond which no poles meet nearby
 ON_CIRCLE: ComplexArray = np.exp(2j * np.pi * np.arange(8) / 8)
 SMALL = 1e-3  # a parameter below it is as if of that size
@@ -96,6 +96,8 @@ def solved(chart: Chart, start: Place, active: Sequence[Cluster], edges: Sequenc
     place = newton(equations, start, scale)
     if place is None:
         return None
+    if _conditions(active, edges) < 2 and np.abs(np.subtract(place, start)).max() > NEARBY * max(scale):
+        return None  # what is flat leads further, to no minimum nearby
     others = _poles_at(chart, np.array(place))
     for about, cluster in zip(z, active, strict=True):
         for pole_of_pair in {about, about if cluster.real or not chart.real else about.conj()}:
@@ -201,6 +203,11 @@ def _best(chart: Chart, solutions: list[Least]) -> Least | None:
     return min(filter(alike, solutions), key=preferred)
 
 
+def _conditions(active: Sequence[Cluster], edges: Sequence[int]) -> int:
+    """Return how many conditions an active set makes: two leave no freedom."""
+    return len(edges) + len(active) - 1 + sum((each.count - 1) * (1 if each.real else 2) for each in active)
+
+
 def _active_sets(chart: Chart, z: ComplexArray) -> Iterator[tuple[list[Cluster], tuple[int, ...]]]:
     """Yield the sets of poles that may decide near a place with these, and which parameter is zero.
 
@@ -218,9 +225,8 @@ def _active_sets(chart: Chart, z: ComplexArray) -> Iterator[tuple[list[Cluster],
     for edges in ((), *((edge,) for edge in chart.edges)):
         for chosen in (chosen for number in (1, 2, 3) for chosen in combinations(clusters, number)):
             active = [cluster for _, cluster in chosen]
-            conditions = len(edges) + len(active) - 1 + sum((a.count - 1) * (1 if a.real else 2) for a in active)
             own = [pole for some, _ in chosen for pole in some]
-            if conditions <= 3 and len(own) == len(set(own)):
+            if _conditions(active, edges) <= 3 and len(own) == len(set(own)):
                 yield active, edges
 
 
@@ -234,7 +240,7 @@ def _solutions(chart: Chart, start: FloatArray) -> Iterator[Least]:
     for active, edges in _active_sets(chart, z):
         found = solved(chart, first, active, edges)
         place = _folded(chart, found.place) if found else None
-        if found is None or place is None or np.abs(start - place).max() > NEARBY * max(*np.abs(start), SMALL):
+        if found is None or place is None:
             continue
         z_abs = float(np.abs(found.z).max())
         if np.abs(found.others).max(initial=0.0) <= z_abs * (1 + DOUBLE):

@@ -133,16 +133,23 @@ def zoom_on_minimum(
 
 
 def zoom_from_grid(
-    objective: Points, axes: Sequence[FloatArray], *, shrink: float = SHRINK, rounds: int = ROUNDS, **zoom: Any
+    objective: Points,
+    centre: FloatArray,
+    reach: FloatArray,
+    first_points: int,
+    *,
+    shrink: float = SHRINK,
+    rounds: int = ROUNDS,
+    **zoom: Any,
 ) -> tuple[FloatArray, FloatArray]:
     """Return what `zoom_on_minimum` finds around the best point of a grid, which counts as the first of its rounds.
 
-    axes: the grid's points along one or two of them, evenly spaced. zoom: further arguments of `zoom_on_minimum`.
+    first_points: along each axis of that grid. zoom: further arguments of `zoom_on_minimum`.
     """
-    grid = grid_of(axes).reshape(-1, len(axes))
-    reach = shrink * np.array([axis[-1] - axis[0] for axis in axes]) / 2
+    offsets = grid_of([np.linspace(-1, 1, first_points)] * centre.size).reshape(-1, centre.size)
+    grid = centre + reach * offsets
     best = grid[np.argmin(objective(grid))]
-    return zoom_on_minimum(objective, best, reach, shrink=shrink, rounds=rounds - 1, **zoom)
+    return zoom_on_minimum(objective, best, shrink * reach, shrink=shrink, rounds=rounds - 1, **zoom)
 
 
 def lowest_minima(
