@@ -35,14 +35,13 @@ figures: .venv/installed  ## draw what the README shows, into figures/
 	$(BIN)/bezstab $(HELD) $(OF_MILLISECONDS) -o figures
 	$(BIN)/bezstab $(HELD) --scene driven_four_bar $(OF_MILLISECONDS) -o figures
 	$(BIN)/bezstab $(HELD) --scene andrews --time 0.01 --h 8e-6 --h 16e-6 --h 32e-6 --h 64e-6 --h 128e-6 -o figures
-	$(BIN)/python -m tests.show.draw_andrews figures
 
 pages: .venv/installed  ## write anew what pages say that the code says already: tables of files, numbers, promises
 	$(BIN)/python -m tests.pages
 	$(BIN)/python -m tests.promises
 
 times: .venv/installed  ## measure anew the processor times that figures and tables show: no two runs share them
-	$(BIN)/bezstab tradeoff $(ANDREWS) --repeats 9 --workers 1 --figure none --format json > figures/andrews_times.json
+	$(BIN)/bezstab tradeoff $(ANDREWS) --against time --repeats 9 --workers 1 -o figures
 	$(BIN)/python -m tests.paper.record_times
 
 # two processes on two cores: threads of linear algebra in each would wait for each other most of the time

@@ -8,12 +8,13 @@ of a TOML file, or what `scene` returns.
 
 from __future__ import annotations  # so that help() shows annotations as they are written
 
+import inspect
 import math
 import re
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from fractions import Fraction
-from typing import Any
+from typing import Any, Generic, TypedDict, TypeVar, Unpack, get_args, get_origin, get_type_hints
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -23,15 +24,64 @@ from bezstab.engines import Drive, engine_and_values, engine_named
 from bezstab.errors import InputError, shown
 from bezstab.goals import Goal
 from bezstab.mechanism import Scene, Simulation
-from bezstab.methods import REGISTRY, Method, Verdict, lookup
+from bezstab.methods import Method, Verdict, lookup
 from bezstab.rationals import exact, rational, within_float64
 from bezstab.stabilising import Stabilise
-from bezstab.units import to_dimensionless
+from bezstab.units import check_step, to_dimensionless
 
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 Number = int | float | str | Fraction
 """A number that is read exactly: a float as the decimal it shows, a text as a decimal or a fraction such as "6/11"."""
+
+Given = TypeVar("Given")
+
+
+class Point(TypedDict, Generic[Given], total=False):
+    """A point: alpha_hat and beta_hat, dimensionless, or alpha and beta in 1/s."""
+
+    alpha_hat: Given | None
+    beta_hat: Given | None
+    alpha: Given | None
+    beta: Given | None
+
+
+class PointAtStep(Point[Given], total=False):
+    """A point, with the step in s for one in 1/s."""
+
+    h: Number | None
+
+
+class AboutFeedback(TypedDict, total=False):
+    """What `choose` and `check` may be told alike; `Question` in `bezstab.questions` has the usual values."""
+
+    h: Number | None
+    h_min: Number | None
+    h_max: Number | None
+    hold: bool
+    spread: float
+    omega: Number | None
+    omega_h: Number | None
+    scene: str | Scene | None
+    speed: Number
+    chain: int | None
+    mass_ratio: Number | None
+    iterations: int | None
+
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+def _spelled_out(function: Function) -> Function:
+    """Have help() and notebooks show one by one the keywords that a function gathers in its last parameter."""
+    signature = inspect.signature(function)
+    *others, gathered = signature.parameters.values()
+    (kind,) = get_args(get_type_hints(function)[gathered.name])
+    for name in (get_origin(kind) or kind).__annotations__:
+        usual = getattr(questions.Question, name, None)
+        others.append(inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=usual))
+    function.__signature__ = signature.replace(parameters=others)  # type: ignore[attr-defined]
+    return function
 
 
 def method(name: str | Method) -> Method:
@@ -68,15 +118,8 @@ def scene(name: str | Scene, speed: float = 1.0) -> Scene:
     return mechanism.at_speed(given, _real(speed, "speed"))
 
 
-def poles(
-    method: str | Method,
-    *,
-    alpha_hat: ArrayLike | None = None,
-    beta_hat: ArrayLike | None = None,
-    alpha: ArrayLike | None = None,
-    beta: ArrayLike | None = None,
-    h: float | None = None,
-) -> ComplexArray:
+@_spelled_out
+def poles(method: str | Method, **point: Unpack[PointAtStep[ArrayLike]]) -> ComplexArray:
     """Return all poles z of the constraint error: each step multiplies a part of the error by z.
 
     The point is `alpha_hat` and `beta_hat`, or `alpha` and `beta` in 1/s with the step `h` in s.
@@ -88,19 +131,12 @@ def poles(
     InputError unless the point is given in one of the two ways. NumericalError if a pole leaves the
     range of float64. Source: the roots of paper Eq. 17.
     """
-    a, b = _plane_arrays(alpha_hat, beta_hat, alpha, beta, h)
+    a, b = _plane_arrays(point)
     return stability.poles(_method(method), a, b)
 
 
-def dominant_pole(
-    method: str | Method,
-    *,
-    alpha_hat: ArrayLike | None = None,
-    beta_hat: ArrayLike | None = None,
-    alpha: ArrayLike | None = None,
-    beta: ArrayLike | None = None,
-    h: float | None = None,
-) -> ComplexArray:
+@_spelled_out
+def dominant_pole(method: str | Method, **point: Unpack[PointAtStep[ArrayLike]]) -> ComplexArray:
     """Return z_p, the pole of largest modulus: in the long run each step multiplies the error by it.
 
     The point is `alpha_hat` and `beta_hat`, or `alpha` and `beta` in 1/s with the step `h` in s.
@@ -111,19 +147,12 @@ def dominant_pole(
 
     Errors as for `poles`. Source: the paper's section 4.
     """
-    a, b = _plane_arrays(alpha_hat, beta_hat, alpha, beta, h)
+    a, b = _plane_arrays(point)
     return stability.dominant_pole(_method(method), a, b)
 
 
-def spectral_radius(
-    method: str | Method,
-    *,
-    alpha_hat: ArrayLike | None = None,
-    beta_hat: ArrayLike | None = None,
-    alpha: ArrayLike | None = None,
-    beta: ArrayLike | None = None,
-    h: float | None = None,
-) -> FloatArray:
+@_spelled_out
+def spectral_radius(method: str | Method, **point: Unpack[PointAtStep[ArrayLike]]) -> FloatArray:
     """Return |z_p|, the factor by which each step multiplies the constraint error in the long run.
 
     The error decays where it is below 1. The point is `alpha_hat` and `beta_hat`, or `alpha` and `beta`
@@ -134,19 +163,12 @@ def spectral_radius(
     Errors as for `poles`. Close to 1 rounding may decide: `verdict` is exact. Source: the paper's Figs.
     1 to 3.
     """
-    a, b = _plane_arrays(alpha_hat, beta_hat, alpha, beta, h)
+    a, b = _plane_arrays(point)
     return stability.spectral_radius(_method(method), a, b)
 
 
-def verdict(
-    method: str | Method,
-    *,
-    alpha_hat: Number | None = None,
-    beta_hat: Number | None = None,
-    alpha: Number | None = None,
-    beta: Number | None = None,
-    h: Number | None = None,
-) -> Verdict:
+@_spelled_out
+def verdict(method: str | Method, **point: Unpack[PointAtStep[Number]]) -> Verdict:
     """Return "converges", "marginal" or "diverges": what the error does at one point.
 
     The point is `alpha_hat` and `beta_hat`, or `alpha` and `beta` in 1/s with the step `h` in s. Each
@@ -157,7 +179,7 @@ def verdict(
     InputError unless the numbers are finite and the point is given in one of the two ways. Source: the
     Schur-Cohn test (I. Schur, J. reine angew. Math. 147, 1917) on the polynomial of paper Eq. 17.
     """
-    a, b = _plane_point(alpha_hat, beta_hat, alpha, beta, h)
+    a, b = _plane_point(point)
     return stability.verdict(_method(method), a, b)
 
 
@@ -189,26 +211,16 @@ def best_point(method: str | Method) -> stability.BestPoint | None:
     return stability.best_point(_method(method))
 
 
+@_spelled_out
 def choose(
     method: str | Method | None = None,
     *,
     goal: Goal | None = None,
-    spread: float = 0.1,
-    h: Number | None = None,
-    h_min: Number | None = None,
-    h_max: Number | None = None,
-    hold: bool = False,
     settle: Number | None = None,
     equal: bool = False,
-    omega: Number | None = None,
-    omega_h: Number | None = None,
     engine: str | None = None,
     pd: Sequence[Number] | None = None,
-    scene: str | Scene | None = None,
-    speed: Number = 1,
-    chain: int | None = None,
-    mass_ratio: Number | None = None,
-    iterations: int | None = None,
+    **asked: Unpack[AboutFeedback],
 ) -> questions.Answer:
     """Return the alpha and beta to use: the point that a goal asks for, proven stable, with its margins.
 
@@ -249,17 +261,19 @@ def choose(
     InputError if nothing stable meets the goal, or if an argument is out of range. Source: the poles of
     paper Eq. 17; the goals are this package's.
     """
-    asked = dict(locals())
     named = None if engine is None else engine_named(engine)
     drive = _drive(pd)
     if method is None and drive:
         raise InputError("pd: name one method, such as 'SYM' where the drive is applied explicitly")
     with _in_keywords():
         goal = goal or questions.usual_goal(named, drive)
-        (chosen,) = questions.answers(_question(asked, goal=goal, engine=named, drive=drive))
+        until = _exact_if_given(settle, "settle")
+        question = _question(method, asked, goal=goal, settle=until, equal=equal, engine=named, drive=drive)
+        (chosen,) = questions.answers(question)
     return chosen
 
 
+@_spelled_out
 def check(
     method: str | Method | None = None,
     *,
@@ -267,21 +281,10 @@ def check(
     beta_hat: Number | None = None,
     alpha: Number | None = None,
     beta: Number | None = None,
-    h: Number | None = None,
-    h_min: Number | None = None,
-    h_max: Number | None = None,
-    hold: bool = False,
-    spread: float = 0.1,
-    omega: Number | None = None,
-    omega_h: Number | None = None,
     engine: str | None = None,
     as_typed: bool = False,
     pd: Sequence[Number] | None = None,
-    scene: str | Scene | None = None,
-    speed: Number = 1,
-    chain: int | None = None,
-    mass_ratio: Number | None = None,
-    iterations: int | None = None,
+    **asked: Unpack[AboutFeedback],
 ) -> questions.Answer:
     """Return whether a point of your own is safe, how fast errors decay there, and how far the point may move.
 
@@ -315,14 +318,16 @@ def check(
     InputError unless the point is given in one of these ways and the numbers are in range.
     NumericalError if a pole leaves the range of float64. Sources as for `verdict`.
     """
-    asked = dict(locals())
     named, values = (None, None) if engine is None else engine_and_values(engine)
     drive = _drive(pd)
+    typed = {"alpha_hat": alpha_hat, "beta_hat": beta_hat, "alpha": alpha, "beta": beta}
     point = None
-    if not (named or drive) or any(each is not None for each in (alpha_hat, beta_hat, alpha, beta)):
-        point = _plane_point(alpha_hat, beta_hat, alpha, beta, h_max if h is None else h)
+    if not (named or drive) or any(each is not None for each in typed.values()):
+        step = asked.get("h_max") if asked.get("h") is None else asked["h"]
+        point = _plane_point(typed | {"h": step})
     with _in_keywords():
-        given = list(questions.answers(_question(asked, point=point, engine=named, values=values, drive=drive)))
+        question = _question(method, asked, point=point, engine=named, values=values, as_typed=as_typed, drive=drive)
+        given = list(questions.answers(question))
     return next((answer for answer in given if not answer.safe), given[0])
 
 
@@ -382,16 +387,13 @@ def largest_step(method: str | Method, *, alpha: Number, beta: Number) -> float:
     return questions.LargestStep(_method(method), _exact(alpha, "alpha"), _exact(beta, "beta")).h_limit
 
 
+@_spelled_out
 def feedback_cost(
     method: str | Method,
     *,
-    alpha_hat: Number | None = None,
-    beta_hat: Number | None = None,
-    alpha: Number | None = None,
-    beta: Number | None = None,
-    h: Number | None = None,
     omega: Number | None = None,
     omega_h: Number | None = None,
+    **point: Unpack[PointAtStep[Number]],
 ) -> stability.FeedbackCost:
     """Return the errors that a feedback makes on a mechanism that moves.
 
@@ -407,28 +409,26 @@ def feedback_cost(
     InputError unless the point is given in one of the two ways and omega h is from 1e-6 to 1. Source:
     the test equation of Prothero and Robinson (Math. Comp. 28, 1974).
     """
-    a, b = _plane_point(alpha_hat, beta_hat, alpha, beta, h)
+    a, b = _plane_point(point)
     with _in_keywords():
-        step = _exact_if_given(h, "h")
+        step = _exact_if_given(point.get("h"), "h")
         rate, turned = _exact_if_given(omega, "omega"), _exact_if_given(omega_h, "omega_h")
         motion = questions.motion_of(rate, None, Fraction(1), step, omega_h=turned)
     return stability.feedback_cost(_method(method), a, b, motion.omega_h)
 
 
+@_spelled_out
 def simulate(
     scene: str | Scene,
     method: str | Method,
     *,
     h: float,
     duration: float,
-    alpha_hat: float | None = None,
-    beta_hat: float | None = None,
-    alpha: float | None = None,
-    beta: float | None = None,
     start: mechanism.Start = "rk4",
     perturb: float = 0.0,
     stabilise: Stabilise = "baumgarte",
     iterations: int | None = None,
+    **point: Unpack[Point[float]],
 ) -> Simulation:
     """Return a run of a mechanism with a method and a feedback, as arrays in SI units.
 
@@ -450,16 +450,14 @@ def simulate(
     feedback is given in one of the two ways. NumericalError if the start cannot be perturbed. Source:
     paper Eqs. 6 to 9.
     """
-    point = None
-    if stabilise == "baumgarte" or any(each is not None for each in (alpha_hat, beta_hat, alpha, beta)):
-        point = _plane_point(alpha_hat, beta_hat, alpha, beta, h)
+    given = _plane_point({**point, "h": h}) if stabilise == "baumgarte" or point else None
     with _in_keywords():
         question = questions.RunQuestion(
             scene=_scene(scene),
             method=_method(method),
             duration=_real(duration, "duration"),
             h=_real(h, "h"),
-            point=point,
+            point=given,
             stabilise=stabilise,
             iterations=iterations,
             perturb=_real(perturb, "perturb"),
@@ -468,15 +466,9 @@ def simulate(
         return questions.run_answer(question)
 
 
+@_spelled_out
 def verify(
-    scene: str | Scene,
-    method: str | Method,
-    *,
-    h: float,
-    alpha_hat: ArrayLike | None = None,
-    beta_hat: ArrayLike | None = None,
-    alpha: ArrayLike | None = None,
-    beta: ArrayLike | None = None,
+    scene: str | Scene, method: str | Method, *, h: float, **point: Unpack[Point[ArrayLike]]
 ) -> list[evidence.Measurement]:
     """Return the dominant pole as predicted and as measured in a simulation, for each of a row of points.
 
@@ -490,26 +482,24 @@ def verify(
     InputError for a scene that cannot start, and unless the points are given in one of the two ways.
     Source: opposite kicks and linear prediction (Prony).
     """
-    point = np.broadcast_arrays(*_plane_arrays(alpha_hat, beta_hat, alpha, beta, h))
-    asked = _method(method)
-    question = questions.VerifyQuestion(scene=_scene(scene), methods=(asked,), h=_real(h, "h"), point=point)
-    return question.measurements(asked)
+    alpha_hat, beta_hat = np.broadcast_arrays(*_plane_arrays({**point, "h": h}))
+    step = _real(h, "h")
+    check_step(step)
+    kicked = mechanism.compiled_mechanism(_scene(scene))
+    return evidence.measure_poles(kicked, _method(method), step, alpha_hat.ravel(), beta_hat.ravel())
 
 
+@_spelled_out
 def probe(
     c: ArrayLike,
     *,
     minus: ArrayLike | None = None,
     differenced: bool = False,
     methods: Sequence[str | Method] | None = None,
-    alpha_hat: Number | None = None,
-    beta_hat: Number | None = None,
-    alpha: Number | None = None,
-    beta: Number | None = None,
-    h: Number | None = None,
     every: int = 1,
     turning: float | None = None,
-) -> evidence.Probe:
+    **point: Unpack[PointAtStep[Number]],
+) -> questions.Probe:
     """Return the dominant pole in samples of a decaying error, and which integrator could have made them.
 
     c: samples of one constraint error in any unit, shape (samples,), or (samples, responses) of one
@@ -528,24 +518,23 @@ def probe(
 
     InputError unless point, shapes and h fit together. Source: linear prediction (Prony).
     """
-    has_point = not (alpha_hat is None and beta_hat is None and alpha is None and beta is None)
-    point = _plane_point(alpha_hat, beta_hat, alpha, beta, h) if has_point else None
-    if turning is not None and h is None:
-        raise InputError("turning in 1/s needs the step h in s")
-    turned = None if turning is None or h is None else _real(turning, "turning") * float(_exact(h, "h"))
-    c = stability.real_array(c, "c")
-    minus = None if minus is None else stability.real_array(minus, "minus")
     if methods is not None and (isinstance(methods, str | Method) or not isinstance(methods, Iterable)):
         raise InputError(f"methods = {shown(methods)}: expected a list of methods")
-    found = evidence.probed_pole(c, minus, differenced)
-    if point is None:
-        named = [_method(name) for name in methods or ()]
-        points = [one for own in named for one in evidence.points_like(found, own, every)]
-        return evidence.Probe(found, (), tuple(points))
-    compared = {_method(name): every for name in (REGISTRY if methods is None else methods)}
-    return evidence.Probe(found, tuple(evidence.likenesses(found, compared, *point, turned)), ())
+    h = _exact_if_given(point.get("h"), "h")
+    with _in_keywords():
+        question = questions.PoleQuestion(
+            point=_plane_point(point) if point.keys() - {"h"} else None,
+            methods=tuple(map(_method, methods or ())),
+            every=every,
+            h=None if h is None else float(h),
+            turning=_exact_if_given(turning, "turning"),
+        )
+    c = stability.real_array(c, "c")
+    minus = None if minus is None else stability.real_array(minus, "minus")
+    return questions.Probe(question, "c", evidence.probed_pole(c, minus, differenced))
 
 
+@_spelled_out
 def probe_step(
     step: Callable[[FloatArray], FloatArray],
     state: ArrayLike,
@@ -554,13 +543,9 @@ def probe_step(
     *,
     steps: int = 600,
     methods: Sequence[str | Method] | None = None,
-    alpha_hat: Number | None = None,
-    beta_hat: Number | None = None,
-    alpha: Number | None = None,
-    beta: Number | None = None,
-    h: Number | None = None,
     turning: float | None = None,
-) -> evidence.Probe:
+    **point: Unpack[PointAtStep[Number]],
+) -> questions.Probe:
     """Return what `probe` does, for a simulator of your own: a function that takes a state to the next.
 
     step: a function of an array, the state, that returns the next one. It is called six times `steps`
@@ -573,17 +558,8 @@ def probe_step(
 
     Returns a Probe, as `probe` does; poles are dimensionless. Errors as there; InputError, too, for shapes that differ.
     """
-    return probe(
-        evidence.kicked_responses(step, state, constraint, kick, steps),
-        differenced=True,
-        methods=methods,
-        alpha_hat=alpha_hat,
-        beta_hat=beta_hat,
-        alpha=alpha,
-        beta=beta,
-        h=h,
-        turning=turning,
-    )
+    responses = evidence.kicked_responses(step, state, constraint, kick, steps)
+    return probe(responses, differenced=True, methods=methods, turning=turning, **point)
 
 
 def _method(method_or_name: str | Method) -> Method:
@@ -623,34 +599,26 @@ def _drive(gains: Sequence[Number] | None) -> Drive | None:
     return Drive(*(_exact(gain, name) for gain, name in zip(gains, ("kp", "kd", "inertia"), strict=True)))
 
 
-def _question(asked: dict[str, Any], **found: Any) -> questions.Question:
-    """Return the question of `choose` or `check`: its keywords as they were given, and the fields that need several."""
-    exact = ("h", "h_min", "h_max", "settle", "omega", "omega_h", "mass_ratio")
-    as_given = ("hold", "equal", "as_typed")
-    as_read: dict[str, Any] = {name: _exact_if_given(asked[name], name) for name in exact if name in asked}
-    method = asked["method"]
-    return questions.Question(
-        methods=() if method is None else (_method(method),),
-        scene=_scene_or_name(asked["scene"]),
-        speed=_exact(asked["speed"], "speed"),
-        spread=_real(asked["spread"], "spread"),
-        chain=_whole(asked["chain"], "chain"),
-        iterations=_whole(asked["iterations"], "iterations"),
-        **as_read,
-        **{name: asked[name] for name in as_given if name in asked},
-        **found,
-    )
+def _question(method: str | Method | None, asked: AboutFeedback, **found: Any) -> questions.Question:
+    """Return the question of `choose` or `check`: its keywords as `READ` reads them, and the fields that need several.
+
+    TypeError for a keyword that is none.
+    """
+    methods = () if method is None else (_method(method),)
+    given: dict[str, Any] = {name: value for name, value in asked.items() if value is not None}
+    read = {name: READ[name](value, name) if name in READ else value for name, value in given.items()}
+    return questions.Question(methods=methods, **read, **found)
 
 
-def _whole(value: int | None, name: str) -> int | None:
-    if value is not None and (isinstance(value, bool) or not isinstance(value, int)):
+def _whole(value: int, name: str) -> int:
+    if isinstance(value, bool) or not isinstance(value, int):
         raise InputError(f"{name} = {shown(value)}: expected a whole number")
     return value
 
 
-def _scene_or_name(given: str | Scene | None) -> str | Scene | None:
+def _scene_or_name(given: str | Scene, _name: str) -> str | Scene:
     """Return a scene or its name as given; InputError for anything else."""
-    return given if given is None or isinstance(given, str) else scene(given)
+    return given if isinstance(given, str) else scene(given)
 
 
 @contextmanager
@@ -674,51 +642,36 @@ def _real(value: Number, name: str) -> float:
     return float(_exact(value, name))
 
 
-def _is_dimensionless(*, alpha_hat: object, beta_hat: object, alpha: object, beta: object, h: object) -> bool:
-    """Return whether a point was given as alpha_hat and beta_hat; InputError unless so, or as alpha, beta and h."""
-    has_dimensionless = alpha_hat is not None and beta_hat is not None and alpha is None and beta is None
-    has_physical = alpha is not None and beta is not None and alpha_hat is None and beta_hat is None
-    if has_physical and h is None:
-        raise InputError("alpha and beta in 1/s need the step h in s")
-    if not has_dimensionless and not has_physical:
+READ: Mapping[str, Callable[[Any, str], Any]] = {
+    **dict.fromkeys(("h", "h_min", "h_max", "omega", "omega_h", "speed", "mass_ratio"), _exact),
+    **dict.fromkeys(("chain", "iterations"), _whole),
+    "spread": _real,
+    "scene": _scene_or_name,
+}
+"""How keywords about feedback are read; the others are taken as they are."""
+
+
+def _plane_point(point: Mapping[str, Any], read: Callable[[Any, str], Any] = _exact) -> tuple[Any, Any]:
+    """Return alpha_hat and beta_hat from whichever of the two ways was taken, exact unless numbers are `read` else."""
+    given = {name: value for name, value in point.items() if value is not None}
+    h = given.pop("h", None)
+    if given.keys() == {"alpha_hat", "beta_hat"}:
+        return read(given["alpha_hat"], "alpha_hat"), read(given["beta_hat"], "beta_hat")
+    if given.keys() != {"alpha", "beta"}:
         raise InputError("a point is given as alpha_hat= and beta_hat=, or as alpha= and beta= in 1/s with h= in s")
-    return has_dimensionless
+    if h is None:
+        raise InputError("alpha and beta in 1/s need the step h in s")
+    return to_dimensionless(read(given["alpha"], "alpha"), read(given["beta"], "beta"), _exact(h, "h"))
 
 
-def _plane_arrays(
-    alpha_hat: ArrayLike | None,
-    beta_hat: ArrayLike | None,
-    alpha: ArrayLike | None,
-    beta: ArrayLike | None,
-    h: float | None,
-) -> tuple[FloatArray, FloatArray]:
-    """Return alpha_hat and beta_hat as float64 arrays, from whichever of the two ways was taken."""
-    if _is_dimensionless(alpha_hat=alpha_hat, beta_hat=beta_hat, alpha=alpha, beta=beta, h=h):
-        return _broadcastable(stability.real_array(alpha_hat, "alpha_hat"), stability.real_array(beta_hat, "beta_hat"))
-    assert h is not None
-    in_seconds = _broadcastable(stability.real_array(alpha, "alpha"), stability.real_array(beta, "beta"))
-    return to_dimensionless(*in_seconds, _real(h, "h"))
-
-
-def _broadcastable(first: FloatArray, second: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return two arrays; InputError if their shapes do not fit each other."""
+def _plane_arrays(point: Mapping[str, Any]) -> tuple[FloatArray, FloatArray]:
+    """Return the same as float64 arrays; InputError if their shapes do not fit each other."""
+    first, second = _plane_point(point, stability.real_array)
+    shapes = np.shape(first), np.shape(second)
     try:
-        np.broadcast_shapes(first.shape, second.shape)
+        np.broadcast_shapes(*shapes)
     except ValueError:
-        shapes = f"{first.shape} and {second.shape}"
-        raise InputError(f"shapes {shapes}: alpha and beta, or their hats, must broadcast, as numpy calls it") from None
+        raise InputError(
+            f"shapes {shapes[0]} and {shapes[1]}: alpha and beta, or their hats, must broadcast, as numpy calls it"
+        ) from None
     return first, second
-
-
-def _plane_point(
-    alpha_hat: Number | None, beta_hat: Number | None, alpha: Number | None, beta: Number | None, h: Number | None
-) -> tuple[Fraction, Fraction]:
-    """Return alpha_hat and beta_hat as exact numbers, from whichever of the two ways was taken."""
-    if _is_dimensionless(alpha_hat=alpha_hat, beta_hat=beta_hat, alpha=alpha, beta=beta, h=h):
-        assert alpha_hat is not None
-        assert beta_hat is not None
-        return _exact(alpha_hat, "alpha_hat"), _exact(beta_hat, "beta_hat")
-    assert alpha is not None
-    assert beta is not None
-    assert h is not None
-    return to_dimensionless(_exact(alpha, "alpha"), _exact(beta, "beta"), _exact(h, "h"))

@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 from fractions import Fraction
 from math import lcm
 
-from bezstab.errors import InputError
+from bezstab.errors import InputError, shown
 
 ONE, ZERO = Fraction(1), Fraction(0)
 
@@ -33,8 +33,8 @@ def rational(text: str) -> Fraction:
     InputError unless it is finite and, if not zero, within float64's normal range, so that no exponent is absurd.
     """
     if len(text) > LONGEST or not re.fullmatch(f"{DECIMAL}|{QUOTIENT}", text.strip(), re.ASCII):
-        raise InputError(f"{text[:50]!r} is not a finite decimal or fraction")
-    return within_float64(Fraction(text.strip()), repr(text))
+        raise InputError(f"{shown(text)} is not a finite decimal or fraction")
+    return within_float64(Fraction(text.strip()), shown(text))
 
 
 def within_float64(value: Fraction, name: str) -> Fraction:

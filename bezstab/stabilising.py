@@ -46,11 +46,6 @@ class AfterStep(NamedTuple):
     projecting: bool = False
     iterations: int = 0
 
-    @property
-    def calls(self) -> tuple[str, ...]:
-        """The functions of a state that it needs, as the generated code calls them."""
-        return ("corrections",) if self.projecting else ()
-
 
 NOTHING = AfterStep()
 

@@ -13,10 +13,78 @@ Point = tuple[float, float]
 LEAST = 1e-100  # of a number that is not 0, and of the inverse of the largest: so their squares are within float64
 LISTED = 200  # characters of the keys that are there, where one is missing
 SIZE = "0 or of size 1e-100 to 1e100"
-RATIONAL_STRINGS = 'rational strings like "175/108"'
 
-Exact = TypeVar("Exact")
-"""A number as the reader of its text makes it."""
+Read = TypeVar("Read")
+"""What a reader makes of an entry; a reader raises TypeError or ValueError for what it does not take."""
+
+
+def a_number(value: object) -> float:
+    """Return a number, not a truth value, that is 0 or of size 1e-100 to 1e100 (so not nan)."""
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise TypeError
+    if value != 0 and not LEAST <= abs(value) <= 1 / LEAST:
+        raise ValueError
+    return float(value)
+
+
+def a_positive_number(value: object) -> float:
+    """Return such a number above 0."""
+    found = a_number(value)
+    if found <= 0:
+        raise ValueError
+    return found
+
+
+def a_text(value: object) -> str:
+    """Return a text."""
+    if not isinstance(value, str):
+        raise TypeError
+    return value
+
+
+def a_line(value: object) -> str:
+    """Return one line of text that is not blank."""
+    text = a_text(value)
+    if not text.strip() or not text.isprintable():
+        raise ValueError
+    return text
+
+
+def list_of(read: Callable[[Any], Read]) -> Callable[[object], list[Read]]:
+    """Return the reader of a list, each entry of which `read` reads."""
+
+    def read_list(value: object) -> list[Read]:
+        if not isinstance(value, list):
+            raise TypeError
+        return [read(entry) for entry in value]
+
+    return read_list
+
+
+def pair_of(read: Callable[[Any], Read]) -> Callable[[object], tuple[Read, Read]]:
+    """Return the reader of a list of two."""
+
+    def read_pair(value: object) -> tuple[Read, Read]:
+        first, second = list_of(read)(value)
+        return first, second
+
+    return read_pair
+
+
+def table_of(read: Callable[[Any], Read]) -> Callable[[object], dict[str, Read]]:
+    """Return the reader of a table, each entry of which `read` reads."""
+
+    def read_table(value: object) -> dict[str, Read]:
+        if not isinstance(value, dict):
+            raise TypeError
+        return {key: read(entry) for key, entry in value.items()}
+
+    return read_table
+
+
+def as_it_is(value: Any) -> Any:
+    """Return an entry of any kind."""
+    return value
 
 
 class TomlTable:
@@ -38,79 +106,62 @@ class TomlTable:
         """Return the error that says what is wrong, with the place in front."""
         return InputError(f"{self.where}: {what}" if self.where else what)
 
-    def entry(self, key: str, valid: Callable[[Any], bool], expected: str, default: object = None) -> Any:
-        """Return the entry, or `default` if there is none, if it is valid; `expected` says what would be."""
-        if key not in self.known:
-            self.known.append(key)
-        if key not in self.data and default is None:
+    def entry(self, key: str, read: Callable[[Any], Read], expected: str, default: Read | None = None) -> Read:
+        """Return what `read` makes of the entry, or `default` if there is none; `expected` says what it takes."""
+        self.known.append(key)
+        if key not in self.data:
+            if default is not None:
+                return default
             found = ", ".join(self.data)[:LISTED] or "nothing"  # a misspelt key is missing under its right name
             raise self.mistake(f"{key} is missing: found {found}")
-        value = self.data.get(key, default)
-        if not valid(value):
-            raise self.mistake(f"{key} = {value!r}: expected {expected}")
-        return value
+        try:
+            return read(self.data[key])
+        except InputError as error:  # whose words are better
+            raise self.mistake(f"{key}: {error}") from None
+        except (TypeError, ValueError):
+            raise self.mistake(f"{key} = {self.data[key]!r}: expected {expected}") from None
 
     def text(self, key: str, default: str | None = None) -> str:
         """Return one line of text that is not blank."""
-        return str(self.entry(key, _is_line, "one line of text", default))
+        return self.entry(key, a_line, "one line of text", default)
 
     def texts(self, key: str) -> list[str]:
         """Return a list of texts."""
-        return list(self.entry(key, _are_texts, "a list of names"))
+        return self.entry(key, list_of(a_text), "a list of names")
 
     def number(self, key: str, default: float | None = None) -> float:
         """Return a number that is 0 or of size 1e-100 to 1e100."""
-        return float(self.entry(key, is_number, f"a number, {SIZE}", default))
+        return self.entry(key, a_number, f"a number, {SIZE}", default)
 
     def positive_number(self, key: str, default: float | None = None) -> float:
         """Return a number from 1e-100 to 1e100."""
-        return float(self.entry(key, _is_positive, "a positive number, 1e-100 to 1e100", default))
+        return self.entry(key, a_positive_number, "a positive number, 1e-100 to 1e100", default)
 
     def point(self, key: str, default: Point | None = None) -> Point:
         """Return a pair of numbers."""
-        x, y = self.entry(key, is_point, f"two numbers, {SIZE}", default)
-        return float(x), float(y)
+        return self.entry(key, pair_of(a_number), f"two numbers, {SIZE}", default)
 
     def numbers(self, key: str, allowed: Sequence[str]) -> dict[str, float]:
         """Return a table of numbers, none if absent, with keys among the allowed ones."""
-        entries = self.entry(key, _are_numbers, f"a table of numbers, {SIZE}", {})
+        entries: dict[str, float] = self.entry(key, table_of(a_number), f"a table of numbers, {SIZE}", {})
         for name in entries:
             if name not in allowed:
                 raise self.mistake(f"{key} names {name!r}, which is not among {', '.join(allowed)}")
-        return {name: float(number) for name, number in entries.items()}
-
-    def exact_numbers(self, key: str, read: Callable[[str], Exact]) -> tuple[Exact, ...]:
-        """Return a list of exact numbers, each written as a text ("175/108", "-0.5", "2") and read by `read`."""
-        return self._exact(key, self.entry(key, _are_texts, f"a list of {RATIONAL_STRINGS}"), read)
-
-    def exact_rows(self, key: str, read: Callable[[str], Exact]) -> tuple[tuple[Exact, ...], ...]:
-        """Return a list of such lists."""
-        rows = self.entry(key, _are_lists_of_texts, f"a list of rows, each a list of {RATIONAL_STRINGS}")
-        return tuple(self._exact(key, row, read) for row in rows)
-
-    def _exact(self, key: str, texts: Sequence[str], read: Callable[[str], Exact]) -> tuple[Exact, ...]:
-        try:
-            return tuple(read(text) for text in texts)
-        except InputError as error:
-            raise self.mistake(f"{key}: {error}") from None
+        return entries
 
     def tables(self, key: str) -> list["TomlTable"]:
         """Return an array of tables, none if absent."""
-        entries = self.entry(key, lambda value: isinstance(value, list), "an array of tables", [])
+        entries: list[object] = self.entry(key, list_of(as_it_is), "an array of tables", [])
         tables = [TomlTable(entry, f"{key} {number}") for number, entry in enumerate(entries, start=1)]
         self.inner += tables
         return tables
 
     def table(self, key: str) -> "TomlTable":
         """Return a table, an empty one if absent."""
-        table = TomlTable(self.entry(key, lambda value: isinstance(value, dict), "a table", {}), key)
+        entries: dict[str, object] = self.entry(key, table_of(as_it_is), "a table", {})
+        table = TomlTable(entries, key)
         self.inner.append(table)
         return table
-
-    def optional_table(self, key: str) -> "TomlTable | None":
-        """Return a table, None if absent."""
-        table = self.table(key)
-        return table if key in self.data else None
 
     def refuse_unknown_keys(self, instead: Mapping[str, str] | None = None) -> None:
         """Raise InputError, listing the known ones, if a key here or in a table handed out was not asked for.
@@ -124,40 +175,3 @@ class TomlTable:
             advice = (instead or {}).get(unknown[0])
             written_instead = f"write {advice}; " if advice else ""
             raise self.mistake(f"unknown key {unknown[0]!r}: {written_instead}known are {', '.join(self.known)}")
-
-
-def is_number(value: object) -> bool:
-    """Return whether this is a number, not a truth value, that is 0 or of size 1e-100 to 1e100 (so not nan)."""
-    if not isinstance(value, int | float) or isinstance(value, bool):
-        return False
-    return value == 0 or LEAST <= abs(value) <= 1 / LEAST
-
-
-def is_pair(value: object) -> bool:
-    """Return whether this is a list of two (or, for a default, a tuple)."""
-    return isinstance(value, list | tuple) and len(value) == 2
-
-
-def is_point(value: Any) -> bool:
-    """Return whether this is a pair of numbers."""
-    return is_pair(value) and all(is_number(entry) for entry in value)
-
-
-def _is_positive(value: Any) -> bool:
-    return is_number(value) and bool(value > 0)
-
-
-def _is_line(value: object) -> bool:
-    return isinstance(value, str) and value.strip() != "" and value.isprintable()
-
-
-def _are_texts(value: object) -> bool:
-    return isinstance(value, list) and all(isinstance(entry, str) for entry in value)
-
-
-def _are_lists_of_texts(value: object) -> bool:
-    return isinstance(value, list) and all(_are_texts(row) for row in value)
-
-
-def _are_numbers(value: object) -> bool:
-    return isinstance(value, dict) and all(is_number(entry) for entry in value.values())

@@ -23,6 +23,7 @@ LEAST_STEP = 1e-100  # s, and the inverse of the longest: so their squares are w
 LONGEST_STEP = 1e100
 
 FloatOrArray = TypeVar("FloatOrArray", float, "NDArray[np.float64]")
+Number = TypeVar("Number", Fraction, float, "NDArray[np.float64]")
 
 
 def check_step(h: Fraction | float, name: str = "h") -> None:
@@ -30,7 +31,7 @@ def check_step(h: Fraction | float, name: str = "h") -> None:
     is_number = isinstance(h, int | float | Fraction) or getattr(h, "shape", None) == ()
     if isinstance(h, bool) or not is_number:
         raise InputError(f"{name} = {shown(h)}: expected one number, in s")
-    if not LEAST_STEP <= h <= LONGEST_STEP:
+    if not (h <= LONGEST_STEP and float(h) >= LEAST_STEP):  # 1/10^100 is a little below the float 1e-100
         raise InputError(f"{name} = {float(h):g} s: expected {LEAST_STEP:g} to {LONGEST_STEP:g} s")
 
 
@@ -59,6 +60,8 @@ def to_dimensionless(alpha: Any, beta: Any, h: Any) -> tuple[Any, Any]:
     """
     _check_real(alpha=alpha, beta=beta)
     check_step(h)
+    if not (isinstance(alpha, Fraction) and isinstance(beta, Fraction)):
+        h = float(h)
     alpha_hat, beta_hat = 2 * alpha * h, beta * beta * h * h
     if isinstance(alpha_hat, Fraction) and isinstance(beta_hat, Fraction):
         return within_float64(alpha_hat, "α̂ = 2αh"), within_float64(beta_hat, "β̂ = β²h²")
@@ -93,14 +96,10 @@ def from_dimensionless(alpha_hat: FloatOrArray, beta_hat: FloatOrArray, h: float
     return two_alpha / 2, beta if isinstance(beta_squared, np.ndarray) else float(beta)
 
 
-@overload
-def feedback_gains(alpha_hat: Fraction, beta_hat: Fraction, h: Fraction) -> tuple[Fraction, Fraction]: ...
-@overload
-def feedback_gains(alpha_hat: FloatOrArray, beta_hat: FloatOrArray, h: float) -> tuple[FloatOrArray, FloatOrArray]: ...
-def feedback_gains(alpha_hat: Any, beta_hat: Any, h: Any) -> tuple[Any, Any]:
+def feedback_gains(alpha_hat: Number, beta_hat: Number, h: Any) -> tuple[Number, Number]:
     """Return (2 alpha, beta^2) in 1/s and 1/s^2, the coefficients of paper Eq. 6, for a step of h seconds.
 
-    Floats or arrays as given, or exact numbers if all three are; beta^2 is negative where beta_hat is.
+    Floats or arrays as given; exact numbers, for which h is exact too; beta^2 is negative where beta_hat is.
     """
     return alpha_hat / h, beta_hat / h**2
 

@@ -81,6 +81,13 @@ def test_python_answers_what_the_command_line_answers(typed: str, asked: dict[st
         assert row == json.loads(render([answer_row(each)], [], "json"))[0]
 
 
+def test_poles_are_measured_at_each_of_the_points() -> None:
+    found = bezstab.verify("pendulum", "SYM", h=0.001, alpha_hat=[0.5, 1.0], beta_hat=[0.1, 0.5])
+    assert [(each.alpha_hat, each.beta_hat) for each in found] == [(0.5, 0.1), (1.0, 0.5)]
+    for each in found:
+        assert each.measured == pytest.approx(each.predicted, abs=1e-3)
+
+
 def test_a_held_drive_is_checked_as_on_the_command_line() -> None:
     answer = bezstab.check_drive((200, 5, "0.1"), h=0.002, every=4, late=1, filter_seconds="0.01", method="SYM")
     typed = "check --pd 200,5,0.1 --h 0.002 --every 4 --late 1 --filter 0.01 --method SYM"

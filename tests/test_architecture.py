@@ -56,12 +56,13 @@ APPOINTED = {
     "sympy": {
         *("methods/determinants.py", "methods/derivation.py", "methods/formulas.py", "methods/shared_factors.py"),
         *("methods/plane_edges.py", "methods/path_edges.py", "methods/root_isolation.py", "methods/step_matrices.py"),
+        "methods/recipes.py",
         *("stability/quadrant_proofs.py", "stability/held_drives.py"),
         *("mechanism/equations.py", "mechanism/generated_code.py", "mechanism/start.py", "mechanism/observation.py"),
     },
     "matplotlib": {
-        *("show/style.py", "show/plot.py", "show/plane_figures.py", "show/run_figures.py"),
-        *("show/accuracy_figures.py", "show/chain_figures.py", "show/held_figures.py", "show/explorer.py"),
+        *("show/style.py", "show/plot.py", "show/map_figures.py", "show/run_figures.py"),
+        "show/explorer.py",
         *(f"paper/{name}.py" for name in ("regions", "slider_crank", "drift", "influence", "comparison")),
     },
     "click": {path.relative_to(PACKAGE).as_posix() for path in (PACKAGE / "cli").glob("*.py")} | {"paper/command.py"},

@@ -9,7 +9,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bezstab.errors import InputError
-from bezstab.units import alpha_and_beta, feedback_gains, from_dimensionless, from_feedback_gains, to_dimensionless
+from bezstab.units import (
+    alpha_and_beta,
+    check_step,
+    feedback_gains,
+    from_dimensionless,
+    from_feedback_gains,
+    to_dimensionless,
+)
 
 positive = st.builds(Fraction, st.integers(1, 10**6), st.integers(1, 10**6))
 anything = st.builds(Fraction, st.integers(-(10**6), 10**6), st.integers(1, 10**6))
@@ -18,6 +25,11 @@ anything = st.builds(Fraction, st.integers(-(10**6), 10**6), st.integers(1, 10**
 @given(positive, positive, positive)
 def test_paper_equation_16(alpha: Fraction, beta: Fraction, h: Fraction) -> None:
     assert to_dimensionless(alpha, beta, h) == (2 * alpha * h, beta**2 * h**2)
+
+
+@pytest.mark.parametrize("h", [1e-100, 1e100, Fraction("1e-100"), Fraction("1e100")])
+def test_the_least_and_the_longest_step_that_a_message_names_are_allowed(h: Fraction | float) -> None:
+    check_step(h)
 
 
 def test_what_leaves_float64_is_refused_by_name() -> None:

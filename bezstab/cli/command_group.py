@@ -1,9 +1,7 @@
 """The group of all commands: how they are listed, found and ended."""
 
-import ast
 import importlib
 import os
-import pkgutil
 import sys
 import traceback
 from collections.abc import Mapping, Sequence
@@ -64,17 +62,15 @@ class BezstabGroup(click.Group):
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         """Return the command of that name, loaded now; None if there is none."""
-        if cmd_name not in self.list_commands(ctx):
-            return None
-        command: click.Command = getattr(importlib.import_module(_module_of(cmd_name)), cmd_name)
-        return command
+        return _loaded(cmd_name) if cmd_name in self.list_commands(ctx) else None
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write a heading for each section and a sentence for each command."""
         longest = max(map(len, self.list_commands(ctx)))
         for heading, names in SECTIONS.items():
             with formatter.section(heading):
-                formatter.write_dl([(name.ljust(longest), _sentence(name)) for name in names])
+                sentences = [(_loaded(name).help or "").partition("\n")[0] for name in names]
+                formatter.write_dl([(name.ljust(longest), said) for name, said in zip(names, sentences, strict=True)])
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run the command that was typed; matplotlib, which warns if it finds no home, is silent."""
@@ -115,18 +111,11 @@ class BezstabGroup(click.Group):
         sys.exit(status or 0)
 
 
-def _module_of(name: str) -> str:
-    """Return the module that has the command of this name."""
-    return ELSEWHERE.get(name, f"bezstab.cli.{name}_command")
-
-
-def _sentence(name: str) -> str:
-    """Return the first line of a command's docstring; its file is read and not run, as that would take time."""
-    package, _, file = _module_of(name).rpartition(".")
-    for node in ast.parse(pkgutil.get_data(package, f"{file}.py") or b"").body:
-        if isinstance(node, ast.FunctionDef) and node.name == name:
-            return (ast.get_docstring(node) or "").partition("\n")[0]
-    raise LookupError(f"{package}.{file} has no function {name}")
+def _loaded(name: str) -> click.Command:
+    """Return the command of this name."""
+    module = importlib.import_module(ELSEWHERE.get(name, f"bezstab.cli.{name}_command"))
+    command: click.Command = getattr(module, name)
+    return command
 
 
 def _complain(message: str) -> None:

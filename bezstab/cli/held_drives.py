@@ -6,7 +6,7 @@ import click
 
 from bezstab.cli.options import OF_A_CONTROLLER, refuse_beside, typed_options
 from bezstab.cli.output import show_rows, show_text
-from bezstab.show import HELD, LATE_COMMANDS, NOT_JUDGED, held_row, timing_words
+from bezstab.show import HELD, LATE_COMMANDS, held_row, timing_words
 
 if TYPE_CHECKING:
     from bezstab.questions import HeldAnswer, HeldQuestion
@@ -42,5 +42,5 @@ def show_held(question: "HeldQuestion") -> "list[HeldAnswer]":
     found = list(held_answers(question))
     heading = timing_words(question.timing, float(question.h))
     show_rows(HELD, map(held_row, found), heading=heading)
-    show_text(f"\n{LATE_COMMANDS} {NOT_JUDGED}")
+    show_text(f"\n{LATE_COMMANDS}")
     return found

@@ -5,19 +5,9 @@ from collections.abc import Sequence
 import click
 
 from bezstab.cli.options import METHOD, command, flag
-from bezstab.cli.output import chosen_format, show_blocks, show_groups, show_rows, show_text
+from bezstab.cli.output import chosen_format, show_groups, show_rows, show_text
 from bezstab.methods import GROUPS, Method, lookup
-from bezstab.show import (
-    LISTED_METHODS,
-    NAMED_METHODS,
-    Column,
-    Row,
-    column,
-    method_row,
-    render,
-    whole_row,
-    with_unbounded,
-)
+from bezstab.show import LISTED_METHODS, NAMED_METHODS, method_row, whole_row
 
 
 @command(flag("--latex", "Formulas as LaTeX."), "form")
@@ -39,38 +29,17 @@ def methods(methods: Sequence[Method], latex: bool) -> None:
     """
     from bezstab.questions import region_answer
 
-    form = chosen_format()
-    if not methods:
-        listed = [
-            (group, [method_row(lookup(name), name, group.heading) for name in group.methods]) for group in GROUPS
-        ]
-        rows = [row for _, of_group in listed for row in of_group]
-        if form == "text":
-            show_groups(
-                [("\n".join(filter(None, (group.heading, group.note))), of_group) for group, of_group in listed],
-                LISTED_METHODS.columns(rows, ("source",)),
-                LISTED_METHODS.sentence,
-            )
-        else:
-            show_rows(LISTED_METHODS, rows)
-        return
-    rows = [whole_row(region_answer(method), latex=latex) for method in methods]
-    if form in ("json", "csv"):
-        show_rows(NAMED_METHODS, rows)
-        return
-    for number, row in enumerate(map(with_unbounded, rows)):
-        columns = [property_column(key, row) for key in row]
-        if form == "markdown":
-            properties = [{"property": each.heading, "value": each.cell(row)} for each in columns]
-            click.echo(render(properties, [column(key, key) for key in properties[0]], form))
-            continue
-        if number:
-            click.echo()
-        show_blocks([row], columns, NAMED_METHODS.sentence)
-    if form == "text":
+    if methods:
+        rows = [whole_row(region_answer(method), latex=latex) for method in methods]
+        show_rows(NAMED_METHODS, rows, in_blocks=True)
         show_text("\nSteady errors are shares of a motion of ω rad/s, to leading order in θ = iωh.")
-
-
-def property_column(key: str, row: Row) -> Column:
-    """Return the column of a key as a row is read from top to bottom: numbers to ten digits."""
-    return column(key.replace("_", " "), key, ".10g" if isinstance(row[key], float) else "")
+        return
+    listed = [(group, [method_row(lookup(name), name, group.heading) for name in group.methods]) for group in GROUPS]
+    if chosen_format() == "text":
+        show_groups(
+            [("\n".join(filter(None, (group.heading, group.note))), rows) for group, rows in listed],
+            LISTED_METHODS,
+            ("source",),
+        )
+    else:
+        show_rows(LISTED_METHODS, (row for _, rows in listed for row in rows))

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, get_args
 import click
 
 from bezstab.cli.output import Files, Work
+from bezstab.compiling import COMPILED_CHOICE, check_numba
 from bezstab.engines import ENGINES, Drive, Engine, Point, engine_and_values, engine_named
 from bezstab.errors import InputError
 from bezstab.methods import REGISTRY, lookup
@@ -150,20 +151,14 @@ def flag(names: str, meaning: str) -> Option:
     return partial(click.Option, names.split(), is_flag=True, help=meaning)
 
 
-def _choose_compiled(context: click.Context, parameter: click.Parameter, choice: str) -> None:
+def _choose_compiled(_context: click.Context, _option: click.Parameter, choice: str) -> None:
     """Set the environment variable to the value of the option: worker processes inherit it.
 
     InputError if numba is asked for and missing.
     """
-    if parameter.opts[-1] not in typed_options():
-        return
-    from bezstab.compiling import COMPILED_CHOICE, check_numba
-
     if choice == "yes":
         check_numba()
-    before = {COMPILED_CHOICE: os.environ.get(COMPILED_CHOICE, "auto")}
     os.environ[COMPILED_CHOICE] = choice
-    context.call_on_close(partial(os.environ.update, before))
 
 
 A_METHOD = "A method's name, as `bezstab methods` lists it, or a .toml file; NAME@m takes steps of m h."
@@ -255,6 +250,7 @@ OPTIONS = {
         click.Choice(["auto", "yes", "no"]),
         "Compile runs with numba. auto: if numba is installed and compiling saves time.",
         default="auto",
+        envvar=COMPILED_CHOICE,
         expose_value=False,
         callback=_choose_compiled,
     ),

@@ -14,13 +14,10 @@ import click
 from bezstab.cli.terminal import text_width
 from bezstab.files import output_directory, write_whole
 from bezstab.show import (
-    Column,
     Format,
     Row,
     RowKind,
-    Sentence,
     block,
-    finite,
     fits,
     render,
     visible,
@@ -52,46 +49,39 @@ def for_reading() -> bool:
     return chosen_format() in ("text", "markdown")
 
 
-def show_rows(kind: RowKind, found: Iterable[Row], without: Collection[str] = (), heading: str = "") -> None:
+def show_rows(
+    kind: RowKind,
+    found: Iterable[Row],
+    without: Collection[str] = (),
+    heading: str = "",
+    *,
+    in_blocks: bool = False,
+) -> None:
     """Print rows of a kind on standard output, below a heading where people read them; `without` as RowKind.columns.
 
-    As text, a single row is a block of lines below its sentence; so is each row of a table wider than the terminal.
+    As text, a single row is a block of lines below its sentence; so is each row of a table wider than the terminal, and
+    with `in_blocks` of every table.
     """
     form, rows = chosen_format(), list(found)
     if heading:
         show_text(f"{heading}\n")
-    columns = kind.columns(rows, without) if for_reading() else []
+    columns, sentence = kind.columns(rows, without) if for_reading() else [], kind.sentence
     answer = render(rows, columns, form)
-    if form == "text" and rows and (len(rows) == 1 or not fits(answer, text_width())):
-        show_blocks(rows, columns, kind.sentence)
-    else:
-        click.echo(answer)
+    if form == "text" and rows and (in_blocks or len(rows) == 1 or not fits(answer, text_width())):
+        blocks = [block(row, columns, text_width(), sentence(row) if sentence else "") for row in rows]
+        answer = "\n\n".join(blocks)
+    click.echo(answer)
 
 
-def show_blocks(rows: Sequence[Row], columns: Sequence[Column], sentence: Sentence | None = None) -> None:
-    """Print a block of lines for each row, below its sentence, on standard output."""
-    blocks = [block(row, columns, text_width(), sentence(finite(row)) if sentence else "") for row in rows]
-    click.echo("\n\n".join(blocks))
-
-
-def show_groups(
-    groups: Sequence[tuple[str, Sequence[Row]]], columns: Sequence[Column], sentence: Sentence | None = None
-) -> None:
-    """Print groups of rows for reading, each below its heading, all in one table's columns if that is not too wide."""
-    table = render([row for _, rows in groups for row in rows], columns, "text")
-    if not fits(table, text_width()):
-        for heading, of_group in groups:
-            show_text(f"{heading}\n")
-            show_blocks(of_group, columns, sentence)
-            click.echo()
-        return
-    head, *lines = table.splitlines()
+def show_groups(groups: Sequence[tuple[str, Sequence[Row]]], kind: RowKind, without: Collection[str] = ()) -> None:
+    """Print a table of groups of rows for reading, each group below its heading."""
+    every_row = [row for _, rows in groups for row in rows]
+    head, *lines = render(every_row, kind.columns(every_row, without), "text").splitlines()
     click.echo(head)
-    for heading, of_group in groups:
-        show_text(f"\n{heading}")
-        for line in lines[: len(of_group)]:
-            click.echo(line)
-        del lines[: len(of_group)]
+    for heading, rows in groups:
+        click.echo(f"\n{heading}")
+        for _ in rows:
+            click.echo(lines.pop(0))
 
 
 def show_text(text: str) -> None:

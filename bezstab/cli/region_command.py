@@ -11,7 +11,7 @@ from bezstab.cli.command_group import NUMERICAL_TROUBLE
 from bezstab.cli.held_drives import held_asked, show_held
 from bezstab.cli.options import NUMBER, POSITIVE, SPEED, Rule, changed, command, flag, option
 from bezstab.cli.output import Files, progress, show_rows, show_text, worked_out
-from bezstab.show import NOT_KNOWN, REGIONS, Row, combined_words, region_row
+from bezstab.show import REGIONS, Row, combined_words, region_row
 
 if TYPE_CHECKING:
     from bezstab.questions import MapAnswer, MapQuestion
@@ -92,19 +92,19 @@ def region(quality: str, grid: int | None, files: Files, **typed: Any) -> int:
     show_rows(REGIONS, rows, () if question.levels else ("z_abs_below",))
     if question.motion:
         show_text(combined_words(question.motion))
-    return NUMERICAL_TROUBLE if any((row["best_reason"] or "").startswith(NOT_KNOWN) for row in rows) else status
+    return status if question.best_points_known else NUMERICAL_TROUBLE
 
 
 def _write_map(answer: "MapAnswer", files: Files) -> list[Row]:
     """Write the map of one method; return its rows."""
     from bezstab import show
 
-    say_each([answer.forced.reason] if answer.forced else [])
+    say_each([answer.choice_reason] if answer.question.motion else [])
     if files.wanted:
         z = np.array(list(progress(answer.dominant_poles(), answer.method.name, len(answer.axes[1]))))
-        of_what = "accuracy" if answer.forced else answer.question.scene
+        of_what = "accuracy" if answer.question.motion else answer.question.scene
         path = files.path("region", answer.method.name, of_what)
-        files.write(path, lambda: show.map_figure(answer, z), lambda: show.map_table(answer, z))
+        files.write(path, lambda: show.map_figure(answer, z), lambda: show.map_arrays(answer, z))
     return show.map_rows(answer)
 
 
@@ -113,6 +113,11 @@ def _write_boundaries(question: "MapQuestion", files: Files) -> list[Row]:
     from bezstab import show
 
     regions = [answer.region for answer in question.compared]
+    shown = (question.alpha_range, question.beta_range, question.seconds, question.alpha_beta)
     path = files.path("compare", *(method.name for method in question.methods))
-    files.write(path, lambda: show.compared_figure(question, regions), lambda: show.compared_table(question, regions))
+    files.write(
+        path,
+        lambda: show.comparison_figure(regions, *shown),
+        lambda: show.boundary_arrays(regions, question.seconds),
+    )
     return [region_row(answer) for answer in question.compared]

@@ -25,13 +25,19 @@ Curve = Callable[[Any], tuple[Any, Any]]
 class Applied:
     """The point that an engine makes of values, what it did to them (sentences), and points it also takes, labelled.
 
-    Points are (alpha_hat, beta_hat), exact and dimensionless. `also` is for feedback that changes with the size of the
-    error: safe is what is safe at those points, too.
+    Points are (alpha_hat, beta_hat), exact and dimensionless. `notes` are None where values were taken as typed, or no
+    engine gave the point. `also` is for feedback that changes with the size of the error: safe is what is safe at those
+    points, too.
     """
 
     point: Point
-    notes: tuple[str, ...] = ()
+    notes: tuple[str, ...] | None = ()
     also: tuple[tuple[str, Point], ...] = ()
+
+    @property
+    def points(self) -> list[Point]:
+        """All of them."""
+        return [self.point, *(point for _, point in self.also)]
 
 
 @dataclass(frozen=True)
@@ -45,45 +51,57 @@ class Engine:
     `parameters` are the values needed, `optional` those that may follow, `units` the units of both; `paste` is the
     line to paste where it is not name = value, for as many values as it has {}. `apply(h, *values)` is what the
     engine does to values before it uses them (clamps, scaling), None if nothing. `marks` are the settings everybody
-    meets: a label, and the point as a function of h. `excludes` is what the conversion leaves out. `curve` are the
-    points to choose among, None for all of the plane. `sweeps` is whether the engine solves each constraint by
-    itself, one after another, rather than all together: then what holds for one constraint alone says little about
-    a chain of them. `sweeping` is how it goes through such a step, None where that is not written down here.
+    meets: a label, and the values as they are typed, or 2h for two steps. `excludes` is what the conversion leaves
+    out. `curve` are the points to choose among, None for all of the plane. `jointly` is whether it solves all
+    constraints together below acceleration level, too. `sweeping` is how it goes through a step in which it solves
+    one after another, None where that is not written down here.
     """
 
     name: str
     level: Level
-    method: str | None
     parameters: tuple[str, ...]
     units: tuple[str, ...]
     read: Callable[..., Point]
     write: Callable[[Point, Fraction], tuple[str, ...]]
     source: str
     excludes: str
+    method: str | None = "SYM"
     optional: tuple[str, ...] = ()
     apply: Callable[..., Applied] | None = None
-    marks: tuple[tuple[str, Callable[[Fraction], Point]], ...] = ()
+    marks: tuple[tuple[str, str], ...] = ()
     paste: str | None = None
     curve: Curve | None = None
-    sweeps: bool = False
+    jointly: bool = False
     sweeping: Sweeping | None = None
 
+    @property
+    def sweeps(self) -> bool:
+        """Whether the engine solves each constraint by itself, one after another.
+
+        Then what holds for one constraint alone says little about a chain of them.
+        """
+        return self.level != "acceleration" and not self.jointly
+
+    def marked(self, h: Fraction) -> dict[str, Point]:
+        """Return the points of the settings everybody meets, by their labels; h in s."""
+        return {
+            label: self.applied(tuple(_typed(number, h) for number in typed.split()), h).point
+            for label, typed in self.marks
+        }
+
     def point(self, values: tuple[Fraction, ...], h: Fraction) -> Point:
-        """Return (alpha_hat, beta_hat) for values as typed, in their order and the engine's units; h in s.
+        """Return (alpha_hat, beta_hat) for values as typed; InputError as for `applied`."""
+        return self.applied(values, h, as_typed=True).point
 
-        InputError for another number of values, for those that mean nothing and for a point outside float64's range.
+    def applied(self, values: tuple[Fraction, ...], h: Fraction, *, as_typed: bool = False) -> Applied:
+        """Return what the engine makes of values, in their order and the engine's units, at a step of h (s).
+
+        The point is that after its clamps and scaling, which are left out where `as_typed`. InputError for another
+        number of values, for those that mean nothing and for a point outside float64's range.
         """
         self._check_number(values)
-        return self._within_range(self.read(h, *values))
-
-    def applied(self, values: tuple[Fraction, ...], h: Fraction) -> Applied:
-        """Return what the engine makes of such values: the point after its clamps and scaling, and what they did.
-
-        InputError as for `point`.
-        """
-        self._check_number(values)
-        if self.apply is None:
-            return Applied(self._within_range(self.read(h, *values)))
+        if as_typed or self.apply is None:
+            return Applied(self._within_range(self.read(h, *values)), None if as_typed else ())
         made = self.apply(h, *values)
         return Applied(
             self._within_range(made.point),
@@ -137,7 +155,6 @@ def engine_without_parameters(
     source: str,
     excludes: str,
     paste: str = "nothing to set",
-    sweeps: bool = False,
     sweeping: Sweeping | None = None,
 ) -> Engine:
     """Return an engine whose feedback cannot be set: symplectic Euler at one point."""
@@ -157,7 +174,6 @@ def engine_without_parameters(
     return Engine(
         name=name,
         level=level,
-        method="SYM",
         parameters=(),
         units=(),
         read=read,
@@ -166,9 +182,12 @@ def engine_without_parameters(
         curve=curve,
         source=source,
         excludes=excludes,
-        sweeps=sweeps,
         sweeping=sweeping,
     )
+
+
+def _typed(number: str, h: Fraction) -> Fraction:
+    return Fraction(number.removesuffix("h")) * (h if number.endswith("h") else 1)
 
 
 def gains_in_words(point: Point, h: Fraction) -> tuple[str, str]:

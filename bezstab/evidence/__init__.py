@@ -15,7 +15,6 @@ from bezstab.evidence.accuracy_costs import (
     measured_runs,
     sweep_compiled,
     swept_runs,
-    with_fronts,
 )
 from bezstab.evidence.chunk_stores import Arrays, chunk_store
 from bezstab.evidence.chunks import ATTEMPTS, completed_chunks
@@ -37,7 +36,6 @@ from bezstab.evidence.moving_mechanisms import (
     MovingPole,
     MovingVerdict,
     growth_rates,
-    moving_pole,
     moving_poles,
 )
 from bezstab.evidence.moving_regions import MovingRegion, moving_growth, moving_modulus, moving_region
@@ -49,7 +47,6 @@ from bezstab.evidence.pareto import pareto_front
 from bezstab.evidence.probed_poles import (
     Likeness,
     LikePoint,
-    Probe,
     ProbedPole,
     kicked_responses,
     likenesses,

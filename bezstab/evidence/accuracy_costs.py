@@ -122,48 +122,38 @@ class Run:
 
 @dataclass(frozen=True)
 class SweptRuns:
-    """All runs of a sweep over methods and steps, each method's with the largest step first, and what the best are.
+    """All runs of a sweep over methods and steps, each method's with the largest step first.
 
-    The fronts are indices of runs, ascending in cost, that no other run beats: by the trajectory's error, and by the
-    largest |c|. A run that failed is on neither. `reference_error` (SI) is how well the true motion is known. Costs are
-    `against` what they are counted in.
+    `reference_error` (SI) is how well the true motion is known. Costs are `against` what they are counted in.
     """
 
-    runs: tuple[Run, ...]
-    trajectory_front: tuple[int, ...]
-    constraint_front: tuple[int, ...]
+    runs: Sequence[Run]
     reference_error: float
     against: Cost = "evaluations"
+
+    def front(self, of: ErrorOf) -> list[int]:
+        """Return the Pareto front by an error: indices of runs, ascending in cost, that no other run beats."""
+        return pareto_front((run.cost(self.against), run.error(of)) for run in self.runs)
 
     @property
     def front_labels(self) -> list[str]:
         """For each run on which fronts it is: T by trajectory error, c by constraint error, "T c", or nothing."""
-        fronts = {"T": self.trajectory_front, "c": self.constraint_front}
+        fronts = {"T": self.front("trajectory"), "c": self.front("constraint")}
         return [
             " ".join(letter for letter, front in fronts.items() if index in front) for index in range(len(self.runs))
         ]
 
 
-def sweep_compiled(
-    scene: Scene,
-    methods: Sequence[Method],
-    step_sizes: Sequence[float],
-    duration: float,
-    repeats: int,
-    after: AfterStep = NOTHING,
-) -> bool:
+def sweep_compiled(methods: Sequence[Method], step_sizes: Sequence[float], duration: float, repeats: int) -> bool:
     """Return whether the runs of a sweep are compiled: all or none, so that their times can be compared.
 
-    `runs_compiled` says so for each method's runs together, step sizes and duration in s, with this `after` each step.
-    By default none are where one is not. InputError as `runs_compiled`.
+    `runs_compiled` says so for each method's runs together, step sizes and duration in s. By default none are where one
+    is not. InputError as `runs_compiled`.
     """
-    mechanism = compiled_mechanism(scene)
     user_steps = repeats * sum(duration / h for h in step_sizes)
-    wanted = [
-        runs_compiled(mechanism, method, round(user_steps / float(method.step_multiple)) * evaluations(method), after)
-        for method in methods
-    ]
-    return all(wanted)
+    return all(
+        runs_compiled(round(user_steps / float(method.step_multiple)) * evaluations(method)) for method in methods
+    )
 
 
 def measured_runs(sweep: Sweep) -> dict[str, NDArray[np.generic]]:
@@ -268,19 +258,3 @@ def _observed_order(larger: Run, h: float, error: float | None, reference_error:
     if not larger.trajectory_error or not error or error <= ABOVE_REFERENCE * reference_error:
         return None
     return float(np.log(larger.trajectory_error / error) / np.log(larger.h / h))
-
-
-def with_fronts(runs: Sequence[Run], reference_error: float, against: Cost = "evaluations") -> SweptRuns:
-    """Return the runs of several methods, whose sweeps share a reference, with the Pareto fronts they make up.
-
-    The reference's error in SI; the others as in `SweptRuns`.
-    """
-    trajectory = [(run.cost(against), run.error("trajectory")) for run in runs]
-    constraint = [(run.cost(against), run.error("constraint")) for run in runs]
-    return SweptRuns(
-        runs=tuple(runs),
-        trajectory_front=tuple(pareto_front(trajectory)),
-        constraint_front=tuple(pareto_front(constraint)),
-        reference_error=reference_error,
-        against=against,
-    )

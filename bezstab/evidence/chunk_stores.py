@@ -1,6 +1,5 @@
 """Where finished chunks are kept: a directory beside the result, locked while a run works in it."""
 
-import hashlib
 import os
 import sys
 from collections.abc import Iterator, Mapping
@@ -24,8 +23,8 @@ Arrays = Mapping[str, NDArray[np.generic]]
 
 JOB = "job.txt"
 LOCK = "lock.txt"
-SEAL = "of the job and chunk"
-"""The name of the array in a chunk's file that says whose it is: no array of a result is called so."""
+SEAL = "number of the chunk"
+"""The name of the last array in a chunk's file: no array of a result is called so, and a damaged file may lack it."""
 
 
 @dataclass(frozen=True)
@@ -33,7 +32,6 @@ class ChunkStore:
     """A directory that keeps the finished chunks of one job, each in a file called by its number."""
 
     path: Path
-    job: str
 
     def file(self, number: int) -> Path:
         """Return where a chunk is kept."""
@@ -44,23 +42,18 @@ class ChunkStore:
         return self.file(number).is_file()
 
     def load(self, number: int) -> Arrays | None:
-        """Return a finished chunk; None if its file is damaged, or of another chunk or job.
-
-        No object in a file is ever unpickled.
-        """
+        """Return a finished chunk; None if its file is damaged. No object in a file is ever unpickled."""
         try:
             # Opened here, for numpy forgets to close what turns out to be damaged.
             with self.file(number).open("rb") as file, np.load(file, allow_pickle=False) as archive:
                 arrays = dict(archive)
-            if arrays.pop(SEAL) != self._seal(number):
-                return None
+            return arrays if arrays.pop(SEAL) == number else None
         except Exception:  # a damaged zip archive makes numpy raise nearly anything
             return None
-        return arrays
 
     def save(self, number: int, arrays: Arrays) -> None:
         """Write one finished chunk; InputError if the system refuses."""
-        sealed = {**arrays, SEAL: self._seal(number)}
+        sealed = {**arrays, SEAL: np.array(number)}
         write_whole(self.file(number), lambda file: np.savez(file, **sealed))  # type: ignore[arg-type]
 
     def discard(self) -> None:
@@ -69,9 +62,6 @@ class ChunkStore:
         with suppress(OSError):
             (self.path / LOCK).unlink()  # last: another run waits for it
             self.path.rmdir()
-
-    def _seal(self, number: int) -> NDArray[np.str_]:
-        return np.array(f"{hashlib.sha256(self.job.encode()).hexdigest()} {number}")
 
 
 @contextmanager
@@ -92,7 +82,7 @@ def chunk_store(path: Path, job: str, resume: bool) -> Iterator[ChunkStore]:
         if not resume or described is None:
             _empty(path)
         write_whole(description, lambda file: file.write(job.encode()))
-        yield ChunkStore(path, job)
+        yield ChunkStore(path)
 
 
 def _empty(directory: Path) -> None:

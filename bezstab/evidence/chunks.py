@@ -1,8 +1,7 @@
 """Independent chunks of a long computation, spread over workers, kept in a store as they arrive."""
 
-from collections import Counter, deque
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
+from concurrent.futures import as_completed
 from pathlib import Path
 from typing import TypeVar
 
@@ -14,7 +13,7 @@ from bezstab.stopping import signals_deferred
 Chunk = TypeVar("Chunk")
 
 ATTEMPTS = 3
-"""A chunk that loses its worker so often is what kills them."""
+"""Executors that lose a worker: then it is a chunk that kills them."""
 
 
 def completed_chunks(
@@ -26,45 +25,35 @@ def completed_chunks(
 ) -> Iterator[tuple[int, Arrays]]:
     """Yield (number, work(chunk)) as they arrive, those first that the store already has.
 
-    A chunk whose file is damaged is reported and computed again; one whose worker is lost goes to another.
-    NumericalError if that happens to one ATTEMPTS times; InputError if a chunk cannot be written.
+    A chunk whose file is damaged is reported and computed again. Chunks that lose their worker go to others.
+    NumericalError if workers are lost ATTEMPTS times; InputError if a chunk cannot be written.
     """
-    finished: set[int] = set()
+    left = set(range(len(chunks)))
     for number, arrays in _intact_chunks(store, len(chunks), report_damaged):
-        finished.add(number)
+        left.remove(number)
         yield number, arrays
-    waiting = deque(number for number in range(len(chunks)) if number not in finished)
-    # An executor is idle, or busy with one chunk: then it is found by the future of that chunk's result.
-    idle = [workers.start() for _ in range(min(workers.count, len(waiting)))]
-    busy: dict[Future[Arrays], tuple[Executor, int]] = {}
-    losses = Counter[int]()
-    try:
-        while waiting or busy:
-            while waiting and idle:
-                executor, number = idle.pop(), waiting.popleft()
-                with signals_deferred():  # the first chunk of an executor starts its process
-                    future = executor.submit(work, chunks[number])
-                busy[future] = executor, number
-            for future in wait(busy, return_when=FIRST_COMPLETED).done:
-                executor, number = busy.pop(future)
+    for _ in range(ATTEMPTS):
+        if not left:
+            return
+        executor = workers.start()
+        with signals_deferred():  # the first chunks of an executor start its processes
+            futures = {executor.submit(work, chunks[number]): number for number in sorted(left)}
+        try:
+            for future in as_completed(futures):
                 try:
                     result = future.result()
-                except workers.lost:
-                    losses[number] += 1
-                    if losses[number] == ATTEMPTS:
-                        raise NumericalError(f"chunk {number} lost its worker {ATTEMPTS} times") from None
-                    executor.shutdown()
-                    executor = workers.start()
-                    waiting.append(number)
-                else:
-                    store.save(number, result)
-                    yield number, result
-                idle.append(executor)
-    finally:
-        for future in busy:
-            future.cancel()
-        for executor in (*idle, *(executor for executor, _ in busy.values())):
+                except workers.lost:  # of all chunks that were not finished
+                    continue
+                number = futures[future]
+                store.save(number, result)
+                left.remove(number)
+                yield number, result
+        finally:
+            for future in futures:
+                future.cancel()
             executor.shutdown(wait=False)
+    if left:
+        raise NumericalError(f"workers were lost {ATTEMPTS} times: {len(left)} of {len(chunks)} chunks are not done")
 
 
 def _intact_chunks(

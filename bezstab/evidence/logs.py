@@ -170,11 +170,14 @@ def _plain(column: str) -> str:
     return re.split(r"[\s(\[/]", column.strip().casefold(), maxsplit=1)[0]
 
 
-def row_step(log: Log, time: int) -> float:
+def row_step(log: Log, time: int | None) -> float | None:
     """Return the time between two rows in s; the name of the time column may say another unit (UNITS).
 
-    InputError, naming the row, where times are missing, do not rise, or are uneven by more than their own rounding.
+    None without a time column. InputError, naming the row, where times are missing, do not rise, or are uneven by more
+    than their own rounding.
     """
+    if time is None:
+        return None
     t = log.values[:, time]
     if len(t) < 2 or not np.isfinite(t).all():
         raise InputError(f"{log.name}: column {log.columns[time]} has no time in every row, or one row only")

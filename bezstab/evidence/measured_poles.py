@@ -33,7 +33,7 @@ from bezstab.mechanism import (
     initial_state,
     march,
     perturbed_state,
-    resume_in_groups,
+    resume,
     runs_compiled,
     turning_normals,
 )
@@ -237,16 +237,15 @@ def _kicked_responses(
     shape = (RUN + 1, len(KICKS), alpha_hat.size)
     difference, size = np.zeros(shape), np.full(shape, np.inf)
     seen = iter(progress(range(RUN + 1)))
-    compiled = runs_compiled(mechanism, method, size.size * 2 * evaluations(method), together=True)
+    compiled = runs_compiled(size.size * 2 * evaluations(method), together=True)
     with np.errstate(all="ignore"):  # what diverges runs into infinity, and is cut off there
-        for some, blocks in kicked_motions(mechanism, method, h, alpha_hat, beta_hat, KICKS, RUN, compiled):
-            k = 0
-            for c, _ in blocks:
-                steps_of_block = slice(k, k + len(c))
-                difference[steps_of_block, :, some] = (c[:, 0, 0] - c[:, 0, 1]) / 2
-                size[steps_of_block, :, some] = np.abs(c).max(axis=(1, 2))
-                k += len(c)
-                deque(islice(seen, len(c)), maxlen=0)  # the first group's steps are those that progress is told of
+        k = 0
+        for c, _ in kicked_motions(mechanism, method, h, alpha_hat, beta_hat, KICKS, RUN, compiled):
+            steps_of_block = slice(k, k + len(c))
+            difference[steps_of_block] = (c[:, 0, 0] - c[:, 0, 1]) / 2
+            size[steps_of_block] = np.abs(c).max(axis=(1, 2))
+            k += len(c)
+            deque(islice(seen, len(c)), maxlen=0)
     size[~np.isfinite(size)] = np.inf
     return difference, size
 
@@ -304,11 +303,11 @@ def kicked_motions(
     kicks: Sequence[float],
     count: int,
     compiled: bool = False,
-) -> Iterator[tuple[slice, Iterator[tuple[FloatArray, FloatArray]]]]:
-    """Yield c and q (SI units) of kicked runs, from the kick on over `count` steps, by groups of points.
+) -> Iterator[tuple[FloatArray, FloatArray]]:
+    """Yield c and q (SI units) of kicked runs, from the kick on over `count` steps, in blocks.
 
-    With each slice of the points come blocks of c and q, of shape (steps, constraints or coordinates, 2 for up and
-    down, kicks, points in the slice); the first block is the kick itself. The kick of the first constraint (SI units)
+    They have the shape (steps, constraints or coordinates, 2 for up and down, kicks, points); the first block is the
+    kick itself. The kick of the first constraint (SI units)
     comes after as many steps as the method has; what a multistep method remembers of before is left alone, and so is
     what a second-order scheme remembers of accelerations: its recursion is linear, and its poles are the same from any
     first values. h in s, alpha_hat and beta_hat of shape (points,). InputError for a scene that cannot start, and
@@ -325,25 +324,20 @@ def kicked_motions(
     direction = np.concatenate([displaced, np.zeros_like(v)])
     amounts = np.multiply.outer([1.0, -1.0], kicks)[..., np.newaxis]
     kicked = history[-1] = undisturbed[:, np.newaxis, np.newaxis] + np.multiply.outer(direction, amounts)
-    groups = resume_in_groups(mechanism, method, h_step, gains, history, count, How(compiled), undisturbed)
-
-    def seen(states_in_blocks: Iterable[FloatArray]) -> Iterator[tuple[FloatArray, FloatArray]]:
-        k = len(history) - 1
-        for states in states_in_blocks:
-            times = h_step * np.arange(k, k + len(states), dtype=np.float64)
-            q = states[:, : mechanism.size]
-            c = constraint_errors(mechanism, times.reshape(-1, 1, 1, 1), np.moveaxis(q, 1, 0))
-            yield np.moveaxis(c, 0, 1), q
-            k += len(states)
-
-    for some, blocks in groups:
-        yield some, seen(chain([kicked[np.newaxis, ..., some]], (block.states for block in blocks)))
+    blocks = resume(mechanism, method, h_step, gains, history, count, How(compiled), undisturbed)
+    k = len(history) - 1
+    for states in chain([kicked[np.newaxis]], (block.states for block in blocks)):
+        times = h_step * np.arange(k, k + len(states), dtype=np.float64)
+        q = states[:, : mechanism.size]
+        c = constraint_errors(mechanism, times.reshape(-1, 1, 1, 1), np.moveaxis(q, 1, 0))
+        yield np.moveaxis(c, 0, 1), q
+        k += len(states)
 
 
 def nothing_happens_without_feedback(mechanism: Mechanism, method: Method, h: float) -> bool:
     """Return whether without feedback c stays well within the linear range for the first few steps; h in s."""
     none = np.zeros(1)
     with np.errstate(all="ignore"):
-        ((_, drifting),) = kicked_motions(mechanism, method, h, none, none, [0.0], AT_ONCE)
+        drifting = kicked_motions(mechanism, method, h, none, none, [0.0], AT_ONCE)
         largest = max(float(np.abs(c).max()) for c, _ in drifting)
     return largest < CALM  # not so where it is not a number

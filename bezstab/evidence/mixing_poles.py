@@ -55,11 +55,12 @@ class NearestPoles:
     common: FloatArray
     splitting: FloatArray
 
-    def mix(self, turned: float) -> BoolArray:
+    def mix(self, turned: FloatArray | float) -> BoolArray:
         """Return which poles a motion moves too near to their neighbours for the first-order law; turned: kappa h."""
-        return ~(turned * np.abs(self.shift) < self.room)
+        with np.errstate(invalid="ignore"):
+            return ~(turned * np.abs(self.shift) < self.room)
 
-    def reach(self, turned: float) -> FloatArray:
+    def reach(self, turned: FloatArray | float) -> FloatArray:
         """Return the modulus that neither of each pair exceeds; turned: kappa h of the method's own step."""
         common = turned * self.common
         return self.middle + common + np.sqrt(common**2 + self.gap**2 / 4 + turned * self.splitting)
@@ -69,17 +70,6 @@ class NearestPoles:
         reach = self.reach(turned)
         with np.errstate(divide="ignore", invalid="ignore"):
             return (reach - self.middle) ** 2 / reach
-
-    def mixing_from(self) -> FloatArray:
-        """Return the kappa h from which on each pole mixes."""
-        with np.errstate(divide="ignore", invalid="ignore"):
-            return self.room / np.abs(self.shift)
-
-    def reaching_one_at(self) -> FloatArray:
-        """Return the kappa h at which the reach of each pair is one; not positive where it is beyond at rest."""
-        left = 1 - self.middle
-        with np.errstate(divide="ignore", invalid="ignore"):
-            return (left**2 - self.gap**2 / 4) / (2 * left * self.common + self.splitting)
 
 
 def nearest_poles(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray) -> NearestPoles:

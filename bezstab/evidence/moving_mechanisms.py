@@ -20,14 +20,13 @@ from numpy.typing import ArrayLike, NDArray
 from bezstab.evidence.mixing_poles import NearestPoles, nearest_poles
 from bezstab.mechanism import TurningNormals
 from bezstab.methods import Method
-from bezstab.stability import BoolArray, ComplexArray, FloatArray
+from bezstab.stability import BoolArray, ComplexArray, FloatArray, bisected
 
 LAW_HOLDS = 0.1  # rad, kappa h: at twice that terms beside chi, too, have been seen to turn 0.94 into 1.05
 
 LARGEST_CHI = 32.0  # of the table: ten times what is seen on a boundary; further out the law does not hold at any speed
 RADII, ANGLES = 101, 61
 AT_A_TIME = 1024  # chi whose Y stay in a core's cache through all steps, and points with the distances of their poles
-RESCALED = 20  # steps between two looks at how large Y has grown: e^(32 kappa T / 10) at most, within float64
 
 Value = TypeVar("Value", bound=np.generic)
 
@@ -87,18 +86,25 @@ def _growth_rates_of_row(turning: TurningNormals, chi: ComplexArray) -> FloatArr
     """Return both growth rates (1/s) of a row of chi, shape (2, chi.size)."""
     beyond = np.maximum(1, np.abs(chi) / LARGEST_CHI)
     factor = chi / beyond
-    size = turning.rates.shape[1]
+    rates, size = turning.rates, turning.rates.shape[1]
+    step = 2 * turning.duration / (len(rates) - 1)
     grown = np.zeros((size, size, chi.size), complex)  # chi last: K multiplies them all at once
     grown[range(size), range(size)] = 1
     log_scale = np.zeros(chi.size)
-    for number, powers in enumerate(_step_polynomials(turning)):
-        terms = (powers.reshape(-1, size) @ grown.reshape(size, -1).view(float)).view(complex)
-        first, second, third, fourth = terms.reshape(4, size, size, -1)
-        grown = grown + factor * (first + factor * (second + factor * (third + factor * fourth)))
-        if number % RESCALED == 0:
-            largest = np.abs(grown).max(axis=(0, 1))
-            grown /= largest
-            log_scale += np.log(largest)
+
+    def change(k: FloatArray, y: ComplexArray) -> ComplexArray:
+        """Return step K (chi Y)."""
+        return np.asarray(step * np.tensordot(k, factor * y, 1))
+
+    for start, middle, end in zip(rates[:-1:2], rates[1::2], rates[2::2], strict=True):
+        first = change(start, grown)
+        second = change(middle, grown + first / 2)
+        third = change(middle, grown + second / 2)
+        fourth = change(end, grown + third)
+        grown = grown + (first + 2 * second + 2 * third + fourth) / 6
+        largest = np.abs(grown).max(axis=(0, 1))  # or it would run into infinity
+        grown /= largest
+        log_scale += np.log(largest)
     grown = grown.transpose(2, 0, 1)
     if turning.closed:
         multiplied = sure = np.abs(np.linalg.eigvals(grown)).max(axis=-1)
@@ -107,43 +113,6 @@ def _growth_rates_of_row(turning: TurningNormals, chi: ComplexArray) -> FloatArr
         multiplied = np.linalg.norm(np.linalg.solve(after, grown @ before), ord=2, axis=(-2, -1))
         sure = np.minimum(multiplied, np.linalg.norm(grown, ord=2, axis=(-2, -1)))
     return beyond * (np.log([multiplied, sure]) + log_scale) / turning.duration
-
-
-def _step_polynomials(turning: TurningNormals) -> FloatArray:
-    """Return what chi, chi^2, chi^3 and chi^4 are multiplied by in each of the rule's steps; shape (steps, 4, m, m).
-
-    The step is Y + chi (A_1 Y + chi (A_2 Y + chi (A_3 Y + chi A_4 Y))), and the A are the same at every chi.
-    """
-    step = 2 * turning.duration / (len(turning.rates) - 1)
-    start, middle, end = turning.rates[:-1:2], turning.rates[1::2], turning.rates[2::2]
-    twice = middle @ middle
-    powers = [
-        step / 6 * (start + 4 * middle + end),
-        step**2 / 6 * (middle @ start + twice + end @ middle),
-        step**3 / 12 * (twice @ start + end @ twice),
-        step**4 / 24 * (end @ twice @ start),
-    ]
-    return np.stack(powers, axis=1)
-
-
-def tabulated_rates(turning: TurningNormals, chi: ComplexArray) -> FloatArray:
-    """Return growth_rates for very many chi, between the entries of a motion's table.
-
-    Lambda depends on the motion and chi alone, is the same at conjugates, and grows in proportion far out. Linear
-    between neighbours, which are 2 % apart in |chi| and 3 degrees in angle: good to about 1e-3 of Lambda, where the law
-    itself leaves out terms of |chi| kappa h.
-    """
-    table = _growth_table(turning)
-    radius = np.abs(chi)
-    beyond = np.maximum(1, radius / LARGEST_CHI)
-    row = np.interp(radius / beyond, table.radii, np.arange(RADII))
-    column = np.interp(np.abs(np.angle(chi)), table.angles, np.arange(ANGLES))
-    i = np.minimum(row.astype(int), RADII - 2)
-    k = np.minimum(column.astype(int), ANGLES - 2)
-    u, v = row - i, column - k
-    near = (1 - v) * table.entries(i, k) + v * table.entries(i, k + 1)
-    far = (1 - v) * table.entries(i + 1, k) + v * table.entries(i + 1, k + 1)
-    return np.asarray(beyond * ((1 - u) * near + u * far))
 
 
 class _GrowthTable:
@@ -158,7 +127,24 @@ class _GrowthTable:
         self.angles = np.linspace(0, np.pi, ANGLES)
         self.rates = np.full((RADII, ANGLES), np.nan)  # not a number: not asked for yet
 
-    def entries(self, i: NDArray[np.intp], k: NDArray[np.intp]) -> FloatArray:
+    def between(self, chi: ComplexArray) -> FloatArray:
+        """Return `growth_rates` for very many chi, between the entries of the table; shape of chi, a row.
+
+        Lambda depends on the motion and chi alone, is the same at conjugates, and grows in proportion far out. Linear
+        between neighbours, which are 2 % apart in |chi| and 3 degrees in angle: good to about 1e-3 of Lambda, where the
+        law itself leaves out terms of |chi| kappa h.
+        """
+        radius = np.abs(chi)
+        beyond = np.maximum(1, radius / LARGEST_CHI)
+        row = np.interp(radius / beyond, self.radii, np.arange(RADII))
+        column = np.interp(np.abs(np.angle(chi)), self.angles, np.arange(ANGLES))
+        i, k = np.minimum(row.astype(int), RADII - 2), np.minimum(column.astype(int), ANGLES - 2)
+        u, v = row - i, column - k
+        corners = np.array([[i, i, i + 1, i + 1], [k, k + 1, k, k + 1]])
+        shares = np.array([(1 - u) * (1 - v), (1 - u) * v, u * (1 - v), u * v])
+        return np.asarray(beyond * (shares * self._entries(*corners)).sum(axis=0))
+
+    def _entries(self, i: NDArray[np.intp], k: NDArray[np.intp]) -> FloatArray:
         """Return the entries of radii i and angles k, of one shape."""
         wanted = np.zeros(self.rates.shape, bool)
         wanted[i, k] = True
@@ -186,30 +172,29 @@ class Law:
     """What the first-order law makes of the poles at a row of points; of shape (points, poles), the dominant one first.
 
     `at_rest` is ln|z| a step, `growth` h Lambda of each pole and `sure` what of it is sure (`growth_rates`),
-    minus infinity of a pole that does not count: too small ever to lead, or the conjugate of one that counts. `mixing`
-    are those that the law moves too near to their neighbours, or to no finite place; these come as far as their `reach`
-    (`mixing_poles`), whatever the law says. `turned` is kappa h of the method's own step.
+    minus infinity of a pole that does not count: too small ever to lead, or the conjugate of one that counts. Others
+    are `known` where chi is finite. `turned` is kappa h of the method's own step.
     """
 
     nearest: NearestPoles
     turned: float
     at_rest: FloatArray
     chi: ComplexArray
+    counts: BoolArray
     known: BoolArray
-    mixing: BoolArray
     growth: FloatArray
     sure: FloatArray
 
-    @property
-    def moving(self) -> FloatArray:
-        """ln|z| a step over the motion by the law alone."""
-        return self.at_rest + self.growth
+    def mixing(self, times: FloatArray | float = 1.0) -> BoolArray:
+        """Return which poles the law moves too near to their neighbours, or to no finite place, so `times` as fast."""
+        turned = times * self.turned
+        return self.counts & self.nearest.mix(turned) & (self.nearest.reach(turned) > 0)
 
-    @property
-    def furthest(self) -> FloatArray:
-        """The same of poles that do not mix, and of those that do what they reach."""
+    def furthest(self, times: FloatArray | float = 1.0) -> FloatArray:
+        """Return ln|z| a step over the motion: by the law, and of poles that mix as far as they reach."""
         with np.errstate(divide="ignore", invalid="ignore"):
-            return np.where(self.mixing, np.log(self.nearest.reach(self.turned)), self.moving)
+            reached = np.log(self.nearest.reach(times * self.turned))
+        return np.where(self.mixing(times), reached, self.at_rest + times * self.growth)
 
     @property
     def rate(self) -> FloatArray:
@@ -219,17 +204,32 @@ class Law:
         """
         with np.errstate(divide="ignore"):
             at_rest = np.log(self.nearest.z_abs)
-        of_each = np.where(self.mixing, np.minimum(self.moving, self.furthest), self.moving)
+        by_the_law = self.at_rest + self.growth
+        of_each = np.where(self.mixing(), np.minimum(by_the_law, self.furthest()), by_the_law)
         return np.asarray(np.maximum(at_rest, of_each.max(axis=1)))
 
     @property
     def double(self) -> BoolArray:
         """Where the pole that comes furthest is one that mixes; shape (points,)."""
-        return self.leading(self.mixing)
+        return self.leading(self.mixing())
 
     def leading(self, values: NDArray[Value]) -> NDArray[Value]:
         """Return what the pole that comes furthest has of values of shape (points, poles); shape (points,)."""
-        return np.asarray(values[np.arange(len(values)), np.argmax(self.furthest, axis=1)])
+        return np.asarray(values[np.arange(len(values)), np.argmax(self.furthest(), axis=1)])
+
+    def safe_speeds(self) -> FloatArray:
+        """Return so many times as fast the mechanism may move until a pole comes as far as one; shape (points,).
+
+        But not beyond LAW_HOLDS; not a number where it does so at rest.
+        """
+        decays = self.at_rest.max(axis=1) < 0
+        if self.turned == 0:
+            return np.where(decays, np.inf, np.nan)
+        fastest = np.full(decays.shape, LAW_HOLDS / self.turned)
+        speeds, _ = bisected(
+            lambda times: self.furthest(times.reshape(-1, 1)).max(axis=1)[np.newaxis] >= 0, 0 * fastest, fastest
+        )
+        return np.where(decays, speeds, np.nan)
 
 
 def first_order_law(
@@ -243,7 +243,7 @@ def first_order_law(
 ) -> Law:
     """Return what a motion makes of the poles at a row of points; h in s, the rest dimensionless.
 
-    `tabulated`: by the motion's table (`tabulated_rates`), for very many points. There a pole so far from one that no
+    `tabulated`: by the motion's table, for very many points. There a pole so far from one that no
     motion of this kappa could bring it there keeps its |z| at rest. NumericalError if a pole leaves the range of
     float64.
     """
@@ -252,67 +252,43 @@ def first_order_law(
     turned = turning.kappa * step
     with np.errstate(all="ignore"):
         at_rest, chi = np.log(np.abs(z)), nearest.shift / z
-        reach = nearest.reach(turned)
     counts = nearest.may_lead & (z.imag >= 0)  # of a conjugate pair both grow alike
-    mixing = counts & nearest.mix(turned) & (reach > 0)
     known = counts & np.isfinite(chi)
     growth, sure = np.where(counts, 0.0, -np.inf), np.full(z.shape, -np.inf)
     if tabulated:
         matters = known & (np.abs(at_rest) < np.abs(np.where(known, chi, 0)) * turning.largest_norm * step)
-        growth[matters] = step * tabulated_rates(turning, chi[matters])
+        growth[matters] = step * _growth_table(turning).between(chi[matters])
     else:
         growth[known], sure[known] = step * np.array(growth_rates(turning, chi[known]))
-    return Law(nearest, turned, at_rest, chi, known, mixing, growth, sure)
-
-
-def moving_pole(method: Method, turning: TurningNormals, h: float, alpha_hat: float, beta_hat: float) -> MovingPole:
-    """Return what becomes of the poles at one point on a mechanism that moves, h in s; as `moving_poles`."""
-    (found,) = moving_poles(method, turning, h, np.array([alpha_hat]), np.array([beta_hat]))
-    return found
+    return Law(nearest, turned, at_rest, chi, counts, known, growth, sure)
 
 
 def moving_poles(
-    method: Method, turning: TurningNormals, h: float, alpha_hat: FloatArray, beta_hat: FloatArray
+    method: Method, turning: TurningNormals, h: float, alpha_hat: ArrayLike, beta_hat: ArrayLike
 ) -> list[MovingPole]:
-    """Return what becomes of the poles at each of a row of points on a mechanism that moves; h in s.
+    """Return what becomes of the poles at one point, or each of a row of them, on a mechanism that moves; h in s.
 
     Theory: the first-order law of the moving mechanism (docstring of this file). NumericalError if a pole leaves the
     range of float64.
     """
-    law = first_order_law(method, turning, h, alpha_hat, beta_hat)
+    law = first_order_law(method, turning, h, *(np.atleast_1d(np.asarray(each)) for each in (alpha_hat, beta_hat)))
     nearest, turned = law.nearest, law.turned
-    alone = law.known & ~law.mixing
+    mixing, furthest = law.mixing(), law.furthest()
+    alone = law.known & ~mixing
     worst = np.full(law.chi.shape, -np.inf)
     worst[alone] = law.at_rest[alone] + h * float(method.step_multiple) * momentary_rates(turning, law.chi[alone])
-    highest = np.where(law.mixing, law.furthest, np.maximum(worst, law.moving)).max(axis=1)
+    highest = np.maximum(worst, furthest).max(axis=1)
     with np.errstate(all="ignore"):
         of_one = (np.abs(law.chi) * turned) ** 2 if turned else np.zeros(law.chi.shape)  # at rest however large chi is
-        unsure = law.leading(np.where(law.mixing, nearest.left_out(turned), of_one))
+        unsure = law.leading(np.where(mixing, nearest.left_out(turned), of_one))
         highest = np.maximum(highest, np.log(nearest.z_abs))
         lowest_of_pair = np.log(np.maximum(law.leading(2 * nearest.middle - nearest.reach(turned)), 0))
-    lowest_alone = np.where(law.mixing, -np.inf, law.at_rest + law.sure).max(axis=1)
+    lowest_alone = np.where(mixing, -np.inf, law.at_rest + law.sure).max(axis=1)
     lowest = np.where(law.double, lowest_of_pair, lowest_alone)
     settled = ((highest < -unsure) & (turned <= LAW_HOLDS)) | (lowest > unsure)
     columns = (
         *(nearest.z_abs, np.full(len(settled), turning.kappa), law.leading(np.abs(law.chi))),
         *(np.exp(law.rate), np.exp(highest), law.double, settled),
-        _safe_speeds(nearest, law.at_rest, law.growth, turned),
+        law.safe_speeds(),
     )
     return [MovingPole(*values) for values in zip(*(column.tolist() for column in columns), strict=True)]
-
-
-def _safe_speeds(nearest: NearestPoles, at_rest: FloatArray, growth: FloatArray, turned: float) -> FloatArray:
-    """Return by what growth and `turned`, kappa h, both proportional to the speed, can be multiplied; shape (points,).
-
-    Until growth equals a pole's decay or, where that is beyond what the law is good for, until the reach of it and its
-    neighbour is one; but not beyond LAW_HOLDS.
-    """
-    if turned == 0:
-        return np.where(at_rest.max(axis=1) < 0, np.inf, np.nan)
-    with np.errstate(all="ignore"):
-        by_the_law = np.where(growth > 0, -at_rest / growth, np.inf) * turned
-    ends = nearest.mixing_from()
-    estimated = np.fmax(ends, nearest.reaching_one_at())
-    limits = np.where(np.isneginf(growth), np.inf, np.where(by_the_law <= ends, by_the_law, estimated))
-    speeds = np.minimum(limits.min(axis=1), LAW_HOLDS) / turned
-    return np.where(at_rest.max(axis=1) < 0, speeds, np.nan)

@@ -62,8 +62,7 @@ def controlled_motors(model: ModelData, gains: Sequence[MotorGains], timing: Tim
         matching = [each for each in gains if re.fullmatch(each.pattern, motor.name)]
         if matching:
             late = timing.late + exact(motor.delay) / exact(model.h)
-            delayed = Timing(timing.every, late, timing.filter_steps)
-            found.append(Controlled(motor, matching[-1].kp, matching[-1].kd, delayed))
+            found.append(Controlled(motor, matching[-1].kp, matching[-1].kd, Timing(timing.every, late)))
     return found
 
 
@@ -71,8 +70,8 @@ def lifted_step(step: FloatArray, forces: FloatArray, controlled: Sequence[Contr
     """Return the matrix over `every` steps of a model with controllers.
 
     `step` (2 n, 2 n) takes (x, h v) over a step without them, `forces` (2 n, motors) is what each motor's force adds
-    (SI). The state is (x, h v), the filtered velocities if there is a filter, then the controls still to be applied,
-    latest first. All controllers have the same `every` and filter.
+    (SI). The state is (x, h v), then the controls still to be applied, latest first. All controllers have the same
+    `every`, and see velocities without a filter.
     """
     dofs, motors = len(step) // 2, len(controlled)
     arms = np.array([each.motor.direction for each in controlled])
@@ -81,16 +80,10 @@ def lifted_step(step: FloatArray, forces: FloatArray, controlled: Sequence[Contr
     timing = controlled[0].timing
     pending = max(ceil(each.timing.late / timing.every) for each in controlled)
     pending += any(each.timing.late % 1 for each in controlled)  # one more, of which a step keeps its share
-    filters = motors if timing.filter_steps else 0
-    size = 2 * dofs + filters + pending * motors
-    state = np.eye(size)
+    state = np.eye(2 * dofs + pending * motors)
     moving, rest = state[: 2 * dofs], state[2 * dofs :]
-
     lengths, velocities = arms @ moving[:dofs], arms @ moving[dofs:] / h
-    if filters:
-        share = float(1 / (1 + timing.filter_steps / timing.every))
-        velocities = rest[:motors] + share * (velocities - rest[:motors])
-    controls = [-kp * lengths - kd * velocities, *rest[filters:].reshape(pending, motors, size)]
+    controls = [-kp * lengths - kd * velocities, *rest.reshape(pending, motors, len(state))]
     for number in range(timing.every):
         applied = np.array(
             [
@@ -99,4 +92,4 @@ def lifted_step(step: FloatArray, forces: FloatArray, controlled: Sequence[Contr
             ]
         )
         moving = step @ moving + forces @ (force_gain * applied)
-    return np.vstack([moving, *([velocities] if filters else []), *controls[:pending]])
+    return np.vstack([moving, *controls[:pending]])

@@ -15,7 +15,7 @@ A spring, damper or drive with stiffness kp and damping kv on inertia I is alpha
 IMEX-Euler where all damping is implicit, RK4 under RK4, else symplectic Euler, of a point that is divided likewise.
 """
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cache, cached_property, partial
@@ -46,11 +46,8 @@ FRESH = Timing()
 Point = tuple[Fraction, Fraction]
 """alpha_hat and beta_hat."""
 
-Points = Callable[[FloatArray], FloatArray]
-"""Of factors on the step, shape (factors,): alpha_hat and beta_hat of each point, shape (2, factors, points)."""
-
-Shares = Callable[[float, FloatArray], FloatArray]
-"""Of impedance and steps (s): the least and the largest share of its reference that a constraint gets, (steps, 2)."""
+Points = Callable[[Fraction], list[tuple[Point, str]]]
+"""Of a factor on the step: the points of an element there, always as many, and what makes each of them."""
 
 DEFAULT_SOLREF = (0.02, 1.0)
 """What MuJoCo takes where one number of solref is positive and the other not."""
@@ -87,7 +84,7 @@ LEAST_HOLD = 0.1
 
 SAFE_TOGETHER = "unsafe only alone: safe with what it is connected to, in the last row, which decides"
 
-HARD = ("contact", "contact pair", "joint friction", "tendon friction")
+HARD = ("contact", "joint friction", "tendon friction")
 """Kinds whose softness is a property of the material: nobody is told to change it."""
 
 
@@ -149,13 +146,13 @@ def linted_model(model: ModelData, gains: Sequence[MotorGains] = (), timing: Tim
     """
     plant = _Plant(model)
     groups = _along_one_direction(model.feedbacks)
-    bilateral = [constraint for constraint in model.constraints if _is_bilateral(constraint)]
+    bilateral = [constraint for constraint in model.constraints if constraint.active]
     controlled = controlled_motors(model, gains, timing)
     several = len(bilateral) + len(groups) + len(controlled) > 1
     together = _linted_together(plant, bilateral, controlled) if several else None
     for constraint in model.constraints:
         alone = _linted_constraint(plant, constraint)
-        yield alone.beside(together) if _is_bilateral(constraint) else alone
+        yield alone.beside(together) if constraint.active else alone
     for group in groups:
         yield _linted_drive(plant, group).beside(together)
     for motor in model.motors:
@@ -175,11 +172,6 @@ def linted_model(model: ModelData, gains: Sequence[MotorGains] = (), timing: Tim
 
 def _not_judged(element: str, kind: str, reason: str) -> Linted:
     return Linted(element, kind, advice=f"not judged: {reason}")
-
-
-def _is_bilateral(constraint: Constraint) -> bool:
-    """Return whether a constraint holds both ways from the start, by rows that are known."""
-    return constraint.active and constraint.positional and constraint.jacobian is not None
 
 
 @dataclass(frozen=True)
@@ -234,31 +226,62 @@ def _springs_and_dampers(model: ModelData, feedbacks: Sequence[Feedback]) -> tup
     return stiffness, damping
 
 
-# One point
+# One element
 
 
-def _verdict(method: Method, point: Point) -> Verdict:
-    """Return the proven verdict; where there is no stiffness, that on the velocity alone."""
-    polynomial = closed_loop_at(method, *point)
-    if point[1] == 0:  # nothing holds the position: P = (z - 1) Q, and -Q's coefficients are the running sums of P's
-        polynomial = list(accumulate(polynomial))[:-1]
-    return recursion_verdict(polynomial)
+@dataclass(frozen=True)
+class _Map:
+    """What a point is judged by: a method, and for a motor when its controller computes and applies the torque."""
+
+    method: Method
+    timing: Timing | None = None
+
+    def verdict(self, point: Point) -> Verdict:
+        """Return the proven verdict; where there is no stiffness, that on the velocity alone."""
+        if self.timing:
+            return held_verdict(self.method.name, *point, self.timing)
+        polynomial = closed_loop_at(self.method, *point)
+        if point[1] == 0:  # nothing holds the position: P = (z - 1) Q, -Q's coefficients are the running sums of P's
+            polynomial = list(accumulate(polynomial))[:-1]
+        return recursion_verdict(polynomial)
+
+    def moduli(self, points: Sequence[Point]) -> FloatArray:
+        """Return |z_p|; where there is no stiffness, of the velocity alone: without the pole at one."""
+        if self.timing:
+            return np.array([held_spectral_radius(self.method.name, *point, self.timing) for point in points])
+        alpha_hat, beta_hat = np.array(points, float).T
+        if beta_hat.any():
+            return spectral_radius(self.method, alpha_hat, beta_hat)
+        z = poles(self.method, alpha_hat, beta_hat)
+        others = np.argsort(np.abs(z - 1), axis=-1)[..., 1:]
+        return np.asarray(np.abs(np.take_along_axis(z, others, axis=-1)).max(axis=-1))
 
 
-def _moduli(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray) -> FloatArray:
-    """Return |z_p|; where there is no stiffness, of the velocity alone: without the pole at one."""
-    if beta_hat.any():
-        return spectral_radius(method, alpha_hat, beta_hat)
-    z = poles(method, alpha_hat, beta_hat)
-    others = np.argsort(np.abs(z - 1), axis=-1)[..., 1:]
-    moduli: FloatArray = np.abs(np.take_along_axis(z, others, axis=-1)).max(axis=-1)
-    return moduli
+def _linted(element: str, kind: str, setting: str, judge: _Map, points_at: Points) -> Linted:
+    """Judge an element by the worst of its points; without advice."""
+    points, reasons = zip(*points_at(AS_IT_IS), strict=True)
+    moduli = judge.moduli(points)
+    worst = int(np.argmax(moduli))
+    alpha_hat, beta_hat = points[worst]
 
+    def unstable(factors: FloatArray) -> BoolArray:
+        there = [point for factor in factors.tolist() for point, _ in points_at(exact(factor))]
+        limit = 1.0 if all(point[0] for point in there) else 1 + ROUNDING
+        return np.asarray((judge.moduli(there).reshape(len(factors), -1) >= limit).any(axis=-1))
 
-def _points(point_at: Callable[[Fraction], Point], factors: FloatArray) -> FloatArray:
-    """Return the point that an element has at each factor on the step, in float64; shape (2, factors, 1)."""
-    points = [point_at(exact(factor)) for factor in factors.tolist()]
-    return np.array(points, float).T[:, :, np.newaxis]
+    return Linted(
+        element=element,
+        kind=kind,
+        advice="",
+        setting=setting,
+        judged=reasons[worst],
+        alpha_hat=float(alpha_hat),
+        beta_hat=float(beta_hat),
+        map=judge.method.name,
+        verdict=judge.verdict(points[worst]),
+        z_abs=float(moduli[worst]),
+        h_factor=_h_factor(unstable),
+    )
 
 
 def _h_factor(unstable: Callable[[FloatArray], BoolArray]) -> float | None:
@@ -268,26 +291,6 @@ def _h_factor(unstable: Callable[[FloatArray], BoolArray]) -> float | None:
         return found[1] if found else None
     found = first_where(unstable, FACTORS)
     return found[0] if found else None
-
-
-def _end_of(points: Points, method: Method) -> float | None:
-    """Return the factor on the step up to which all points stay stable, from the points at factors."""
-
-    def unstable(factors: FloatArray) -> BoolArray:
-        alpha_hat, beta_hat = points(factors)
-        limit = 1.0 if alpha_hat.all() else 1 + ROUNDING
-        return np.asarray((_moduli(method, alpha_hat, beta_hat) >= limit).any(axis=-1))
-
-    return _h_factor(unstable)
-
-
-def _worst(method: Method, points: Iterable[Point]) -> tuple[Point, Verdict, float]:
-    """Return the point with the largest |z|, its verdict, and |z|."""
-    candidates = list(points)
-    alpha_hat, beta_hat = np.array(candidates, float).T
-    moduli = _moduli(method, alpha_hat, beta_hat)
-    worst = int(np.argmax(moduli))
-    return candidates[worst], _verdict(method, candidates[worst]), float(moduli[worst])
 
 
 # Constraints
@@ -330,44 +333,25 @@ def _pulls(plant: _Plant, constraint: Constraint, solref: tuple[float, float]) -
 
 
 def _linted_constraint(plant: _Plant, constraint: Constraint) -> Linted:
-    method = plant.method
-    shares = _shares(plant, constraint)
-    pulls = _pulls(plant, constraint, constraint.solref)
-    points = _constraint_points(plant, constraint, shares, constraint.solref)
-    point, verdict, z_abs = _worst(method, points)
-
-    def points_at(factors: FloatArray) -> FloatArray:
-        h = plant.model.h * factors
-        return np.dstack([_points(pull.at, factors) * shares(pull.impedance, h) for pull in pulls])
-
-    return Linted(
-        element=constraint.element,
-        kind=constraint.kind,
-        setting=f'solref="{_numbers(constraint.solref)}" solimp="{_numbers(constraint.solimp)}"',
-        judged=f"{_solref_in_force(plant.model, constraint)}, {points[point]}",
-        alpha_hat=float(point[0]),
-        beta_hat=float(point[1]),
-        map=method.name,
-        verdict=verdict,
-        z_abs=z_abs,
-        h_factor=_end_of(points_at, method),
-        advice=_constraint_advice(plant, constraint, shares, verdict, z_abs),
-    )
+    setting = f'solref="{_numbers(constraint.solref)}" solimp="{_numbers(constraint.solimp)}"'
+    points_at = partial(_constraint_points, plant, constraint, constraint.solref)
+    found = _linted(constraint.element, constraint.kind, setting, _Map(plant.method), points_at)
+    return replace(found, advice=_constraint_advice(plant, constraint, found))
 
 
 def _constraint_points(
-    plant: _Plant, constraint: Constraint, shares: Shares, solref: tuple[float, float]
-) -> dict[Point, str]:
-    """Return the points that a constraint takes with that solref, exactly, and what makes each of it."""
-    found: dict[Point, str] = {}
+    plant: _Plant, constraint: Constraint, solref: tuple[float, float], factor: Fraction
+) -> list[tuple[Point, str]]:
+    """Return the points that a constraint takes with that solref, and what makes each of it."""
+    points = []
     for pull in _pulls(plant, constraint, solref):
-        (of_directions,) = shares(pull.impedance, np.array([plant.model.h])).tolist()
-        for share in of_directions:
+        alpha_hat, beta_hat = pull.at(factor)
+        for share in _shares(plant, constraint, pull.impedance, float(factor) * plant.model.h):
             rounded = exact(round(share, DIGITS))
             why = f"d = {pull.impedance:g} {pull.where}{_share_text(constraint, share, pull.impedance)}"
-            alpha_hat, beta_hat = pull.at(AS_IT_IS)
-            found.setdefault((alpha_hat * rounded, beta_hat * rounded), why)
-    return found
+            reason = f"{_solref_in_force(plant.model, solref)}, {why}"
+            points.append(((alpha_hat * rounded, beta_hat * rounded), reason))
+    return points
 
 
 def _share_text(constraint: Constraint, share: float, impedance: float) -> str:
@@ -377,38 +361,30 @@ def _share_text(constraint: Constraint, share: float, impedance: float) -> str:
     return "" if abs(share - impedance) < SEEN * impedance else f", {share:.3g} by masses and damping"
 
 
-def _solref_in_force(model: ModelData, constraint: Constraint) -> str:
+def _solref_in_force(model: ModelData, solref: tuple[float, float]) -> str:
     """Return the solref that MuJoCo goes by, and why it is another than what the model says."""
-    if not _of_one_sign(constraint.solref):
+    if not _of_one_sign(solref):
         return f'solref="{_numbers(DEFAULT_SOLREF)}" as the signs differ'
-    first, second = constraint.solref
+    first, second = solref
     if model.refsafe and 0 < first < 2 * model.h:
         return f'solref="{_numbers((2 * model.h, second))}" by refsafe'
-    return f'solref="{_numbers(constraint.solref)}"'
+    return f'solref="{_numbers(solref)}"'
 
 
-def _shares(plant: _Plant, constraint: Constraint) -> Shares:
-    """Return a function of impedance and steps: the least and largest share of the reference that directions get.
+def _shares(plant: _Plant, constraint: Constraint, impedance: float, h: float) -> tuple[float, float]:
+    """Return the least and the largest share of the reference that directions get at a step of h seconds.
 
-    They are the impedance, but for MuJoCo's estimate of masses and for implicit damping. Rows that nobody knows may
-    share a reference out, those of contacts and of a flex of very many edges: then the largest is all of it.
+    They are the eigenvalues of A' (A + R)^-1 of what moves: the impedance, but for MuJoCo's estimate of masses and for
+    implicit damping. Contacts, whose rows nobody knows, may share a reference out: then the largest is all of it.
     """
-    jacobian, diagonal = constraint.jacobian, constraint.diagonal
-    if jacobian is None or diagonal is None:
-        alone = constraint.kind == "joint limit"
-        return lambda impedance, h: np.tile([impedance, impedance if alone else 1.0], (len(h), 1))
-    basis, all_rates = plant.damping_modes
-    moved = jacobian @ basis
-    moving = moved.any(axis=0)
-    moved, rates = moved[:, moving], all_rates[moving]
-
-    def shares(impedance: float, h: FloatArray) -> FloatArray:
-        regularized = moved @ moved.T + np.diag(_softening(diagonal, impedance))
-        steps = h if rates.any() else h[:1]  # without implicit damping all are alike
-        found = [_extremes(regularized, (moved / (1 + step * rates)) @ moved.T, impedance) for step in steps]
-        return np.broadcast_to(np.array(found), (len(h), 2))
-
-    return shares
+    if constraint.jacobian is None or constraint.diagonal is None:
+        return impedance, 1.0
+    basis, rates = plant.damping_modes
+    moved = constraint.jacobian @ basis
+    regularized = moved @ moved.T + np.diag(_softening(constraint.diagonal, impedance))
+    shares = np.linalg.eigvals(np.linalg.solve(regularized, (moved / (1 + h * rates)) @ moved.T)).real
+    moving = shares[shares > ROUNDING]  # a direction that moves nothing has no error either
+    return (float(moving.min()), float(moving.max())) if moving.size else (impedance, impedance)
 
 
 def _softening(diagonal: FloatArray, impedance: float) -> FloatArray:
@@ -416,14 +392,7 @@ def _softening(diagonal: FloatArray, impedance: float) -> FloatArray:
     return np.maximum(LEAST_SIZE, diagonal * (1 - impedance) / impedance)
 
 
-def _extremes(regularized: FloatArray, damped: FloatArray, impedance: float) -> tuple[float, float]:
-    """Return the least and the largest eigenvalue of A' (A + R)^-1 that belongs to a direction that moves."""
-    found = np.linalg.eigvals(np.linalg.solve(regularized, damped)).real
-    moving = found[found > ROUNDING]  # a direction that moves nothing has no error either
-    return (float(moving.min()), float(moving.max())) if moving.size else (impedance, impedance)
-
-
-def _constraint_advice(plant: _Plant, constraint: Constraint, shares: Shares, verdict: Verdict, z_abs: float) -> str:
+def _constraint_advice(plant: _Plant, constraint: Constraint, found: Linted) -> str:
     """Return what to write instead, and why; nothing where all is well."""
     first, second = constraint.solref
     least = 2 * plant.model.h
@@ -433,20 +402,22 @@ def _constraint_advice(plant: _Plant, constraint: Constraint, shares: Shares, ve
         return f'MuJoCo takes {taken}, as the signs differ: write solref="{taken}"'
     if constraint.positional and not first:
         return f'no stiffness: errors stay; write solref="{firm}"'
-    if verdict != "converges":
+    if found.verdict != "converges":
         return f'write solref="{firm}"'
     if plant.model.refsafe and 0 < first < least:
         return f'relies on refsafe, which raises its timeconst to 2h: write solref="{_numbers((least, second))}"'
-    return "" if constraint.kind in HARD else _softness(plant, constraint, shares, z_abs)
+    return "" if constraint.kind in HARD else _softness(plant, constraint, found)
 
 
-def _softness(plant: _Plant, constraint: Constraint, shares: Shares, z_abs: float) -> str:
+def _softness(plant: _Plant, constraint: Constraint, found: Linted) -> str:
     """Return whether a safe equality or limit is needlessly soft, and what would be firm."""
     if constraint.solimp[0] < LEAST_HOLD and constraint.solimp[2] > 0:
         return f"solimp leaves small errors alone: d = {constraint.solimp[0]:g} at the constraint itself"
     firm = (2 * plant.model.h, 1.0)
-    faster = _worst(plant.method, _constraint_points(plant, constraint, shares, firm))[2]
-    times = float(np.log(max(ROUNDING, faster)) / np.log(max(ROUNDING, z_abs)))
+    points = [point for point, _ in _constraint_points(plant, constraint, firm, AS_IT_IS)]
+    moduli = np.maximum(ROUNDING, [_Map(plant.method).moduli(points).max(), found.z_abs])
+    faster, now = np.log(moduli)
+    times = faster / now
     return f'needlessly soft: solref="{_numbers(firm)}" settles {times:.0f} times as fast' if times > SOFT else ""
 
 
@@ -486,26 +457,28 @@ class _Drive:
         """All of it."""
         return self.explicit_damping + self.implicit_damping
 
+    def judge(self, plant: _Plant) -> _Map:
+        """Return what the integrator is for it."""
+        return _Map(lookup("imex-euler") if self.implicit_damping and not self.explicit_damping else plant.method)
+
+    def point(self, h: Fraction) -> Point:
+        """Return its point at a step of h seconds."""
+        inertia = self.inertia
+        if self.explicit_damping:  # else the method itself has what is implicit
+            inertia += self.implicit_damping * h
+        return self.damping * h / inertia, self.stiffness * h**2 / inertia
+
 
 def _linted_drive(plant: _Plant, group: Sequence[Feedback]) -> Linted:
     drive = _drive(plant, group)
-    method = _drive_method(plant, drive)
-    point, verdict, z_abs = _worst(method, [_drive_point(plant, drive)])
-    end = _end_of(partial(_points, partial(_drive_point, plant, drive)), method)
     setting = f"kp {float(drive.stiffness):.6g}, kv {float(drive.damping):.6g}, inertia {float(drive.inertia):.6g}"
-    return Linted(
-        element=", ".join(dict.fromkeys(feedback.element for feedback in group)),
-        kind=_drive_kind(group, drive),
-        setting=setting,
-        judged=f"{setting} with all other joints free",
-        alpha_hat=float(point[0]),
-        beta_hat=float(point[1]),
-        map=method.name,
-        verdict=verdict,
-        z_abs=z_abs,
-        h_factor=end,
-        advice=_drive_advice(plant, drive, verdict, end),
-    )
+    element = ", ".join(dict.fromkeys(feedback.element for feedback in group))
+
+    def points_at(factor: Fraction) -> list[tuple[Point, str]]:
+        return [(drive.point(plant.h * factor), f"{setting} with all other joints free")]
+
+    found = _linted(element, _drive_kind(group, drive), setting, drive.judge(plant), points_at)
+    return replace(found, advice=_drive_advice(plant, drive, found))
 
 
 def _drive(plant: _Plant, group: Sequence[Feedback]) -> _Drive:
@@ -522,40 +495,25 @@ def _drive(plant: _Plant, group: Sequence[Feedback]) -> _Drive:
     return _Drive(exact(stiffness), exact(damping[False]), exact(damping[True]), plant.inertia_along(direction))
 
 
-def _drive_method(plant: _Plant, drive: _Drive) -> Method:
-    """Return the method that the integrator is for a drive."""
-    return lookup("imex-euler") if drive.implicit_damping and not drive.explicit_damping else plant.method
-
-
-def _drive_point(plant: _Plant, drive: _Drive, factor: Fraction = AS_IT_IS) -> Point:
-    """Return the point of a drive under that method, at a factor on the step."""
-    h = plant.h * factor
-    inertia = drive.inertia
-    if drive.explicit_damping:  # else the method itself has what is implicit
-        inertia += drive.implicit_damping * h
-    return drive.damping * h / inertia, drive.stiffness * h**2 / inertia
-
-
 def _drive_kind(group: Sequence[Feedback], drive: _Drive) -> str:
     if any(feedback.kind == "drive" for feedback in group):
         return "position drive" if drive.stiffness else "velocity drive"
     return f"{group[0].kind} {'spring' if drive.stiffness else 'damping'}"
 
 
-def _drive_advice(plant: _Plant, drive: _Drive, verdict: Verdict, end: float | None) -> str:
+def _drive_advice(plant: _Plant, drive: _Drive, found: Linted) -> str:
     """Return what to write instead where a drive is unsafe, and which gain uses up the limit of its map."""
     if drive.stiffness < 0 or drive.damping < 0:
         return "pushes away at any step: a gain has the wrong sign"
     if not drive.damping:
-        return "undamped" if verdict != "diverges" else f"undamped; {_smaller_step(plant, end)}"
-    if verdict == "converges":
+        return "undamped" if found.verdict != "diverges" else f"undamped; {_smaller_step(plant, found.h_factor)}"
+    if found.verdict == "converges":
         return ""
     used = _used_up(plant, drive)
     all_implicit = replace(drive, explicit_damping=Fraction(0), implicit_damping=drive.damping)
-    safe_then = _verdict(_drive_method(plant, all_implicit), _drive_point(plant, all_implicit)) == "converges"
-    if drive.explicit_damping and safe_then:
+    if drive.explicit_damping and all_implicit.judge(plant).verdict(all_implicit.point(plant.h)) == "converges":
         return f'{used}write integrator="implicitfast"'
-    return f"{used}{_smaller_step(plant, end)}"
+    return f"{used}{_smaller_step(plant, found.h_factor)}"
 
 
 def _used_up(plant: _Plant, drive: _Drive) -> str:
@@ -574,37 +532,19 @@ def _smaller_step(plant: _Plant, end: float | None) -> str:
     return f'write timestep="{0.9 * end * plant.model.h:.2g}"'
 
 
-# Motors whose control comes from outside
-
-
 def _linted_motor(plant: _Plant, controlled: Controlled) -> Linted:
     """Judge a motor with its controller on the inertia along its direction: all other joints are free."""
     motor, timing = controlled.motor, controlled.timing
-    inertia = plant.inertia_along(motor.direction)
-    kp, kd = exact(motor.gain) * controlled.kp, exact(motor.gain) * controlled.kd
-    drive, name = Drive(kp, kd, inertia), plant.method.name
-    point = drive.point(plant.h)
+    gain = exact(motor.gain)
+    drive = Drive(gain * controlled.kp, gain * controlled.kd, plant.inertia_along(motor.direction))
+    setting = f"kp {float(drive.kp):.6g}, kd {float(drive.kd):.6g}, every {timing.every}, late {float(timing.late):g}"
 
-    def unstable(factors: FloatArray) -> BoolArray:
-        steps = (exact(plant.model.h * factor) for factor in factors.tolist())
-        return np.array([held_spectral_radius(name, *drive.point(h), timing) >= 1 for h in steps])
+    def points_at(factor: Fraction) -> list[tuple[Point, str]]:
+        reason = f"{setting} on inertia {float(drive.inertia):.6g} with all other joints free"
+        return [(drive.point(plant.h * factor), reason)]
 
-    verdict = held_verdict(name, *point, timing)
-    end = _h_factor(unstable)
-    setting = f"kp {float(kp):.6g}, kd {float(kd):.6g}, every {timing.every}, late {float(timing.late):g}"
-    return Linted(
-        element=motor.element,
-        kind="motor",
-        setting=setting,
-        judged=f"{setting} on inertia {float(inertia):.6g} with all other joints free",
-        alpha_hat=float(point[0]),
-        beta_hat=float(point[1]),
-        map=name,
-        verdict=verdict,
-        z_abs=held_spectral_radius(name, *point, timing),
-        h_factor=end,
-        advice="" if verdict == "converges" else _smaller_step(plant, end),
-    )
+    found = _linted(motor.element, "motor", setting, _Map(plant.method, timing), points_at)
+    return found if found.verdict == "converges" else replace(found, advice=_smaller_step(plant, found.h_factor))
 
 
 # All together

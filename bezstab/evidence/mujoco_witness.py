@@ -12,7 +12,7 @@ from typing import Literal
 import numpy as np
 
 from bezstab.errors import InputError
-from bezstab.evidence.mujoco_models import MOST_IMPEDANCE, mujoco_module
+from bezstab.evidence.mujoco_models import MOST_IMPEDANCE, mujoco_module, silent
 from bezstab.mechanism import GROUND, Body, Mechanism, Revolute, Scene, constraint_errors, perturbed_state
 from bezstab.methods import Method, lookup
 from bezstab.stability import BoolArray, FloatArray, first_where, region, spectral_radius
@@ -186,11 +186,8 @@ def _run(mujoco: types.ModuleType, model: object, mechanism: Mechanism) -> Float
     data = mujoco.MjData(model)
     data.qpos[:], data.qvel[:] = perturbed_state(mechanism, KICK)
     c: list[float] = []
-    mujoco.set_mju_user_warning(lambda _: None)  # it would print, and write a file, where a run diverges
-    try:
+    with silent(mujoco):  # it would print, and write a file, where a run diverges
         while len(c) < RUN and (not c or c[-1] < GROWN_TO):
             mujoco.mj_step(model, data)
             c.append(float(np.abs(constraint_errors(mechanism, 0.0, list(data.qpos))).max()))
-    finally:
-        mujoco.set_mju_user_warning(None)
     return np.array(c)

@@ -150,7 +150,7 @@ def _visible_poles(chosen: "_Sum", richer: "Sequence[_Sum]") -> tuple[NoisyPole,
     """
     found = []
     for z, error, visible in zip(chosen.z, chosen.errors(), chosen.visible(), strict=True):
-        if visible < VISIBLE:
+        if visible < VISIBLE or z.imag < 0:
             continue
         shifts = [float(np.abs(other.z - z).min()) for other in richer]
         # By Cornish and Fisher's expansion as many of the errors of fewer samples are less.
@@ -161,37 +161,30 @@ def _visible_poles(chosen: "_Sum", richer: "Sequence[_Sum]") -> tuple[NoisyPole,
 
 @dataclass(frozen=True)
 class _Sum:
-    """A sum of powers of the poles z, those of the closed upper half plane, and what it leaves over of a stretch.
+    """A sum of powers of the poles z, conjugates too, and what it leaves over of a stretch, (samples, responses).
 
-    `slopes` (samples * responses, 2 poles) are those of what is left over by ln|z| and by the angle of each pole, the
-    amplitudes eliminated; those by the angle of a real pole are zero. `explained` (poles, samples, responses) is what
-    each explains.
+    `slopes` (samples * responses, poles) are those of what is left over by ln z of each pole, the amplitudes
+    eliminated. `explained` (poles, samples, responses) is what each explains; of a pair the sum is real.
     """
 
     z: ComplexArray
     left_over: FloatArray
-    slopes: FloatArray
-    explained: FloatArray
+    slopes: ComplexArray
+    explained: ComplexArray
 
     @classmethod
     def fitted(cls, samples: FloatArray, z: ComplexArray) -> "_Sum":
-        """Return the sum that leaves least over, of as many poles as nearly fit."""
-        current = cls.of(samples, z)
+        """Return the sum that leaves least over, of as many poles as nearly fit, by Gauss and Newton's method."""
+        best = cls.of(samples, z)
         for _ in range(ITERATIONS):
-            change = -np.linalg.lstsq(current.slopes, current.left_over.ravel(), rcond=None)[0]
-            share = 1.0
-            while share >= NEGLIGIBLE:
-                following = cls.of(samples, _moved(current.z, np.asarray(share * change).reshape(-1, 2)))
-                if following.squares < current.squares:
-                    break
-                share /= 4
-            else:
+            change = -np.linalg.lstsq(best.slopes, best.left_over.ravel(), rcond=None)[0]
+            following = cls.of(samples, _moved(best.z, np.asarray(change)))
+            gained = best.squares - following.squares
+            if gained > 0:
+                best = following
+            if not gained > NEGLIGIBLE**2 * best.squares / max(best.freedom, 1):
                 break
-            gained = current.squares - following.squares
-            current = following
-            if gained < NEGLIGIBLE**2 * current.squares / max(current.freedom, 1):
-                break
-        return current
+        return best
 
     @classmethod
     def of(cls, samples: FloatArray, z: ComplexArray) -> "_Sum":
@@ -199,16 +192,11 @@ class _Sum:
         k = np.arange(len(samples))[:, np.newaxis]
         growth = (len(samples) - 1) * np.maximum(np.log(np.abs(z)), 0.0)  # so that what grows ends at one
         powers = np.exp(k * np.log(z) - growth)
-        imaginary = np.where(z.imag != 0, powers.imag, 0.0)
-        columns = np.stack([powers.real, imaginary], axis=-1)
-        turned = np.stack([-imaginary, powers.real], axis=-1)  # by the angle of a pole: Re z^k becomes -Im z^k
-        basis = columns.reshape(len(samples), 2 * len(z))
-        inverse = np.linalg.pinv(basis, rcond=EPS * len(samples))
-        amplitudes = (inverse @ samples).reshape(len(z), 2, samples.shape[1])
-        explained, by_angle = (np.einsum("kpi,pir->pkr", each, amplitudes) for each in (columns, turned))
-        slopes = -k * np.stack([explained, by_angle], axis=1).reshape(2 * len(z), *samples.shape)
-        slopes = slopes - basis @ (inverse @ slopes)
-        return cls(z, samples - explained.sum(axis=0), slopes.reshape(2 * len(z), samples.size).T, explained)
+        inverse = np.linalg.pinv(powers, rcond=EPS * len(samples))
+        explained = powers.T[:, :, np.newaxis] * (inverse @ samples)[:, np.newaxis, :]
+        slopes = -k * explained
+        slopes = slopes - powers @ (inverse @ slopes)
+        return cls(z, (samples - explained.sum(axis=0)).real, slopes.reshape(len(z), samples.size).T, explained)
 
     @property
     def squares(self) -> float:
@@ -218,9 +206,7 @@ class _Sum:
     @property
     def unknowns(self) -> int:
         """Of poles and of their amplitudes in each response."""
-        of_poles = len(self.z) + int(np.count_nonzero(self.z.imag))
-        responses = self.left_over.shape[1]
-        return of_poles + of_poles * int(responses)
+        return len(self.z) * (1 + int(self.left_over.shape[1]))
 
     @property
     def freedom(self) -> int:
@@ -244,12 +230,13 @@ class _Sum:
 
     def errors(self) -> FloatArray:
         """Return the standard error of each pole in the plane, of a pair that of both parts together."""
-        of_unknowns = np.sum(np.linalg.pinv(self.slopes) ** 2, axis=1)
-        return np.asarray(np.abs(self.z) * self.deviation * np.sqrt(of_unknowns.reshape(-1, 2).sum(axis=1)))
+        of_noise = np.linalg.norm(np.linalg.pinv(self.slopes), axis=1)
+        return np.asarray(np.abs(self.z) * self.deviation * of_noise)
 
     def visible(self) -> NDArray[np.intp]:
-        """Return in how many samples each pole explains more than the noise."""
-        return np.asarray((np.abs(self.explained) > self.deviation).any(axis=2).sum(axis=1))
+        """Return in how many samples each pole, a pair together, explains more than the noise."""
+        both = np.where(self.z.imag == 0, 1, 2)[:, np.newaxis, np.newaxis] * np.abs(self.explained.real)
+        return np.asarray((both > self.deviation).any(axis=2).sum(axis=1))
 
 
 def _signal_vectors(samples: FloatArray) -> FloatArray:
@@ -260,19 +247,16 @@ def _signal_vectors(samples: FloatArray) -> FloatArray:
 
 
 def _shifting_poles(vectors: FloatArray) -> ComplexArray:
-    """Return poles of the closed upper half plane that nearly fit: they multiply sums of powers shifted by a row."""
+    """Return poles that nearly fit: they multiply sums of powers shifted by a row."""
     z = np.linalg.eigvals(np.linalg.lstsq(vectors[:-1], vectors[1:], rcond=None)[0])
-    z = np.where(np.abs(z) < NEGLIGIBLE, NEGLIGIBLE, z)
-    return np.asarray(z[z.imag >= 0], complex)
+    return np.asarray(np.where(np.abs(z) < NEGLIGIBLE, NEGLIGIBLE, z), complex)
 
 
-def _moved(z: ComplexArray, change: FloatArray) -> ComplexArray:
-    """Return poles whose ln|z| and angle are changed, (poles, 2), in the upper half plane; those that are real stay."""
-    by_log, by_angle = np.clip(change, -1, 1).T
-    moved = z * np.exp(by_log + 1j * by_angle)
-    above = moved.real + 1j * np.maximum(np.abs(moved.imag), 1e-12 * np.abs(moved))
-    kept = np.where(z.imag != 0, above, moved.real)
-    return np.asarray(np.where(np.abs(kept) < NEGLIGIBLE, NEGLIGIBLE * kept / np.abs(kept), kept))
+def _moved(z: ComplexArray, change: ComplexArray | FloatArray) -> ComplexArray:
+    """Return poles whose ln z is changed, by one at most; those that are real stay real, none comes to zero."""
+    change = np.where(z.imag == 0, change.real, change / np.maximum(1, np.abs(change)))
+    moved = z * np.exp(np.clip(change.real, -1, 1) + 1j * change.imag)
+    return np.asarray(moved * np.maximum(1, NEGLIGIBLE / np.abs(moved)))
 
 
 def _is_white(fitted: _Sum) -> bool:

@@ -24,30 +24,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bezstab.evidence.floquet import (
-    Revolution,
-    at_points,
-    batches,
-    columns_of,
-    gains_on,
-    rates_on_the_motion,
-    revolution,
-)
-from bezstab.evidence.linearized_steps import (
-    ITERATIONS,
-    SOLVED,
-    Course,
-    Values,
-    course_of_steps,
-    handed_on,
-    linearized_step,
-    on_the_motion,
-    take_steps,
-)
-from bezstab.mechanism import Mechanism
-from bezstab.methods import Method, Quantity
+from bezstab.evidence.floquet import Course, Revolution, course_of_steps, rates_on_the_motion, revolution
+from bezstab.mechanism import Mechanism, changes_handed_on
+from bezstab.methods import Method
 from bezstab.stability import BoolArray, FloatArray
 
+ITERATIONS = 12  # of Newton's method: each squares the error, more only find nothing
+SOLVED = 1e-8  # m, rad: the last correction of a motion's start; the next would be about its square
 AMPLIFIED = 1e8  # in a revolution: more leaves solving no digits
 BESIDE = 1.0  # m, rad, from the motion of the mechanism: weak feedback drifts by 0.3, other closures lie further off
 
@@ -83,11 +66,11 @@ def find_own_motions(
     InputError and NumericalError as `regular_motion`.
     """
     course = course_of_steps(mechanism, method, h, duration)
-    gains = gains_on(course, method, alpha_hat, beta_hat)
+    gains = course.gains(alpha_hat, beta_hat)
     rates = np.full(alpha_hat.size, np.nan)
     states = np.full((course.steps, alpha_hat.size, 2 * mechanism.size), np.nan)
     if course.along.closed:
-        for some in batches(course, rates.size):
+        for some in course.batches(rates.size):
             rates[some], states[:, some] = _rates_and_states(course, gains[:, some])
     lost = np.isnan(rates)
     if lost.any():
@@ -99,48 +82,45 @@ def _rates_and_states(course: Course, gains: FloatArray) -> tuple[FloatArray, Fl
     """Return rates and states of points with these gains, shape (2, points); no numbers where there is no motion."""
     rates = np.full(gains.shape[1], np.nan)
     states = np.full((course.steps, rates.size, 2 * course.mechanism.size), np.nan)
-    along = on_the_motion(course)
-    motions = at_points(along, rates.size)
-    start = np.concatenate([value[0] for value in along.values()])
+    along = course.starts()
+    starts = np.repeat(along[:, np.newaxis], rates.size, axis=1)
     left = np.arange(rates.size)
     for _ in range(ITERATIONS):
+        taken = course.taken(gains[:, left], starts)
         with np.errstate(all="ignore"):  # of what runs into infinity; what is not a number is not less
-            values, answers = take_steps(course, gains[:, left], motions)
-            next_starts = _next_starts(course, motions)
-            missing = {name: value - next_starts[name] for name, value in handed_on(course, values).items()}
-            around = revolution(course, answers, missing)
-            correction = _correction(around)
-            begins = np.concatenate([value[0] for value in motions.values()], axis=1)
-            beside = np.abs(begins + correction - start).max(axis=1) < BESIDE
-            closed = beside & (np.abs(correction).max(axis=1) < SOLVED)
-        rates[left[closed]] = around.at(closed).rates()
-        states[:, left[closed]] = _states(course, values)[:, closed]
+            missing = taken.handed_on - _next_starts(course, starts)
+            around = revolution(course, taken.jacobians, missing)
+            correction = _correction(around).reshape(starts[0].shape)
+            beside = np.abs(starts[0] + correction - along[0]).max(axis=(1, 2)) < BESIDE
+            closed = beside & (np.abs(correction).max(axis=(1, 2)) < SOLVED)
+        rates[left[closed]] = Revolution(*(each[closed] for each in around)).rates(course.steps)
+        states[:, left[closed]] = _states_as_steps_begin(course, taken.states)[:, closed]
         going_on = beside & ~closed
         left = left[going_on]
         if not left.size:
             break
-        motions, missing = ({name: value[:, going_on] for name, value in each.items()} for each in (motions, missing))
-        answers = [answer[:, going_on] for answer in answers]
-        motions = _corrected(course, motions, answers, missing, correction[going_on])
+        starts, change = starts[:, going_on], correction[going_on, ..., np.newaxis]
+        for k in range(course.steps):
+            starts[k] += change[..., 0]
+            change = changes_handed_on(course.method, taken.jacobians[k, going_on], change)
+            change += missing[k, going_on, ..., np.newaxis]
     return rates, states
 
 
-def _states(course: Course, values: Values) -> FloatArray:
-    """Return q and v as steps begin, from what is known after each of them; before the first it is a turn earlier."""
-    x, v = (values[Quantity(name, 1)] for name in ("x", "v"))
-    states = np.roll(np.concatenate([x, v / course.step], axis=2), 1, axis=0)
-    states[0, :, : course.mechanism.size] -= course.along.q[-1] - course.along.q[0]
-    return states
+def _states_as_steps_begin(course: Course, states: FloatArray) -> FloatArray:
+    """Return q and v as steps begin, from those after each of them; before the first it is a turn earlier."""
+    before = np.roll(states, 1, axis=0)
+    before[0, :, 0] -= course.whole_turn
+    before[:, :, 1] /= course.step
+    return before.reshape(*before.shape[:2], -1)
 
 
-def _next_starts(course: Course, motions: Values) -> Values:
+def _next_starts(course: Course, starts: FloatArray) -> FloatArray:
     """Return what the next step of each starts with; after the last one the first, a whole turn later."""
-    whole_turn = course.along.q[-1] - course.along.q[0]
-    found: Values = {}
-    for (quantity, value), (by_position, _, _) in zip(motions.items(), course.memory.shares, strict=True):
-        found[quantity] = np.roll(value, -1, axis=0)
-        found[quantity][-1] += float(by_position) * whole_turn
-    return found
+    by_position = np.array([shares[0] for shares in course.memory.shares], float)
+    following = np.roll(starts, -1, axis=0)
+    following[-1] += np.multiply.outer(by_position, course.whole_turn)
+    return following
 
 
 def _correction(around: Revolution) -> FloatArray:
@@ -153,17 +133,3 @@ def _correction(around: Revolution) -> FloatArray:
     correction[usable] = np.linalg.solve(closing[usable], around.end[usable, :, np.newaxis])[:, :, 0]
     correction[amplified * np.abs(correction).max(axis=1) >= BESIDE] = np.nan
     return correction
-
-
-def _corrected(
-    course: Course, motions: Values, answers: list[FloatArray], missing: Values, correction: FloatArray
-) -> Values:
-    """Return what steps start with after the changes d_k that a correction d_0, shape (points, rows), goes on to."""
-    changes = columns_of(course, correction[:, :, np.newaxis])
-    corrected = {name: value.copy() for name, value in motions.items()}
-    for k in range(course.steps):
-        for name, change in changes.items():
-            corrected[name][k] += change[:, :, 0]
-        changes = linearized_step(course, [answer[k] for answer in answers], changes)
-        changes = {name: change + missing[name][k][:, :, np.newaxis] for name, change in changes.items()}
-    return corrected

@@ -142,33 +142,6 @@ class LikePoint:
         return f"LikePoint({self.method.name}: alpha_hat = {self.alpha_hat:.6g}, beta_hat = {self.beta_hat:.6g})"
 
 
-@dataclass(frozen=True, repr=False)
-class Probe:
-    """What a log says: the pole, and what was asked of it besides.
-
-    `likenesses` say how far each method's pole is from it at the point that was given, the nearest first; `points` are
-    those at which the methods that were named without a point have it. Either is empty if it was not asked for.
-    """
-
-    found: ProbedPole
-    likenesses: tuple[Likeness, ...]
-    points: tuple[LikePoint, ...]
-
-    def __repr__(self) -> str:
-        answers = f"{len(self.likenesses)} likenesses, {len(self.points)} points"
-        return f"Probe({self.found!r}, {answers})"
-
-    @property
-    def pole(self) -> complex | None:
-        """The dominant pole per row, None if none is claimed."""
-        return self.found.pole
-
-    @property
-    def fitting(self) -> tuple[str, ...]:
-        """The names of the methods that fit, the nearest first."""
-        return tuple(one.method.name for one in self.likenesses if one.fits)
-
-
 def probed_pole(c: ArrayLike, minus: ArrayLike | None = None, differenced: bool = False) -> ProbedPole:
     """Return the dominant pole in samples of an error at equal distances in time, dimensionless, per sample.
 
@@ -332,22 +305,8 @@ def _columns(c: ArrayLike, name: str) -> FloatArray:
 
 
 def _rounding(samples: FloatArray) -> float:
-    """Return the largest unit to which a column of samples is rounded: its last decimal, or steps of a quantiser."""
-    return max(max(decimal_place(column), _quantum(column)) for column in samples.T)
-
-
-def _quantum(column: FloatArray) -> float:
-    """Return the unit of which all samples are multiples, 0 unless some of them are the same."""
-    values = column[np.isfinite(column)]
-    levels = np.unique(np.append(np.abs(values), 0.0))
-    if len(levels) < 2 or len(np.unique(values)) >= len(values) - 1:
-        return 0.0
-    unit = float(np.diff(levels).min())
-    multiples = levels / unit
-    # Float64 resolves multiples up to 1e9 of a unit to a thousandth of it and far better.
-    if multiples.max() < 1e9 and np.abs(multiples - np.round(multiples)).max() < 1e-3:
-        return unit
-    return 0.0
+    """Return the value of the last decimal to which the samples are rounded, the largest of all columns."""
+    return max(decimal_place(column) for column in samples.T)
 
 
 def _linear_limits(samples: FloatArray) -> Sequence[float]:
@@ -485,11 +444,11 @@ def _motion_shift(
 def points_like(probed: ProbedPole, method: Method, between: int = 1) -> list[LikePoint]:
     """Return the points at which a method has the probed pole for its dominant one; `between` as in `likenesses`.
 
-    A complex pole is two real equations P(z; alpha_hat, beta_hat) = 0 for the two unknowns, and so are two real poles;
-    there may be several solutions, that nearest to what an exact integrator would have first, or none. Of z per row the
-    root per step of least angle is taken. InputError where the poles leave a curve of points: one real pole does, and
-    so do poles that belong to one mu. Newton's method, from places all over the method's region; NumericalError
-    as `region`.
+    A complex pole and its conjugate are two equations P(z; alpha_hat, beta_hat) = 0 for the two unknowns, and so are
+    two real poles; there may be several solutions, that nearest to what an exact integrator would have first, or none.
+    Of z per row the root per step of least angle is taken. InputError where the poles leave a curve of points: one real
+    pole does, and so do poles that belong to one mu. Newton's method, from places all over the method's region;
+    NumericalError as `region`.
     """
     if probed.pole is None or probed.uncertainty is None:
         return []
@@ -513,42 +472,44 @@ def _solutions(method: Method, z: ComplexArray, error: float) -> tuple[list[Like
     And whether there is a curve of such points, instead.
     """
     table = np.array(closed_loop_table(method), float)  # by powers of z, alpha_hat and beta_hat
-    equations = _equations(table, z)
-    points = _starting_points(method, z)
-    with np.errstate(all="ignore"):  # what leaves the range is left out below
-        for _ in range(ITERATIONS):
-            points = points - _newton_step(equations, points)
-        last = np.abs(_newton_step(equations, points)).max(axis=1)
-        residual = np.abs([polyval2d(points[:, 0], points[:, 1], equation) for equation in equations]).max(axis=0)
-    scale = np.abs(equations).max()
+    equations = np.moveaxis(np.tensordot(z[:, np.newaxis] ** np.arange(len(table)), table, axes=1), 0, -1)
     largest = abs(z[0]) + 10 * error + SAME  # of a point at which the first z is the dominant pole
     singular = False
     found: list[LikePoint] = []
-    for a, b in points[(last < SAME * (1 + np.abs(points).max(axis=1))) | (residual < SAME**2 * scale)].tolist():
-        jacobian = _jacobian(equations, np.array([[a, b]]))[:, :, 0]
-        if np.linalg.cond(jacobian) > 1 / SAME:
-            # Where one mu, a real one, has both z, so has the whole straight line of that mu, and Newton's method ends
-            # anywhere on it. If z is the dominant pole on some of it, then where the other mu is the same.
-            mu = np.roots([1, a, b])
-            mu = mu[mu.imag == 0].real
-            singular |= bool((spectral_radius(method, -2 * mu, mu**2) < largest).any())
+    for start in _starting_points(method, z):
+        point, slopes = _newton(equations, start)
+        a, b = point.tolist()
+        if np.isnan(a) or spectral_radius(method, a, b) > largest:
             continue
-        known = any(abs(a - one.alpha_hat) + abs(b - one.beta_hat) < SAME * (1 + abs(a) + abs(b)) for one in found)
-        if known or spectral_radius(method, a, b) > largest:
-            continue
-        slopes = np.abs([polyval3d(pole, a, b, polyder(table)) for pole in z])  # by each pole, which may be off
-        found.append(LikePoint(method, a, b, *(np.abs(np.linalg.inv(jacobian)) @ (slopes * error)).tolist()))
+        if np.linalg.cond(slopes) > 1 / SAME:  # where one mu, a real one, has both z, so has all its straight line
+            singular = True
+        elif not any(abs(a - one.alpha_hat) + abs(b - one.beta_hat) < SAME * (1 + abs(a) + abs(b)) for one in found):
+            inverse = np.linalg.inv(slopes)
+            by_pole = np.abs([polyval3d(pole, a, b, polyder(table)) for pole in z])  # each may be off
+            errors = (np.abs(inverse.real) + np.abs(inverse.imag)) @ (by_pole * error)
+            found.append(LikePoint(method, a, b, *errors.tolist()))
     return found, singular
 
 
-def _equations(table: FloatArray, z: ComplexArray) -> FloatArray:
-    """Return two real polynomials in alpha_hat and beta_hat, shape (2, powers, powers), that vanish with P at both z.
+def _newton(equations: ComplexArray, point: FloatArray) -> tuple[FloatArray, ComplexArray]:
+    """Return the point, (2,), where two equations hold, and their slopes there, (2, 2); nan where it does not settle.
 
-    Of a conjugate pair these are real and imaginary part of P(z), of two real poles P at each.
+    `equations` are polynomials in alpha_hat and beta_hat, shape (powers, powers, 2). Along a curve of points the slopes
+    are singular: there the least change is taken.
     """
-    of_each = np.tensordot(z[:, np.newaxis] ** np.arange(len(table)), table, axes=1)
-    second = of_each[0].imag if z[0].imag else of_each[1].real
-    return np.stack([of_each[0].real, second])
+    for _ in range(ITERATIONS):
+        a, b = point.tolist()
+        with np.errstate(all="ignore"):  # what leaves the range is left out
+            values = np.asarray(polyval2d(a, b, equations))
+            by_each = [polyval2d(a, b, polyder(equations, axis=axis)) for axis in range(2)]
+        slopes = np.stack(by_each, axis=1)
+        if not (np.isfinite(values).all() and np.isfinite(slopes).all()):
+            break
+        change = (np.linalg.pinv(slopes, rcond=SAME) @ values).real
+        point = point - change
+        if np.abs(change).max() < SAME * (1 + np.abs(point).max()):
+            return point, slopes
+    return np.full(2, np.nan), slopes
 
 
 def _starting_points(method: Method, z: ComplexArray) -> FloatArray:
@@ -565,22 +526,3 @@ def _exact_integrators_point(z: ComplexArray) -> tuple[float, float]:
     with np.errstate(divide="ignore"):  # a pole at zero is that of no such integrator
         mu = np.log(z)
     return -float(mu.sum().real), float(mu.prod().real)
-
-
-def _newton_step(equations: FloatArray, points: FloatArray) -> FloatArray:
-    """Return Newton's change of each of a row of points, shape (points, 2); not finite where there is none."""
-    first, second = (polyval2d(points[:, 0], points[:, 1], equation) for equation in equations)
-    (by_alpha, by_beta), (second_by_alpha, second_by_beta) = _jacobian(equations, points)
-    changes = [first * second_by_beta - second * by_beta, second * by_alpha - first * second_by_alpha]
-    determinant = by_alpha * second_by_beta - by_beta * second_by_alpha
-    return np.stack(changes / determinant, axis=1)
-
-
-def _jacobian(equations: FloatArray, points: FloatArray) -> FloatArray:
-    """Return the derivatives of both equations by alpha_hat and beta_hat, shape (2, 2, points)."""
-    return np.array(
-        [
-            [polyval2d(points[:, 0], points[:, 1], polyder(equation, axis=axis)) for axis in range(2)]
-            for equation in equations
-        ]
-    )

@@ -9,7 +9,7 @@ import numpy as np
 
 from bezstab.evidence.accuracy_costs import Run
 from bezstab.evidence.forced_runs import HOLDS
-from bezstab.methods import STEP_FAMILIES, Method, accuracy, evaluations, implicit, leading_error, steps
+from bezstab.methods import Method, accuracy, evaluations, implicit, is_bezier, leading_error, steps
 from bezstab.stability import critical_damping_limit, region
 
 Held = Literal["own choice", "alpha and beta", "alpha_hat and beta_hat", "no feedback"]
@@ -111,8 +111,7 @@ def sweep_sentences(runs: Sequence[Run], tolerance: float, held: Held) -> list[s
 
 
 def _is_bezier(method: Method) -> bool:
-    own = method.family is not None and method.family.name == STEP_FAMILIES["bezier"].name
-    return own and method.step_multiple == 1
+    return is_bezier(method.scheme) and method.step_multiple == 1
 
 
 def _cheapest_sentence(runs: Sequence[Run], tolerance: float) -> str:

@@ -120,8 +120,7 @@ def map_rows(scene: Scene, method: Method, h: float, count: int) -> list[MapRows
     They are compiled where that is asked for or pays. InputError where it is asked for and numba is missing;
     NumericalError as `region`.
     """
-    mechanism = compiled_mechanism(scene)
-    compiled = runs_compiled(mechanism, method, 2 * count**2 * MAP_RUN * evaluations(method), together=True)
+    compiled = runs_compiled(2 * count**2 * MAP_RUN * evaluations(method), together=True)
     centres = (np.arange(count) + 0.5) / count
     alpha_hat, beta_hat = (low + (high - low) * centres for low, high in useful_window(region(method)))
     rows_at_once = max(1, BATCH // count)
@@ -142,12 +141,10 @@ def simulated_verdicts(rows: MapRows) -> dict[str, BoolArray]:
     mechanism, method, h = compiled_mechanism(rows.scene), rows.method, rows.h
     masses = np.array(mechanism.equations.mass, float)
     calm = nothing_happens_without_feedback(mechanism, method, h)
-    diverges, undecided = np.zeros((2, alpha_hat.size), bool)
     with np.errstate(all="ignore"):  # what diverges runs into infinity, and is cut off there
-        groups = kicked_motions(mechanism, method, h, alpha_hat, beta_hat, [MAP_KICK], MAP_RUN, rows.compiled)
-        for some, blocks in groups:
-            followed = follow(blocks, masses, MAP_KICK, MAP_RUN)
-            diverges[some], undecided[some] = fates(followed, thrown_apart_is_growth=calm)
+        blocks = kicked_motions(mechanism, method, h, alpha_hat, beta_hat, [MAP_KICK], MAP_RUN, rows.compiled)
+        followed = follow(blocks, masses, MAP_KICK, MAP_RUN)
+        diverges, undecided = fates(followed, thrown_apart_is_growth=calm)
     shape = (rows.beta_hat.size, rows.alpha_hat.size)
     return {"diverges": diverges.reshape(shape), "undecided": undecided.reshape(shape)}
 

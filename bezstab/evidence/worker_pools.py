@@ -1,4 +1,4 @@
-"""Who does the work: processes of this machine, one each for a chunk, or the workers of a Dask cluster."""
+"""Who does the work: processes of this machine, or the workers of a Dask cluster."""
 
 import multiprocessing
 import os
@@ -9,6 +9,7 @@ from concurrent.futures import Executor, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import partial
 from multiprocessing.resource_tracker import ensure_running
 
 from bezstab.compiling import cores
@@ -21,10 +22,9 @@ PATIENCE = 10
 
 @dataclass(frozen=True)
 class WorkerPool:
-    """So many executors made by `start`, each with one chunk at a time, and what it raises when its worker is lost."""
+    """How an executor of all workers is started, and what it raises when a worker is lost."""
 
     start: Callable[[], Executor]
-    count: int
     lost: type[Exception]
 
 
@@ -45,7 +45,7 @@ def worker_pool(count: int | None = None, scheduler: str | None = None) -> Itera
 
         with if_stopped(end_processes):
             try:
-                yield WorkerPool(start=_one_process, count=count or cores(), lost=BrokenProcessPool)
+                yield WorkerPool(start=partial(_processes, count or cores()), lost=BrokenProcessPool)
             finally:
                 end_processes()
         return
@@ -58,8 +58,7 @@ def worker_pool(count: int | None = None, scheduler: str | None = None) -> Itera
     except (OSError, ValueError) as error:
         raise InputError(f"--scheduler {scheduler}: {error}") from None
     with client:
-        threads = sum(client.nthreads().values())
-        yield WorkerPool(start=client.get_executor, count=threads or 1, lost=KilledWorker)
+        yield WorkerPool(start=client.get_executor, lost=KilledWorker)
 
 
 def _start_helper() -> None:
@@ -72,10 +71,10 @@ def _start_helper() -> None:
         ensure_running()
 
 
-def _one_process() -> Executor:
-    """Return an executor of one process: of several, the loss of one would cost the chunks of all."""
-    spawn = multiprocessing.get_context("spawn")  # a fork while other executors' threads run may never wake up
-    return ProcessPoolExecutor(1, mp_context=spawn, initializer=_begin_work)
+def _processes(count: int) -> Executor:
+    """Return an executor of so many processes."""
+    spawn = multiprocessing.get_context("spawn")  # a fork while an executor's threads run may never wake up
+    return ProcessPoolExecutor(count, mp_context=spawn, initializer=_begin_work)
 
 
 def _begin_work() -> None:

@@ -11,7 +11,7 @@ from bezstab.mechanism.constraint_motions import ConstraintMotion, along_normals
 from bezstab.mechanism.constraint_normals import TurningNormals, turned_across, turning_normals
 from bezstab.mechanism.energies import energy_balance
 from bezstab.mechanism.equations import Equations, T, equations_of_motion
-from bezstab.mechanism.linearized import linearized_acceleration
+from bezstab.mechanism.linearized import StepsTaken, changes_handed_on, steps_taken
 from bezstab.mechanism.motions import Motion, motion, motion_over, regular_motion, revolution_period
 from bezstab.mechanism.observation import Observation, observe, singular_passages
 from bezstab.mechanism.runner import (
@@ -21,14 +21,12 @@ from bezstab.mechanism.runner import (
     Trajectory,
     march,
     resume,
-    resume_in_groups,
     simulate,
     states_needed,
 )
 from bezstab.mechanism.scene_files import load_scene, parse_scene, read_scene, shipped_scenes
 from bezstab.mechanism.scenes import COORDINATES, GROUND, Body, Driver, Force, Revolute, Scene, at_speed
 from bezstab.mechanism.second_order_memory import Memory, check_after_step, memory
-from bezstab.mechanism.second_order_turns import Assigned, Found, turn
 from bezstab.mechanism.simulation import MOST_STEPS, Simulation, simulated
 from bezstab.mechanism.start import constraint_errors, constraint_jacobian, initial_state, perturbed_state
 from bezstab.mechanism.varying_runs import simulated_with_steps

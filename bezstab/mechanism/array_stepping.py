@@ -1,116 +1,44 @@
-"""How Python reads the loop of `stepping`: with the floats of one run, or with arrays over many."""
+"""How Python reads the loop of `stepping`: with numpy's arrays, in which all runs are taken at once."""
 
+import cmath
 import math
 from collections.abc import Callable
-from functools import cache
-from itertools import chain
 from typing import Any
 
 import numpy as np
 
 from bezstab.linear_equations import inverses
-from bezstab.mechanism.compiled import Mechanism, StateFunction, state_function
-from bezstab.mechanism.generated_code import CODES
-from bezstab.mechanism.registers import BoolArray, FloatArray, Room, Rows, Steps, in_lists
+from bezstab.mechanism.compiled import IMAGINARY_STEP, Mechanism, StateFunction, state_function
+from bezstab.mechanism.registers import BoolArray, FloatArray, Room, Rows, Steps
 from bezstab.mechanism.stepping import TakeSteps, read
 
-# One run: lists of floats
 
-
-@cache
-def float_steps(mechanism: Mechanism, names: tuple[str, ...]) -> TakeSteps:
-    """Return the function that takes the steps of one run, with these functions of a state; its room is `in_lists`."""
+def array_steps(mechanism: Mechanism, lanes: int) -> TakeSteps:
+    """Return the function that takes the steps of so many runs together."""
     n = mechanism.size
 
-    def writing(name: str) -> Callable[..., float]:
-        function, rows = _on_floats(mechanism, name), len(CODES[name](mechanism.equations).given)
-
-        def write(t: float, gains: Any, state: Any, found: Any, *_others: Any) -> float:
-            (two_alpha,), (beta_squared,) = gains
-            *found[:], pivot = function(t, two_alpha, beta_squared, *state[:rows])
-            return float(pivot)
-
-        return write
-
-    def copy(source: list[float], into: list[float]) -> None:
-        into[:] = source
-
-    def add_sizes(values: list[float], sizes: list[float]) -> None:
-        sizes[0] += sum(map(abs, values))
-
-    def multiply(inverse: FloatArray, count: int, residuals: Any, products: Any) -> None:
+    def multiply(inverse: FloatArray, count: int, residuals: FloatArray, products: FloatArray) -> None:
         size = count * n
-        every_one = (inverse[:size, :size, 0] @ list(chain(*residuals[:count]))).tolist()
-        for number in range(count):
-            products[number][:] = every_one[number * n : (number + 1) * n]
+        right, left = (each[:count].reshape(size, lanes) for each in (residuals, products))
+        np.einsum("ijl,jl->il", inverse[:size, :size], right, out=left)
 
-    def invert(matrices: FloatArray, size: int, _lanes: Any, found: FloatArray) -> None:
-        found[:size, :size] = inverses(matrices[:size, :size])
+    own: dict[str, Any] = {"N": n, "STRIDE": lanes, "WIDTH": n * lanes, "every": every, "multiply": multiply}
+    own |= {"combine": combine, "scale": scale, "copy": copy, "invert": invert}
+    own |= _one_run(mechanism) if lanes == 1 else _many_runs(mechanism, lanes)
+    taken = read(own)
 
-    own: dict[str, Any] = {name: writing(name) for name in names} | {"N": n, "WIDTH": n}
-    take_steps = read(own | {"copy": copy, "add_sizes": add_sizes, "multiply": multiply, "invert": invert})
+    def take_steps(rows: Rows, steps: Steps, room: Room, states: FloatArray, told: FloatArray) -> None:
+        # Python reads numbers of lists faster than those of arrays
+        lists = {name: each.tolist() for name, each in rows._asdict().items() if name in QUICKLY}
+        listed: Any = {"times": list(steps.times), "lengths": steps.lengths.tolist()}
+        with np.errstate(all="ignore"):  # what runs into infinity is judged by its numbers
+            taken(rows._replace(**lists), steps._replace(**listed), room, states, told)
 
-    def take(
-        rows: Rows, steps: Steps, room: Room, judged: bool, states: FloatArray, pivots: FloatArray
-    ) -> tuple[int, float, float]:
-        states_in_lists: Any = [[[0.0] * n, [0.0] * n] for _ in steps.times]
-        taken = take_steps(in_lists(rows), in_lists(steps), room, judged, states_in_lists, pivots)
-        states[:] = states_in_lists
-        return taken
-
-    return take
+    return take_steps
 
 
-def _on_floats(mechanism: Mechanism, name: str) -> StateFunction:
-    """Return a mechanism's function on floats. What Python refuses is infinite, or no number, as with arrays."""
-    of_floats = state_function(mechanism, name, math, judged=True)
-
-    def found(*given: Any) -> tuple[float, ...]:
-        try:
-            return of_floats(*given)
-        except (ArithmeticError, ValueError):
-            of_arrays = state_function(mechanism, name, np, judged=True)
-            return tuple(float(each) for each in of_arrays(*(np.array(each, np.float64) for each in given)))
-
-    return found
-
-
-# Many runs: at each place an array over them
-
-
-@cache
-def array_steps(mechanism: Mechanism, names: tuple[str, ...]) -> TakeSteps:
-    """Return the function that takes the steps of many runs, with these functions of a state."""
-
-    def writing(name: str) -> Callable[..., float]:
-        function, code = state_function(mechanism, name, np), CODES[name](mechanism.equations)
-
-        def write(t: float, gains: FloatArray, state: FloatArray, found: FloatArray, *_others: Any) -> float:
-            for place, each in enumerate(function(t, *gains, *state[: len(code.given)])):
-                found[place] = each
-            return 1.0
-
-        def write_some(t: float, gains: FloatArray, state: Any, found: Any, _variables: Any, lanes: BoolArray) -> float:
-            some = lanes[0]
-            # all runs have the same direction
-            for place, each in enumerate(function(t, *gains[:, some], *state[:2, ..., some], *state[2:, ..., :1])):
-                found[place, some] = each
-            return 1.0
-
-        return write_some if code.of_some_lanes else write
-
-    own: dict[str, Any] = {name: writing(name) for name in names}
-    own |= {"N": mechanism.size, "WIDTH": mechanism.size, "ALONE": False}
-    own |= {
-        function.__name__: function for function in (every, combine, copy, take, add_sizes, any_of, multiply, invert)
-    }
-    take_steps = read(own)
-
-    def taken(rows: Rows, steps: Steps, *others: Any) -> tuple[int, float, float]:
-        listed = in_lists(steps)._replace(gains=steps.gains)
-        return take_steps(in_lists(rows), listed, *others)
-
-    return taken
+QUICKLY = ("powers", "moments", "guesses", "groups", "moved_from", "moved_to", "state")
+"""Rows that are read number by number."""
 
 
 def every(_count: int) -> tuple[slice]:
@@ -118,10 +46,14 @@ def every(_count: int) -> tuple[slice]:
     return (slice(None),)
 
 
-def combine(rows: Rows, row: int, factor: float, registers: FloatArray, into: FloatArray) -> None:
-    """Write the sum of registers that a row of a program stands for, times a factor."""
-    columns = rows.table.shape[1]
-    np.dot(factor * rows.table[row], registers[:columns].reshape(columns, -1), out=into.reshape(-1))
+def combine(shares: FloatArray, registers: FloatArray, into: FloatArray) -> None:
+    """Write the sum of registers that a row of a program stands for."""
+    np.dot(shares, registers[: len(shares)], out=into)
+
+
+def scale(factor: float, source: FloatArray, into: FloatArray) -> None:
+    """Write a register times a factor."""
+    np.multiply(source, factor, out=into)
 
 
 def copy(source: FloatArray, into: FloatArray) -> None:
@@ -129,27 +61,71 @@ def copy(source: FloatArray, into: FloatArray) -> None:
     into[:] = source
 
 
-def take(lanes: BoolArray, source: FloatArray, into: FloatArray) -> None:
-    """Copy some lanes of a register."""
-    np.copyto(into, source, where=lanes)
-
-
-def add_sizes(values: FloatArray, sizes: FloatArray) -> None:
-    """Add to the size of each lane the sum of its absolute values in a register."""
-    sizes += np.add.reduce(np.abs(values), axis=0)
-
-
-def any_of(lane: BoolArray) -> bool:
-    """Return whether something is so in any of the runs."""
-    return bool(lane.any())
-
-
-def multiply(inverse: FloatArray, count: int, residuals: FloatArray, products: FloatArray) -> None:
-    """Write the products of each lane's matrix with the residuals of so many evaluations."""
-    together, size = residuals[:count].reshape(-1, residuals.shape[-1]), count * residuals.shape[1]
-    np.einsum("ijl,jl->il", inverse[:size, :size, 0], together, out=products[:count].reshape(together.shape))
-
-
 def invert(matrices: FloatArray, size: int, lanes: BoolArray, found: FloatArray) -> None:
     """Write the inverses of some lanes' matrices."""
-    found[:size, :size, 0, lanes[0]] = inverses(matrices[:size, :size, 0, lanes[0]])
+    found[:size, :size, lanes] = inverses(matrices[:size, :size, lanes])
+
+
+def _one_run(mechanism: Mechanism) -> dict[str, Callable[..., float]]:
+    """Return the functions of one lane: on floats, and on complex numbers for slopes."""
+
+    def writing(name: str) -> Callable[..., float]:
+        real, complex_ = _on_numbers(mechanism, name, math, True), _on_numbers(mechanism, name, cmath, False)
+
+        def write(t: float, gains: FloatArray, state: FloatArray, found: FloatArray, *_others: Any) -> float:
+            ((two_alpha,), (beta_squared,)), (q, v) = gains.tolist(), state.tolist()
+            if state.dtype == np.complex128:
+                found[:] = complex_(float(t), two_alpha, beta_squared, q, v)
+                return 1.0
+            *found[:], pivot = real(float(t), two_alpha, beta_squared, q, v)
+            return float(pivot)
+
+        return write
+
+    return {f"{name}_of": writing(name) for name in ("accelerations", "corrections")}
+
+
+def _on_numbers(mechanism: Mechanism, name: str, library: Any, judged: bool) -> StateFunction:
+    """Return a mechanism's function on numbers. What Python refuses is infinite, or no number, as with arrays."""
+    of_numbers, of_arrays = (state_function(mechanism, name, each, judged) for each in (library, np))
+
+    def found(*given: Any) -> tuple[Any, ...]:
+        try:
+            return of_numbers(*given)
+        except (ArithmeticError, ValueError):
+            return of_arrays(*map(np.array, given))
+
+    return found
+
+
+def _many_runs(mechanism: Mechanism, lanes: int) -> dict[str, Callable[..., Any]]:
+    """Return what takes all lanes at once: accelerations, slopes of some, and what tells lanes apart."""
+    function, of_lanes = state_function(mechanism, "accelerations", np), (2, mechanism.size, lanes)
+
+    def accelerations(t: Any, gains: FloatArray, room: Room) -> float:
+        into = room.found.reshape(of_lanes[1:])
+        for place, each in enumerate(function(t, *gains, *room.state.reshape(of_lanes))):
+            into[place] = each
+        return 1.0
+
+    def slope(t: Any, gains: FloatArray, direction: tuple[float, float], coordinate: int, room: Room) -> None:
+        some, into = room.poor, room.found.reshape(of_lanes[1:])
+        ahead = room.state.reshape(of_lanes)[..., some].astype(np.complex128)
+        ahead[:, coordinate] += 1j * IMAGINARY_STEP * np.array(direction)[:, np.newaxis]
+        for place, each in enumerate(function(np.broadcast_to(t, lanes)[some], *gains[:, some], *ahead)):
+            into[place, some] = each.imag / IMAGINARY_STEP
+
+    def take(chosen: BoolArray, source: FloatArray, into: FloatArray) -> None:
+        np.copyto(into.reshape(-1, lanes), source.reshape(-1, lanes), where=chosen)
+
+    def add_sizes(factor: float, values: FloatArray, sizes: FloatArray) -> None:
+        sizes += factor * np.abs(values).reshape(-1, lanes).sum(axis=0)
+
+    return {
+        "accelerations": accelerations,
+        "slope": slope,
+        "every_lane": every,
+        "take": take,
+        "add_sizes": add_sizes,
+        "any_of": np.any,
+    }

@@ -15,6 +15,9 @@ StateFunction = Callable[..., tuple[Any, ...]]
 The library of its sines says on what numbers it works: floats (math), arrays (numpy) or those of mpmath.
 """
 
+IMAGINARY_STEP = 1e-30
+"""By which a state is moved to find a slope: nothing is subtracted, so that the derivative is exact to rounding."""
+
 SINGULAR = 1e-12  # of a row's own size: a pivot of S = C_q M^-1 C_q^T this small has lost all digits to cancellation
 
 

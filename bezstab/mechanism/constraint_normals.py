@@ -19,13 +19,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from bezstab.mechanism.compiled import Mechanism
+from bezstab.mechanism.compiled import IMAGINARY_STEP, Mechanism
 from bezstab.mechanism.motions import STEPS, Motion, motion
 from bezstab.mechanism.start import geometry
 
 FloatArray = NDArray[np.float64]
 
-IMAGINARY_STEP = 1e-30  # nothing is subtracted: the derivative is exact to rounding
 SAMPLES = 400  # over a run, or a turn of the fastest driver, an even number: K turns a few times in one, so its
 # integrals are good to 1e-8
 

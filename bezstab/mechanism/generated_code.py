@@ -6,16 +6,16 @@ does with them is no text: `programs` and `stepping` have it. From its top to it
     compiled_source                        text becomes functions
     accelerations and multipliers          the assignments that solve paper Eq. 9
     corrections                            what brings a state back to its constraints, by the same factors
-    slopes of the acceleration             its derivatives along a direction of positions and velocities
     functions of a state                   all of these by name, each as a function of one state or of many
-    machine code                           the same for lanes side by side, and by shapes where they are long
+    machine code                           the same for a lane, and as single operations where they are long
 
 All of it is plain arithmetic on numbered variables, one assignment a line, with `sin`, `cos`, `sqrt` and `least` as the
 only functions. What they are is decided when the text is compiled, so one source
-serves three kinds of numbers:
+serves four kinds of numbers:
 
 - floats with `math`: a single run, without the overhead of arrays of four or five entries;
 - numpy arrays: a batch of runs, each variable one array over the batch, each line one operation on all of it;
+- complex numbers, or arrays of them: a state that is moved by a tiny imaginary step gives the slope in that direction;
 - mpmath numbers: references of as many digits as asked for.
 
 The names: q0, q1, ... coordinates, v0, ... their rates, a0, ... their accelerations, l0, ... multipliers; C1_2, the
@@ -23,12 +23,11 @@ entry of C_q in row 1 and column 2; two_alpha and beta_squared, the gains. The t
 and these names; least of all the names that a user gave to bodies.
 """
 
+import ast
 import math
-import re
-from collections.abc import Callable, Container, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import cache
-from itertools import groupby
 from typing import Any
 
 import numpy as np
@@ -40,8 +39,8 @@ from sympy.printing.pycode import PythonCodePrinter
 from bezstab.mechanism.equations import Equations, variable_names
 
 TAKE = """
-def take(rows, steps, room, judged, states, pivots):
- return take_steps(rows, steps, room, judged, states, pivots)
+def take(rows, steps, room, states, told):
+ take_steps(rows, steps, room, states, told)
 """
 """A function of the scene's own name in front of the loop that takes steps: what numba keeps on disk goes by it."""
 
@@ -89,16 +88,12 @@ def _least_of_arrays(*values: Any) -> Any:
 
 @dataclass(frozen=True)
 class StateCode:
-    """Assignments that compute the variables `results` from t, two_alpha, beta_squared and what is `given` of a state.
-
-    That is q_i and v_i, and for slopes dq_i and dv_i, the direction in which the state changes.
-    """
+    """Assignments that compute the variables `results` from t, two_alpha, beta_squared, q_i and v_i."""
 
     coordinates: int
     constraints: int
     lines: tuple[str, ...]
     results: tuple[str, ...]
-    given: tuple[str, ...] = ("q", "v")
 
     @property
     def pivots(self) -> list[str]:
@@ -109,11 +104,6 @@ class StateCode:
     def least_pivot(self) -> str:
         """The text of the least relative pivot, or 1 without any."""
         return f"least(1.0, {', '.join(self.pivots)})" if self.constraints else "1.0"
-
-    @property
-    def of_some_lanes(self) -> bool:
-        """Whether it is told, of many runs, for which to compute it: slopes, which cost most, are seldom needed."""
-        return len(self.given) > 2
 
 
 @cache
@@ -306,81 +296,21 @@ def correction_code(equations: Equations) -> StateCode:
     return StateCode(coordinates, constraints, tuple(lines), results)
 
 
-# Slopes of the acceleration
-#
-# Along a direction (dq, dv) of positions and velocities the differentials of Eq. 9 are
-#
-#     M dqddot + C_q^T dlambda = G,      G = dg - dC_q^T lambda
-#           C_q dqddot         = F,      F = dgamma - 2 alpha d(cdot) - beta^2 C_q dq - dC_q qddot
-#
-# hence S dlambda = C_q M^-1 G - F, dqddot = M^-1 (G - C_q^T dlambda): what takes r to l above takes this right side to
-# dlambda. A Jacobian is taken so, along one unknown after the other, or along all at once where directions are arrays.
-
-
-@cache
-def slope_code(equations: Equations) -> StateCode:
-    """Return the assignments to da, the change of a along dq and dv, after those to a."""
-    acceleration = acceleration_code(equations)
-    columns_of_row, inverse_masses = _columns_of_row(equations), _inverse_masses(equations)
-    coordinates, constraints = range(len(equations.q)), range(len(equations.constraints))
-    entries = _nonzero_differentials(equations)
-    lines = _entry_lines(entries)
-    for k in coordinates:
-        taken = [f"dC{i}_{k} * l{i}" for i in constraints if f"dC{i}_{k}" in entries]
-        lines.append(f"G{k} = {_difference_text(f'dg{k}', entries, taken)}")
-    for i, columns in enumerate(columns_of_row):
-        turning = [k for k in columns if f"dC{i}_{k}" in entries]
-        dcdot = [*(f"C{i}_{k} * dv{k}" for k in columns), *(f"dC{i}_{k} * v{k}" for k in turning)]
-        dcdot += [f"dct{i}"] if f"dct{i}" in entries else []
-        dc = [f"C{i}_{k} * dq{k}" for k in columns]
-        taken = [f"two_alpha * ({' + '.join(dcdot)})", f"beta_squared * ({' + '.join(dc)})"]
-        taken += [f"dC{i}_{k} * a{k}" for k in turning]
-        lines.append(f"F{i} = {_difference_text(f'dgamma{i}', entries, taken)}")
-        by_forces = [f"C{i}_{k} * {inverse_masses[k]} * G{k}" for k in columns]
-        lines.append(f"r{i} = {' + '.join(by_forces)} - F{i}")
-    lines += _substitution_lines(len(constraints), _nonzero_factors(columns_of_row))
-    for k in coordinates:
-        reactions = "".join(f" - C{i}_{k} * l{i}" for i, columns in enumerate(columns_of_row) if k in columns)
-        lines.append(f"da{k} = (G{k}{reactions}) * {inverse_masses[k]}")
-    return replace(
-        acceleration,
-        lines=(*acceleration.lines, *lines),
-        results=tuple(variable_names("da", len(equations.q))),
-        given=("q", "v", "dq", "dv"),
-    )
-
-
-def _difference_text(name: str, there: Container[str], taken: Iterable[str]) -> str:
-    """Return the text of a variable, or zero where it is not there, less some terms."""
-    return (name if name in there else "0.0") + "".join(f" - {term}" for term in taken)
-
-
-def _nonzero_differentials(equations: Equations) -> dict[str, sp.Expr]:
-    """Return how the entries of C_q, gamma, c_t and g change along dq and dv, where they do, by their names."""
-    changes = {symbol: sp.Symbol(f"d{symbol}") for symbol in (*equations.q, *equations.v)}
-    return {
-        f"d{name}": sum(entry.diff(symbol) * changes[symbol] for symbol in sorted(moving, key=str))
-        for name, entry in _nonzero_entries(equations).items()
-        if name.startswith(("C", "gamma", "ct", "g")) and (moving := entry.free_symbols & changes.keys())
-    }
-
-
 # Functions of a state
 
 CODES: Mapping[str, Callable[[Equations], StateCode]] = {
     "accelerations": acceleration_code,
     "observations": observation_code,
     "corrections": correction_code,
-    "slope": slope_code,
 }
 """All that is generated of a scene, by name. Whoever asks for a name gets it in Python or as machine code."""
 
 
 def state_source(code: StateCode, results: Iterable[str]) -> str:
-    """Return the source of found(t, two_alpha, beta_squared, q, v, ...): some of the variables that a code assigns."""
-    lines = [f"{_tuple_text(variable_names(name, code.coordinates))} = {name}" for name in code.given]
+    """Return the source of found(t, two_alpha, beta_squared, q, v): some of the variables that a code assigns."""
+    lines = [f"{_tuple_text(variable_names(name, code.coordinates))} = {name}" for name in ("q", "v")]
     lines += [*code.lines, f"return {_tuple_text(results)}"]
-    return "\n".join([f"def found(t, two_alpha, beta_squared, {', '.join(code.given)}):", *_indented(lines, 1)])
+    return "\n".join(["def found(t, two_alpha, beta_squared, q, v):", *(f" {line}" for line in lines)])
 
 
 def _tuple_text(entries: Iterable[str]) -> str:
@@ -388,137 +318,85 @@ def _tuple_text(entries: Iterable[str]) -> str:
     return f"({', '.join(entries)},)"
 
 
-def _indented(lines: Iterable[str], depth: int) -> list[str]:
-    """Return lines of source so many blocks deep."""
-    return [" " * depth + line for line in lines]
-
-
 # Machine code
 #
-# Machine code takes runs side by side, each in a lane: arrays have room for `stride` lanes of each coordinate, of which
-# as many are taken as there are runs. A run alone has a stride of one, and code without loops over lanes.
+# Machine code takes runs side by side, each in a lane: arrays have room for `stride` lanes of each coordinate. Each
+# function is NAME_of(t, gains, state, found, variables, lane): it writes the results of the code of that name for a
+# lane, and returns the least relative pivot of S. gains (2, lanes); state (2, n stride), q and v; found (n stride,), or
+# as much for each of the results.
 #
-# What turning text into machine code costs grows faster than the text. But the thousands of lines of a long mechanism
-# have a few dozen shapes, as its bodies are alike. So only the shapes become machine code, each once; what a line is
-# about stands in a table, as places in an array of all variables and numbers, the room:
+# What turning text into machine code costs grows faster than the text. So thousands of lines, as of a long mechanism,
+# become a table of single operations on an array of all variables and numbers, which one short loop takes:
 #
-#     W6_5 = C6_46 * C5_46 * 12.0 - L6_4 * W5_4        room[a] = room[b] * room[c] * room[d] - room[e] * room[f]
-#     W9_7 = C9_47 * C7_47 * 3.0 - L9_5 * W7_5         the same, with other places
+#     W6_5 = C6_46 * 12.0 - W5_4        variables[t] = variables[a] * variables[b]      (TIMES, t, a, b)
+#                                       variables[w] = variables[t] - variables[c]      (MINUS, w, t, c)
 
 LONG = 1000
-"""Lines of an acceleration above which it is taken by shapes; a shorter one runs faster as it is."""
+"""Lines of an acceleration above which it becomes a table of operations; a shorter one runs faster as it is."""
 
-OPERAND = re.compile(r"\b(?!(?:sin|cos|sqrt)\b)[A-Za-z_]\w*|\b\d+(?:\.\d*)?(?:e[-+]?\d+)?")
-"""A variable or a number in a line."""
+PLUS, MINUS, TIMES, OVER, SINE, COSINE, ROOT = range(7)
+KINDS = {ast.Add: PLUS, ast.Sub: MINUS, ast.Mult: TIMES, ast.Div: OVER, "sin": SINE, "cos": COSINE, "sqrt": ROOT}
+"""The kinds of operations, by what the text has for them."""
+
+
+def machine_source(name: str, code: StateCode, stride: int) -> str:
+    """Return the source of the function of that name for a lane of so many."""
+    lines = ["two_alpha, beta_squared = gains[0, lane], gains[1, lane]"]
+    for half, given in enumerate(("q", "v")):
+        lines += [f"{given}{i} = state[{half}, {i * stride} + lane]" for i in range(code.coordinates)]
+    lines += code.lines
+    lines += [f"found[{place * stride} + lane] = {result}" for place, result in enumerate(code.results)]
+    lines += ["pivot = 1.0", *(f"pivot = min(pivot, ({each}).real)" for each in code.pivots), "return pivot"]
+    return "\n".join([f"def {name}_of(t, gains, state, found, variables, lane):", *(f" {line}" for line in lines)])
 
 
 @dataclass(frozen=True)
-class MachineCode:
-    """The source of the functions of a mechanism that machine code calls, their names, and the tables that they name.
+class Operations:
+    """A code as single operations: rows of kind, place of the result, places of one or two operands (twice the one).
 
-    Each is NAME(t, gains, state, found, room) and writes the results of the code of that name for all lanes. For a
-    stride of one it returns the least relative pivot of S. gains (2, lanes); state (2 or 4, n stride): q, v, and for
-    slopes dq, dv; found (n stride,) or as much for each of the results, lane after lane of each coordinate; the room
-    (size,). A slope is told, last, for which lanes.
+    `results` are the places of the code's own, `pivots` those of each D_j and S_j.
     """
 
-    source: str
-    names: tuple[str, ...]
-    tables: dict[str, NDArray[Any]] = field(default_factory=dict)
-    size: int = 0
+    rows: NDArray[np.uint32]
+    results: NDArray[np.uint32]
+    pivots: NDArray[np.uint32]
 
 
-def machine_code(codes: Mapping[str, StateCode], stride: int) -> MachineCode:
-    """Return the source for so many lanes of a function of each of the codes, by its name; accelerations among them."""
-    if len(codes["accelerations"].lines) > LONG:
-        return _code_by_shapes(codes, stride)
-    source = []
-    for name, code in codes.items():
-        lines = ["two_alpha = gains[0, lane]", "beta_squared = gains[1, lane]"]
-        for row, given in enumerate(code.given):
-            lines += [f"{given}{i} = state[{row}, {i * stride} + lane]" for i in range(code.coordinates)]
-        lines += [*code.lines]
-        lines += [f"found[{place * stride} + lane] = {result}" for place, result in enumerate(code.results)]
-        if stride == 1:
-            lines = ["lane = 0", *lines, "pivot = 1.0", *(f"pivot = min(pivot, {each})" for each in code.pivots)]
-            lines.append("return pivot")
-        else:
-            wanted = ["if lanes[lane]:", *_indented(lines, 1)] if code.of_some_lanes else lines
-            lines = ["for lane in range(gains.shape[1]):", *_indented(wanted, 1), "return 1.0"]
-        source += [_head(name, code), *_indented(lines, 1)]
-    return MachineCode("\n".join(source), tuple(codes))
+def operations(code: StateCode, places: dict[str | float, int]) -> Operations:
+    """Return a code as single operations, and enter the places of its variables and numbers.
 
+    t, two_alpha, beta_squared, q_i and v_i are the first, in this order.
+    """
+    for name in ("t", "two_alpha", "beta_squared", *(f"{name}{i}" for name in "qv" for i in range(code.coordinates))):
+        places.setdefault(name, len(places))
+    rows: list[tuple[int, ...]] = []
 
-def _head(name: str, code: StateCode) -> str:
-    """Return the first line of a function's source."""
-    return f"def {name}(t, gains, state, found, room{', lanes' if code.of_some_lanes else ''}):"
+    def place_of(key: str | float) -> int:
+        return places.setdefault(key, len(places))
 
+    def computed(node: ast.expr, name: str) -> int:
+        """Return the place of what an expression comes to; if it is more than a variable or a number, that name's."""
+        match node:
+            case ast.Name(id=variable):
+                return place_of(variable)
+            case ast.Constant(value=int() | float() as number):
+                return place_of(float(number))
+            case ast.UnaryOp(operand=operand):
+                kind, operands = MINUS, [place_of(0.0), computed(operand, f"{name}-")]
+            case ast.BinOp(left=left, op=operator, right=right):
+                kind, operands = KINDS[type(operator)], [computed(left, f"{name}<"), computed(right, f"{name}>")]
+            case ast.Call(func=ast.Name(id=function), args=[argument]):
+                kind, operands = KINDS[function], 2 * [computed(argument, f"{name}()")]
+            case _:
+                raise TypeError(ast.dump(node))
+        rows.append((kind, place_of(name), *operands))
+        return place_of(name)
 
-def _code_by_shapes(codes: Mapping[str, StateCode], stride: int) -> MachineCode:
-    """Return the same where the lines are taken by their shapes, lane after lane."""
-    n, m = codes["accelerations"].coordinates, codes["accelerations"].constraints
-    names = ["t", "two_alpha", "beta_squared"]
-    for name, count in (("q", n), ("v", n), ("dq", n), ("dv", n), ("a", n), ("da", n), ("S", m), ("D", m)):
-        names += variable_names(name, count)
-    places = {name: place for place, name in enumerate(names)}
-    shapes: dict[str, int] = {}
-    tables: dict[str, NDArray[Any]] = {}
-    for name, code in codes.items():
-        of_lines = [shapes.setdefault(OPERAND.sub("#", line), len(shapes)) for line in code.lines]
-        operands = [operand for line in code.lines for operand in OPERAND.findall(line)]
-        tables[f"{name}_shapes"] = np.array([(shape, len(list(some))) for shape, some in groupby(of_lines)], np.int64)
-        # without a sign: numba need not ask whether they count from the end
-        tables[f"{name}_places"] = np.array([places.setdefault(each, len(places)) for each in operands], np.uint32)
-    numbers = {place: float(name) for name, place in places.items() if name[0].isdigit()}
-    tables |= {"number_places": np.array([*numbers], np.uint32), "numbers": np.array([*numbers.values()])}
-    cases = []
-    for shape, number in shapes.items():
-        operands = [f"room[places[p + {operand}]]" for operand in range(shape.count("#"))]
-        cases += [
-            f"{'elif' if number else 'if'} shape == {number}:",
-            " for _ in range(count):",
-            f"  {shape.replace('#', '{}').format(*operands)}",
-            f"  p += {len(operands)}",
-        ]
-    first_places = {f"{name}0": places[f"{name}0"] for name in ("q", "S", "D")}
-    source = [SHAPES_TAKEN.format(cases="\n".join(_indented(cases, 2)), stride=stride, n=n, **first_places)]
-    for name, code in codes.items():
-        about: dict[str, Any] = {
-            "name": name,
-            "head": _head(name, code),
-            "wanted": "lanes[lane]" if code.of_some_lanes else "True",
-        }
-        about |= {"first": places[code.results[0]], "count": len(code.results), "stride": stride, "m": m}
-        source.append(FOUND_BY_SHAPES.format(**about, **first_places))
-    return MachineCode("".join(source), ("take_lines", "given", *codes), tables, len(places))
-
-
-SHAPES_TAKEN = """
-def take_lines(shapes, places, room):
- p = 0
- for number in range(len(shapes)):
-  shape, count = shapes[number]
-{cases}
-def given(t, gains, state, room, lane):
- room[0], room[1], room[2] = t, gains[0, lane], gains[1, lane]
- for k in range(len(numbers)):
-  room[number_places[k]] = numbers[k]
- for half in range(len(state)):
-  for i in range({n}):
-   room[{q0} + half * {n} + i] = state[half, i * {stride} + lane]
-"""
-
-FOUND_BY_SHAPES = """
-{head}
- for lane in range(gains.shape[1]):
-  if {wanted}:
-   given(t, gains, state, room, lane)
-   take_lines({name}_shapes, {name}_places, room)
-   for i in range({count}):
-    found[i * {stride} + lane] = room[{first} + i]
- pivot = 1.0
- if {stride} == 1:
-  for j in range({m}):
-   pivot = min(pivot, room[{D0} + j] / room[{S0} + j])
- return pivot
-"""
+    for line in code.lines:
+        target, expression = line.split(" = ")
+        found = computed(ast.parse(expression, mode="eval").body, target)
+        if found != place_of(target):
+            rows.append((PLUS, place_of(target), found, place_of(0.0)))
+    pivots = [[places[f"D{j}"], places[f"S{j}"]] for j in range(code.constraints)]
+    # without a sign: numba need not ask whether they count from the end
+    return Operations(*(np.array(each, np.uint32) for each in (rows, [places[each] for each in code.results], pivots)))

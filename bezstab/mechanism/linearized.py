@@ -1,9 +1,24 @@
-"""How the acceleration changes with position and velocity: its Jacobians, exact, for many states and gains at once."""
+r"""How steps answer small changes of what they start with: exact Jacobians, for many steps side by side.
+
+The runner itself takes the steps, each from values of its own. Small changes then go through the same program: sums are
+linear, and of evaluations with the Jacobian J of A = h^2 qddot by position X and velocity V = h qdot
+
+    dA = J (known + S dA),
+
+with `known` the change of their places by what is known before. S is what the accelerations that are solved for at the
+same time add to that; of others it is zero.
+"""
+
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from bezstab.mechanism.compiled import Mechanism, acceleration_function, state_function
+from bezstab.mechanism.array_stepping import array_steps
+from bezstab.mechanism.compiled import IMAGINARY_STEP, Mechanism, acceleration_function
+from bezstab.mechanism.programs import program_of
+from bezstab.mechanism.registers import Steps, room_of, rows_of
+from bezstab.methods import Method, second_order_form
 
 FloatArray = NDArray[np.float64]
 
@@ -11,26 +26,89 @@ AT_A_TIME = 200
 """States: what is computed of them along all directions, some hundred arrays, stays in a core's cache."""
 
 
-def linearized_acceleration(
+class StepsTaken(NamedTuple):
+    """Steps side by side (h = 1): what each hands on to the next, (steps, quantities, n), its new state, (steps, 2, n).
+
+    `jacobians` are those of its evaluations, (steps, evaluations, n, 2n), by position and by velocity.
+    """
+
+    handed_on: FloatArray
+    states: FloatArray
+    jacobians: FloatArray
+
+
+def steps_taken(
+    mechanism: Mechanism, method: Method, h: float, times: FloatArray, gains: FloatArray, carried: FloatArray
+) -> StepsTaken:
+    """Return what steps of h (s) do that begin at times (s), shape (steps,), with gains (2, steps; SI).
+
+    `carried` is what each starts with, in units in which h = 1, (steps, quantities, n) in the order of `memory`. What
+    Newton's method does not solve is no number.
+    """
+    rows = rows_of(program_of(second_order_form(method.scheme)))
+    by_step = np.ascontiguousarray(np.moveaxis(carried, 0, 2))
+    room = room_of(rows, by_step, h, len(carried))
+    found, told = np.empty((1, 2, by_step[0].size)), np.zeros((1, 6))
+    array_steps(mechanism, len(carried))(
+        rows, Steps(times[np.newaxis], np.array([h]), gains[np.newaxis]), room, found, told
+    )
+    registers, states = room.registers.reshape(-1, *by_step.shape[1:]), found.reshape(2, *by_step.shape[1:])
+    evaluations, quantities = len(rows.moments), len(by_step)
+    with np.errstate(all="ignore"):  # what runs into infinity shows in the numbers
+        known = np.concatenate([by_step, registers[quantities : quantities + evaluations]])
+        places = np.moveaxis(np.tensordot(rows.table[: 2 * evaluations], known, 1), 2, 0)
+        moments = np.add.outer(times, h * rows.moments)
+        two_alpha, beta_squared = gains[:, :, np.newaxis]
+        jacobians = acceleration_jacobians(
+            mechanism, moments, two_alpha, beta_squared, places[:, ::2], places[:, 1::2] / h
+        )
+    jacobians *= np.repeat([h**2, h], mechanism.size)
+    states[1] *= h
+    return StepsTaken(np.moveaxis(registers[:quantities], 2, 0), np.moveaxis(states, 2, 0), jacobians)
+
+
+def changes_handed_on(method: Method, jacobians: FloatArray, changes: FloatArray) -> FloatArray:
+    """Return what a step makes of changes of what it starts with, (points, quantities, n, columns), at each point.
+
+    `jacobians` are those of this step, (points, evaluations, n, 2n).
+    """
+    rows = rows_of(program_of(second_order_form(method.scheme)))
+    points, quantities, n, columns = changes.shape
+    evaluations = len(rows.moments)
+    found_from = quantities + np.arange(evaluations + 1)
+    registers = np.zeros((points, quantities + evaluations, n * columns))
+    registers[:, :quantities] = changes.reshape(points, quantities, -1)
+    for first, last, waiting in rows.groups:
+        of_group, count = rows.table[2 * first : 2 * last], last - first
+        answers = jacobians[:, first:last]
+        known = (of_group @ registers).reshape(points, count, 2 * n, columns)
+        found = (answers @ known).reshape(points, count * n, columns)
+        if waiting:
+            shares = of_group[:, found_from[first] : found_from[last]].reshape(count, 2, count)
+            by_sought = np.einsum("peixj,exf->peifj", answers.reshape(points, count, n, 2, n), shares)
+            found = np.linalg.solve(np.eye(count * n) - by_sought.reshape(points, count * n, count * n), found)
+        registers[:, found_from[first] : found_from[last]] = found.reshape(points, count, -1)
+    every = np.concatenate([registers, rows.table[2 * evaluations :] @ registers], axis=1)
+    return every[:, rows.moved_from].reshape(changes.shape)
+
+
+def acceleration_jacobians(
     mechanism: Mechanism, t: ArrayLike, two_alpha: ArrayLike, beta_squared: ArrayLike, q: FloatArray, v: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """Return qddot, shape (..., n), and its derivatives by q and by qdot side by side, (..., n, 2n); SI units.
+) -> FloatArray:
+    """Return the derivatives of qddot by q and by qdot side by side, shape (..., n, 2n); SI units.
 
     q and v have shape (..., n); t (s) and the gains 2 alpha (1/s) and beta^2 (1/s^2; paper Eqs 6 and 9) broadcast
     against (...).
     """
-    size = mechanism.size
-    acceleration, slope = acceleration_function(mechanism, np), state_function(mechanism, "slope", np)
-    directions = np.split(np.eye(2 * size)[:, :, np.newaxis], 2)
-    shape = np.broadcast_shapes(q.shape[:-1], *map(np.shape, (t, two_alpha, beta_squared)))
+    size, acceleration = mechanism.size, acceleration_function(mechanism, np)
+    directions = 1j * IMAGINARY_STEP * np.eye(2 * size)[:, :, np.newaxis]
+    shape = q.shape[:-1]
     scalars = [np.broadcast_to(each, shape).ravel() for each in (t, two_alpha, beta_squared)]
-    q, v = (np.broadcast_to(each, (*shape, size)).reshape(-1, size) for each in (q, v))
-    accelerations = np.empty(q.shape)
-    jacobians = np.empty((*q.shape, 2 * size))
-    for first in range(0, len(q), AT_A_TIME):
+    states = np.concatenate([q, v], axis=-1).reshape(-1, 2 * size)
+    jacobians = np.empty((len(states), size, 2 * size))
+    for first in range(0, len(states), AT_A_TIME):
         some = slice(first, first + AT_A_TIME)
-        state = [*(each[some] for each in scalars), *(np.ascontiguousarray(each[some].T) for each in (q, v))]
-        for k, (found, changes) in enumerate(zip(acceleration(*state), slope(*state, *directions), strict=True)):
-            accelerations[some, k] = found
-            jacobians[some, k] = np.transpose(changes)
-    return accelerations.reshape(*shape, size), jacobians.reshape(*shape, size, 2 * size)
+        ahead = states[some].T[:, np.newaxis] + directions
+        for k, changed in enumerate(acceleration(*(each[some] for each in scalars), *np.split(ahead, 2))):
+            jacobians[some, k] = np.transpose(changed).imag / IMAGINARY_STEP
+    return jacobians.reshape(*shape, size, 2 * size)

@@ -19,13 +19,15 @@ Where a row of an evaluation has an entry for what that evaluation finds, or for
 each other: a group of evaluations is solved together, each from the guess that it is what it was one step before.
 """
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
 
-from bezstab.mechanism.second_order_memory import ACCELERATION, POSITION, VELOCITY, memory
-from bezstab.mechanism.second_order_turns import Assigned, Found, Sum, turn
-from bezstab.methods import Quantity, SecondOrder
+from bezstab.linear_equations import solution
+from bezstab.mechanism.second_order_memory import ACCELERATION, POSITION, VELOCITY, is_solved_together, memory
+from bezstab.methods import Assignment, Combination, Quantity, SecondOrder
+from bezstab.methods import Evaluation as EvaluationEquation
 
 Row = tuple[Fraction, ...]
 """A coefficient for each register that is carried or found."""
@@ -69,42 +71,30 @@ class Program:
         """Whether there are equations to solve."""
         return any(waiting for _, _, waiting in self.groups)
 
-    @property
-    def explicit_evaluations(self) -> int:
-        """The number of evaluations in a turn that are not Newton's."""
-        return sum(last - first for first, last, waiting in self.groups if not waiting)
-
 
 @cache
 def program_of(scheme: SecondOrder) -> Program:
     """Return the program of a second-order scheme, exactly."""
     remembered = memory(scheme)
     carried = remembered.carried
-    actions = turn(scheme)
-    found = [each.result for action in actions if isinstance(action, Found) for each in action.evaluations]
-    registers = [*carried, *found]
+    of_groups = [[each for each in group if isinstance(each, EvaluationEquation)] for group in scheme.groups]
+    registers = [*carried, *(each.result for group in of_groups for each in group)]
     columns = {quantity: column for column, quantity in enumerate(registers)}
     values: dict[Quantity, Row] = {
         quantity: tuple(Fraction(int(column == own)) for column in range(len(registers)))
         for quantity, own in columns.items()
     }
-
-    def row(sum_: Sum) -> Row:
-        """Return a sum as a row."""
-        terms = [(factor, values[quantity]) for quantity, factor in sum_.items()]
-        return tuple(sum((factor * value[column] for factor, value in terms), ZERO) for column in columns.values())
-
     evaluations: list[Evaluation] = []
     groups = []
-    for action in actions:
-        if isinstance(action, Assigned):
-            values[action.result] = row(action.value)
-            continue
-        first = len(evaluations)
-        for each in action.evaluations:
-            guess = columns[Quantity(each.result.name, each.result.step - 1)] if action.waiting else 0
-            evaluations.append(Evaluation(row(each.position), row(each.velocity), each.moment, guess))
-        groups.append((first, len(evaluations), action.waiting))
+    for group, found in zip(scheme.groups, of_groups, strict=True):
+        values |= _assigned([each for each in group if isinstance(each, Assignment)], values)
+        waiting, first = is_solved_together(group), len(evaluations)
+        for each in found:
+            guess = columns[Quantity(each.result.name, each.result.step - 1)] if waiting else 0
+            moment = remembered.moments[each.result]
+            evaluations.append(Evaluation(_row(each.position, values), _row(each.velocity, values), moment, guess))
+        if found:
+            groups.append((first, len(evaluations), waiting))
 
     state = (Quantity(POSITION, 1), Quantity(VELOCITY, 1))
     newer = [Quantity(quantity.name, quantity.step + 1) for quantity in carried]
@@ -122,3 +112,25 @@ def program_of(scheme: SecondOrder) -> Program:
             for shares, step in zip(remembered.shares, remembered.state_steps, strict=True)
         ),
     )
+
+
+def _assigned(assignments: Sequence[Assignment], values: Mapping[Quantity, Row]) -> dict[Quantity, Row]:
+    """Return what the equations of a group assign, as rows.
+
+    With y the assigned, u all else: y = M y + N u, hence y = (I - M)^-1 N u. Without feedback the accelerations are
+    given, so that a scheme whose equations determine its step has an inverse here.
+    """
+    results = [each.result for each in assignments]
+    known_parts = [tuple(term for term in each.value if term[1] not in results) for each in assignments]
+    left_sides = [
+        [Fraction(int(i == j)) - sum(c for c, quantity in each.value if quantity == y) for j, y in enumerate(results)]
+        for i, each in enumerate(assignments)
+    ]
+    rows = solution(left_sides, [_row(part, values) for part in known_parts])
+    return {result: tuple(row) for result, row in zip(results, rows, strict=True)}
+
+
+def _row(combination: Combination, values: Mapping[Quantity, Row]) -> Row:
+    """Return a combination as a row."""
+    width = len(next(iter(values.values())))
+    return tuple(sum((c * values[quantity][k] for c, quantity in combination), ZERO) for k in range(width))

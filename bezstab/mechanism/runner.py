@@ -1,7 +1,7 @@
 """Runs of a mechanism with feedback or projection: a method's start, its steps in blocks, and what ends a run early."""
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache
 from typing import Any, Literal
@@ -10,21 +10,30 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from bezstab.errors import InputError
-from bezstab.mechanism.array_stepping import array_steps, float_steps
+from bezstab.mechanism.array_stepping import array_steps
 from bezstab.mechanism.compiled import SINGULAR, Mechanism, acceleration_function
-from bezstab.mechanism.compiled_stepping import LANES, functions_called, machine_steps, runs_compiled
+from bezstab.mechanism.compiled_stepping import LANES, machine_steps, runs_compiled
 from bezstab.mechanism.programs import program_of
-from bezstab.mechanism.registers import MOST_ITERATIONS, IntArray, Steps, in_lists, room_of, rows_of
+from bezstab.mechanism.registers import MOST_ITERATIONS, Steps, room_of, rows_of
 from bezstab.mechanism.second_order_memory import check_after_step, memory
 from bezstab.mechanism.start import initial_state
-from bezstab.mechanism.stepping import BLOWN_UP, EVALUATIONS, ITERATIONS, PROJECTIONS
+from bezstab.mechanism.stepping import (
+    BLOWN_UP,
+    EVALUATIONS,
+    ITERATIONS,
+    PIVOT,
+    PROJECTIONS,
+    UNSETTLED,
+    UNSOLVED,
+)
 from bezstab.methods import (
-    STEP_FAMILIES,
     Method,
     SecondOrder,
     adams_bashforth,
+    bezier,
     evaluations,
     implicit,
+    is_bezier,
     lookup,
     second_order_form,
 )
@@ -42,16 +51,7 @@ Gains = tuple[Any, Any]
 """2 alpha (1/s) and beta^2 (1/s^2), as `units.feedback_gains` returns them: floats, or arrays over a batch."""
 
 NUMBERS_OF_A_BLOCK = 2**16
-"""Of all runs, between two looks at what the user wants (Ctrl-C): some tenths of a second in Python."""
-
-
-def no_counts() -> IntArray:
-    """Return what steps have taken before any: each a number, at a place of its own.
-
-    ITERATIONS of Newton's method; EVALUATIONS of the acceleration, a slope counted as one; and PROJECTIONS, how often
-    these have computed how a state has to be corrected.
-    """
-    return np.zeros(3, np.int64)
+"""Of runs side by side, between two looks at what the user wants (Ctrl-C): some tenths of a second in Python."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,13 +59,14 @@ class How:
     """How steps are taken: by machine code or not, and with what is done `after` each.
 
     A run that is `judged`, without a batch, ends where it breaks down; else what goes wrong shows in the numbers.
-    `counts` grow by what is taken.
+    `counts` grow by what steps take: at ITERATIONS of Newton's method; EVALUATIONS of the acceleration, a slope counted
+    as one; and PROJECTIONS, how often these have computed how a state has to be corrected.
     """
 
     compiled: bool = False
     judged: bool = False
     after: AfterStep = NOTHING
-    counts: IntArray = field(default_factory=no_counts)
+    counts: FloatArray = field(default_factory=lambda: np.zeros(6))
 
 
 @dataclass(frozen=True, eq=False)
@@ -142,7 +143,7 @@ def simulate(
     count = round(duration / whole_step)
     first = checked_start(initial_state(mechanism) if state is None else state)
     if compiled is None:
-        compiled = runs_compiled(mechanism, method, count * evaluations(method), after)
+        compiled = runs_compiled(count * evaluations(method))
     how = How(compiled, True, after)
     times = np.arange(count + 1, dtype=np.float64) * whole_step
     return recorded(
@@ -239,13 +240,10 @@ def resume(
     *states, calm = (_for_batch(state, batch) for state in given)
     carried, start, repeated = carried_quantities(mechanism, method, h, gains, states, calm, how.counts)
     spread_gains = np.array([[np.broadcast_to(gain, batch).ravel() for gain in gains]], np.float64)
-
-    def steps_between(first: int, last: int) -> Steps:
-        numbers = np.arange(first, last, dtype=np.float64)
-        return Steps(start + h * numbers, np.full(last - first, h), np.zeros(last - first, np.int64), spread_gains)
-
+    times = start + h * np.arange(count + repeated, dtype=np.float64)
+    steps = Steps(times, np.broadcast_to(np.float64(h), times.shape), spread_gains)
     # of turns whose states are in the history already only what they give beyond them matters: the next needs it
-    for block in steps_in_blocks(mechanism, method, steps_between, h, carried, batch, count + repeated, how):
+    for block in steps_in_blocks(mechanism, method, steps, carried, batch, how):
         left_out = min(repeated, len(block.states))
         repeated -= left_out
         if len(block.states) > left_out or block.cause:
@@ -258,73 +256,54 @@ def _for_batch(state: FloatArray, batch: tuple[int, ...]) -> FloatArray:
     return np.broadcast_to(state.reshape(len(state), *(1,) * missing, *state.shape[1:]), (len(state), *batch))
 
 
-def resume_in_groups(
-    mechanism: Mechanism,
-    method: Method,
-    h: float,
-    gains: Gains,
-    history: Sequence[FloatArray],
-    count: int,
-    how: How,
-    undisturbed: FloatArray,
-) -> Iterator[tuple[slice, Iterator[Block]]]:
-    """Yield what `resume` does by groups: slices of the batch's last axis that are fast side by side if compiled."""
-    batch = np.broadcast_shapes(history[-1].shape[1:], *map(np.shape, gains))
-    group = max(1, LANES // math.prod(batch[:-1]) if how.compiled else batch[-1])
-
-    def of_group(array: Any, some: slice) -> Any:
-        return array[..., some] if np.ndim(array) and np.shape(array)[-1] > 1 else array
-
-    for first in range(0, batch[-1], group):
-        some = slice(first, first + group)
-        two_alpha, beta_squared, calm, *states = (of_group(each, some) for each in (*gains, undisturbed, *history))
-        yield some, resume(mechanism, method, h, (two_alpha, beta_squared), states, count, how, calm)
-
-
 def steps_in_blocks(
-    mechanism: Mechanism,
-    method: Method,
-    steps_between: Callable[[int, int], Steps],
-    h: float,
-    carried: FloatArray,
-    batch: tuple[int, ...],
-    count: int,
-    how: How,
-    kinds: int = 1,
+    mechanism: Mechanism, method: Method, steps: Steps, carried: FloatArray, batch: tuple[int, ...], how: How
 ) -> Iterator[Block]:
-    """Yield `count` steps in blocks, from what is carried into the first: shape (quantities, n lanes).
+    """Yield steps in blocks, from what is carried into the first: shape (quantities, n lanes).
 
-    `steps_between` has the times, lengths and gains of the steps from a number to before another; what is carried is in
-    units of h (s). There are so many `kinds` of steps. The lanes are those of the batch, one after the other.
+    It is in units of the first step's length. The lanes are those of the batch, one after the other.
     """
     program = program_of(second_order_form(method.scheme))
     rows, n, lanes = rows_of(program, how.after), mechanism.size, math.prod(batch)
-    names = functions_called(program.implicit, how.after)
+    variables = None
     if how.compiled:
-        stride = 1 if lanes == 1 else max(LANES, lanes)
-        take_steps, variables = machine_steps(mechanism, names, stride)
-        room = room_of(rows, carried.reshape(-1, n, lanes), h, kinds, how.counts, stride, variables)
-    elif lanes == 1:
-        stride, take_steps = 1, float_steps(mechanism, names)
-        room = in_lists(room_of(rows, carried.reshape(-1, n, 1), h, kinds, how.counts, 1))
+        stride = 1 if lanes == 1 else LANES
+        take_steps, variables = machine_steps(mechanism, program.implicit, how.after.projecting, stride)
     else:
-        stride, take_steps = lanes, array_steps(mechanism, names)
-        room = room_of(rows, carried.reshape(-1, n, 1, lanes), h, kinds, how.counts, 1)
+        stride, take_steps = lanes, array_steps(mechanism, lanes)
+    by_lanes = carried.reshape(-1, n, lanes)
+    groups = [slice(first, first + stride) for first in range(0, lanes, stride)]
+    rooms = [room_of(rows, by_lanes[:, :, group], float(steps.lengths[0]), stride, variables) for group in groups]
     at_once = max(1, NUMBERS_OF_A_BLOCK // (2 * n * stride))
-    for first in range(0, count, at_once):
-        last = min(first + at_once, count)
-        states, pivots = np.empty((last - first, 2, *np.shape(room.state)[1:]), carried.dtype), np.empty(last - first)
-        steps = steps_between(first, last)
-        with np.errstate(all="ignore"):  # what runs into infinity is judged by its numbers
-            taken, *unsolved = take_steps(rows, steps, room, how.judged, states, pivots)
-        how.counts[EVALUATIONS] += taken * program.explicit_evaluations
-        states = states.reshape(last - first, 2 * n, stride)[..., :lanes].reshape(last - first, 2 * n, *batch)
-        cause = breakdown(states[taken - 1], pivots[taken - 1], *unsolved) if how.judged else None
-        if cause:
-            taken -= 1
-        yield Block(states[:taken], pivots[:taken], cause)
+    for first in range(0, len(steps.times), at_once):
+        some = slice(first, first + at_once)
+        times, lengths = steps.times[some], np.ascontiguousarray(steps.lengths[some])
+        gains = steps.gains if len(steps.gains) == 1 else steps.gains[some]
+        parts, told = [], np.zeros((len(times), 6))
+        for group, room in zip(groups, rooms, strict=True):
+            found = np.empty((len(times), 2, n * stride), carried.dtype)
+            take_steps(rows, Steps(times, lengths, np.ascontiguousarray(gains[:, :, group])), room, found, told)
+            parts.append(found.reshape(len(times), 2 * n, stride)[:, :, : len(room.poor)])
+        states = np.concatenate(parts, axis=2).reshape(len(times), 2 * n, *batch)
+        cause = None
+        if how.judged:
+            states, told, cause = _until_breakdown(states, told)
+        how.counts[:] += told.sum(axis=0)
+        taken = len(told) - bool(cause)
+        yield Block(states[:taken], told[:taken, PIVOT], cause)
         if cause:
             return
+
+
+def _until_breakdown(states: FloatArray, told: FloatArray) -> tuple[FloatArray, FloatArray, str | None]:
+    """Return steps of a run alone, and what is told of them, up to the first that breaks it down, and why."""
+    with np.errstate(all="ignore"):
+        sound = (told[:, PIVOT] > SINGULAR) & (np.abs(states).sum(axis=1) < BLOWN_UP)  # not if it is no number
+        sound &= (told[:, UNSOLVED] == 0) & (told[:, UNSETTLED] == 0)
+    if sound.all():
+        return states, told, None
+    end = int(sound.argmin()) + 1
+    return states[:end], told[:end], breakdown(states[end - 1], *told[end - 1, [PIVOT, UNSOLVED, UNSETTLED]].tolist())
 
 
 def carried_quantities(
@@ -334,7 +313,7 @@ def carried_quantities(
     gains: Gains,
     history: Sequence[FloatArray],
     undisturbed: FloatArray,
-    counts: IntArray,
+    counts: FloatArray,
 ) -> tuple[FloatArray, float, int]:
     """Return what a method carries into its first turn after `history`, when that begins, and what it repeats.
 
@@ -400,8 +379,7 @@ def _starters(method: Method, start: Start) -> list[tuple[Method, int]]:
     if needed == 0:
         return []
     if start == "ramp":
-        named = {family.name: family.make for family in STEP_FAMILIES.values()}
-        make = named.get(method.family.name if method.family else "", adams_bashforth)
+        make = bezier if is_bezier(method.scheme) else adams_bashforth
         return [(lookup(f"bdf{n}") if implicit(method) else make(n), 1) for n in range(1, needed + 1)]
     explicit_one, implicit_one = {"rk4": ("RK4", "gauss4"), "euler": ("RK1", "implicit-euler")}[start]
     return [(lookup(implicit_one if implicit(method) else explicit_one), needed)]

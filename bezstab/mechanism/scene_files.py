@@ -25,7 +25,7 @@ from bezstab.mechanism.scenes import (
     Scene,
     Spring,
 )
-from bezstab.toml_tables import TomlTable, is_pair, is_point
+from bezstab.toml_tables import TomlTable, a_number, pair_of
 
 NOWHERE = (0.0, 0.0)  # no displacement, direction or force
 MOST_FOUR_BARS = 100  # in a chain: beyond any benchmark, so that a slip is refused rather than worked on for hours
@@ -176,12 +176,7 @@ def _known_body(name: str, body_names: Sequence[str], table: TomlTable) -> str:
 
 
 def _two_points(table: TomlTable) -> tuple[Point, Point]:
-    first, second = table.entry("points", _are_two_points, "two points [x, y]")
-    return (float(first[0]), float(first[1])), (float(second[0]), float(second[1]))
-
-
-def _are_two_points(value: Any) -> bool:
-    return is_pair(value) and is_point(value[0]) and is_point(value[1])
+    return table.entry("points", pair_of(pair_of(a_number)), "two points [x, y]")
 
 
 def _force(table: TomlTable, body_names: Sequence[str]) -> Force:
@@ -227,8 +222,8 @@ def _four_bar_chain(top: TomlTable) -> Chain:
 
     The N-four-bar benchmark of Gonzalez et al.
     """
-    table = top.optional_table("four_bar_chain")
-    if table is None:
+    table = top.table("four_bar_chain")
+    if "four_bar_chain" not in top.data:
         return (), (), {}
     number, length, mass = (table.positive_number(key) for key in ("count", "length", "mass"))
     if number > MOST_FOUR_BARS or number != int(number):

@@ -51,19 +51,9 @@ def simulated_with_steps(
     first = checked_start(perturbed_state(mechanism, perturb))
     steps = _steps(method, sequence, duration, lambda step: feedback_gains(alpha_hat, beta_hat, step if hold else h))
     count, length, gains = len(steps.lengths), float(steps.lengths[0]), steps.gains[..., 0]
-    how = How(runs_compiled(mechanism, method, count * evaluations(method), after), judged=True, after=after)
+    how = How(runs_compiled(count * evaluations(method)), judged=True, after=after)
     carried, *_ = carried_quantities(mechanism, method, length, (gains[0, 0], gains[0, 1]), [first], first, how.counts)
-    blocks = steps_in_blocks(
-        mechanism,
-        method,
-        lambda begin, end: Steps._make(each[begin:end] for each in steps),
-        length,
-        carried,
-        (),
-        count,
-        how,
-        kinds=int(steps.kinds.max()) + 1,
-    )
+    blocks = steps_in_blocks(mechanism, method, steps._replace(times=steps.times[:-1]), carried, (), how)
     trajectory = recorded(mechanism, method, first, steps.times, blocks, how)
     taken = len(trajectory.t) - 1
     # at each time the gains of the step that begins there; at the last, those of the step that led to it
@@ -88,11 +78,8 @@ def _steps(
             break
         taken.append(step)
         left -= step
-    different, kinds = np.unique(taken, return_inverse=True)
-    of_kinds = np.array([gains(length / multiple) for length in different.tolist()])
     return Steps(
         times=np.concatenate([[0.0], np.cumsum(taken)]),
         lengths=np.array(taken),
-        kinds=kinds.astype(np.int64),
-        gains=of_kinds[kinds][:, :, np.newaxis],
+        gains=np.array([gains(length / multiple) for length in taken])[:, :, np.newaxis],
     )

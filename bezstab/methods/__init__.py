@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING
 
 from bezstab.lazy import lazy_names
 from bezstab.methods.method_files import read_method
-from bezstab.methods.multistep_methods import STEP_FAMILIES, adams_bashforth, adams_bashforth_moulton, bezier
+from bezstab.methods.multistep_methods import STEP_FAMILIES, adams_bashforth, adams_bashforth_moulton, bezier, is_bezier
 from bezstab.methods.polynomials import Polynomial
-from bezstab.methods.recipes import recipe
 from bezstab.methods.registry import GROUPS, REGISTRY, lookup
 from bezstab.methods.scheme_motions import (
     ACCELERATED,
@@ -22,7 +21,6 @@ from bezstab.methods.scheme_motions import (
     value_at_start,
 )
 from bezstab.methods.schemes import (
-    Family,
     LinearMultistep,
     Method,
     PredictorCorrector,
@@ -45,7 +43,6 @@ if TYPE_CHECKING:
         H,
         S,
         Z,
-        branch_polynomial,
         closed_loop_at,
         closed_loop_polynomial,
         closed_loop_table,
@@ -67,6 +64,7 @@ if TYPE_CHECKING:
         crossing_polynomials,
         plane_strips,
     )
+    from bezstab.methods.recipes import recipe
     from bezstab.methods.shared_factors import fixed_poles, reduced_table, without_shared_factor
     from bezstab.methods.steady_errors import ExponentialSum, ForcedErrors, forced_errors, leading_error, turning_error
     from bezstab.methods.step_matrices import (

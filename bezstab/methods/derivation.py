@@ -11,7 +11,7 @@ from operator import mul
 
 import sympy as sp
 
-from bezstab.methods.determinants import as_fraction, in_field
+from bezstab.methods.determinants import in_field
 from bezstab.methods.polynomials import MuTable, PlaneTable
 from bezstab.methods.schemes import Method
 
@@ -103,20 +103,6 @@ def _whole_planes(method: Method) -> tuple[list[list[list[int]]], int]:
 def _whole_powers(number: Fraction, most: int) -> list[int]:
     """Return d^most number^k for k = 0 to `most`, d its denominator: whole numbers, whose sums are fast."""
     return [number.numerator**k * number.denominator ** (most - k) for k in range(most + 1)]
-
-
-def branch_polynomial(method: Method) -> tuple[Fraction, ...]:
-    """Return the polynomial in z, ascending, that is zero wherever two roots of pi(., mu) meet: Res_mu(pi, d pi/dz).
-
-    Exact; () of a second-order scheme, as `coefficient_table`.
-    """
-    if mapping := rho_and_sigma(method):
-        rho, sigma = (sp.Poly([in_field(c) for c in reversed(part)], Z, domain=sp.QQ) for part in mapping)
-        meeting = rho.diff(Z) * sigma - rho * sigma.diff(Z)
-    else:
-        pi = characteristic_polynomial(method).reorder(MU, Z)  # its first symbol is the one that is eliminated
-        meeting = pi.resultant(pi.diff(Z))
-    return tuple(as_fraction(c) for c in reversed(meeting.rep.to_list()))
 
 
 def rational_feedback_roots(method: Method, z: int) -> list[Fraction]:

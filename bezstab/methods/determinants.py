@@ -17,7 +17,7 @@ from sympy.polys.matrices import DomainMatrix
 from sympy.polys.rings import PolyElement, ring
 
 from bezstab.errors import InputError
-from bezstab.methods.polynomials import MuTable, PlaneTable
+from bezstab.methods.polynomials import PlaneTable
 from bezstab.methods.step_equations import POSITION, VELOCITY, Equation, Evaluation
 from bezstab.rationals import ZERO
 
@@ -142,22 +142,6 @@ def tables_of(*polynomials: PolyElement) -> list[PlaneTable]:
             )
         )
     return tables
-
-
-def product_over_feedback(pi: MuTable) -> PlaneTable:
-    """Return, up to a factor, the product of pi(z, mu) over both roots of mu^2 + alpha_hat mu + beta_hat = 0.
-
-    Modulo the feedback every power of mu is u + v mu, hence pi = A + B mu at either root. Their sum is -alpha_hat and
-    their product beta_hat: (A + B mu_1) (A + B mu_2) = A^2 - alpha_hat A B + beta_hat B^2. Leading coefficient one at
-    alpha_hat = beta_hat = 0.
-    """
-    A, B = RING.zero, RING.zero
-    u, v = RING.one, RING.zero  # mu^j = u + v mu
-    for column in zip(*pi, strict=True):
-        in_w = RING.from_dict({(k, 0, 0): in_field(c) for k, c in enumerate(reversed(column)) if c})
-        A, B = A + in_w * u, B + in_w * v
-        u, v = -RING_BETA * v, u - RING_ALPHA * v  # mu (u + v mu) = u mu + v (-alpha_hat mu - beta_hat)
-    return tables_of(_made_monic(A**2 - RING_ALPHA * A * B + RING_BETA * B**2))[0]
 
 
 def characteristic(matrix: Sequence[Sequence[Fraction]]) -> list[Fraction]:

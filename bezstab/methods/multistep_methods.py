@@ -17,7 +17,7 @@ from functools import partial
 from math import comb
 
 from bezstab.methods.polynomials import lagrange_integral
-from bezstab.methods.schemes import Family, LinearMultistep, Method, MethodGroup, PredictorCorrector
+from bezstab.methods.schemes import LinearMultistep, Method, MethodGroup, PredictorCorrector, Scheme
 from bezstab.rationals import ONE, ZERO
 
 MOST_BDF_STEPS = 6  # with more the method is not zero-stable
@@ -30,7 +30,12 @@ def bezier(n: int) -> Method:
     (Aghdam et al.'s multistep method, paper Table 1; theory: the curve extended past its end over one step).
     """
     weights = [_bezier_weight(n - 1, j) for j in range(n)] if n > 1 else [ONE]
-    return Method(f"B{n}", _explicit_adams(weights), "paper Table 1 (Bezier)", family=Family("Bezier", n))
+    return Method(f"B{n}", _explicit_adams(weights), "paper Table 1 (Bezier)")
+
+
+def is_bezier(scheme: Scheme) -> bool:
+    """Return whether this is the Bezier scheme of n > 2 steps; B1 and B2 are Adams and Bashforth's, too."""
+    return scheme.steps > 2 and scheme == bezier(scheme.steps).scheme
 
 
 def _bezier_weight(degree: int, j: int) -> Fraction:
@@ -51,7 +56,7 @@ def _bezier_weight(degree: int, j: int) -> Fraction:
 def adams_bashforth(n: int) -> Method:
     """Return the n-step Adams-Bashforth method, of order n >= 1 (Hairer, Norsett & Wanner I, section III.1)."""
     source = "Hairer, Norsett & Wanner I, Eq. III.1.5 (Adams-Bashforth)"
-    return Method(f"AB{n}", _adams_bashforth_scheme(n), source, family=Family("Adams-Bashforth", n))
+    return Method(f"AB{n}", _adams_bashforth_scheme(n), source)
 
 
 def _adams_bashforth_scheme(n: int) -> LinearMultistep:
@@ -62,15 +67,14 @@ def _adams_bashforth_scheme(n: int) -> LinearMultistep:
 class StepFamily:
     """Explicit methods by their number of steps n, up to the `largest`; figures call the family by its `title`."""
 
-    name: str
     title: str
     make: Callable[[int], Method]
     largest: int
 
 
 STEP_FAMILIES = {
-    "bezier": StepFamily("Bezier", "Bézier", bezier, 12),
-    "adams-bashforth": StepFamily("Adams-Bashforth", "Adams–Bashforth", adams_bashforth, 8),
+    "bezier": StepFamily("Bézier", bezier, 12),
+    "adams-bashforth": StepFamily("Adams–Bashforth", adams_bashforth, 8),
 }
 """By the names that are typed."""
 
@@ -85,8 +89,7 @@ def adams_bashforth_moulton(n: int) -> Method:
     corrector = adams_moulton_scheme(n)
     same_steps = LinearMultistep((*corrector.rho, ZERO), (*corrector.sigma, ZERO))
     source = "Hairer, Norsett & Wanner I, section III.1 (Adams-Bashforth-Moulton, PECE)"
-    family = Family("Adams-Bashforth-Moulton", n)
-    return Method(f"ABM{n}", PredictorCorrector(predictor, same_steps), source, family=family)
+    return Method(f"ABM{n}", PredictorCorrector(predictor, same_steps), source)
 
 
 def adams_moulton_scheme(n: int) -> LinearMultistep:
@@ -113,32 +116,19 @@ def bdf(n: int) -> Method:
     The polynomial through y_{k+1}, ..., y_{k+1-n} has the slope f_{k+1} at t_{k+1}. With nabla y = (1 - 1/z) y:
     sum_{j=1}^n nabla^j y_{k+1} / j = h f_{k+1} (Hairer, Norsett & Wanner I, Eq. III.1.22'). For n > 6 it is unstable.
     """
-    return Method(
-        f"bdf{n}",
-        _bdf_scheme(n),
-        "Curtiss & Hirschfelder, Proc. Natl. Acad. Sci. 38, 1952 (backward differentiation)",
-        family=Family("BDF", n),
-    )
-
-
-def _bdf_scheme(n: int) -> LinearMultistep:
     rho = [ZERO] * (n + 1)  # of y_{k+1}, y_k, ...
     difference = [ONE]  # of nabla^j
     for j in range(1, n + 1):
         difference = [a - b for a, b in zip([*difference, ZERO], [ZERO, *difference], strict=True)]
         for i, a in enumerate(difference):
             rho[i] += a / j
-    return LinearMultistep(tuple(rho), (ONE, *[ZERO] * n))
+    source = "Curtiss & Hirschfelder, Proc. Natl. Acad. Sci. 38, 1952 (backward differentiation)"
+    return Method(f"bdf{n}", LinearMultistep(tuple(rho), (ONE, *[ZERO] * n)), source)
 
 
 def adams_moulton(n: int) -> Method:
     """Return the Adams-Moulton method of order n >= 2, of n - 1 steps; am2 is the trapezoidal rule."""
-    return Method(
-        f"am{n}",
-        adams_moulton_scheme(n),
-        "Hairer, Norsett & Wanner I, Eq. III.1.9 (Adams-Moulton)",
-        family=Family("Adams-Moulton", n),
-    )
+    return Method(f"am{n}", adams_moulton_scheme(n), "Hairer, Norsett & Wanner I, Eq. III.1.9 (Adams-Moulton)")
 
 
 def implicit_euler() -> Method:

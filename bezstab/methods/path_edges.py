@@ -14,7 +14,6 @@ mu = rho / sigma on the circle z = e^(i theta). With t = 1 - cos theta all of th
 
 from collections.abc import Sequence
 from fractions import Fraction
-from itertools import pairwise
 from math import isqrt
 
 import sympy as sp
@@ -41,13 +40,12 @@ def turning_factors(method: Method, alpha_hat: Fraction, beta_hat: Fraction, pow
     """
     method = without_shared_factor(method)
     coefficients = _along_path(method, alpha_hat, beta_hat, powers)
-    edges = crossing_polynomials(coefficients, RING, pairs=False)
+    mapping = rho_and_sigma(method)
+    edges = crossing_polynomials(coefficients, RING, pairs=mapping is None)
     found: list[Fraction] = []
-    if mapping := rho_and_sigma(method):
+    if mapping:
         m = method.step_multiple
         found = _factors_on_the_circle(*mapping, m * alpha_hat, m**2 * beta_hat, powers)
-    elif len(coefficients) > 2:
-        edges.append(_edge_of_pairs(coefficients))
     return sorted({*found, *(root for edge in edges for root in _positive_roots(edge))} - {ZERO})
 
 
@@ -69,24 +67,6 @@ def _along_path(method: Method, alpha_hat: Fraction, beta_hat: Fraction, powers:
 
 def _number(c: Fraction) -> PolyElement:
     return RING.convert(in_field(c))
-
-
-def _edge_of_pairs(coefficients: Sequence[PolyElement]) -> PolyElement:
-    """Return the polynomial that vanishes where the product of two roots is one, from its values at 0, 1, 2, ...
-
-    By Newton's forward differences: a tenth of the time that the determinant of polynomials takes.
-    """
-    degree = (len(coefficients) - 2) * max(c.degree() for c in coefficients)
-    at_places = ([c.evaluate(0, sp.QQ(k)) for c in coefficients] for k in range(degree + 1))
-    values = [crossing_polynomials(at_place, sp.QQ)[-1] for at_place in at_places]
-    differences = []
-    while values:
-        differences.append(values[0])
-        values = [after - before for before, after in pairwise(values)]
-    total = RING.zero
-    for k, difference in reversed(list(enumerate(differences))):
-        total = difference + (S - k) * total / (k + 1)
-    return total
 
 
 def _positive_roots(polynomial: PolyElement) -> list[Fraction]:

@@ -1,21 +1,26 @@
-"""Second-order schemes as text: `x1 = "x0 + v0 + 1/2 a0"`, a linear grammar of sums. Nothing is executed.
+"""Numbers such as (16 - sqrt(6))/36, and equations such as x1 = x0 + v0 + 1/2 a0, read from text. Nothing is executed.
 
-equation       quantity = sum   |   quantity = acceleration(sum, sum)
-sum            [+-] product { +- product }
-product        [numbers [*]] quantity   |   [numbers [*]] ( sum )   |   quantity / number
-numbers        number { * number | / number }
-number         1/2, 0.5, 3, sqrt(2)                    exact, square roots to 40 digits
-quantity       x1, v0, a[-1]                           position, velocity, acceleration at a numbered step
-               vh, vh[0]                               a helper, of this step and of the one before
+equation   quantity = sum   |   quantity = acceleration ( sum , sum )
+sum        [+-] product { +- product }
+product    factor { [*] factor | / factor }              without * only before a quantity, a root or a parenthesis
+factor     number | sqrt ( sum ) | ( sum ) | quantity    the root of a sum that is rational
+number     7, 0.5, 1e-3
+quantity   x1, v0, a[-1]                                 position, velocity, acceleration at a numbered step
+           vh, vh[0]                                     a helper, of this step and of the one before
+
+Each sum is one of sympy's, exact: what must be exactly one is so. The rational numbers that stand for the roots come in
+at the end, each root with the same one everywhere.
 """
 
 import re
 from collections.abc import Mapping
-from typing import NoReturn
+from fractions import Fraction
 
-from bezstab.errors import InputError
-from bezstab.methods.second_order import MOST_EQUATIONS, SecondOrder
-from bezstab.methods.square_roots import SQUARE_ROOT, RootSum, root_sum
+import sympy as sp
+
+from bezstab.errors import InputError, shown
+from bezstab.methods.algebraic_numbers import decimal_root
+from bezstab.methods.second_order import SecondOrder
 from bezstab.methods.step_equations import (
     ACCELERATION,
     POSITION,
@@ -26,190 +31,187 @@ from bezstab.methods.step_equations import (
     Evaluation,
     Quantity,
 )
+from bezstab.rationals import ZERO, rational, within_float64
 
-PLAIN_NUMBER = r"\d+(?:\.\d*)?(?:/\d+)?"
-NUMBER = rf"(?P<number>{PLAIN_NUMBER}|{SQUARE_ROOT}\s*\(\s*{PLAIN_NUMBER}\s*\))"
-NAME = r"(?P<name>[A-Za-z_]\w*)(?P<index>\[\s*-?\d{1,3}\s*\])?"
-SIGN = r"(?P<sign>[-+*/(),])"
-EXPONENT = re.compile(r"\s*\d+(?:\.\d*)?[eE][-+]?\d+", re.ASCII)
-TOKEN = re.compile(rf"\s*(?:{NUMBER}|{NAME}|{SIGN})", re.ASCII)
-NUMBERED = re.compile(rf"([{POSITION}{VELOCITY}{ACCELERATION}])(\d+)", re.ASCII)
-PLAIN = re.compile(r"\w+(?:\[-?\d+\])?", re.ASCII)  # what is shown as it is of a result
+NUMBER = r"(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d{1,4})?"
+NAME = r"[A-Za-z_]\w*(?:\[\s*-?\d{1,3}\s*\])?"
+WORD = re.compile(rf"{NUMBER}|{NAME}|[-+*/(),]", re.ASCII)
+QUANTITY = re.compile(r"([A-Za-z_]\w*?)(\d+)?(?:\[(.+)\])?", re.ASCII)
 FUNCTION = "acceleration"
-LONGEST = 2000  # characters of one equation
+SQUARE_ROOT = "sqrt"
+
+MOST_EQUATIONS = 60  # some 20 stages
+LONGEST = 2000  # characters of one text
 LONGEST_NAME = 30  # characters of a quantity's name
-SHOWN = 40  # characters shown of what was given
 DEEPEST = 20  # parentheses within each other
-PLUS_ONE, MINUS_ONE, NOTHING = root_sum("1"), root_sum("-1"), root_sum("0")
+LARGEST_ROOT = 10**8  # numerator times denominator of what a root is taken of: so that its squares are found at once
+MOST_ROOTS = 4  # terms of a divisor: sympy takes the roots of no more out of it
+MOST_PRODUCTS = 1000  # that two sums are multiplied out to
+
+
+def exact_number(text: str) -> Fraction:
+    """Return the number that a text says, roots good to 40 decimals.
+
+    InputError unless it is one, real, and within float64's range.
+    """
+    reader = _Reader(text)
+    value = reader.sum()
+    if reader.words or reader.quantities:
+        raise InputError(f"{shown(text)}: expected a number such as -0.5, 175/108 or (16 - sqrt(6))/36")
+    return within_float64(_in_decimals(value), shown(text))
 
 
 def recipe(equations: Mapping[str, str]) -> SecondOrder:
     """Return the scheme of equations given as text, result by right-hand side; h = 1.
 
-    InputError, naming the equation and the word, for what is not linear, and what `SecondOrder` refuses.
+    InputError, naming the equation and the word, for what is not linear, and what `SecondOrder` and its `check_motion`
+    refuse.
     """
     if len(equations) > MOST_EQUATIONS:
         raise InputError(f"{len(equations)} equations: expected at most {MOST_EQUATIONS}")
-    return SecondOrder(tuple(_equation(result, text) for result, text in equations.items()))
+    scheme = SecondOrder(tuple(_equation(result, text) for result, text in equations.items()))
+    scheme.check_motion()
+    return scheme
 
 
 def _equation(result: str, text: str) -> Equation:
-    left = _Reader(result, result)
-    quantity = left.quantity()
-    left.expect_end()
-    right = _Reader(result, text)
-    if right.take(FUNCTION):
-        right.expect("(")
-        position = right.sum()
-        right.expect(",")
-        velocity = right.sum()
-        right.expect(")")
+    try:
+        left = _Reader(result)
+        quantity = left.quantity()
+        left.expect_end()
+        right = _Reader(text)
+        if right.take(FUNCTION):
+            right.expect("(")
+            position = right.combination()
+            right.expect(",")
+            velocity = right.combination()
+            right.expect(")")
+            right.expect_end()
+            return Evaluation(quantity, position, velocity)
+        value = right.combination()
         right.expect_end()
-        return Evaluation(quantity, position, velocity)
-    value = right.sum()
-    right.expect_end()
-    return Assignment(quantity, value)
+        return Assignment(quantity, value)
+    except InputError as error:
+        raise InputError(f"{shown(result)} = {error}") from None
 
 
 class _Reader:
-    """The words of one text, read from left to right."""
+    """The words of one text, taken from left to right; each method returns what the words ahead say."""
 
-    def __init__(self, result: str, text: str) -> None:
-        self.result = result
-        self.words: list[re.Match[str]] = []
-        self.place = 0
-        self.depth = 0
+    def __init__(self, text: str) -> None:
         if len(text) > LONGEST:
-            raise InputError(f"{self._equation()}: {len(text)} characters, expected at most {LONGEST}")
-        end = len(text.rstrip())
-        position = 0
-        while position < end:
-            exponent = EXPONENT.match(text, position)
-            if exponent:
-                self._refuse(repr(exponent.group().strip()[:SHOWN]), "a number like 1/2 or 0.5, without exponent")
-            word = TOKEN.match(text, position)
-            if word is None:
-                self._refuse(repr(text[position:].strip()[0]), "a sum of numbers times quantities")
-            self.words.append(word)
-            position = word.end()
+            raise InputError(f"{shown(text)}: {len(text)} characters, expected at most {LONGEST}")
+        self.text = text
+        self.words = WORD.findall(text)
+        self.quantities: dict[sp.Symbol, Quantity] = {}
+        self.depth = 0
+        if re.sub(r"\s", "", "".join(self.words)) != re.sub(r"\s", "", text):
+            raise InputError(f"{shown(text)}: expected numbers, names, + - * / and parentheses")
 
-    def _equation(self) -> str:
-        """Return how the equation is called in messages: one short line, whatever stands on its left."""
-        plain = PLAIN.fullmatch(self.result) and len(self.result) <= SHOWN
-        return f"{self.result if plain else repr(self.result[:SHOWN])} = ..."
+    def mistake(self, expected: str) -> InputError:
+        """Return the error that something else was expected than the next word."""
+        found = shown(self.words[0]) if self.words else "the end"
+        return InputError(f"{shown(self.text)}: found {found}, expected {expected}")
 
-    def _refuse(self, found: str, expected: str) -> NoReturn:
-        raise InputError(f"{self._equation()}: found {found}, expected {expected}")
-
-    def _next(self) -> str:
-        """Return the next word, '' at the end."""
-        return self.words[self.place].group().strip() if self.place < len(self.words) else ""
-
-    def _shown(self) -> str:
-        return repr(self._next()[:SHOWN]) if self._next() else "the end"
-
-    def take(self, word: str) -> bool:
-        """Return whether the next word is this one, and go past it if so."""
-        if self._next() != word:
-            return False
-        self.place += 1
-        return True
+    def take(self, *words: str) -> str:
+        """Return the next word if it is one of these, and go past it; else ''."""
+        return self.words.pop(0) if self.words and self.words[0] in words else ""
 
     def expect(self, word: str) -> None:
         """Go past a word that must be there."""
         if not self.take(word):
-            self._refuse(self._shown(), repr(word))
+            raise self.mistake(repr(word))
 
     def expect_end(self) -> None:
         """Refuse what stands after the end."""
-        if self._next():
-            self._refuse(self._shown(), "+, - or the end")
+        if self.words:
+            raise self.mistake("+, - or the end")
 
-    def sum(self) -> Combination:
-        """Return a sum of products, equal quantities added up."""
-        return tuple((number.in_decimals(), quantity) for quantity, number in self._terms().items())
+    def combination(self) -> Combination:
+        """Return a sum of numbers times quantities; none is zero."""
+        value = self.sum()
+        coefficients = {quantity: value.coeff(symbol) for symbol, quantity in self.quantities.items()}
+        if sp.expand(value - sum(c * symbol for symbol, c in zip(self.quantities, coefficients.values(), strict=True))):
+            raise InputError(f"{shown(self.text)}: expected a sum of numbers times quantities")
+        return tuple((_in_decimals(c), quantity) for quantity, c in coefficients.items() if c)
 
-    def _terms(self) -> dict[Quantity, RootSum]:
-        """Return the numbers of a sum by their quantities; none is zero."""
-        total: dict[Quantity, RootSum] = {}
-        sign = MINUS_ONE if self.take("-") else PLUS_ONE
-        if sign == PLUS_ONE:
-            self.take("+")
-        while True:
-            for quantity, number in self.product().items():
-                total[quantity] = total.get(quantity, NOTHING) + sign * number
-            if self.take("+"):
-                sign = PLUS_ONE
-            elif self.take("-"):
-                sign = MINUS_ONE
-            else:
-                return {quantity: number for quantity, number in total.items() if number != NOTHING}
+    def sum(self) -> sp.Expr:
+        """Return a sum of products."""
+        total = -self.product() if self.take("+", "-") == "-" else self.product()
+        while sign := self.take("+", "-"):
+            total += self.product() if sign == "+" else -self.product()
+        return total
 
-    def product(self) -> dict[Quantity, RootSum]:
-        """Return numbers times a quantity or times a sum in parentheses."""
-        factor = self._numbers() if self._is_number() else PLUS_ONE
-        if self.take("("):
-            self.depth += 1
-            if self.depth > DEEPEST:
-                self._refuse("'('", f"at most {DEEPEST} parentheses within each other")
-            inner = self._terms()
-            self.expect(")")
-            self.depth -= 1
-        else:
-            inner = {self.quantity(): PLUS_ONE}
-        while self.take("/"):
-            factor = factor * self._divisor()
-        return {quantity: factor * number for quantity, number in inner.items()}
-
-    def _numbers(self) -> RootSum:
-        """Return the product of numbers that the next words are, and go past the * after it."""
-        value = self._number()
+    def product(self) -> sp.Expr:
+        """Return a product of factors, or a quotient, taken from left to right, multiplied out."""
+        value = self.factor()
         while True:
             if self.take("/"):
-                value = value * self._divisor()
-            elif self.take("*") and self._is_number():
-                value = value * self._number()
+                factor = self.inverse(self.factor())
+            elif self.take("*") or (self.words and re.match(r"[A-Za-z_(]", self.words[0])):
+                factor = self.factor()
             else:
                 return value
+            if len(sp.Add.make_args(value)) * len(sp.Add.make_args(factor)) > MOST_PRODUCTS:
+                raise InputError(f"{shown(self.text)}: expected products of fewer sums")
+            value = sp.expand(value * factor)
 
-    def _divisor(self) -> RootSum:
-        """Return one over the number that the next word is."""
-        shown = self._shown()
-        divisor = self._number() if self._is_number() else NOTHING
-        if divisor == NOTHING:
-            self._refuse(shown, "a number other than 0 to divide by")
-        return divisor.inverse()
+    def factor(self) -> sp.Expr:
+        """Return a number, the root of one, what parentheses hold, or a quantity."""
+        is_root = self.take(SQUARE_ROOT)
+        if is_root or self.words[:1] == ["("]:
+            self.expect("(")
+            self.depth += 1
+            if self.depth > DEEPEST:
+                raise InputError(f"{shown(self.text)}: expected at most {DEEPEST} parentheses within each other")
+            inner = self.sum()
+            self.expect(")")
+            self.depth -= 1
+            return self.root(inner) if is_root else inner
+        if self.words and re.fullmatch(NUMBER, self.words[0]):
+            return sp.Rational(rational(self.words.pop(0)))
+        quantity = self.quantity()
+        symbol = sp.Symbol(str(quantity))
+        self.quantities[symbol] = quantity
+        return symbol
 
-    def _is_number(self) -> bool:
-        return self.place < len(self.words) and self.words[self.place].group("number") is not None
+    def root(self, of: sp.Expr) -> sp.Expr:
+        """Return the root of a rational number."""
+        if not of.is_Rational or of < 0 or of.p * of.q > LARGEST_ROOT:
+            what = f"a fraction p/q from 0, p q at most {LARGEST_ROOT:g}"
+            raise InputError(f"{shown(self.text)}: a root is taken of {what}")
+        return sp.sqrt(of)
 
-    def _number(self) -> RootSum:
-        """Return the number that the next word is, and go past it."""
-        try:
-            value = root_sum(self._next())
-        except InputError:
-            self._refuse(self._shown(), "a number like 1/2 or 0.5")
-        self.place += 1
-        return value
+    def inverse(self, of: sp.Expr) -> sp.Expr:
+        """Return one over a number, its roots in the numerator."""
+        if of == 0 or of.free_symbols or len(sp.Add.make_args(of)) > MOST_ROOTS:
+            what = f"a number other than 0, of at most {MOST_ROOTS} terms"
+            raise InputError(f"{shown(self.text)}: expected to divide by {what}")
+        return sp.expand(sp.radsimp(1 / of, max_terms=MOST_ROOTS))
 
     def quantity(self) -> Quantity:
         """Return the quantity that the next word names."""
-        word = self.words[self.place] if self.place < len(self.words) else None
-        if word is None or not word.group("name"):
-            self._refuse(self._shown(), "a quantity such as x0, v1 or a helper's name")
-        name, index = word.group("name"), word.group("index")
-        if len(name) > LONGEST_NAME:
-            self._refuse(self._shown(), f"a name of at most {LONGEST_NAME} characters")
-        self.place += 1
-        numbered = NUMBERED.fullmatch(name)
-        if name == FUNCTION:
-            self._refuse(f"{FUNCTION!r}", f"a sum: {FUNCTION}(position, velocity) stands alone on the right")
-        if numbered and index is None:
-            return Quantity(numbered.group(1), int(numbered.group(2)))
+        word = self.words[0] if self.words else ""
+        named = QUANTITY.fullmatch(word)
+        if named is None or word in (FUNCTION, SQUARE_ROOT):
+            raise self.mistake("a quantity such as x0, v1 or a helper's name")
+        name, number, index = named.groups()
         if name in (POSITION, VELOCITY, ACCELERATION):
-            if index is None:
-                self._refuse(f"{name!r}", f"a step with it, such as {name}0, {name}1 or {name}[-1]")
-            return Quantity(name, int(index[1:-1]))
-        if numbered:
-            self._refuse(f"{word.group().strip()!r}", f"{numbered.group(1)}{index}")
-        return Quantity(name, 1 if index is None else int(index[1:-1]))
+            if (number is None) == (index is None):
+                raise self.mistake(f"one step with it, such as {name}0, {name}1 or {name}[-1]")
+        else:
+            name, number = f"{name}{number or ''}", "1"
+        if len(self.words.pop(0)) > LONGEST_NAME:
+            raise InputError(f"{shown(self.text)}: expected names of at most {LONGEST_NAME} characters")
+        return Quantity(name, int(index or number))
+
+
+def _in_decimals(number: sp.Expr) -> Fraction:
+    """Return the rational number that stands for a sum of roots: each is good to 40 decimals."""
+    value = number.xreplace({root: sp.Rational(_decimal_root(int(root.base))) for root in number.atoms(sp.Pow)})
+    return Fraction(int(value.p), int(value.q))
+
+
+def _decimal_root(number: int) -> Fraction:
+    """Return the root of a whole number, to 40 decimals."""
+    return decimal_root(lambda x: x * x - number, ZERO, Fraction(number))

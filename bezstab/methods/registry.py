@@ -31,6 +31,7 @@ REGISTRY: dict[str, Callable[[], Method]] = {
 
 
 FOLDED_NAMES = {folded(name): name for name in REGISTRY}
+FOLDED_PARAMETRIC = {folded(name): method for name, method in PARAMETRIC.items()}
 
 
 @cache
@@ -64,49 +65,37 @@ def _built_in(name: str) -> Method:
     """Return the built-in method of that name, in any case, with or without parameters, or by an alias."""
     if folded(name) in FOLDED_NAMES:
         return REGISTRY[FOLDED_NAMES[folded(name)]]()
-    with_parameters = re.fullmatch(r"([^()]+)\(([^()]*)\)", name)
-    if with_parameters:
-        word = folded(with_parameters[1])
-        word = folded(ALIASES.get(word, word)).partition("(")[0]
-        if word in PARAMETRIC:
-            return _with_parameters(name, word, with_parameters[2].split(","))
-        if word in FOLDED_NAMES:
-            raise InputError(f"method {name!r}: {FOLDED_NAMES[word]} has no parameters")
-        name = with_parameters[1]  # of which advice may know
-    elif folded(name) in ALIASES:
+    if folded(name) in ALIASES:
         return lookup(ALIASES[folded(name)])
+    if with_parameters := re.fullmatch(r"([^()]+)\(([^()]*)\)", name):
+        name = with_parameters[1]  # of which advice may know
+        called = ALIASES.get(folded(name), name).partition("(")[0]
+        if method := FOLDED_PARAMETRIC.get(folded(called)):
+            return _with_parameters(method, with_parameters[2].split(","))
+        if folded(called) in FOLDED_NAMES:
+            raise InputError(f"method {name!r} has no parameters")
     raise unknown_method(name, [*REGISTRY, *PARAMETRIC])
 
 
-def _with_parameters(typed: str, word: str, texts: list[str]) -> Method:
+def _with_parameters(method: ParametricMethod, texts: Sequence[str]) -> Method:
     """Return a method with the parameters of its name, which are given in their order or each by its name."""
-    method = PARAMETRIC[word]
-    names = ",".join(parameter.name for parameter in method.parameters)
-    given = len([text for text in texts if text.strip()])
-    if given != len(method.parameters):
-        raise InputError(f"method {typed!r}: {given} parameters given, expected {word}({names})")
-    if any("=" in text for text in texts):
-        texts = _in_order(typed, method, texts)
-    values = []
-    for parameter, text in zip(method.parameters, texts, strict=True):
-        try:
-            value = rational(text)
-        except InputError as error:
-            raise InputError(f"method {typed!r}: {parameter.name}: {error}") from None
-        if not parameter.least <= value <= parameter.largest:
-            range_text = f"{parameter.least} to {parameter.largest}"
-            raise InputError(f"method {typed!r}: {parameter.name} = {text.strip()}: expected {range_text}")
-        values.append(value)
-    return method.having(*values)
-
-
-def _in_order(typed: str, method: ParametricMethod, texts: Sequence[str]) -> list[str]:
-    """Return the values of texts such as 'alpha=-0.1', each of another parameter, in the order of the parameters."""
+    names = list(method.parameters)
+    if len(texts) == len(names) and not any("=" in text for text in texts):
+        texts = [f"{name}={text}" for name, text in zip(names, texts, strict=True)]
     value_of: dict[str, str] = {}
     for text in texts:
         name, _, value = text.partition("=")
         value_of[folded(name.strip())] = value
-    if sorted(value_of) != sorted(folded(parameter.name) for parameter in method.parameters):
-        expected = ",".join(f"{parameter.name}=..." for parameter in method.parameters)
-        raise InputError(f"method {typed!r}: expected {method.name}({expected}), or the values alone")
-    return [value_of[folded(parameter.name)] for parameter in method.parameters]
+    if sorted(value_of) != sorted(map(folded, names)):
+        by_name = ",".join(f"{name}=..." for name in names)
+        raise InputError(f"expected {method.name}({','.join(names)}) or {method.name}({by_name})")
+    values = []
+    for name, (least, largest) in method.parameters.items():
+        text = value_of[folded(name)]
+        try:
+            values.append(rational(text))
+        except InputError as error:
+            raise InputError(f"{method.name}: {name}: {error}") from None
+        if not least <= values[-1] <= largest:
+            raise InputError(f"{method.name}: {name} = {text.strip()}: expected {least} to {largest}")
+    return method.having(*values)

@@ -14,7 +14,7 @@ from functools import partial
 
 from bezstab.methods.algebraic_numbers import DIGITS, decimal_root
 from bezstab.methods.polynomials import lagrange_integral
-from bezstab.methods.schemes import Coefficients, Family, Method, MethodGroup, RungeKutta
+from bezstab.methods.schemes import Coefficients, Method, MethodGroup, RungeKutta
 from bezstab.rationals import ONE, ZERO
 
 HALF = Fraction(1, 2)
@@ -96,9 +96,6 @@ EXPLICIT: dict[str, tuple[Sequence[str], str, str]] = {
 }
 """Explicit methods by name: what stands below the diagonal of A, row by row, the weights b, and the source."""
 
-MEMBERS = {**{f"RK{n}": Family("Runge-Kutta", n) for n in range(1, 5)}, "SIE": Family("SIE", 0)}
-"""Explicit methods that belong to a family."""
-
 
 def explicit(name: str) -> Method:
     """Return an explicit Runge-Kutta method by its name in EXPLICIT."""
@@ -109,7 +106,7 @@ def explicit(name: str) -> Method:
     for row in rows:
         below_diagonal = [Fraction(entry) for entry in row.split()]
         tableau.append((*below_diagonal, *[ZERO] * (len(b) - len(below_diagonal))))
-    return Method(name, RungeKutta(tuple(tableau), b), source, family=MEMBERS.get(name), digits=digits)
+    return Method(name, RungeKutta(tuple(tableau), b), source, digits=digits)
 
 
 def implicit_midpoint() -> Method:

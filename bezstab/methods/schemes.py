@@ -21,7 +21,6 @@ from decimal import Decimal
 from fractions import Fraction
 from functools import cached_property
 from itertools import zip_longest
-from math import factorial
 
 from bezstab.errors import InputError
 from bezstab.methods.polynomials import (
@@ -73,12 +72,15 @@ class FirstOrder(ABC):
     def mu_table(self) -> MuTable:
         """pi(z, mu)."""
 
-    @cached_property
+    @property
+    @abstractmethod
+    def second_order(self) -> SecondOrder:
+        """The equations of a step."""
+
+    @property
     def table(self) -> PlaneTable:
         """P(z; alpha_hat, beta_hat) for a step of h: the product of pi(z, mu) over both mu of the feedback."""
-        from bezstab.methods.determinants import product_over_feedback  # loads sympy
-
-        return product_over_feedback(self.mu_table)
+        return self.second_order.table
 
     @property
     def by_power_of_z(self) -> MuTable:
@@ -86,19 +88,8 @@ class FirstOrder(ABC):
         return self.mu_table
 
     def left_over(self, power: int) -> Iterator[Polynomial]:
-        """Yield what an exact motion leaves over, as `SecondOrder.left_over`: in v - mu x nothing.
-
-        On y' = lambda y the exact solution grows by e^mu in a step: pi(e^mu, mu) is what is left when it is put into
-        the method. z^k mu^j contributes c e^(k mu) mu^j, in which mu^power has c k^(power-j) / (power-j)!. Relative to
-        the slope of pi in z it is the local error; in P it is multiplied by mu - mu_2 = 2 mu + alpha_hat.
-        """
-        left = slope = ZERO
-        for k, row in enumerate(self.mu_table):
-            slope += k * row[0]
-            for j, c in enumerate(row[: power + 1]):
-                left += c * Fraction(k ** (power - j), factorial(power - j))
-        yield 2 * left / slope, left / slope
-        yield (ZERO,)
+        """Yield what linear motions leave over, as `SecondOrder.left_over`."""
+        return self.second_order.left_over(power)
 
 
 @dataclass(frozen=True)
@@ -318,32 +309,17 @@ Scheme = LinearMultistep | PredictorCorrector | RungeKutta | SecondOrder
 
 
 @dataclass(frozen=True)
-class Family:
-    """What a method is by its coefficients, whatever it is called: B4 is number 4 of the family "Bezier".
-
-    name: "Bezier", "Adams-Bashforth", "Adams-Bashforth-Moulton", "Runge-Kutta", "SIE" or "symplectic Euler".
-    number: which member; 0 where a method is alone in its family.
-    """
-
-    name: str
-    number: int
-
-
-@dataclass(frozen=True)
 class Method:
     """A scheme with its name and source; each of its steps spans `step_multiple` of the user's h (RK4@5: five).
 
-    `family` is None for a scheme that belongs to no family known here. It takes part in equality, as what is
-    remembered for a method (a start, a colour) may depend on it. `digits`: irrational coefficients have been replaced
-    by rationals good to so many digits, which is what is proven about; None where the coefficients are the method's.
-    InputError for a step multiple outside 1e-6 to 1e6.
+    `digits`: irrational coefficients have been replaced by rationals good to so many digits, which is what is proven
+    about; None where the coefficients are the method's. InputError for a step multiple outside 1e-6 to 1e6.
     """
 
     name: str
     scheme: Scheme
     source: str
     step_multiple: Fraction = ONE
-    family: Family | None = None
     digits: int | None = None
 
     def __post_init__(self) -> None:

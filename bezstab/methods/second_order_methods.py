@@ -7,15 +7,13 @@
 An acceleration that no line of the step gives (a0, where the step ends with a1) is the one stored in the step before.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
 
 from bezstab.methods.algebraic_numbers import DIGITS, decimal_root
-from bezstab.methods.recipes import recipe
-from bezstab.methods.schemes import Family, Method, MethodGroup
-from bezstab.methods.second_order import SecondOrder
+from bezstab.methods.schemes import Method, MethodGroup
 from bezstab.rationals import ONE, ZERO
 
 HALF = Fraction(1, 2)
@@ -166,13 +164,13 @@ RECIPES: dict[str, tuple[str, dict[str, str]]] = {
 def built_in(name: str) -> Method:
     """Return a method by its name in RECIPES."""
     source, equations = RECIPES[name]
-    return Method(
-        name,
-        recipe(equations),
-        source,
-        family=Family("symplectic Euler", 0) if name == "SYM" else None,
-        digits=DIGITS if name in ("forest-ruth", "yoshida4") else None,
-    )
+    return _method(name, source, equations, digits=DIGITS if name in ("forest-ruth", "yoshida4") else None)
+
+
+def _method(name: str, source: str, equations: Mapping[str, str], digits: int | None = None) -> Method:
+    from bezstab.methods.recipes import recipe  # loads sympy
+
+    return Method(name, recipe(equations), source, digits=digits)
 
 
 # Newmark's family and its descendants
@@ -183,8 +181,8 @@ def newmark(beta: Fraction, gamma: Fraction, name: str) -> Method:
 
     beta = 1/4: constant average acceleration; 1/6: linear; 1/12: Fox & Goodwin; 0: central differences.
     """
-    scheme = recipe(_newmark_updates(beta, gamma) | {"a1": "acceleration(x1, v1)"})
-    return Method(name, scheme, f"Newmark, J. Eng. Mech. Div. ASCE 85, 1959 (beta = {beta}, gamma = {gamma})")
+    source = f"Newmark, J. Eng. Mech. Div. ASCE 85, 1959 (beta = {beta}, gamma = {gamma})"
+    return _method(name, source, _newmark_updates(beta, gamma) | {"a1": "acceleration(x1, v1)"})
 
 
 def _newmark_updates(beta: Fraction, gamma: Fraction) -> dict[str, str]:
@@ -196,70 +194,52 @@ def _newmark_updates(beta: Fraction, gamma: Fraction) -> dict[str, str]:
 
 def hht(alpha: Fraction, name: str) -> Method:
     """Return the method of Hilber, Hughes and Taylor, alpha from -1/3 (most damping) to 0: forces at t_{1 + alpha}."""
-    source = f"Hilber, Hughes & Taylor, Earthq. Eng. Struct. Dyn. 5, 1977 (alpha = {alpha})"
-    scheme = _alpha_scheme(
+    equations = _alpha_equations(
         alpha_m=Fraction(0),
         alpha_f=-alpha,
         beta=(1 - alpha) ** 2 / 4,
         gamma=HALF - alpha,
     )
-    return Method(name, scheme, source)
+    return _method(name, f"Hilber, Hughes & Taylor, Earthq. Eng. Struct. Dyn. 5, 1977 (alpha = {alpha})", equations)
 
 
 def generalized_alpha(spectral_radius: Fraction, name: str) -> Method:
     """Return the generalised-alpha method by rho_inf, its |z| where alpha_hat, beta_hat are infinite: 0 to 1."""
     r = spectral_radius
-    source = f"Chung & Hulbert, J. Appl. Mech. 60, 1993 (generalised alpha, rho_inf = {r})"
-    scheme = _alpha_scheme(
+    equations = _alpha_equations(
         alpha_m=(2 * r - 1) / (r + 1),
         alpha_f=r / (r + 1),
         beta=1 / (1 + r) ** 2,
         gamma=(3 - r) / (2 * (1 + r)),
     )
-    return Method(name, scheme, source)
+    return _method(name, f"Chung & Hulbert, J. Appl. Mech. 60, 1993 (generalised alpha, rho_inf = {r})", equations)
 
 
-def _alpha_scheme(alpha_m: Fraction, alpha_f: Fraction, beta: Fraction, gamma: Fraction) -> SecondOrder:
+def _alpha_equations(alpha_m: Fraction, alpha_f: Fraction, beta: Fraction, gamma: Fraction) -> dict[str, str]:
     """Return Newmark's updates with (1 - alpha_m) a1 + alpha_m a0 = the acceleration at alpha_f of the way back."""
-    return recipe(
-        _newmark_updates(beta, gamma)
-        | {
-            "force": f"acceleration({1 - alpha_f} x1 + {alpha_f} x0, {1 - alpha_f} v1 + {alpha_f} v0)",
-            "a1": f"({1 / (1 - alpha_m)} force) + ({-alpha_m / (1 - alpha_m)} a0)",
-        }
-    )
-
-
-@dataclass(frozen=True)
-class Parameter:
-    """A parameter in a method's name, and the least and largest value it takes."""
-
-    name: str
-    least: Fraction
-    largest: Fraction
+    return _newmark_updates(beta, gamma) | {
+        "force": f"acceleration({1 - alpha_f} x1 + {alpha_f} x0, {1 - alpha_f} v1 + {alpha_f} v0)",
+        "a1": f"({1 / (1 - alpha_m)} force) + ({-alpha_m / (1 - alpha_m)} a0)",
+    }
 
 
 @dataclass(frozen=True)
 class ParametricMethod:
-    """A method whose name has parameters; `make` takes their values and the name."""
+    """A method whose name has parameters, from the least to the largest value; `make` takes theirs and the name."""
 
     name: str
-    parameters: tuple[Parameter, ...]
+    parameters: Mapping[str, tuple[Fraction, Fraction]]
     make: Callable[..., Method]
 
     def having(self, *values: Fraction) -> Method:
         """Return the method with these parameters, in their order; its name says them: hht(alpha=-1/20)."""
-        said = [f"{parameter.name}={value}" for parameter, value in zip(self.parameters, values, strict=True)]
+        said = [f"{parameter}={value}" for parameter, value in zip(self.parameters, values, strict=True)]
         return self.make(*values, f"{self.name}({','.join(said)})")
 
 
-NEWMARK = ParametricMethod(
-    "newmark",
-    (Parameter("beta", ZERO, Fraction(10)), Parameter("gamma", ZERO, Fraction(10))),
-    newmark,
-)
-HHT = ParametricMethod("hht", (Parameter("alpha", Fraction(-1, 3), ZERO),), hht)
-GENERALIZED_ALPHA = ParametricMethod("generalized-alpha", (Parameter("rho_inf", ZERO, ONE),), generalized_alpha)
+NEWMARK = ParametricMethod("newmark", dict.fromkeys(("beta", "gamma"), (ZERO, Fraction(10))), newmark)
+HHT = ParametricMethod("hht", {"alpha": (Fraction(-1, 3), ZERO)}, hht)
+GENERALIZED_ALPHA = ParametricMethod("generalized-alpha", {"rho_inf": (ZERO, ONE)}, generalized_alpha)
 
 PARAMETRIC = {method.name: method for method in (NEWMARK, HHT, GENERALIZED_ALPHA)}
 """Methods with parameters, by name: newmark(1/4,1/2) or newmark(beta=1/4,gamma=1/2)."""

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import click
 
 from bezstab.cli.options import command, option
-from bezstab.cli.output import Files, chosen_format, for_reading, progress, show_blocks, show_rows, write_file
+from bezstab.cli.output import Files, progress, show_rows, write_file
 from bezstab.files import output_directory
 from bezstab.paper.printed import PARTS
 
@@ -38,13 +38,11 @@ def paper(only: tuple[str, ...], files: Files) -> None:
     wanted = set(only or PARTS)
     output_directory(files.output)
     findings: list[Finding] = []
-    for subject in SUBJECTS:
-        if wanted.isdisjoint(subject.parts):
+    for parts, made_by in SUBJECTS.items():
+        if wanted.isdisjoint(parts):
             continue
-        report = subject.report(progress)
+        report = made_by(progress)
         write_parts(report, wanted, files)
-        if report.aside and for_reading():
-            click.echo(f"{report.aside}\n")
         findings += report.findings
     if not only:
         write_text(files.output / "LEDGER.md", ledger_text(findings))
@@ -71,8 +69,4 @@ def show_findings(findings: "list[Finding]") -> None:
     from bezstab.paper.ledger import finding_rows
     from bezstab.show import CLAIMS
 
-    rows = finding_rows(findings)
-    if chosen_format() == "text":
-        show_blocks(rows, CLAIMS.columns(rows), CLAIMS.sentence)
-    else:
-        show_rows(CLAIMS, rows)
+    show_rows(CLAIMS, finding_rows(findings), in_blocks=True)

@@ -1,7 +1,6 @@
 """Table 5 with Fig. 9: four methods at three points (section 5.2.3)."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import astuple
 from fractions import Fraction
 from functools import partial
 
@@ -10,14 +9,14 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from bezstab.mechanism import constraint_motion
-from bezstab.methods import Verdict, lookup, steps
+from bezstab.methods import lookup, steps
 from bezstab.paper.experiments import DURATION, STEP, Experiment, experiment
-from bezstab.paper.findings import Finding, finding
+from bezstab.paper.findings import Finding
 from bezstab.paper.printed import COMPARED, TABLE_5, PrintedCase, PrintedPole
 from bezstab.paper.reports import Progress, Report, captioned_table
-from bezstab.rationals import exact
+from bezstab.rationals import bisected_integers, exact
 from bezstab.show import (
-    Column,
+    Field,
     Row,
     column,
     column_figure,
@@ -41,7 +40,7 @@ PRINTED_POLES = [
     column("α̂", "alpha_hat", "g"),
     column("β̂", "beta_hat", "g"),
     column("method", "method"),
-    Column("dominant pole", pole_text),
+    Field("z_real", "", "dominant pole", text=pole_text),
     column("|z_p|", "z_abs", ".4f"),
     column("∠z_p (deg)", "z_angle_deg", ".3f"),
     column("as printed (*: not ours)", "printed"),
@@ -60,7 +59,6 @@ def report(progress: Progress) -> Report:
         tables={"table5": pole_table(runs)},
         figures={"fig9": partial(panels_figure, runs)},
         findings=findings(runs),
-        aside=f"{poles_as_printed(runs).here}. Table 5 marks what does not match with *.",
     )
 
 
@@ -68,25 +66,12 @@ def compared_runs() -> Iterator[Experiment]:
     """Yield three points, each with four methods."""
     for case in TABLE_5:
         for name in COMPARED:
-            yield experiment(
-                lookup(name),
-                h=STEP,
-                duration=DURATION,
-                alpha_hat=float(case.alpha_hat),
-                beta_hat=float(case.beta_hat),
-            )
+            yield experiment(name, *case.point)
 
 
 def by_case(runs: Sequence[Experiment]) -> list[CaseRuns]:
     """Return the runs of each case of Table 5."""
-    return [
-        {
-            run.method.name: run
-            for run in runs
-            if run.alpha_hat == float(case.alpha_hat) and run.beta_hat == float(case.beta_hat)
-        }
-        for case in TABLE_5
-    ]
+    return [{run.method.name: run for run in runs if (run.alpha_hat, run.beta_hat) == case.point} for case in TABLE_5]
 
 
 def beside_printed(runs: Sequence[Experiment]) -> list[tuple[PrintedCase, Experiment, PrintedPole]]:
@@ -115,8 +100,7 @@ def pole_row(run: Experiment, printed: PrintedPole) -> Row:
     A printed number that is not the pole's is marked.
     """
     marked = [
-        text if wrong is None else f"{text}*"
-        for text, wrong in zip(astuple(printed), misprints(printed, run.pole), strict=True)
+        text if wrong is None else f"{text}*" for text, wrong in zip(printed, misprints(printed, run.pole), strict=True)
     ]
     return {
         "alpha_hat": run.alpha_hat,
@@ -158,7 +142,7 @@ def poles_as_printed(runs: Sequence[Experiment]) -> Finding:
         wrong = [words for words in misprints(printed, run.pole) if words]
         if wrong:
             misprinted.append(f"{run.method.name} at ({case.alpha_hat}, {case.beta_hat}): {', '.join(wrong)}")
-    return finding(
+    return Finding(
         where="Table 5",
         claim="dominant poles of four methods at three points",
         paper="48 numbers",
@@ -175,13 +159,8 @@ def matching_numbers(runs: Sequence[Experiment]) -> str:
 
 def misprints(printed: PrintedPole, pole: complex) -> list[str | None]:
     """Return for each number of a printed pole what is wrong with it; None where it is the pole's to as many digits."""
-    pairs = [
-        (printed.real, pole.real),
-        (printed.imaginary, pole.imag),
-        (printed.modulus, abs(pole)),
-        (printed.angle, float(np.degrees(np.angle(pole)))),
-    ]
-    return [_misprint(text, value) for text, value in pairs]
+    values = pole.real, pole.imag, abs(pole), float(np.degrees(np.angle(pole)))
+    return [_misprint(text, value) for text, value in zip(printed, values, strict=True)]
 
 
 def _misprint(text: str, value: float) -> str | None:
@@ -202,22 +181,20 @@ def points_lie_as_said() -> Finding:
         f"{name} at ({case.alpha_hat}, {case.beta_hat})"
         for case in TABLE_5
         for name in COMPARED
-        if verdict(lookup(name), Fraction(case.alpha_hat), Fraction(case.beta_hat)) == "diverges"
+        if verdict(lookup(name), *case.exact) == "diverges"
     ]
-    inner, outer = Fraction(TABLE_5[1].beta_hat), Fraction(TABLE_5[2].beta_hat)
-    alpha_hat = Fraction(TABLE_5[1].alpha_hat)
-    while outer - inner > EDGE_DIGITS:
-        middle = (inner + outer) / 2
-        if verdict(lookup("AB4"), alpha_hat, middle) == "converges":
-            inner = middle
-        else:
-            outer = middle
-    return finding(
+    (alpha_hat, inner), (_, outer) = TABLE_5[1].exact, TABLE_5[2].exact
+    edge, _ = bisected_integers(
+        lambda place: verdict(lookup("AB4"), alpha_hat, place * EDGE_DIGITS) != "converges",
+        int(inner / EDGE_DIGITS),
+        int(outer / EDGE_DIGITS),
+    )
+    return Finding(
         where="Table 5",
         claim="all points lie in all regions, but the third outside AB4's",
         paper="“within the stability regions of all methods … In the third case, with a slight change in the value of "
         "β̂, the parameters for the Adams–Bashforth method are located outside the region, but close to the boundary”",
-        here=f"outside: {', '.join(outside)}; AB4's edge lies at β̂ = {float(inner):.5f} there",
+        here=f"outside: {', '.join(outside)}; AB4's edge lies at β̂ = {float(edge * EDGE_DIGITS):.5f} there",
         holds=[outside == ["AB4 at (0.5, 0.101)"]],
     )
 
@@ -227,7 +204,7 @@ def alike_well_inside(runs: CaseRuns) -> Finding:
     b4, ab4 = runs["B4"], runs["AB4"]
     ratio = b4.largest(8, 10) / max(ab4.largest(8, 10), ROUNDED)
     moduli = abs(b4.pole), abs(ab4.pole)
-    return finding(
+    return Finding(
         where="Fig. 9b",
         claim="well inside the region B4 and AB4 behave almost identically",
         paper="“when the Baumgarte parameters are within the stability region and far from the boundaries of the "
@@ -244,7 +221,7 @@ def one_step_methods_oscillate(*cases: CaseRuns) -> Finding:
     amplitudes = ", ".join(f"{name} {_amplitude(run)}" for name, run in first.items())
     ratio = first["SIE"].largest(8, 10) / first["RK4@5"].largest(8, 10)
     constant = all(0.5 < _growth(case[name]) < 2 for case in cases for name in ("RK4@5", "SIE"))
-    return finding(
+    return Finding(
         where="Fig. 9a, c, f",
         claim="RK4 and Euler oscillate constantly about zero, Euler with a much larger amplitude",
         paper="“the Runge–Kutta and the Euler's semi-implicit methods have a constant oscillation around the value of "
@@ -258,7 +235,7 @@ def multistep_methods_are_damped(runs: CaseRuns) -> Finding:
     """Return what is left of the oscillation of B4 and AB4 in case 1, and whether it is still falling."""
     b4, ab4 = runs["B4"], runs["AB4"]
     left = max(b4.largest(8, 10), ab4.largest(8, 10))
-    return finding(
+    return Finding(
         where="Fig. 9b",
         claim="the oscillation of B4 and AB4 is damped out",
         paper="“For the Bézier and Adams–Bashforth methods, the oscillation is damped out”",
@@ -270,8 +247,8 @@ def multistep_methods_are_damped(runs: CaseRuns) -> Finding:
 
 def ab4_decreases(case: PrintedCase, run: Experiment) -> Finding:
     """Return whether AB4 converges at the edge of its region: as proven, and as run."""
-    proven, growth = _verdict_of_ab4(case), _growth(run)
-    return finding(
+    proven, growth = verdict(lookup("AB4"), *case.exact), _growth(run)
+    return Finding(
         where="Fig. 9d",
         claim="case 2: AB4's oscillation decreases gradually",
         paper="“the amplitude of these oscillations gradually decreases and the error of constraint converges to zero”",
@@ -282,8 +259,8 @@ def ab4_decreases(case: PrintedCase, run: Experiment) -> Finding:
 
 def ab4_diverges(case: PrintedCase, run: Experiment) -> Finding:
     """Return whether AB4 diverges just outside its region: as proven, and as run."""
-    proven, growth = _verdict_of_ab4(case), _growth(run)
-    return finding(
+    proven, growth = verdict(lookup("AB4"), *case.exact), _growth(run)
+    return Finding(
         where="Fig. 9e",
         claim="case 3: AB4 diverges gradually",
         paper="“a gradual increase of the amplitude of the oscillations and therefore divergence of the error of the "
@@ -295,8 +272,8 @@ def ab4_diverges(case: PrintedCase, run: Experiment) -> Finding:
 
 def ab4_derivative_diverges(run: Experiment) -> Finding:
     """Return by what the derivative of c_1 grows where AB4 is just outside its region."""
-    growth = run.largest_rate(8, 10) / run.largest_rate(6, 8)
-    return finding(
+    growth = run.largest(8, 10, rate=True) / run.largest(6, 8, rate=True)
+    return Finding(
         where="Section 5.2.3",
         claim="case 3: AB4's derivative diverges as well",
         paper="“a diverging behavior in the error of constraint and its time derivative for the Adams–Bashforth "
@@ -315,7 +292,7 @@ def ab4_oscillates_fast(run: Experiment) -> Finding:
     left = c[2:] - 2 * run.pole.real * c[1:-1] + abs(run.pole) ** 2 * c[:-2]
     irregular = float(np.abs(left).max() / np.abs(c).max())
     per_second = np.count_nonzero(np.diff(np.sign(c))) / 2 / (len(c) - 1) / run.h
-    return finding(
+    return Finding(
         where="Section 5.2.3",
         claim="near the edge AB4 oscillates irregularly, and very fast",
         paper="“the magnitude of ∠z_p is large; therefore, the response of this method exhibits irregular oscillations "
@@ -328,10 +305,10 @@ def ab4_oscillates_fast(run: Experiment) -> Finding:
 
 def bezier_performs_better(runs: CaseRuns) -> Finding:
     """Return by what the crank's angle is wrong in the end, by method, in a case in which all are stable."""
-    right = experiment(lookup("RK4"), h=STEP, duration=DURATION, alpha_hat=0.0, beta_hat=0.0)
+    right = experiment("RK4")
     errors = {name: abs(float(run.trajectory.q[-1, 0] - right.trajectory.q[-1, 0])) for name, run in runs.items()}
     shown = ", ".join(f"{name} {_above(error, ANGLE_ROUNDED)}" for name, error in errors.items())
-    return finding(
+    return Finding(
         where="Section 6",
         claim="Bézier performs better than Adams–Bashforth and Runge–Kutta",
         paper="“a better performance of the Bézier method compared to both Adams–Bashforth and Runge–Kutta integration "
@@ -350,17 +327,12 @@ def oscillation_is_a_disadvantage(runs: CaseRuns) -> Finding:
     omega = constraint_motion(runs["B4"].trajectory.mechanism, DURATION).omega
     forced, accurate = {}, {}
     for name in ("RK4@5", "B4"):
-        costs = [
-            feedback_cost(lookup(name), float(case.alpha_hat), float(case.beta_hat), exact(omega) * exact(STEP))
-            for case in TABLE_5
-        ]
+        costs = [feedback_cost(lookup(name), *case.point, exact(omega) * exact(STEP)) for case in TABLE_5]
         times = [cost.times_least or np.nan for cost in costs]
         order = f"{costs[0].order_left} of {costs[0].order}"
         forced[name] = f"{name} keeps order {order} and forces {min(times):.1g} to {max(times):.1g} times"
-        alpha_hat, beta_hat = costs[0].least_at or (np.nan, np.nan)
-        run = experiment(lookup(name), h=STEP, duration=DURATION, alpha_hat=alpha_hat, beta_hat=beta_hat)
-        accurate[name] = run.largest(8, 10)
-    return finding(
+        accurate[name] = experiment(name, *(costs[0].least_at or (np.nan, np.nan))).largest(8, 10)
+    return Finding(
         where="Section 6",
         claim="RK4's constant oscillation about zero is a disadvantage of the method",
         paper="“parameters … have been selected according to the stability regions”; “a constant oscillation about "
@@ -370,10 +342,6 @@ def oscillation_is_a_disadvantage(runs: CaseRuns) -> Finding:
         f"{accurate['B4']:.0e} m, in case 1 {_amplitude(runs['RK4@5'])} and {_amplitude(runs['B4'])} m",
         holds=[accurate["RK4@5"] > accurate["B4"]],
     )
-
-
-def _verdict_of_ab4(case: PrintedCase) -> Verdict:
-    return verdict(lookup("AB4"), Fraction(case.alpha_hat), Fraction(case.beta_hat))
 
 
 def _growth(run: Experiment) -> float:
@@ -399,7 +367,7 @@ def what_semi_implicit_euler_is(table_5: Sequence[PrintedCase] = TABLE_5) -> Fin
     sie_matches, sym_matches = matching_poles("SIE", table_5), matching_poles("SYM", table_5)
     is_symplectic = sym_matches == len(table_5)
     is_corrected_once = sie_matches == len(table_5)
-    return finding(
+    return Finding(
         where="Table 5",
         claim="a method called “Euler semi-implicit”",
         paper="“Euler's semi-implicit scheme”",
@@ -412,11 +380,9 @@ def matching_poles(name: str, table_5: Sequence[PrintedCase]) -> int:
     """Return how many of the poles printed for "Euler semi-implicit" are those of a method."""
     matches = 0
     for case in table_5:
-        printed = case.poles["SIE"]
-        pole = complex(dominant_pole(lookup(name), float(case.alpha_hat), float(case.beta_hat)))
-        same_modulus = abs(abs(pole) - float(printed.modulus)) < LAST_DIGIT
-        same_real_part = abs(pole.real - float(printed.real)) < LAST_DIGIT
-        matches += same_modulus and same_real_part
+        real, _, modulus, _ = map(float, case.poles["SIE"])
+        pole = complex(dominant_pole(lookup(name), *case.point))
+        matches += abs(abs(pole) - modulus) < LAST_DIGIT and abs(pole.real - real) < LAST_DIGIT
     return matches
 
 

@@ -1,24 +1,15 @@
 """Table 6: what 10 s of simulation cost."""
 
 import json
-import time
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-
-from bezstab.mechanism import compiled_mechanism, load_scene, simulate
-from bezstab.methods import lookup
-from bezstab.paper.experiments import DURATION, STEP
-from bezstab.paper.findings import Finding, finding
-from bezstab.paper.printed import COMPARED, TABLE_6
+from bezstab.paper.findings import Finding
+from bezstab.paper.printed import TABLE_6
 from bezstab.paper.reports import Progress, Report, captioned_table
-from bezstab.show import Row, column, render
-from bezstab.units import feedback_gains
+from bezstab.show import Row, column
 
-REPEATS = 5  # as many as the paper averages; here the fastest counts, which other programs disturb least
-ALPHA_HAT = BETA_HAT = 0.1  # case 1 of Table 5; the cost does not depend on the point
 EQUAL = 0.04  # of the least: by how much the paper's times differ
 
 RECORDED = Path(__file__).parent / "table6_times.json"
@@ -30,12 +21,6 @@ COSTS = [
     column("paper (s)", "printed"),
     column("recorded (s)", "recorded_seconds", ".3f"),
     column("recorded / B4's", "recorded_ratio", ".2f"),
-]
-TIMED_COSTS = [
-    column("method", "method"),
-    column("evaluations of f in 10 s", "evaluations", "d"),
-    column("processor time now (s)", "seconds", ".3f"),
-    column("/ B4's", "ratio", ".2f"),
 ]
 
 
@@ -49,17 +34,14 @@ class Cost:
 
 
 def report(_progress: Progress) -> Report:
-    """Return Table 6 and what it claims, with the times recorded once; those of this run aside."""
-    measured, recorded = costs(), recorded_costs()
+    """Return Table 6 and what it claims, with the times recorded once."""
+    recorded = recorded_costs()
     caption = (
         "Table 6: what 10 s of simulation cost (h = 1 ms, RK4 at 5 ms). The paper's times are of its three cases. "
-        f"Ours are not of this run: they were recorded once (processor time, the fastest of {REPEATS}, one core, "
-        "not compiled)."
+        "Ours are not of this run: they were recorded once (processor time, the fastest of 5, one core, not compiled)."
     )
     return Report(
-        tables={"table6": captioned_table(caption, compared_rows(recorded), COSTS)},
-        findings=findings(measured, recorded),
-        aside=render(timed_rows(measured), TIMED_COSTS, "text"),
+        tables={"table6": captioned_table(caption, compared_rows(recorded), COSTS)}, findings=findings(recorded)
     )
 
 
@@ -78,30 +60,10 @@ def compared_rows(recorded: Sequence[Cost]) -> list[Row]:
     ]
 
 
-def timed_rows(measured: Sequence[Cost]) -> list[Row]:
-    """Return the rows of what was measured now."""
-    ratios = time_ratios(measured)
-    return [{**asdict(cost), "ratio": ratios[cost.method]} for cost in measured]
-
-
 def time_ratios(of: Sequence[Cost]) -> Mapping[str, float]:
     """Return each method's processor time over B4's."""
     seconds = {cost.method: cost.seconds for cost in of}
     return {method: taken / seconds["B4"] for method, taken in seconds.items()}
-
-
-def costs() -> list[Cost]:
-    """Return the cost of Table 6's runs; all in one process, interleaved, the fastest of several."""
-    mechanism = compiled_mechanism(load_scene("slider_crank"))
-    gains = feedback_gains(ALPHA_HAT, BETA_HAT, STEP)
-    fastest = dict.fromkeys(COMPARED, np.inf)
-    evaluations = dict.fromkeys(COMPARED, 0)
-    for _ in range(REPEATS):
-        for name in COMPARED:
-            begin = time.process_time()
-            evaluations[name] = simulate(mechanism, lookup(name), STEP, DURATION, gains).evaluations
-            fastest[name] = min(fastest[name], time.process_time() - begin)
-    return [Cost(name, evaluations[name], seconds=fastest[name]) for name in COMPARED]
 
 
 def recorded_costs() -> list[Cost]:
@@ -109,16 +71,16 @@ def recorded_costs() -> list[Cost]:
     return [Cost(**row) for row in json.loads(RECORDED.read_text(encoding="utf-8"))]
 
 
-def findings(measured: Sequence[Cost], recorded: Sequence[Cost]) -> list[Finding]:
+def findings(recorded: Sequence[Cost]) -> list[Finding]:
     """Return what Table 6 claims of the cost: of exact counts and recorded times, the same on every machine."""
-    return [same_evaluations(measured), same_times(recorded), one_step_methods_take_longer()]
+    return [same_evaluations(recorded), same_times(recorded), one_step_methods_take_longer()]
 
 
-def same_evaluations(measured: Sequence[Cost]) -> Finding:
+def same_evaluations(recorded: Sequence[Cost]) -> Finding:
     """Return how often f is evaluated in the runs of Table 6."""
-    counts = ", ".join(f"{cost.method} {cost.evaluations}" for cost in measured)
-    spread = _spread([cost.evaluations for cost in measured])
-    return finding(
+    counts = ", ".join(f"{cost.method} {cost.evaluations}" for cost in recorded)
+    spread = _spread([cost.evaluations for cost in recorded])
+    return Finding(
         where="Table 6",
         claim="the four methods cost the same (RK4 at 5 ms, the others at 1 ms)",
         paper="“computational costs are almost the same”",
@@ -130,7 +92,7 @@ def same_evaluations(measured: Sequence[Cost]) -> Finding:
 def same_times(recorded: Sequence[Cost]) -> Finding:
     """Return the processor times that were recorded, as multiples of B4's."""
     ratios = time_ratios(recorded)
-    return finding(
+    return Finding(
         where="Table 6",
         claim="they take the same processor time",
         paper="“the difference between CPU times of each method is less than 4%”",
@@ -147,7 +109,7 @@ def one_step_methods_take_longer() -> Finding:
     cases = [dict(zip(TABLE_6, times, strict=True)) for times in zip(*TABLE_6.values(), strict=True)]
     spreads = [_spread(list(times.values())) for times in cases]
     longer = [min(times["RK4@5"], times["SIE"]) > max(times["B4"], times["AB4"]) for times in cases]
-    return finding(
+    return Finding(
         where="Table 6",
         claim="what differs is due to other programs",
         paper="“less than 4%, which is caused by background apps running on the computer”",

@@ -8,9 +8,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from bezstab.mechanism import Start
-from bezstab.methods import lookup
 from bezstab.paper.experiments import START_NAMES, Experiment, experiment
-from bezstab.paper.findings import Finding, finding
+from bezstab.paper.findings import Finding
 from bezstab.paper.printed import TABLE_3
 from bezstab.paper.reports import Progress, Report
 from bezstab.show import DASHES, column_figure, legend_below, line_at, styled
@@ -53,7 +52,7 @@ def unstabilized(steps: Sequence[float], duration: float) -> Iterator[Experiment
     for start in START_NAMES:
         for name in METHODS:
             for h in steps:
-                yield experiment(lookup(name), h=h, duration=duration, alpha_hat=0.0, beta_hat=0.0, start=start)
+                yield experiment(name, h=h, duration=duration, start=start)
 
 
 def collapse_findings(runs: Sequence[Experiment]) -> list[Finding]:
@@ -72,7 +71,7 @@ def b4_collapses_later(runs: Sequence[Experiment]) -> Finding:
         pairs = [f"{_time(b4)} / {_time(ab4)}" for b4, ab4 in zip(b4_ends, ab4_ends, strict=True)]
         texts[start] = f"B4 / AB4 after {', '.join(pairs)} s at {steps} ms"
         later.append(all(b4 > ab4 for b4, ab4 in zip(b4_ends, ab4_ends, strict=True)))
-    return finding(
+    return Finding(
         where="Fig. 5",
         claim="B4 collapses later than AB4",
         paper="“for all step sizes considered, the collapse point for the Bézier method occurs later than the "
@@ -87,7 +86,7 @@ def large_steps_last_longer(runs: Sequence[Experiment]) -> Finding:
     ends = _ends(runs)
     ratios = [ends["euler", "B4", h] / ends["euler", "AB4", h] for h in COLLAPSE_STEPS]
     largest = COLLAPSE_STEPS[-1]
-    return finding(
+    return Finding(
         where="Fig. 5",
         claim="B4 is more stable in particular for large steps",
         paper=FOR_LARGE_STEPS,
@@ -103,7 +102,7 @@ def collapse_is_sudden(runs: Sequence[Experiment]) -> Finding:
     shortly_before = [run.largest(0.0, 0.99 * float(run.t[-1])) for run in collapsed]
     at_the_end = [run.largest(0.99 * float(run.t[-1]), np.inf) for run in collapsed]
     sudden = [end > SUDDENLY * before for before, end in zip(shortly_before, at_the_end, strict=True)]
-    return finding(
+    return Finding(
         where="Fig. 5",
         claim="the collapse is sudden",
         paper="“after some time, either the amount of error reaches a point that causes serious problems for the "
@@ -143,7 +142,7 @@ def growth_is_linear(runs: Sequence[Experiment]) -> Finding:
             continue
         largest_so_far = np.array([run.largest(0, time) for time in times.tolist()])
         powers.append(_power(times, largest_so_far))
-    return finding(
+    return Finding(
         where="Fig. 6",
         claim="without stabilisation the violation grows linearly with time",
         paper="“the constraint violation increases linearly with time”",
@@ -160,9 +159,9 @@ def both_levels_are_violated(runs: Sequence[Experiment]) -> Finding:
     half = GROWTH_DURATION / 2
     of_b4 = [run for run in runs if run.method.name == "B4"]
     growth_of_c = [run.largest(half, GROWTH_DURATION) / run.largest(0, half) for run in of_b4]
-    growth_of_cdot = [run.largest_rate(half, GROWTH_DURATION) / run.largest_rate(0, half) for run in of_b4]
-    least = min(run.largest_rate(half, GROWTH_DURATION) for run in of_b4)
-    return finding(
+    growth_of_cdot = [run.largest(half, GROWTH_DURATION, rate=True) / run.largest(0, half, rate=True) for run in of_b4]
+    least = min(run.largest(half, GROWTH_DURATION, rate=True) for run in of_b4)
+    return Finding(
         where="Introduction",
         claim="positions and velocities violate the constraints",
         paper="“violation of constraints occurs at position and velocity levels due to numerical errors associated "
@@ -178,7 +177,7 @@ def first_constraint_represents_all(runs: Sequence[Experiment]) -> Finding:
     seen = [run for run in runs if run.largest(0, GROWTH_DURATION) > ROUNDING]
     largest = np.array([np.abs(run.observation.c).max(axis=0) for run in seen])
     ratios = largest[:, 0] / largest[:, 3]
-    return finding(
+    return Finding(
         where="Section 5.2.1",
         claim="c_1 stands for all constraints",
         paper="“This constraint can be considered as representative of all of the constraints in Eq. (19)”",
@@ -195,7 +194,7 @@ def errors_are_of_one_order(runs: Sequence[Experiment]) -> Finding:
         b4, ab4 = (_power(np.array(GROWTH_STEPS), _final_errors(runs, start, name)) for name in METHODS)
         texts[start] = f"B4 {b4:.0f}, AB4 {ab4:.0f}"
         same.append(abs(b4 - ab4) < 0.25)
-    return finding(
+    return Finding(
         where="Fig. 6",
         claim="both methods have the same order of error",
         paper="“both methods have the same order of error by considering the same step sizes”",
@@ -215,7 +214,7 @@ def b4_errs_less(runs: Sequence[Experiment]) -> Finding:
         ratios = (of_b4 / of_ab4)[of_ab4 > ROUNDING]
         texts[start] = f"B4 / AB4 = {_ratio(ratios.min())} to {_ratio(ratios.max())}"
         less.append(bool(ratios.max() < 1))
-    return finding(
+    return Finding(
         where="Fig. 6",
         claim="B4's error is slightly below AB4's",
         paper="“the constraint error for 4th order Bézier is slightly less than 4th order Adams–Bashforth in different "
@@ -229,7 +228,7 @@ def large_steps_favour_b4(runs: Sequence[Experiment]) -> Finding:
     """Return how the final |c_1| of B4 compares with AB4's at each step, from either start."""
     by_start = {start: _final_errors(runs, start, "B4") / _final_errors(runs, start, "AB4") for start in START_NAMES}
     after_euler, after_rk4 = by_start["euler"], by_start["rk4"]
-    return finding(
+    return Finding(
         where="Fig. 6",
         claim="B4 is more accurate in particular for large steps",
         paper=FOR_LARGE_STEPS,

@@ -14,7 +14,7 @@ from bezstab.mechanism import (
     perturbed_state,
     simulate,
 )
-from bezstab.methods import Method
+from bezstab.methods import Method, lookup
 from bezstab.stability import FloatArray, dominant_pole
 from bezstab.units import feedback_gains
 
@@ -67,32 +67,25 @@ class Experiment:
         """The predicted dominant pole."""
         return complex(dominant_pole(self.method, self.alpha_hat, self.beta_hat))
 
-    def largest(self, begin: float, end: float) -> float:
-        """Return the largest |c_1| (m) between two times (s)."""
-        return self._largest_of(self.c, begin, end)
-
-    def largest_rate(self, begin: float, end: float) -> float:
-        """Return the largest |d c_1 / dt| (m/s) between two times (s)."""
-        return self._largest_of(self.cdot, begin, end)
-
-    def _largest_of(self, history: FloatArray, begin: float, end: float) -> float:
+    def largest(self, begin: float, end: float, rate: bool = False) -> float:
+        """Return the largest |c_1| (m), or with `rate` the largest |d c_1 / dt| (m/s), between two times (s)."""
         between = (self.t >= begin) & (self.t <= end)
-        return float(np.abs(history[between]).max())
+        return float(np.abs((self.cdot if rate else self.c)[between]).max())
 
 
 def experiment(
-    method: Method,
+    method: str,
+    alpha_hat: float = 0.0,
+    beta_hat: float = 0.0,
     *,
-    h: float,
-    duration: float,
-    alpha_hat: float,
-    beta_hat: float,
+    h: float = STEP,
+    duration: float = DURATION,
     start: Start = "rk4",
     kick: float = 0.0,
 ) -> Experiment:
     """Return a run of `duration` (s) with steps of h (s) from the scene's initial state, c_1 moved by `kick` (m)."""
     mechanism = compiled_mechanism(load_scene("slider_crank"))
     gains = feedback_gains(alpha_hat, beta_hat, h)
-    trajectory = simulate(mechanism, method, h, duration, gains, perturbed_state(mechanism, kick), start)
+    trajectory = simulate(mechanism, lookup(method), h, duration, gains, perturbed_state(mechanism, kick), start)
     observation = observe(mechanism, trajectory.t, trajectory.q, trajectory.v, *gains)
     return Experiment(trajectory, observation, h=h, alpha_hat=alpha_hat, beta_hat=beta_hat, start=start)

@@ -8,12 +8,11 @@ from itertools import combinations, pairwise, product
 import numpy as np
 from matplotlib.figure import Figure
 
-from bezstab.methods import lookup
 from bezstab.paper.experiments import STEP, Experiment, experiment
-from bezstab.paper.findings import Finding, finding
+from bezstab.paper.findings import Finding
 from bezstab.paper.printed import FASTER_LEVEL, TABLE_5
 from bezstab.paper.reports import Progress, Report, captioned_table
-from bezstab.show import Column, Row, column, column_figure, line_at, pole_cells, pole_text, styled
+from bezstab.show import Field, Row, column, column_figure, line_at, pole_cells, pole_text, styled
 from bezstab.stability import FloatArray, poles
 
 KICK = 1e-3  # m: Table 4 is about decay and growth, so there must be something that decays or grows
@@ -49,7 +48,7 @@ BEHAVIOURS = [
     column("described as", "described"),
     column("α̂", "alpha_hat", "g"),
     column("β̂", "beta_hat", "g"),
-    Column("dominant pole", pole_text),
+    Field("z_real", "", "dominant pole", text=pole_text),
     column("|z_p|", "z_abs", ".4f"),
     column("∠z_p (deg)", "z_angle_deg", ".2f"),
     column("seen: |z|", "rate", ".4f"),
@@ -58,22 +57,24 @@ BEHAVIOURS = [
 
 
 @dataclass(frozen=True)
-class Behaviour:
-    """A case of Table 4: dominant pole, and by what c_1 changed per step and how often it crossed zero in the run.
+class Seen:
+    """By what a history changed per step, how often it crossed zero, and the steps it took to fall to a hundredth."""
 
-    The same of its derivative; the steps that both were followed for, and those each took to fall to a hundredth.
-    """
+    rate: float
+    crossings: int
+    fallen: int
+
+
+@dataclass(frozen=True)
+class Behaviour:
+    """A case of Table 4: dominant pole, and what c_1 and its derivative did as long as they were followed."""
 
     case: Case
     pole: complex
-    rate: float
-    crossings: int
     failure: str | None
-    rate_of_cdot: float
-    crossings_of_cdot: int
     followed: int
-    fallen: int
-    cdot_fallen: int
+    c: Seen
+    cdot: Seen
 
 
 def report(progress: Progress) -> Report:
@@ -93,9 +94,7 @@ def report(progress: Progress) -> Report:
 def kicked_runs() -> Iterator[Experiment]:
     """Yield the six cases of B4 at 1 ms."""
     for case in TABLE_4:
-        yield experiment(
-            lookup("B4"), h=STEP, duration=DURATION, alpha_hat=case.alpha_hat, beta_hat=case.beta_hat, kick=KICK
-        )
+        yield experiment("B4", case.alpha_hat, case.beta_hat, duration=DURATION, kick=KICK)
 
 
 def behaviours(runs: Iterable[Experiment]) -> list[Behaviour]:
@@ -104,35 +103,21 @@ def behaviours(runs: Iterable[Experiment]) -> list[Behaviour]:
 
 
 def _behaviour(case: Case, run: Experiment) -> Behaviour:
-    above = np.flatnonzero(np.abs(run.c) > DECAYED * KICK)  # not empty: it begins with the kick
-    c, cdot = (history[: above[-1] + 1] for history in (run.c, run.cdot))
-    return Behaviour(
-        case,
-        pole=run.pole,
-        rate=_rate(c),
-        crossings=_crossings(c),
-        failure=run.failure,
-        rate_of_cdot=_rate(cdot),
-        crossings_of_cdot=_crossings(cdot),
-        followed=len(c) - 1,
-        fallen=_fallen(run.c),
-        cdot_fallen=_fallen(run.cdot),
-    )
+    followed = int(np.flatnonzero(np.abs(run.c) > DECAYED * KICK)[-1])  # there is one: it begins with the kick
+    c, cdot = (_seen(history, followed) for history in (run.c, run.cdot))
+    return Behaviour(case, run.pole, run.failure, followed, c, cdot)
+
+
+def _seen(history: FloatArray, followed: int) -> Seen:
+    begin = history[: followed + 1]
+    fallen = int(np.flatnonzero(np.abs(history) > FALLEN * np.abs(history).max())[-1]) + 1
+    return Seen(_rate(begin), crossings=int(np.count_nonzero(np.diff(np.sign(begin)))), fallen=fallen)
 
 
 def _rate(history: FloatArray) -> float:
     """Return by what the largest of a history changes per step, from its first half to its second."""
     half = len(history) // 2
     return float((np.abs(history[half:]).max() / np.abs(history[:half]).max()) ** (1 / half))
-
-
-def _crossings(history: FloatArray) -> int:
-    return int(np.count_nonzero(np.diff(np.sign(history))))
-
-
-def _fallen(history: FloatArray) -> int:
-    """Return the step after which a history stays below a hundredth of its largest."""
-    return int(np.flatnonzero(np.abs(history) > FALLEN * np.abs(history).max())[-1]) + 1
 
 
 def behaviour_table(observed: Sequence[Behaviour]) -> str:
@@ -148,8 +133,8 @@ def behaviour_table(observed: Sequence[Behaviour]) -> str:
             "alpha_hat": behaviour.case.alpha_hat,
             "beta_hat": behaviour.case.beta_hat,
             **pole_cells(behaviour.pole),
-            "rate": behaviour.rate,
-            "crossings": behaviour.crossings,
+            "rate": behaviour.c.rate,
+            "crossings": behaviour.c.crossings,
         }
         for number, behaviour in enumerate(observed, start=1)
     ]
@@ -172,7 +157,7 @@ def descriptions(observed: Sequence[Behaviour]) -> list[Finding]:
     """Return what section 5.2.2 says of each case."""
     negative, slow, slow_waving, fast, fast_waving, outside = observed
     return [
-        finding(
+        Finding(
             where="Table 4",
             claim="cases 1 and 6 diverge: α̂ < 0, or outside the region",
             paper="“it is expected to observe a divergent response as the parameter α̂ is negative and |z_p| is "
@@ -180,23 +165,25 @@ def descriptions(observed: Sequence[Behaviour]) -> list[Finding]:
             here=_shown(negative, outside),
             holds=[_diverges(negative) and _diverges(outside)],
         ),
-        finding(
+        Finding(
             where="Table 4",
             claim="cases 2 and 3 converge slowly; 3 oscillates, 2 does not significantly",
             paper="“low convergence speeds, since the size of the dominant pole is close to one in both cases. … case "
             "3 exhibits oscillations, while case 2 does not exhibit significant oscillations”",
             here=_shown(slow, slow_waving),
             holds=[
-                0.95 < slow.rate < 1 and 0.95 < slow_waving.rate < 1 and slow_waving.crossings > 10 > slow.crossings
+                0.95 < slow.c.rate < 1
+                and 0.95 < slow_waving.c.rate < 1
+                and slow_waving.c.crossings > 10 > slow.c.crossings
             ],
         ),
-        finding(
+        Finding(
             where="Table 4",
             claim="cases 4 and 5 converge fast; 5 oscillates, 4 hardly",
             paper="“high convergence speeds … case 5 shows oscillations, while case 4 exhibits either fewer number of "
             "oscillations or no oscillations”",
             here=_shown(fast, fast_waving),
-            holds=[fast.rate < 0.85 and fast_waving.rate < 0.85 and fast_waving.crossings > fast.crossings],
+            holds=[fast.c.rate < 0.85 and fast_waving.c.rate < 0.85 and fast_waving.c.crossings > fast.c.crossings],
         ),
     ]
 
@@ -204,10 +191,10 @@ def descriptions(observed: Sequence[Behaviour]) -> list[Finding]:
 def unit_circle_decides(observed: Sequence[Behaviour]) -> Finding:
     """Return in how many cases c_1 and its derivative grow if |z_p| > 1 and fall if |z_p| < 1."""
     as_said = [
-        min(case.rate, case.rate_of_cdot) > 1 if abs(case.pole) > 1 else max(case.rate, case.rate_of_cdot) < 1
+        min(case.c.rate, case.cdot.rate) > 1 if abs(case.pole) > 1 else max(case.c.rate, case.cdot.rate) < 1
         for case in observed
     ]
-    return finding(
+    return Finding(
         where="Section 4",
         claim="c and ċ diverge or converge as |z_p| says",
         paper="“c and ċ diverge if |z_p| > 1 …, and converge to zero if |z_p| < 1 for all of the poles”",
@@ -222,10 +209,10 @@ def smaller_poles_are_faster(observed: Sequence[Behaviour]) -> Finding:
     A double pole is slower at first: its error falls like n |z_p|^n.
     """
     converging = sorted((case for case in observed if abs(case.pole) < 1), key=lambda case: abs(case.pole))
-    shown = ", ".join(f"{abs(case.pole):.4f} {case.fallen} and {case.cdot_fallen}" for case in converging)
+    shown = ", ".join(f"{abs(case.pole):.4f} {case.c.fallen} and {case.cdot.fallen}" for case in converging)
     in_order = all(_is_faster(first, second) for first, second in pairwise(converging))
     apart = (pair for pair in combinations(converging, 2) if abs(pair[1].pole) - abs(pair[0].pole) > APART)
-    return finding(
+    return Finding(
         where="Section 4",
         claim="the smaller |z_p|, the faster",
         paper="“the smaller the magnitude of |z_p|, the faster c and ċ converge to zero”",
@@ -242,9 +229,9 @@ def regions_h_are_faster(observed: Sequence[Behaviour]) -> Finding:
     outside = [case for case in converging if case not in inside]
 
     def steps(cases: Sequence[Behaviour]) -> str:
-        return ", ".join(f"{case.fallen} and {case.cdot_fallen}" for case in cases)
+        return ", ".join(f"{case.c.fallen} and {case.cdot.fallen}" for case in cases)
 
-    return finding(
+    return Finding(
         where="Section 5.1",
         claim="in the regions H errors vanish faster",
         paper="“by choosing α̂ and β̂ in these regions, the error of constraint and its derivative converge to zero "
@@ -256,18 +243,18 @@ def regions_h_are_faster(observed: Sequence[Behaviour]) -> Finding:
 
 def _is_faster(one: Behaviour, other: Behaviour) -> bool:
     """Return whether c_1 and its derivative both fall earlier in one case than in the other."""
-    return one.fallen < other.fallen and one.cdot_fallen < other.cdot_fallen
+    return one.c.fallen < other.c.fallen and one.cdot.fallen < other.cdot.fallen
 
 
 def angle_is_the_frequency(observed: Sequence[Behaviour]) -> Finding:
     """Return the angle of each pole beside that by which c_1 and its derivative turn a step: half a turn a crossing."""
     waving = sorted((case for case in observed if case.pole.imag > WAVES), key=lambda case: np.angle(case.pole))
-    seen = [(180 * case.crossings / case.followed, 180 * case.crossings_of_cdot / case.followed) for case in waving]
+    seen = [(180 * case.c.crossings / case.followed, 180 * case.cdot.crossings / case.followed) for case in waving]
     shown = ", ".join(
         f"{np.degrees(np.angle(case.pole)):.0f} seen {c:.0f} and {cdot:.0f}"
         for case, (c, cdot) in zip(waving, seen, strict=True)
     )
-    return finding(
+    return Finding(
         where="Section 4",
         claim="the smaller the angle of z_p, the lower the frequency",
         paper="“the smaller the magnitude of ∠z_p (angle of z_p), the smaller the frequency of oscillations of c and "
@@ -279,9 +266,9 @@ def angle_is_the_frequency(observed: Sequence[Behaviour]) -> Finding:
 
 def derivative_behaves_alike(observed: Sequence[Behaviour]) -> Finding:
     """Return by what the derivative changes a step, and how often it crosses zero: as the cases are described?"""
-    of_cdot = [replace(case, rate=case.rate_of_cdot, crossings=case.crossings_of_cdot) for case in observed]
-    shown = ", ".join(f"{case.rate:.3f} ({case.crossings})" for case in of_cdot)
-    return finding(
+    of_cdot = [replace(case, c=case.cdot) for case in observed]
+    shown = ", ".join(f"{case.c.rate:.3f} ({case.c.crossings})" for case in of_cdot)
+    return Finding(
         where="Figs 7, 8",
         claim="the derivative confirms Table 4 as well",
         paper="“the errors for both the first kinematic constraint and its derivative, which confirm the data listed "
@@ -293,15 +280,14 @@ def derivative_behaves_alike(observed: Sequence[Behaviour]) -> Finding:
 
 def dominant_pole_is_seen_late() -> Finding:
     """Return how AB4 falls from a kick where its dominant pole is hardly excited: first as another pole says."""
-    case = TABLE_5[1]
-    alpha_hat, beta_hat = float(case.alpha_hat), float(case.beta_hat)
-    run = experiment(lookup("AB4"), h=STEP, duration=1.0, alpha_hat=alpha_hat, beta_hat=beta_hat, kick=KICK)
+    alpha_hat, beta_hat = TABLE_5[1].point
+    run = experiment("AB4", alpha_hat, beta_hat, duration=1.0, kick=KICK)
     moduli = np.unique(np.abs(poles(run.method, alpha_hat, beta_hat)).round(4))
     largest, next_to_it = float(moduli[-1]), float(moduli[-2])
     early = int(np.flatnonzero(np.abs(run.c) > 1e-3 * KICK)[-1]) + 1
     late = _rate(run.c[len(run.c) // 2 :])
     alone = np.log(1e-3) / np.log(abs(run.pole))
-    return finding(
+    return Finding(
         where="Section 5.1",
         claim="only the dominant pole matters",
         paper="“only the dominant eigenvalue, which has the largest |z_p|, is considered since it has the greatest "
@@ -316,11 +302,10 @@ def dominant_pole_is_seen_late() -> Finding:
 def physics_decides() -> Finding:
     """Return what B4 makes of the energy, which nothing changes, with parameters of cases 4 and 6."""
     proper, improper = (
-        experiment(lookup("B4"), h=STEP, duration=DURATION, alpha_hat=case.alpha_hat, beta_hat=case.beta_hat)
-        for case in (TABLE_4[3], TABLE_4[5])
+        experiment("B4", case.alpha_hat, case.beta_hat, duration=DURATION) for case in (TABLE_4[3], TABLE_4[5])
     )
     kept, left = (run.observation.energy[-1] / run.observation.energy[0] for run in (proper, improper))
-    return finding(
+    return Finding(
         where="Section 3",
         claim="wrong parameters give results against physics",
         paper="“improper selection of the Baumgarte coefficients can lead to unacceptable results in terms of the "
@@ -332,7 +317,7 @@ def physics_decides() -> Finding:
 
 
 def _diverges(behaviour: Behaviour) -> bool:
-    grew = behaviour.rate > 1 or behaviour.failure is not None
+    grew = behaviour.c.rate > 1 or behaviour.failure is not None
     return abs(behaviour.pole) > 1 and grew
 
 
@@ -340,7 +325,7 @@ def _shown(*behaviours: Behaviour) -> str:
     texts = []
     for behaviour in behaviours:
         predicted = f"|z_p| {abs(behaviour.pole):.3f} at {np.degrees(np.angle(behaviour.pole)):.1f} deg"
-        texts.append(f"{predicted}, seen {behaviour.rate:.3f}, {behaviour.crossings} crossings")
+        texts.append(f"{predicted}, seen {behaviour.c.rate:.3f}, {behaviour.c.crossings} crossings")
     return "; ".join(texts)
 
 

@@ -1,8 +1,7 @@
 """All subjects of the paper in order, and the ledger: a row for every claim that can be tested."""
 
 from collections import Counter
-from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Callable, Mapping, Sequence
 from typing import get_args
 
 from bezstab.paper import comparison, cost, drift, influence, methods, regions, slider_crank
@@ -10,31 +9,23 @@ from bezstab.paper.findings import Agreement, Finding
 from bezstab.paper.reports import Progress, Report
 from bezstab.show import CLAIMS, Row, render
 
-
-@dataclass(frozen=True)
-class Subject:
-    """Tables and figures that come together, and what makes them."""
-
-    parts: tuple[str, ...]
-    report: Callable[[Progress], Report]
-
-
-SUBJECTS = (
-    Subject(("table1", "table2"), methods.report),
-    Subject(("fig1", "fig2", "fig3"), regions.report),
-    Subject(("table3", "fig4"), slider_crank.report),
-    Subject(("fig5",), drift.collapse_report),
-    Subject(("fig6",), drift.growth_report),
-    Subject(("table4", "fig7", "fig8"), influence.report),
-    Subject(("table5", "fig9"), comparison.report),
-    Subject(("table6",), cost.report),
-)
-"""In the order of the ledger."""
+SUBJECTS: Mapping[tuple[str, ...], Callable[[Progress], Report]] = {
+    ("table1", "table2"): methods.report,
+    ("fig1", "fig2", "fig3"): regions.report,
+    ("table3", "fig4"): slider_crank.report,
+    ("fig5",): drift.collapse_report,
+    ("fig6",): drift.growth_report,
+    ("table4", "fig7", "fig8"): influence.report,
+    ("table5", "fig9"): comparison.report,
+    ("table6",): cost.report,
+}
+"""Tables and figures that come together, and what makes them, in the order of the ledger."""
 
 
 def finding_rows(findings: Sequence[Finding]) -> list[Row]:
     """Return the findings as rows."""
-    return [asdict(finding) for finding in findings]
+    keys = "where", "claim", "paper", "here", "agreement"
+    return [{key: getattr(finding, key) for key in keys} for finding in findings]
 
 
 def ledger_text(findings: Sequence[Finding]) -> str:

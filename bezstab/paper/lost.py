@@ -1,6 +1,6 @@
 """What cannot be tested: the scan lost it, the paper never said it, or bezstab does not have what it is about."""
 
-from bezstab.paper.findings import Finding, finding
+from bezstab.paper.findings import Finding
 from bezstab.paper.printed import NOT_HERE
 
 LOST = (
@@ -21,6 +21,6 @@ def findings() -> list[Finding]:
     """Return what cannot be tested, and why."""
     missing = [("Introduction", name, f"“{sentence}”", "not in bezstab: nothing to run") for name, sentence in NOT_HERE]
     return [
-        finding(where=where, claim=claim, paper=paper, here=here, holds=[])
+        Finding(where=where, claim=claim, paper=paper, here=here, holds=[])
         for where, claim, paper, here in (*LOST, *missing)
     ]

@@ -14,7 +14,7 @@ from bezstab.methods import (
     recursion_text,
     steps,
 )
-from bezstab.paper.findings import Finding, finding
+from bezstab.paper.findings import Finding
 from bezstab.paper.reports import Progress, Report, captioned_table
 from bezstab.show import column
 from bezstab.stability import verdict
@@ -72,7 +72,7 @@ def findings() -> list[Finding]:
 def weights_of_b2() -> Finding:
     """Return whether Eq. 12 has the weights that follow from the Bernstein curve."""
     weights = _rho_and_sigma("B2")[1][1:]
-    return finding(
+    return Finding(
         where="Eq. 12",
         claim="B2: y' = y + h/2 (3 f - f')",
         paper="3/2, -1/2",
@@ -86,7 +86,7 @@ def mapping_of_b2() -> Finding:
     rho, sigma = _rho_and_sigma("B2")
     rho_agrees = rho == (Fraction(1), Fraction(-1), Fraction(0))
     sigma_agrees = sigma[0] == 0 and sigma[1] == -3 * sigma[2]
-    return finding(
+    return Finding(
         where="Eq. 14",
         claim="B2: s = (2/h) z (z - 1) / (3 z - 1)",
         paper="ρ = z² - z, σ = (3 z - 1)/2",
@@ -103,7 +103,7 @@ def polynomial_of_b2() -> Finding:
         ours = closed_loop_at(lookup("B2"), alpha_hat, beta_hat)[::-1]
         printed = printed_polynomial_of_b2(alpha_hat, beta_hat)
         agree.append([c / ours[0] for c in ours] == [c / printed[0] for c in printed])
-    return finding(
+    return Finding(
         where="Eq. 17",
         claim="characteristic polynomial of B2",
         paper="4 z⁴ + (-8 + 6 α̂) z³ + …",
@@ -130,7 +130,7 @@ def step_enters_with_parameters() -> Finding:
     for alpha, beta, h in points:
         by_step = printed_polynomial_of_b2_by_step(alpha, beta, h)
         agree.append(by_step == printed_polynomial_of_b2(*to_dimensionless(alpha, beta, h)))
-    return finding(
+    return Finding(
         where="Eqs 15, 16",
         claim="the step enters with the parameters alone",
         paper="“In order to avoid the dependence on step size, two dimensionless parameters must be established”: "
@@ -158,7 +158,7 @@ def feedback_is_stable_in_time() -> Finding:
     """
     positive = [value for value in SAMPLES if value > 0]
     holds = [-2 * alpha < 0 < beta**2 for alpha, beta in product(positive, positive)]
-    return finding(
+    return Finding(
         where="Eq. 7",
         claim="before it is discretised, the feedback is stable",
         paper="“with α and β greater than zero, Eq. (7) is stable and, consequently, c and ċ will converge to zero”",
@@ -171,7 +171,7 @@ def no_feedback_is_unstable() -> Finding:
     """Return what every method of the paper does with c̈ = 0."""
     names = ("B2", "B3", "B4", "AB2", "AB3", "AB4")
     verdicts = {verdict(lookup(name), Fraction(0), Fraction(0)) for name in names}
-    return finding(
+    return Finding(
         where="Section 3",
         claim="c̈ = 0 is unstable",
         paper="“the equation c̈ = 0 represents an unstable system, therefore c and ċ will not converge to zero if any "
@@ -184,7 +184,7 @@ def no_feedback_is_unstable() -> Finding:
 def positive_parameters_are_not_enough() -> Finding:
     """Return whether some method diverges at a point with both parameters positive."""
     verdicts = {name: verdict(lookup(name), Fraction(2), Fraction(2)) for name in ("B2", "B3", "B4", "AB4")}
-    return finding(
+    return Finding(
         where="Section 4",
         claim="positive α and β do not guarantee convergence",
         paper="“positive values for α and β parameters does not guarantee the convergence of c and ċ”",
@@ -196,7 +196,7 @@ def positive_parameters_are_not_enough() -> Finding:
 def second_order_is_one_method() -> Finding:
     """Return whether B2 and AB2 have the same coefficients."""
     same = coefficient_table(lookup("B2")) == coefficient_table(lookup("AB2"))
-    return finding(
+    return Finding(
         where="Section 5.1",
         claim="second order of both families is the same method",
         paper="“formulations for the second order of both methods are the same and, therefore, they exhibit similar "
@@ -210,7 +210,7 @@ def orders_of_accuracy() -> Finding:
     """Return whether an n-th order Bézier method is of order n; the name is the paper's, the order is Taylor's."""
     orders = {name: accuracy(lookup(name))[0] for name in ("B2", "B3", "B4", "AB3", "AB4")}
     bezier_orders = ", ".join(f"{name}: {orders[name]}" for name in TABULATED)
-    return finding(
+    return Finding(
         where="Table 1",
         claim="“n-th order Bézier” is of order n",
         paper="“the second to the fourth order of the Bézier method”",
@@ -223,7 +223,7 @@ def kinds_of_methods() -> Finding:
     """Return how many past points and how many evaluations a step of each method takes."""
     needs = {name: (steps(lookup(name)), evaluations(lookup(name))) for name in ("B4", "AB4", "RK4")}
     shown = ", ".join(f"{name} {past} and {evaluated}" for name, (past, evaluated) in needs.items())
-    return finding(
+    return Finding(
         where="Section 5.2.3",
         claim="multistep, and single-step of several stages",
         paper="“the Bézier and Adams–Bashforth methods are multi-step numerical integration algorithms, while the "

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from fractions import Fraction
 
 PARTS = (
     "table1",
@@ -35,14 +36,8 @@ COMPARED = ("B4", "AB4", "RK4@5", "SIE")
 """The methods of Tables 5 and 6, all with steps of 1 ms but RK4, with 5 ms; SIE is "Euler semi-implicit"."""
 
 
-@dataclass(frozen=True)
-class PrintedPole:
-    """A dominant pole z as Table 5 prints it: as text, since the number of digits is part of what it says."""
-
-    real: str
-    imaginary: str
-    modulus: str
-    angle: str  # degrees
+PrintedPole = tuple[str, str, str, str]
+"""Re z, Im z, |z| and the angle of z (degrees) as Table 5 prints them: the number of digits is part of what it says."""
 
 
 @dataclass(frozen=True)
@@ -53,36 +48,46 @@ class PrintedCase:
     beta_hat: str
     poles: Mapping[str, PrintedPole]
 
+    @property
+    def exact(self) -> tuple[Fraction, Fraction]:
+        """The parameters as they are printed."""
+        return Fraction(self.alpha_hat), Fraction(self.beta_hat)
+
+    @property
+    def point(self) -> tuple[float, float]:
+        """The parameters as floats."""
+        return float(self.alpha_hat), float(self.beta_hat)
+
 
 TABLE_5 = (
     PrintedCase(
         alpha_hat="0.1",
         beta_hat="0.1",
         poles={
-            "B4": PrintedPole("0.898", "0.299", "0.947", "18.45"),
-            "AB4": PrintedPole("0.906", "0.291", "0.952", "17.83"),
-            "RK4@5": PrintedPole("0.074", "0.740", "0.744", "84.27"),
-            "SIE": PrintedPole("0.855", "0.281", "0.9", "18.19"),
+            "B4": ("0.898", "0.299", "0.947", "18.45"),
+            "AB4": ("0.906", "0.291", "0.952", "17.83"),
+            "RK4@5": ("0.074", "0.740", "0.744", "84.27"),
+            "SIE": ("0.855", "0.281", "0.9", "18.19"),
         },
     ),
     PrintedCase(
         alpha_hat="0.5",
         beta_hat="0.1",
         poles={
-            "B4": PrintedPole("0.763", "0.142", "0.776", "10.55"),
-            "AB4": PrintedPole("-0.903", "0.428", "0.999", "154.6"),
-            "RK4@5": PrintedPole("0.095", "0.237", "0.255", "68.15"),
-            "SIE": PrintedPole("0.775", "0.097", "0.781", "7.12"),
+            "B4": ("0.763", "0.142", "0.776", "10.55"),
+            "AB4": ("-0.903", "0.428", "0.999", "154.6"),
+            "RK4@5": ("0.095", "0.237", "0.255", "68.15"),
+            "SIE": ("0.775", "0.097", "0.781", "7.12"),
         },
     ),
     PrintedCase(
         alpha_hat="0.5",
         beta_hat="0.101",
         poles={
-            "B4": PrintedPole("0.762", "0.144", "0.776", "10.69"),
-            "AB4": PrintedPole("-0.903", "0.433", "1.001", "154.4"),
-            "RK4@5": PrintedPole("0.090", "0.241", "0.258", "69.45"),
-            "SIE": PrintedPole("0.774", "0.098", "0.780", "7.22"),
+            "B4": ("0.762", "0.144", "0.776", "10.69"),
+            "AB4": ("-0.903", "0.433", "1.001", "154.4"),
+            "RK4@5": ("0.090", "0.241", "0.258", "69.45"),
+            "SIE": ("0.774", "0.098", "0.780", "7.22"),
         },
     ),
 )

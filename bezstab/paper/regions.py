@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from bezstab.methods import Method, evaluations, lookup
 from bezstab.paper import comparison
 from bezstab.paper.experiments import STEP
-from bezstab.paper.findings import Finding, finding
+from bezstab.paper.findings import Finding
 from bezstab.paper.printed import COMPARED, FASTER_LEVEL, LEAST_Z_ABS
 from bezstab.paper.reports import Progress, Report
 from bezstab.rationals import exact
@@ -78,7 +78,7 @@ def findings() -> list[Finding]:
 def faster_regions_exist() -> Finding:
     """Return how much of each region lies below the level of Fig. 1."""
     parts = {name: _area(name, level) / _area(name) for name, level in FASTER_LEVEL.items()}
-    return finding(
+    return Finding(
         where="Fig. 1",
         claim="|z_p| below 0.65, 0.70, 0.75 in regions H",
         paper="“The magnitudes of |z_p| for regions H are smaller than 0.65, 0.70, and 0.75 for the second, third, and "
@@ -96,7 +96,7 @@ def least_moduli() -> Finding:
         assert best is not None
         least[name] = best.z_abs
     agree = [round(least[name], 2) == printed for name, printed in LEAST_Z_ABS.items()]
-    return finding(
+    return Finding(
         where="Section 5.1",
         claim="smallest |z_p| of B2, B3, B4",
         paper="“the smallest |z_p| that can be found are 0.58, 0.62, and 0.65”",
@@ -108,7 +108,7 @@ def least_moduli() -> Finding:
 def bezier_shrinks_slightly() -> Finding:
     """Return by what the area of the Bézier regions shrinks from order to order."""
     to_b3, to_b4 = _area("B3") / _area("B2"), _area("B4") / _area("B3")
-    return finding(
+    return Finding(
         where="Section 5.1",
         claim="Bézier regions shrink slightly with order",
         paper="“the stability regions of the Bézier method slightly decrease as the order of the method increases”",
@@ -120,7 +120,7 @@ def bezier_shrinks_slightly() -> Finding:
 def bezier_is_larger_than_adams() -> Finding:
     """Return how many times larger the Bézier regions are than those of Adams and Bashforth."""
     of_order_3, of_order_4 = _area("B3") / _area("AB3"), _area("B4") / _area("AB4")
-    return finding(
+    return Finding(
         where="Fig. 2",
         claim="B3 and B4 have larger regions than AB3 and AB4",
         paper="“the Bézier stability regions for both the 3rd and 4th orders are larger than those of the "
@@ -133,7 +133,7 @@ def bezier_is_larger_than_adams() -> Finding:
 def adams_loses_more() -> Finding:
     """Return how much of their area both families keep from order 3 to 4."""
     adams, bezier = _area("AB4") / _area("AB3"), _area("B4") / _area("B3")
-    return finding(
+    return Finding(
         where="Fig. 2, section 6",
         claim="from order 3 to 4 AB loses more than Bézier",
         paper="“the percentage of reducing the size of stability regions from 3rd order to 4th order of "
@@ -146,7 +146,7 @@ def adams_loses_more() -> Finding:
 def evaluations_a_step() -> Finding:
     """Return what a step of RK4 and of AB4 costs, in steps of B4."""
     runge_kutta, adams = (evaluations(lookup(name)) / evaluations(lookup("B4")) for name in ("RK4", "AB4"))
-    return finding(
+    return Finding(
         where="Section 5.1",
         claim="RK4 costs 5 times, AB4 as much as B4",
         paper="“the computational costs of the 4th order Bézier and Adams–Bashforth are quite similar … the "
@@ -159,7 +159,7 @@ def evaluations_a_step() -> Finding:
 def at_equal_cost() -> Finding:
     """Return the areas of Fig. 3, where RK4 takes steps of 5h."""
     bezier, runge_kutta, adams = (_area(name) for name in ("B4", "RK4@5", "AB4"))
-    return finding(
+    return Finding(
         where="Fig. 3",
         claim="at equal cost (RK4 at 5h) B4 has the largest region, AB4 the smallest",
         paper="“considering similar computational costs, the Bézier method provides the largest stability region, … "
@@ -172,7 +172,7 @@ def at_equal_cost() -> Finding:
 def at_true_cost() -> Finding:
     """Return the same with RK4 at 4h, since it evaluates four times a step."""
     bezier, runge_kutta, adams = (_area(name) for name in ("B4", "RK4@4", "AB4"))
-    return finding(
+    return Finding(
         where="Fig. 3",
         claim="the same with RK4 at 4h, its true cost",
         paper="(not said)",
@@ -188,7 +188,7 @@ def stable_where_another_is_not(other: str, sentence: str) -> Finding:
     """
     for_b4 = counterexample(stable=lookup("B4"), unstable=lookup(other))
     against_b4 = counterexample(stable=lookup(other), unstable=lookup("B4"))
-    return finding(
+    return Finding(
         where="Section 6",
         claim=f"for certain parameters {other} is unstable and B4 stable",
         paper=sentence,
@@ -203,7 +203,7 @@ def integrator_decides() -> Finding:
     verdicts = {name: verdict(method, *map(exact, WHERE_METHODS_DIFFER)) for name, method in methods.items()}
     moduli = {name: float(spectral_radius(method, *WHERE_METHODS_DIFFER)) for name, method in methods.items()}
     shown = ", ".join(f"{name} {verdicts[name]} ({moduli[name]:.3f})" for name in methods)
-    return finding(
+    return Finding(
         where="Abstract, section 4",
         claim="which parameters are right depends on the integrator",
         paper="“the proper identification and selection of Baumgarte parameters is highly dependent on the integration "
@@ -222,7 +222,7 @@ def widest_at_its_cost() -> Finding:
     not_compared = _area("SYM")
     bezier = _area("B4")
     listed = ", ".join(f"{name} {area:.3f}" for name, area in rivals.items())
-    return finding(
+    return Finding(
         where="Abstract",
         claim="Bézier has the wider region at the same cost",
         paper="“the Bézier method provides substantially wider region of stability for the same level of computational "
@@ -239,7 +239,7 @@ def adams_moulton() -> Finding:
     """
     of_order_3, of_order_4 = (_area("B3"), _area("AM3")), (_area("B4"), _area("AM4"))
     corrected = ", ".join(f"{name} {_area(name):.3f}" for name in ("ABM3@2", "ABM4@2"))
-    return finding(
+    return Finding(
         where="Introduction",
         claim="Bézier is more stable than Adams–Moulton",
         paper="“the stability of the Bézier based solution is enhanced when comparing with other well-known methods, "

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from bezstab.paper.experiments import Experiment
 from bezstab.paper.findings import Finding
-from bezstab.show import Column, Row, render
+from bezstab.show import Field, Row, render
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -17,18 +17,13 @@ Progress = Callable[[Iterator[Experiment], str, int], Iterable[Experiment]]
 
 @dataclass(frozen=True)
 class Report:
-    """Tables as Markdown and what draws the figures, by the name of their part; and what came of the claims.
-
-    `aside` comes before the findings and is for the eye only: a sentence that sums up a table, or times measured now,
-    which no two runs share and no file keeps.
-    """
+    """Tables as Markdown and what draws the figures, by the name of their part; and what came of the claims."""
 
     tables: Mapping[str, str] = field(default_factory=dict)
     figures: Mapping[str, Callable[[], "Figure"]] = field(default_factory=dict)
     findings: Sequence[Finding] = ()
-    aside: str = ""
 
 
-def captioned_table(caption: str, rows: Sequence[Row], columns: Sequence[Column]) -> str:
+def captioned_table(caption: str, rows: Sequence[Row], columns: Sequence[Field]) -> str:
     """Return a table as Markdown below its caption."""
     return f"{caption}\n\n{render(rows, columns, 'markdown')}\n"

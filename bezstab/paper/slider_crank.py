@@ -15,10 +15,9 @@ from bezstab.mechanism import (
     initial_state,
     load_scene,
 )
-from bezstab.methods import lookup
 from bezstab.paper import lost
 from bezstab.paper.experiments import DURATION, STEP, experiment
-from bezstab.paper.findings import Finding, finding
+from bezstab.paper.findings import Finding
 from bezstab.paper.printed import TABLE_3
 from bezstab.paper.reports import Progress, Report, captioned_table
 from bezstab.show import Row, column, plot, styled
@@ -189,7 +188,7 @@ def body_data(scene: Scene) -> Finding:
         "J2": bodies["rod"].inertia,
         "m3": bodies["slider"].mass,
     }
-    return finding(
+    return Finding(
         where="Table 3",
         claim="J1, m2, J2, m3",
         paper=", ".join(f"{TABLE_3[name]:g}" for name in ours),
@@ -200,7 +199,7 @@ def body_data(scene: Scene) -> Finding:
 
 def mass_matrix(diagonal: list[float]) -> Finding:
     """Return whether the scene's mass matrix is that of Eq. 20."""
-    return finding(
+    return Finding(
         where="Eq. 20",
         claim="M = diag(J1, m2, m2, J2, m3)",
         paper="diagonal",
@@ -226,7 +225,7 @@ def equations_up_to_row_signs(terms: Terms, q: FloatArray, v: FloatArray) -> lis
 
 def _printed_equation(number: str, name: str, ours: FloatArray, printed: FloatArray) -> Finding:
     same = bool(np.abs(ours - printed).max() < SAME)
-    return finding(
+    return Finding(
         where=f"Eq. {number}",
         claim=f"{name} of the slider-crank",
         paper="as printed",
@@ -242,7 +241,7 @@ def generalised_forces(forces: FloatArray) -> Finding:
     corrected = bool(np.abs(forces + weight_of_the_rod).max() < SAME)
     entries = ", ".join(f"{force:g}" for force in forces)
     sign = "minus" if forces[2] < 0 else "plus"
-    return finding(
+    return Finding(
         where="Eq. 23",
         claim="g = [0 0 m2 g 0 0]",
         paper="plus sign",
@@ -260,7 +259,7 @@ def unique_accelerations(terms: Terms) -> Finding:
         matrix = np.block([[np.diag(terms.mass), jacobian.T], [jacobian, zero]])
         ranks.append(int(np.linalg.matrix_rank(matrix)))
         sizes.append(len(matrix))
-    return finding(
+    return Finding(
         where="Section 2",
         claim="accelerations and multipliers are unique",
         paper="“Assuming that the mass matrix is positive definite and the Jacobian matrix has a full row rank, a "
@@ -281,7 +280,7 @@ def constraint_accelerations(terms: Terms, q: FloatArray, v: FloatArray) -> Find
         largest_term = max(1.0, np.abs(asked).max(), np.abs(qddot).max())
         errors.append(float(np.abs(terms.jacobian @ qddot - terms.gamma - asked).max() / largest_term))
     free, stabilised = (error < SAME for error in errors)
-    return finding(
+    return Finding(
         where="Eqs 5, 6, 8, 9",
         claim="the accelerations keep c̈ = 0, or c̈ + 2αċ + β²c = 0",
         paper="“it is guaranteed that the constraint equations at the acceleration level, c̈ = 0, are satisfied at "
@@ -308,7 +307,7 @@ def derivatives_of_the_constraints(scene: Scene) -> Finding:
     )
     cddot = (after - 2 * now + before) / DIFFERENCE**2
     error = float(np.abs(cddot).max() / np.abs(qddot).max())
-    return finding(
+    return Finding(
         where="Eqs 3, 4",
         claim="derivatives of c(q, t)",
         paper="as printed",
@@ -321,9 +320,9 @@ def derivatives_of_the_constraints(scene: Scene) -> Finding:
 
 def consistent_start() -> Finding:
     """Return whether c and ċ are zero in the scene's initial state."""
-    started = experiment(lookup("B4"), h=STEP, duration=STEP, alpha_hat=0.0, beta_hat=0.0).observation
+    started = experiment("B4", duration=STEP).observation
     consistent = max(np.abs(started.c[0]).max(), np.abs(started.cdot[0]).max()) < SAME
-    return finding(
+    return Finding(
         where="Section 5.2",
         claim="the initial state is consistent",
         paper="“The initial conditions at the position and velocity levels are consistent with the physics of the "
@@ -335,13 +334,10 @@ def consistent_start() -> Finding:
 
 def inconsistent_start() -> Finding:
     """Return what becomes of 1 mm in c_1 at the start, without feedback: of c_1 itself, and of the crank's angle."""
-    right, wrong = (
-        experiment(lookup("AB4"), h=STEP, duration=DURATION, alpha_hat=0.0, beta_hat=0.0, kick=kick)
-        for kick in (0.0, KICK)
-    )
+    right, wrong = (experiment("AB4", kick=kick) for kick in (0.0, KICK))
     left = wrong.largest(0.9 * DURATION, DURATION)
     angle = abs(float(wrong.trajectory.q[-1, 0] - right.trajectory.q[-1, 0]))
-    return finding(
+    return Finding(
         where="Section 5.2",
         claim="an inconsistent one leads to errors",
         paper="“violation of constraints at the initial instant of analysis, which, eventually, can lead to erroneous "

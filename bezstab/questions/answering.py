@@ -9,7 +9,7 @@ for, and then kept:
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal, cast
@@ -19,7 +19,6 @@ from bezstab.errors import InputError, NumericalError
 from bezstab.goals import UP_TO_LONGEST, Goal
 from bezstab.methods import Method
 from bezstab.questions.chains import ALONE, SweptAnswer
-from bezstab.questions.points import all_points
 from bezstab.questions.question import Question, usual_goal
 from bezstab.rationals import rational
 from bezstab.stability import (
@@ -130,9 +129,11 @@ class Answer(Choice):
         """How the motion of the scene changes the poles."""
         if self.question.turning is None or self.question.h is None:
             return None
-        from bezstab.evidence import moving_pole
+        from bezstab.evidence import moving_poles
 
-        return moving_pole(self.method, self.question.turning, float(self.question.h), self.alpha_hat, self.beta_hat)
+        turning, h = self.question.turning, float(self.question.h)
+        (pole,) = moving_poles(self.method, turning, h, self.alpha_hat, self.beta_hat)
+        return pole
 
     @cached_property
     def varying(self) -> VaryingSteps | None:
@@ -177,7 +178,7 @@ class Answer(Choice):
             return None
         values, as_typed = self._engine_values(engine, h), self.question.as_typed and self.role == "given"
         return largest_stable_step(
-            self.method, lambda step: all_points(engine, values, step, as_typed=as_typed), float(h)
+            self.method, lambda step: engine.applied(values, step, as_typed=as_typed).points, float(h)
         )
 
     def _engine_values(self, engine: Engine, h: Fraction) -> tuple[Fraction, ...]:
@@ -294,19 +295,27 @@ def answers(question: Question, *, margins: bool = True) -> Iterator[Answer]:
     for method in question.methods:
         if question.goal:
             found = _choice(question, method, question.goal, question.settle, margins=margins)
-            chosen = _answer(question, "chosen", found)
-            _check_expressible(chosen)
-            yield chosen
+            yield _expressible(_answer(question, "chosen", found))
             continue
         for label, point in (("as given", question.given.point), *question.given.also):
             yield _answer(question, "given", describe_point(method, label, *point, question.spread, margins), point)
 
 
+def _expressible(chosen: Answer) -> Answer:
+    """Return a choice; InputError, with a question to ask instead, if the engine cannot express it."""
+    try:
+        _ = chosen.setting
+    except InputError as error:
+        engine = chosen.question.engine
+        asked = f"{engine.name}={engine.words()}" if engine else ""
+        raise InputError(f"{error}: ask `check --engine {asked}` about values of yours") from None
+    return chosen
+
+
 def _answer(question: Question, role: Role, choice: Choice, point: Point | None = None) -> Answer:
     """Return a choice as an answer; without an exact `point` it is that of the floats."""
     exactly = point or (Fraction(choice.alpha_hat), Fraction(choice.beta_hat))
-    own = {each.name: getattr(choice, each.name) for each in fields(Choice)}
-    return Answer(question=question, role=role, point=exactly, **own)
+    return Answer(question=question, role=role, point=exactly, **vars(choice))
 
 
 def _choice(
@@ -333,7 +342,11 @@ def _choice_alone(
     motion = question.motion
     along = _curve(question, goal)
     longest = question.h_max if question.goal else None
-    modulus = _modulus_as_it_moves(question, method, longest or question.h)
+    modulus: Modulus | None = None
+    if question.turning and question.h:
+        from bezstab.evidence import moving_modulus
+
+        modulus = moving_modulus(method, question.turning, float(longest or question.h))
     of_both: dict[str, Any] = {
         "spread": question.spread,
         "equal": question.equal,
@@ -351,26 +364,6 @@ def _choice_alone(
 def _curve(question: Question, goal: Goal) -> Curve | None:
     """Return the curve of points that the engine can express; None if the goal does not search along it."""
     return question.engine.curve if question.engine and goal != "critical" and not question.equal else None
-
-
-def _modulus_as_it_moves(question: Question, method: Method, h: Fraction | None) -> Modulus | None:
-    """Return |z_p| of the moving scene at steps of h (s), in place of that at rest; None without a scene."""
-    if question.turning is None or h is None:
-        return None
-    from bezstab.evidence import moving_modulus
-
-    return moving_modulus(method, question.turning, float(h))
-
-
-def _check_expressible(chosen: Answer) -> None:
-    """Raise InputError, with a question to ask instead, if the engine cannot express a choice."""
-    engine = chosen.question.engine
-    try:
-        _ = chosen.setting
-    except InputError as error:
-        assert engine
-        values = f"{engine.name}={engine.words()}"
-        raise InputError(f"{error}: ask `check --engine {values}` about values of yours") from None
 
 
 @dataclass(frozen=True)

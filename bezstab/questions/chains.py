@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import cached_property, partial
+from functools import partial
 
 import numpy as np
 
@@ -54,31 +54,14 @@ class Constraints:
 ALONE = Constraints("one constraint alone", np.ones((1, 1)), (0,))
 
 
-@dataclass(frozen=True)
-class Chain:
-    """A straight chain of bodies, the last `mass_ratio` times as heavy; InputError for numbers that are no chain."""
+def constraints_of_chain(bodies: int, mass_ratio: Fraction | None = None) -> Constraints:
+    """Return the links of a straight chain, from the world on, its last body `mass_ratio` (None: 1) times as heavy.
 
-    bodies: int
-    mass_ratio: Fraction = Fraction(1)
-
-    def __post_init__(self) -> None:
-        _ = self.constraints
-
-    @cached_property
-    def constraints(self) -> Constraints:
-        """Its links, beginning at the world."""
-        last = "" if self.mass_ratio == 1 else f" with the last body {float(self.mass_ratio):g} times as heavy"
-        masses = chain(self.bodies, float(self.mass_ratio))
-        return Constraints(f"a chain of {self.bodies}{last}", masses, tuple(range(self.bodies)))
-
-
-def chain_of(bodies: int | None, mass_ratio: Fraction | None) -> Chain | None:
-    """Return the chain of so many bodies, None without a number; InputError for a mass ratio without a chain."""
-    if bodies is not None:
-        return Chain(bodies, Fraction(1) if mass_ratio is None else mass_ratio)
-    if mass_ratio is not None:
-        raise InputError("--mass-ratio needs --chain: it says how heavy the last body of the chain is")
-    return None
+    InputError for numbers that are no chain.
+    """
+    ratio = 1.0 if mass_ratio is None else float(mass_ratio)
+    last = "" if ratio == 1 else f" with the last body {ratio:g} times as heavy"
+    return Constraints(f"a chain of {bodies}{last}", chain(bodies, ratio), tuple(range(bodies)))
 
 
 def constraints_of(scene: str | Scene, speed: Fraction) -> Constraints:
@@ -100,7 +83,8 @@ def constraints_of(scene: str | Scene, speed: Fraction) -> Constraints:
 
 
 def check_sweeps(
-    question_chain: Chain | None,
+    bodies: int | None,
+    mass_ratio: Fraction | None,
     iterations: int | None,
     engine: Engine | None,
     scene: str | Scene | None = None,
@@ -108,17 +92,21 @@ def check_sweeps(
 ) -> None:
     """Raise InputError if a question has a chain or a number of sweeps, and no engine that is known to sweep.
 
-    InputError, too, if there is nothing to sweep over. Errors as `load_scene`.
+    InputError, too, for numbers that are no chain, and if there is nothing to sweep over. Errors as `load_scene`.
     """
+    if bodies is not None:
+        constraints_of_chain(bodies, mass_ratio)
+    elif mass_ratio is not None:
+        raise InputError("--mass-ratio needs --chain: it says how heavy the last body of the chain is")
     if iterations is not None:
         check_iterations(iterations)
-    if question_chain and scene:
+    if bodies is not None and scene:
         raise InputError("--chain and --scene are two mechanisms: give one")
-    if iterations is not None and not (question_chain or scene):
+    if iterations is not None and bodies is None and not scene:
         raise InputError("--iterations needs --chain or --scene: one constraint alone needs one sweep only")
-    if question_chain is None and iterations is None:
+    if bodies is None and iterations is None:
         return
-    option = "--chain" if question_chain else "--iterations"
+    option = "--iterations" if bodies is None else "--chain"
     if engine is None:
         raise InputError(f"{option} needs --engine: it asks how that engine sweeps over its constraints")
     if not engine.sweeps:
@@ -230,9 +218,9 @@ def chain_map(
     engine: Engine, values: tuple[Fraction, ...], h: Fraction, mass_ratio: Fraction, bodies: int, sweeps: int
 ) -> ChainMap:
     """Return the map of an engine with such values at a step of h (s); errors as `check_sweeps`."""
-    check_sweeps(Chain(bodies, mass_ratio), sweeps, engine)
+    check_sweeps(bodies, mass_ratio, sweeps, engine)
     chains = [
-        SweptConstraints(engine, h, Chain(links, mass_ratio).constraints, sweeps) for links in range(1, bodies + 1)
+        SweptConstraints(engine, h, constraints_of_chain(links, mass_ratio), sweeps) for links in range(1, bodies + 1)
     ]
     z_abs = [[each.growth(values, so_many).factor for so_many in range(1, sweeps + 1)] for each in chains]
     return ChainMap(float(mass_ratio), np.array(z_abs), tuple(each.fewest(values) for each in chains))

@@ -1,6 +1,6 @@
 """The log of another simulator: the pole in each column, and which method or feedback has that pole.
 
-log, columns, steps, a point or methods   →   LogQuestion   →   log_answers   →   likenesses, or points, by column
+log, columns, steps, a point or methods   →   LogQuestion   →   log_answers   →   Probe: likenesses, or points
 """
 
 from collections.abc import Iterator, Sequence
@@ -36,21 +36,13 @@ USUAL = "SYM"
 
 
 @dataclass(frozen=True, kw_only=True)
-class LogQuestion:
-    """Which pole does each column of a log have, and which of the `methods` (none: all) have it at a point?
+class PoleQuestion:
+    """Which of the `methods` (none: all) have a pole at a point? Without a `point`: at which points do they have it?
 
-    Without a `point` the question is at which points the methods have it. `columns` and `time` are names or numbers of
-    columns of the log; without `columns` all but that of times are taken. `minus` is the log of another run, to
-    subtract. The integrator takes `every` steps of `h` (s) from row to row. Constraints turn at the rate `turning`
-    (1/s). With `jointly` one pole is fitted to all columns. InputError for a column that is not there, and for times
-    that do not fit h.
+    The integrator takes `every` steps of `h` (s) from row to row. Constraints turn at the rate `turning` (1/s).
+    InputError for a rate below 0, or without a step.
     """
 
-    log: Log
-    columns: Sequence[str] = ()
-    time: str | None = None
-    minus: Log | None = None
-    jointly: bool = False
     every: int | None = None
     h: float | None = None
     point: Point | None = None
@@ -58,34 +50,17 @@ class LogQuestion:
     turning: Fraction | None = None
 
     def __post_init__(self) -> None:
-        _ = self.groups
-        if self.minus:
-            _check_same_step(self.minus, self.log)
         _ = self.turned
-        row = self.row_step
-        if self.h is None or row is None:
-            return
-        apart = f"the log's times are {row:.6g} s apart"
-        if self.own_steps and not self.logged:
-            raise InputError(f"{apart}: expected a multiple of the step, --h {self.h:g}")
-        if self.every is not None and round(row / self.h) != self.every:
-            raise InputError(f"--every {self.every}: {apart}, {row / self.h:.4g} times --h {self.h:g}")
 
     @property
     def meant_in_seconds(self) -> Meant | None:
         """Whether the point looks like alpha and beta in 1/s: for the methods, without any for what engines have."""
         return meant_in_seconds(self.methods or (lookup(USUAL),), self.point, self.h)
 
-    @cached_property
-    def groups(self) -> list[list[int]]:
-        """The places of the columns to each of which, or to all of which jointly, a pole is fitted."""
-        places = error_columns(self.log, self.columns, time_column(self.log, self.time))
-        return [places] if self.jointly else [[place] for place in places]
-
-    @cached_property
+    @property
     def row_step(self) -> float | None:
-        """The time between rows in s; None without a column of times."""
-        return _row_step(self.log, time_column(self.log, self.time))
+        """The time between rows in s; None where it is not known."""
+        return None
 
     @cached_property
     def own_steps(self) -> dict[Method, int | None]:
@@ -112,13 +87,67 @@ class LogQuestion:
         return float(self.turning) * self.row_step / (self.every or 1)
 
 
-@dataclass(frozen=True)
-class ColumnAnswer:
+@dataclass(frozen=True, kw_only=True)
+class LogQuestion(PoleQuestion):
+    """The same question about the pole of each column of a log.
+
+    `columns` and `time` are names or numbers of columns of the log; without `columns` all but that of times are taken.
+    `minus` is the log of another run, to subtract. With `jointly` one pole is fitted to all columns. InputError for a
+    column that is not there, and for times that do not fit h.
+    """
+
+    log: Log
+    columns: Sequence[str] = ()
+    time: str | None = None
+    minus: Log | None = None
+    jointly: bool = False
+
+    def __post_init__(self) -> None:
+        _ = self.groups
+        if self.minus:
+            _check_same_step(self.minus, self.log)
+        super().__post_init__()
+        row = self.row_step
+        if self.h is None or row is None:
+            return
+        apart = f"the log's times are {row:.6g} s apart"
+        if self.own_steps and not self.logged:
+            raise InputError(f"{apart}: expected a multiple of the step, --h {self.h:g}")
+        if self.every is not None and round(row / self.h) != self.every:
+            raise InputError(f"--every {self.every}: {apart}, {row / self.h:.4g} times --h {self.h:g}")
+
+    @cached_property
+    def groups(self) -> list[list[int]]:
+        """The places of the columns to each of which, or to all of which jointly, a pole is fitted."""
+        places = error_columns(self.log, self.columns, time_column(self.log, self.time))
+        return [places] if self.jointly else [[place] for place in places]
+
+    @cached_property
+    def row_step(self) -> float | None:
+        """The time between rows in s; None without a column of times."""
+        return row_step(self.log, time_column(self.log, self.time))
+
+
+@dataclass(frozen=True, repr=False)
+class Probe:
     """The pole in a column of a log (or in all jointly, then called by all their names), and what has it."""
 
-    question: LogQuestion
+    question: PoleQuestion
     column: str
     found: ProbedPole
+
+    def __repr__(self) -> str:
+        return f"Probe({self.column}: {self.found!r}, {len(self.likenesses)} likenesses, {len(self.points)} points)"
+
+    @property
+    def pole(self) -> complex | None:
+        """The dominant pole per row; None if none can be told."""
+        return self.found.pole
+
+    @property
+    def fitting(self) -> tuple[str, ...]:
+        """The names of the methods that fit, the nearest first."""
+        return tuple(one.method.name for one in self.likenesses if one.fits)
 
     @cached_property
     def likenesses(self) -> list[Likeness]:
@@ -141,7 +170,7 @@ class ColumnAnswer:
     def _points_and_remarks(self) -> tuple[list[LikePoint], list[str]]:
         found: list[LikePoint] = []
         remarks: list[str] = []
-        if self.question.point is not None or self.found.pole is None:
+        if self.question.point is not None or self.pole is None:
             return found, remarks
         for method, between in self.question.own_steps.items():
             try:
@@ -157,26 +186,24 @@ class ColumnAnswer:
     @property
     def told(self) -> bool:
         """Whether a pole could be told, and be compared."""
-        return bool(self.likenesses) if self.question.point else self.found.pole is not None
+        return bool(self.likenesses) if self.question.point else self.pole is not None
 
     @property
     def fits(self) -> bool:
         """Whether a method fits, or has the pole somewhere; true, too, if no method is asked about."""
-        if self.question.point:
-            return any(one.fits for one in self.likenesses)
-        return bool(self.points) or not self.question.own_steps
+        return bool(self.fitting if self.question.point else self.points or not self.question.own_steps)
 
 
-def log_answers(question: LogQuestion) -> Iterator[ColumnAnswer]:
+def log_answers(question: LogQuestion) -> Iterator[Probe]:
     """Yield the answer for each column, or for all jointly; InputError as `probed_pole`."""
     log, minus = question.log, question.minus
     for group in question.groups:
         names = [log.columns[place] for place in group]
         other = None if minus is None else _columns_called(names, minus, log, group)
-        yield ColumnAnswer(question, ", ".join(names), probed_pole(log.values[:, group], other))
+        yield Probe(question, ", ".join(names), probed_pole(log.values[:, group], other))
 
 
-def check_told(found: Sequence[ColumnAnswer]) -> None:
+def check_told(found: Sequence[Probe]) -> None:
     """Raise NumericalError, which says why, if no column tells a pole that fits."""
     untold = [f"{answer.column}: {answer.found.reason}" for answer in found if not answer.told]
     unfit = [answer.column for answer in found if answer.told and not answer.fits]
@@ -194,10 +221,6 @@ def _columns_called(names: Sequence[str], other: Log, log: Log, places: Sequence
 
 def _check_same_step(other: Log, log: Log) -> None:
     """Raise InputError where two logs have columns of times with different steps."""
-    own, others = _row_step(log, time_column(log)), _row_step(other, time_column(other))
+    own, others = row_step(log, time_column(log)), row_step(other, time_column(other))
     if own is not None and others is not None and abs(own - others) > SAME_STEP * own:
         raise InputError(f"--minus: {other.name} has rows every {others:.6g} s, {log.name} every {own:.6g} s")
-
-
-def _row_step(log: Log, time: int | None) -> float | None:
-    return None if time is None else row_step(log, time)

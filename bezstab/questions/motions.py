@@ -50,30 +50,34 @@ def motion_of(
     check_speed(scene, speed)
     if omega is not None and omega_h is not None:
         raise InputError("the motion is given as omega= in 1/s with h= in s, or as omega_h= in rad a step, not as both")
-    longer = h_max / h if h and h_max else Fraction(1)
+    longer, amplitude = h_max / h if h and h_max else Fraction(1), None
     if omega_h is not None:
+        turned, given = omega_h / longer, "--omega-h"
         words = f"one with ωh = {float(omega_h):.3g}"
-        return _within_range(ReferenceMotion(omega_h / longer, omega_h, words), "--omega-h")
-    if omega is None and scene is None:
+    elif omega is None and scene is None:
+        turned, given = OMEGA_H / longer, "--h and --h-max"
         at_longest = "" if longer == 1 else " at --h-max"
         whose = "--omega says" if h else "--omega and --h say"
         words = f"one with ωh = {float(OMEGA_H):g}{at_longest} ({whose} how fast yours is)"
-        return _within_range(ReferenceMotion(OMEGA_H / longer, OMEGA_H, words), "--h and --h-max")
-    if h is None:
-        given = "--scene" if omega is None else "--omega"
-        raise InputError(f"{given} needs --h: the step in s, to make ωh of it")
-    amplitude = None
-    if omega is None:
-        assert scene
-        of_scene = _motion_of_scene(scene, speed, duration)
-        omega, amplitude = exact(of_scene.omega), of_scene.amplitude
-        name = name_of(scene)
-        given, whose = f"--scene {name} moves with ω = {float(omega):.3g} 1/s", f"that of {name}"
+    elif h is None:
+        raise InputError(f"{'--scene' if omega is None else '--omega'} needs --h: the step in s, to make ωh of it")
     else:
-        given, whose = f"--omega {typed_number(omega)}", "one"
-    turned = omega * h
-    words = f"{whose} with ω = {float(omega):.3g} 1/s, ωh = {float(turned):.3g}"
-    return _within_range(ReferenceMotion(turned, turned * longer, words, amplitude), given)
+        whose = "one"
+        if omega is None:
+            assert scene
+            of_scene = _motion_of_scene(scene, speed, duration)
+            omega, amplitude, whose = exact(of_scene.omega), of_scene.amplitude, f"that of {name_of(scene)}"
+            given = f"--scene {name_of(scene)} moves with ω = {float(omega):.3g} 1/s"
+        else:
+            given = f"--omega {typed_number(omega)}"
+        turned = omega * h
+        words = f"{whose} with ω = {float(omega):.3g} 1/s, ωh = {float(turned):.3g}"
+    try:
+        check_omega_h(turned)
+        check_omega_h(turned * longer)
+    except InputError as error:
+        raise InputError(f"{given}: {error}") from None
+    return ReferenceMotion(turned, turned * longer, words, amplitude)
 
 
 def check_speed(scene: str | Scene | None, speed: Fraction) -> None:
@@ -131,13 +135,3 @@ def _motion_of_scene(scene: str | Scene, speed: Fraction, duration: Fraction | N
         return constraint_motion(compiled_mechanism(moving), float(duration or moving.duration))
     except InputError as error:
         raise InputError(f"--scene {name_of(scene)}: {error}; --omega gives one") from None
-
-
-def _within_range(motion: ReferenceMotion, given: str) -> ReferenceMotion:
-    """Return the motion; InputError, naming what was given, for one too slow or too fast for its steps."""
-    try:
-        check_omega_h(motion.omega_h)
-        check_omega_h(motion.omega_h_max)
-    except InputError as error:
-        raise InputError(f"{given}: {error}") from None
-    return motion

@@ -1,4 +1,4 @@
-"""How a point is given, by alpha_hat and beta_hat, an engine's values or a drive's gains; what a window shows of it."""
+"""A point: what an engine's values mean at other steps, whether it looks like 1/s, and what a window shows of it."""
 
 import math
 from collections.abc import Sequence
@@ -15,19 +15,6 @@ from bezstab.units import feedback_gains, to_dimensionless
 
 SAME_GAINS = 1e-9
 """Of gains in 1/s and 1/s^2: roots and powers that engines take are rounded to float64."""
-
-
-@dataclass(frozen=True)
-class GivenPoint:
-    """A point (alpha_hat, beta_hat), exact, and what gave it.
-
-    `notes` say what the engine did to its values before it used them; None where they were taken as typed, or no
-    engine gave them. `also` are further points that the engine takes, labelled: safe is what is safe there too.
-    """
-
-    point: Point
-    notes: tuple[str, ...] | None = None
-    also: tuple[tuple[str, Point], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -57,23 +44,6 @@ class PlanePoint:
         return abs(kick_response(self.poles, steps))
 
 
-def point_of_engine(engine: Engine, values: tuple[Fraction, ...], h: Fraction, *, as_typed: bool) -> GivenPoint:
-    """Return the point that an engine makes of its values at a step of h (s), its clamps left out where `as_typed`.
-
-    InputError as `Engine.applied`.
-    """
-    if as_typed:
-        return GivenPoint(engine.point(values, h))
-    applied = engine.applied(values, h)
-    return GivenPoint(applied.point, applied.notes, applied.also)
-
-
-def all_points(engine: Engine, values: tuple[Fraction, ...], h: Fraction, *, as_typed: bool) -> list[Point]:
-    """Return every point that an engine takes for its values at a step of h (s); InputError as `Engine.applied`."""
-    given = point_of_engine(engine, values, h, as_typed=as_typed)
-    return [given.point, *(point for _, point in given.also)]
-
-
 def engine_holds(
     engine: Engine, values: tuple[Fraction, ...], shorter: Fraction, longer: Fraction, *, as_typed: bool
 ) -> bool:
@@ -81,7 +51,7 @@ def engine_holds(
 
     InputError where they mean neither, as those do that are clamped to the step.
     """
-    at_both = [all_points(engine, values, step, as_typed=as_typed) for step in (shorter, longer)]
+    at_both = [engine.applied(values, step, as_typed=as_typed).points for step in (shorter, longer)]
     if at_both[0] == at_both[1]:
         return True
     of_shorter, of_longer = (

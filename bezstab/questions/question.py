@@ -7,14 +7,14 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 
-from bezstab.engines import DRIVE_METHODS, Drive, Engine, Point
+from bezstab.engines import DRIVE_METHODS, Applied, Drive, Engine, Point
 from bezstab.errors import InputError
 from bezstab.goals import GOALS, SETTLING, UP_TO_LONGEST, Goal
 from bezstab.mechanism import Scene, TurningNormals
 from bezstab.methods import Method, check_one_step, lookup
-from bezstab.questions.chains import Chain, SweptConstraints, chain_of, check_sweeps, constraints_of
+from bezstab.questions.chains import SweptConstraints, check_sweeps, constraints_of, constraints_of_chain
 from bezstab.questions.motions import ReferenceMotion, check_speed, motion_of, turn_too_far, turning_of
-from bezstab.questions.points import GivenPoint, Meant, engine_holds, meant_in_seconds, point_of_engine
+from bezstab.questions.points import Meant, engine_holds, meant_in_seconds
 from bezstab.units import check_step
 
 WHICH_METHOD = (
@@ -81,7 +81,7 @@ class Question:
         else:
             self._check_goal(self.goal)
         check_speed(self.scene, self.speed)
-        check_sweeps(self.links, self.iterations, self.engine, self.scene, self.speed)
+        check_sweeps(self.chain, self.mass_ratio, self.iterations, self.engine, self.scene, self.speed)
         object.__setattr__(self, "methods", methods_for(self.methods, self.engine, self.drive))
         if self.steps:
             for method in self.methods:
@@ -137,14 +137,14 @@ class Question:
             )
 
     @cached_property
-    def given(self) -> GivenPoint:
-        """The point that is asked about."""
+    def given(self) -> Applied:
+        """The point that is asked about, and those at which the same values must be safe, too."""
         if self.values is not None and self.engine and self.h is not None:
-            return point_of_engine(self.engine, self.values, self.h, as_typed=self.as_typed)
+            return self.engine.applied(self.values, self.h, as_typed=self.as_typed)
         if self.drive and self.h is not None:
-            return GivenPoint(self.drive.point(self.h))
+            return Applied(self.drive.point(self.h), None)
         assert self.point
-        return GivenPoint(self.point)
+        return Applied(self.point, None)
 
     @property
     def meant_in_seconds(self) -> Meant | None:
@@ -181,17 +181,13 @@ class Question:
             return motion_of(None, None, Fraction(1), self.h, longest)  # the sweeps are what is asked about
 
     @cached_property
-    def links(self) -> Chain | None:
-        """The chain that is asked about; errors as `chain_of`."""
-        return chain_of(self.chain, self.mass_ratio)
-
-    @cached_property
     def swept(self) -> SweptConstraints | None:
         """The constraints that the engine sweeps over; None for one alone, and if it is not known how it sweeps."""
         if self.engine is None or self.engine.sweeping is None or self.h is None:
             return None
-        found = self.links.constraints if self.links else self.scene and constraints_of(self.scene, self.speed)
-        if not found or (found.count == 1 and not self.links):
+        if self.chain is not None:
+            found = constraints_of_chain(self.chain, self.mass_ratio)
+        elif self.scene is None or (found := constraints_of(self.scene, self.speed)).count == 1:
             return None
         return SweptConstraints(self.engine, self.h, found, self.iterations or self.engine.sweeping.iterations)
 

@@ -57,107 +57,41 @@ DECADES = 100
 class RegionAnswer:
     """The region |z_p| < level of a method, and its best point.
 
-    `best` is the best point of the method, whatever the level; None if there is none. If it could not be found,
-    `trouble` says why. The last four are about the stable region, whatever the level; they are computed when asked for.
+    `best` is the best point of the method, whatever the level; None if there is none: then |z_p| may fall towards a
+    limit far out. If it could not be found, `trouble` says why. The last four are about the stable region, whatever the
+    level: whether every alpha_hat, beta_hat > 0 is stable; the alpha / beta above which every step is stable, None if
+    there is none; the largest beta h on alpha = beta up to which all are stable, None if there is none, and the same as
+    a rational number, if it is known to be one.
     """
 
     region: Region
     best: BestPoint | None
     trouble: str | None
+    falls_towards: FarLimit | None
+    stable_for_all: str
+    unconditional_damping_ratio: float | None
+    critical_damping_limit: float | None
+    critical_damping_limit_exact: Fraction | None
 
     @property
     def inside(self) -> BestPoint | None:
         """The best point if it lies in the region, which it does not where |z_p| is nowhere that small."""
         return self.best if self.best and self.best.z_abs < self.region.level else None
 
-    @cached_property
-    def falls_towards(self) -> FarLimit | None:
-        """The limit of |z_p| far out, if no point has the least."""
-        return falls_towards(self.region.method)
-
-    @cached_property
-    def stable_for_all(self) -> str:
-        """Whether every alpha_hat, beta_hat > 0 is stable."""
-        return stable_for_all(self.region.method)
-
-    @cached_property
-    def unconditional_damping_ratio(self) -> float | None:
-        """The alpha / beta above which every step is stable; None if there is none."""
-        return unconditional_damping_ratio(self.region.method)
-
-    @cached_property
-    def critical_damping_limit(self) -> float | None:
-        """The largest beta h on alpha = beta up to which all are stable; None if there is none."""
-        return critical_damping_limit(self.region.method)
-
-    @cached_property
-    def critical_damping_limit_exact(self) -> Fraction | None:
-        """The same limit as a rational number, if it is known to be one."""
-        return exact_critical_damping_limit(self.region.method)
-
-    @property
-    def window(self) -> Extent:
-        """Ranges of alpha_hat and beta_hat that show the region, and for an unbounded one the best point."""
-        shown = useful_window(self.region)
-        return shown if self.region.bounded else _holding(shown, self.best)
-
-    @property
-    def faster_levels(self) -> list[float]:
-        """The level of one faster region: a quarter of the way from the least |z_p| to 1, to two digits."""
-        return [] if self.best is None else [round(self.best.z_abs + (1 - self.best.z_abs) / 4, 2)]
-
 
 def region_answer(method: Method, level: float = 1.0) -> RegionAnswer:
     """Return the answer about the region |z_p| < level; errors as `region`."""
-    return RegionAnswer(region(method, level), *best_point_or_reason(method))
-
-
-@dataclass(frozen=True)
-class ForcedErrors:
-    """The errors of the fastest point of a method, and of the most accurate point that settles in time, on a motion."""
-
-    method: Method
-    motion: ReferenceMotion
-    best: BestPoint | None
-    chosen: Choice | None
-    reason: str | None
-
-    @property
-    def best_error(self) -> float | None:
-        """The error at the least |z_p|, a share of the motion; None where that is not known."""
-        return self._error(self.best)
-
-    @property
-    def accurate_error(self) -> float | None:
-        """The error at the choice of the goal accurate."""
-        return self._error(self.chosen)
-
-    def _error(self, point: BestPoint | Choice | None) -> float | None:
-        if point is None:
-            return None
-        return float(combined_error(self.method, point.alpha_hat, point.beta_hat, self.motion.omega_h))
-
-    @property
-    def window(self) -> Extent:
-        """Ranges above zero: from feedback much slower than the motion on, to the region's ends and both points."""
-        (_, alpha_hat_max), (_, beta_hat_max) = _holding(
-            _holding(useful_window(region(self.method)), self.best), self.chosen
-        )
-        slow = float(self.motion.omega_h) / SLOWER  # alpha h and beta h
-        return (
-            (min(2 * slow, alpha_hat_max / DECADES), alpha_hat_max),
-            (min(slow**2, beta_hat_max / DECADES), beta_hat_max),
-        )
-
-
-def forced_errors_of(method: Method, motion: ReferenceMotion) -> ForcedErrors:
-    """Return the errors of a method on a motion; if there is no most accurate point, `reason` says why."""
-    best, _ = best_point_or_reason(method)
-    try:
-        chosen = choose(method, "accurate", margins=False, omega_h=motion.omega_h)
-    except (InputError, NumericalError) as error:
-        return ForcedErrors(method, motion, best, None, f"no most accurate point: {error}")
-    return ForcedErrors(method, motion, best, chosen, None)
+    best, trouble = best_point_or_reason(method)
+    return RegionAnswer(
+        region=region(method, level),
+        best=best,
+        trouble=trouble,
+        falls_towards=None if best or trouble else falls_towards(method),
+        stable_for_all=stable_for_all(method),
+        unconditional_damping_ratio=unconditional_damping_ratio(method),
+        critical_damping_limit=critical_damping_limit(method),
+        critical_damping_limit_exact=exact_critical_damping_limit(method),
+    )
 
 
 def _holding(shown: Extent, point: BestPoint | Choice | None) -> Extent:
@@ -220,6 +154,11 @@ class MapQuestion:
         if self.accuracy and low <= 0:
             raise InputError(f"{typed}: the axes of --accuracy are logarithmic, and begin above 0")
 
+    @property
+    def seconds(self) -> float | None:
+        """The step (s) in float64."""
+        return None if self.h is None else float(self.h)
+
     @cached_property
     def motion(self) -> ReferenceMotion | None:
         """The motion on which errors are told; None where they are not asked about. Errors as `motion_of`."""
@@ -236,6 +175,11 @@ class MapQuestion:
         """What is to be known before the answers."""
         return turn_too_far(self.turnings, self.scene, self.h)
 
+    @property
+    def best_points_known(self) -> bool:
+        """Whether it is known of each method where errors decay fastest, or that there is no such point."""
+        return not any(best_point_or_reason(method)[1] for method in self.methods)
+
     @cached_property
     def compared(self) -> list[RegionAnswer]:
         """The regions whose boundaries are compared, one of each method; errors as `region`."""
@@ -249,7 +193,7 @@ class MapQuestion:
     @property
     def marks(self) -> dict[str, tuple[float, float]]:
         """The points (alpha_hat, beta_hat) to mark, by label: the engine's defaults and rules of thumb."""
-        points = {label: point(self.h) for label, point in self.engine.marks} if self.engine and self.h else {}
+        points = self.engine.marked(self.h) if self.engine and self.h else {}
         return {label: (float(alpha_hat), float(beta_hat)) for label, (alpha_hat, beta_hat) in points.items()}
 
 
@@ -278,37 +222,79 @@ class MapAnswer:
         return {float(speed): moving_region(self.method, each, h) for speed, each in self.question.turnings.items()}
 
     @cached_property
-    def forced(self) -> ForcedErrors | None:
-        """What the best points force on the motion; None without one."""
-        return forced_errors_of(self.method, self.question.motion) if self.question.motion else None
+    def _choice_or_reason(self) -> tuple[Choice | None, str | None]:
+        motion = self.question.motion
+        if motion is None:
+            return choose(self.method, "robust", margins=False) if self.stable.best else None, None
+        try:
+            return choose(self.method, "accurate", margins=False, omega_h=motion.omega_h), None
+        except (InputError, NumericalError) as error:
+            return None, f"no most accurate point: {error}"
+
+    @property
+    def chosen(self) -> Choice | None:
+        """The point to draw beside the fastest: the choice of the goal accurate on a motion, else of robust."""
+        return self._choice_or_reason[0]
+
+    @property
+    def choice_reason(self) -> str | None:
+        """Why there is no most accurate point on a motion; None where there is one."""
+        return self._choice_or_reason[1]
+
+    @property
+    def best_error(self) -> float | None:
+        """The error that the point of least |z_p| forces on the motion, a share of it; None where that is not known."""
+        return self._error(self.stable.best)
+
+    @property
+    def accurate_error(self) -> float | None:
+        """The error at the choice of the goal accurate."""
+        return self._error(self.chosen)
+
+    def _error(self, point: BestPoint | Choice | None) -> float | None:
+        motion = self.question.motion
+        if point is None or motion is None:
+            return None
+        return float(combined_error(self.method, point.alpha_hat, point.beta_hat, motion.omega_h))
 
     @property
     def drawn_levels(self) -> list[float]:
-        """The levels of |z_p| to draw: those that were given, else one that suits the method."""
-        motion = self.question.motion
+        """The levels of |z_p| to draw: those that were given, else one that suits the motion or the least |z_p|."""
+        motion, best = self.question.motion, self.stable.best
         given = [float(level) for level in self.question.levels if level < 1 or not motion]
         if given:
             return given
-        return [default_rate(self.method, motion.omega_h)] if motion else self.stable.faster_levels
+        if motion:
+            return [default_rate(self.method, motion.omega_h)]
+        return [] if best is None else [round(best.z_abs + (1 - best.z_abs) / 4, 2)]
 
     @property
     def faster(self) -> list[Region]:
         """The regions of these levels."""
         return [region(self.method, level) for level in self.drawn_levels]
 
-    @cached_property
-    def chosen(self) -> Choice | None:
-        """The point to draw beside the fastest: the choice of the goal accurate on a motion, else of robust."""
-        if self.forced:
-            return self.forced.chosen
-        return choose(self.method, "robust", margins=False) if self.stable.best else None
+    @property
+    def window(self) -> Extent:
+        """Ranges of alpha_hat and beta_hat that show the region, and for an unbounded one the best point.
+
+        With a motion they hold both points, and begin above zero: where the feedback is much slower than the motion.
+        """
+        stable, motion = self.stable, self.question.motion
+        shown = useful_window(stable.region)
+        if motion is None:
+            return shown if stable.region.bounded else _holding(shown, stable.best)
+        (_, alpha_hat_max), (_, beta_hat_max) = _holding(_holding(shown, stable.best), self.chosen)
+        slow = float(motion.omega_h) / SLOWER  # alpha h and beta h
+        return (
+            (min(2 * slow, alpha_hat_max / DECADES), alpha_hat_max),
+            (min(slow**2, beta_hat_max / DECADES), beta_hat_max),
+        )
 
     @cached_property
     def axes(self) -> tuple[FloatArray, FloatArray]:
         """The points on both axes: equally spaced, or by equal factors where the error is asked about."""
-        spaced = np.geomspace if self.forced else np.linspace
-        fitting = self.forced.window if self.forced else self.stable.window
-        ends = (self.question.alpha_range or fitting[0], self.question.beta_range or fitting[1])
+        spaced = np.geomspace if self.question.motion else np.linspace
+        ends = (self.question.alpha_range or self.window[0], self.question.beta_range or self.window[1])
         alpha_hat, beta_hat = (spaced(float(low), float(high), self.question.points) for low, high in ends)
         return alpha_hat, beta_hat
 

@@ -28,7 +28,6 @@ from bezstab.evidence import (
     sweep_compiled,
     sweep_sentences,
     swept_runs,
-    with_fronts,
 )
 from bezstab.mechanism import Scene, check_after_step
 from bezstab.methods import Method
@@ -122,9 +121,7 @@ class TradeQuestion:
         """The runs to make: of each method with each treatment."""
         rate, of_all = self.rate, (self.moving, self.step_sizes, float(self.duration))
         reference = self.reference
-        compiled = all(
-            sweep_compiled(self.moving, self.methods, *of_all[1:], self.repeats, after) for _, after in self.treatments
-        )
+        compiled = sweep_compiled(self.methods, self.step_sizes, float(self.duration), self.repeats)
         return [
             Sweep(method, *of_all, point, self.physical, self.repeats, reference, rate, compiled, after)
             for method in dict.fromkeys(self.methods)
@@ -134,7 +131,7 @@ class TradeQuestion:
     def swept(self, measured: Sequence[Mapping[str, NDArray[np.generic]]]) -> SweptRuns:
         """Return what the runs of all sweeps have measured, as `measured_runs` returns it for each, and the fronts."""
         runs = chain.from_iterable(swept_runs(*each) for each in zip(self.sweeps, measured, strict=True))
-        return with_fronts(list(runs), self.reference.error, self.against)
+        return SweptRuns(list(runs), self.reference.error, self.against)
 
     def sentences(self, swept: SweptRuns, tolerance: float) -> list[str]:
         """Return in words what runs are compared with, what those within a tolerance (m, rad) cost, and who wins."""

@@ -9,8 +9,8 @@ from fractions import Fraction
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike
 
+from bezstab.engines import Point
 from bezstab.evidence import HalvedStep, Measurement, halved_steps, measure_poles, random_points
 from bezstab.mechanism import Driver, Mechanism, Scene, compiled_mechanism, revolution_period
 from bezstab.methods import Method
@@ -26,16 +26,16 @@ RANDOM_POINTS = 20
 class VerifyQuestion:
     """Do runs of a scene, with steps of `h` (s), agree with what is predicted of their constraint errors?
 
-    The scene moves `speed` times as fast as given there. The `point` is one (alpha_hat, beta_hat), or two arrays of
-    one shape; without it `points` random ones are taken, RANDOM_POINTS unless told. With `floquet` the exact prediction
-    for a moving mechanism is asked about as well. InputError for a step that is not positive.
+    The scene moves `speed` times as fast as given there. Without a `point` (alpha_hat, beta_hat) so many random
+    `points` are taken, RANDOM_POINTS unless told. With `floquet` the exact prediction for a moving mechanism is asked
+    about as well. InputError for a step that is not positive.
     """
 
     scene: str | Scene
     methods: Sequence[Method]
-    h: float | Fraction
+    h: Fraction
     speed: Fraction = Fraction(1)
-    point: Sequence[ArrayLike | Fraction] | None = None
+    point: Point | None = None
     points: int | None = None
     floquet: bool = False
 
@@ -44,11 +44,8 @@ class VerifyQuestion:
 
     @property
     def meant_in_seconds(self) -> Meant | None:
-        """Whether the point looks like alpha and beta in 1/s; None where there is not one exact point."""
-        if self.point is None:
-            return None
-        exact = [each for each in self.point if isinstance(each, Fraction)]
-        return meant_in_seconds(self.methods, (exact[0], exact[1]), self.h) if len(exact) == 2 else None
+        """Whether the point looks like alpha and beta in 1/s."""
+        return meant_in_seconds(self.methods, self.point, self.h)
 
     @cached_property
     def mechanism(self) -> Mechanism:
@@ -67,15 +64,15 @@ class VerifyQuestion:
         if self.point is None:
             alpha_hat, beta_hat = random_points(method, self.points or RANDOM_POINTS)
         else:
-            alpha_hat, beta_hat = (np.asarray(each, float).ravel() for each in self.point)
+            alpha_hat, beta_hat = (np.array([float(each)]) for each in self.point)
         return measure_poles(self.mechanism, method, float(self.h), alpha_hat, beta_hat, bar, self.floquet)
 
     def forced_errors(self, method: Method) -> Iterator[HalvedStep]:
         """Yield predicted and measured errors at shares of the gains of the point, else of the goal robust."""
-        if self.point is None:
-            chosen = choose(method, "robust", margins=False)
-            at = chosen.alpha_hat, chosen.beta_hat
+        if self.point:
+            alpha_hat, beta_hat = map(float, self.point)
         else:
-            alpha_hat, beta_hat = (float(np.asarray(each, float)) for each in self.point)
-            at = alpha_hat, beta_hat
-        return halved_steps(self.mechanism, method, float(self.h), at, self.mechanism.scene.duration)
+            chosen = choose(method, "robust", margins=False)
+            alpha_hat, beta_hat = chosen.alpha_hat, chosen.beta_hat
+        duration = self.mechanism.scene.duration
+        return halved_steps(self.mechanism, method, float(self.h), (alpha_hat, beta_hat), duration)

@@ -6,33 +6,22 @@ What draws is not loaded before it is used.
 from typing import TYPE_CHECKING
 
 from bezstab.lazy import lazy_names
-from bezstab.show.answer_rows import (
+from bezstab.show.cells import pole_text
+from bezstab.show.fields import Field, Row, RowKind, cells, column, formatted, visible
+from bezstab.show.file_forms import FIGURE_FORMS, TABLE_FORMS
+from bezstab.show.result_sentences import (
+    LATE_COMMANDS,
     alone_words,
-    answer_row,
     combined_words,
     costs_words,
-    largest_step_row,
-    left_out,
+    exact_rate_words,
+    likeness_sentence,
     motion_words,
-    pole_rows,
+    passages_words,
+    timing_words,
     trade_words,
+    varying_words,
 )
-from bezstab.show.blocks import block, fits, wrapped
-from bezstab.show.cells import pole_text, with_unbounded
-from bezstab.show.columns import (
-    Column,
-    Format,
-    Row,
-    column,
-    finite,
-    formatted,
-    render,
-    shown_width,
-    visible,
-)
-from bezstab.show.fields import Field, RowKind, Sentence, cells
-from bezstab.show.file_forms import FIGURE_FORMS, TABLE_FORMS
-from bezstab.show.held_rows import LATE_COMMANDS, NOT_JUDGED, held_row, timing_words
 from bezstab.show.row_kinds import (
     CHAINS,
     CHECKED,
@@ -62,39 +51,51 @@ from bezstab.show.row_kinds import (
     WITNESSED,
 )
 from bezstab.show.rows import (
-    NOT_KNOWN,
+    answer_row,
     chain_rows,
     engine_row,
-    exact_rate_words,
     forced_rows,
     front_row,
+    held_row,
+    largest_step_row,
+    left_out,
     like_point_row,
     limit_row,
+    map_rows,
     method_row,
     nearest_rows,
     pole_cells,
+    pole_rows,
     region_row,
     whole_row,
 )
 from bezstab.show.schemas import json_schema
-from bezstab.show.sentences import likeness_sentence, one_pole_sentence, passages_words
-from bezstab.show.varying_rows import varying_words
+from bezstab.show.sentences import one_pole_sentence
+from bezstab.show.tables import Format, block, fits, render, shown_width, wrapped
 
 if TYPE_CHECKING:
     from bezstab.show import plot
-    from bezstab.show.accuracy_figures import error_front_figure
     from bezstab.show.arrays import (
+        boundary_arrays,
         history_arrays,
+        map_arrays,
         untimed_arrays,
         verdict_arrays,
         write_arrays,
     )
-    from bezstab.show.chain_figures import chains_figure
     from bezstab.show.explorer import open_explorer
-    from bezstab.show.held_figures import held_figure
-    from bezstab.show.plane_figures import PlaneMap, comparison_figure, family_figure, region_figure, verdict_figure
-    from bezstab.show.region_maps import compared_figure, compared_table, map_figure, map_rows, map_table
-    from bezstab.show.run_figures import history_figure, trade_figures, work_precision_figure
+    from bezstab.show.map_figures import (
+        PlaneMap,
+        chains_figure,
+        comparison_figure,
+        error_front_figure,
+        family_figure,
+        held_figure,
+        map_figure,
+        region_figure,
+        verdict_figure,
+    )
+    from bezstab.show.run_figures import history_figure, trade_figures
     from bezstab.show.style import DASHES, column_figure, legend_below, line_at, save, styled
 
 __getattr__ = lazy_names(__name__)

@@ -6,12 +6,12 @@ import csv
 import math
 from collections.abc import Mapping, Sequence
 from io import TextIOWrapper
-from typing import TYPE_CHECKING, BinaryIO
+from typing import TYPE_CHECKING, Any, BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
 
-from bezstab.show.columns import Row, Value
+from bezstab.show.fields import Row, Value
 from bezstab.show.row_kinds import FIELDS
 from bezstab.stability import ComplexArray, FloatArray, Region
 from bezstab.units import feedback_gains
@@ -19,24 +19,26 @@ from bezstab.units import feedback_gains
 if TYPE_CHECKING:  # so that an array of the plane does not load what runs mechanisms
     from bezstab.evidence import VerdictMap
     from bezstab.mechanism import Simulation
+    from bezstab.questions import MapAnswer
 
 Arrays = dict[str, NDArray[np.generic]]
 
 
-def map_arrays(alpha_hat: FloatArray, beta_hat: FloatArray, z: ComplexArray, h: float | None) -> Arrays:
-    """Return a map of dominant poles as arrays of shape (points,), alpha_hat running fastest.
+def map_arrays(answer: MapAnswer, z: ComplexArray) -> Arrays:
+    """Return the dominant poles over the axes of an answer as arrays of shape (points,), alpha_hat running fastest.
 
-    z has shape (beta_hat.size, alpha_hat.size). Dimensionless; the angle of z in degrees; with h (s) also 2 alpha and
-    beta^2 in 1/s and 1/s^2.
+    z has shape (beta_hat.size, alpha_hat.size). Dimensionless; the angle of z in degrees; with a step also 2 alpha and
+    beta^2 in 1/s and 1/s^2; with the errors that feedback forces where they are asked about.
     """
+    arrays = _over_the_plane(*answer.axes, z_abs=np.abs(z), z_angle_deg=np.angle(z, deg=True))
+    arrays |= _gains(arrays["alpha_hat"], arrays["beta_hat"], answer.question.seconds)
+    return {**arrays, "combined_error": answer.errors(z).ravel()} if answer.question.motion else arrays
+
+
+def _over_the_plane(alpha_hat: FloatArray, beta_hat: FloatArray, **values: NDArray[Any]) -> dict[str, NDArray[Any]]:
+    """Return values of shape (beta_hat.size, alpha_hat.size), with their points before them, in shape (points,)."""
     alpha_grid, beta_grid = np.meshgrid(alpha_hat, beta_hat)
-    grids = {
-        "alpha_hat": alpha_grid,
-        "beta_hat": beta_grid,
-        "z_abs": np.abs(z),
-        "z_angle_deg": np.degrees(np.angle(z)),
-        **_gains(alpha_grid, beta_grid, h),
-    }
+    grids = {"alpha_hat": alpha_grid, "beta_hat": beta_grid, **values}
     return {key: grid.ravel() for key, grid in grids.items()}
 
 
@@ -72,15 +74,8 @@ def _gains(alpha_hat: FloatArray, beta_hat: FloatArray, h: float | None) -> dict
 
 def verdict_arrays(verdicts: VerdictMap) -> Arrays:
     """Return a map of verdicts as arrays of shape (runs,), alpha_hat running fastest; 1 for diverges, for undecided."""
-    alpha_grid, beta_grid = np.meshgrid(verdicts.alpha_hat, verdicts.beta_hat)
-    grids = {
-        "alpha_hat": alpha_grid,
-        "beta_hat": beta_grid,
-        "z_abs": verdicts.z_abs,
-        "diverges": verdicts.diverges.astype(int),
-        "undecided": verdicts.undecided.astype(int),
-    }
-    return {key: grid.ravel() for key, grid in grids.items()}
+    judged = {"diverges": verdicts.diverges.astype(int), "undecided": verdicts.undecided.astype(int)}
+    return _over_the_plane(verdicts.alpha_hat, verdicts.beta_hat, z_abs=verdicts.z_abs, **judged)
 
 
 def history_arrays(simulation: Simulation) -> Arrays:

@@ -1,18 +1,20 @@
 """What a cell of a table shows where it takes more than a format: texts made of a row."""
 
-from collections.abc import Callable
 from decimal import ROUND_FLOOR, Context
-from string import Formatter
 
-from bezstab.show.columns import MISSING, Row, Value, formatted
+from bezstab.show.fields import MISSING, Row, Text, formatted
 from bezstab.show.words import times_words
-
-Text = Callable[[Row], str]
 
 MOST_FIXED = 1e6  # a modulus from here on is shown with an exponent
 
 LIMITS = ("alpha_hat_min", "alpha_hat_max", "beta_hat_min", "beta_hat_max")
 """The ends of a region's ranges, as rows name them."""
+
+ENDS = ("area", *LIMITS)
+"""What an unbounded region lacks."""
+
+WITHOUT_LIMIT = {"critical_damping_limit": "unlimited", "unconditional_damping_ratio": "none"}
+"""What is said where all steps are stable, or only those that are small enough."""
 
 
 def pole_text(row: Row, digits: int = 6) -> str:
@@ -27,8 +29,14 @@ def pole_text(row: Row, digits: int = 6) -> str:
 
 def filled(template: str) -> Text:
     """Return the text of a template such as "{z_abs:.4f} a step" with a row's values; a dash if it lacks one."""
-    keys = [key for _, key, _, _ in Formatter().parse(template) if key]
-    return lambda row: MISSING if any(row[key] is None for key in keys) else template.format_map(row)
+
+    def text(row: Row) -> str:
+        try:
+            return template.format_map(row)
+        except TypeError:  # None has no format
+            return MISSING
+
+    return text
 
 
 def modulus_text(row: Row) -> str:
@@ -45,7 +53,7 @@ def range_text(gain: str) -> Text:
         low, high = row[f"{gain}_factor_min"], row[f"{gain}_factor_max"]
         if low is None:
             return MISSING
-        return f"{formatted(low, '.3g')} to {'any' if high is None else formatted(high, '.3g')}"
+        return f"{low:.3g} to any" if high is None else f"{low:.3g} to {high:.3g}"
 
     return text
 
@@ -114,29 +122,19 @@ def times_text(row: Row) -> str:
 
 
 def unbounded_text(key: str, form: str) -> Text:
-    """Return the text of an area or a limit of a region: the word "unbounded" where there is none."""
-
-    def text(row: Row) -> str:
-        value = with_unbounded(row)[key]
-        return value if isinstance(value, str) else formatted(value, form)
-
-    return text
-
-
-def with_unbounded(row: Row) -> Row:
-    """Return a region's row for reading: words for what there is none of, an area or a limit of any kind.
+    """Return the text of a region's area or of a limit: in words where there is none.
 
     A limit that the region only comes near, far out, is called "approached".
     """
-    words: dict[str, Value] = {"bounded": "yes" if row["bounded"] else "no"}
-    if not row["bounded"]:
-        words |= {key: "unbounded" for key in ("area", *LIMITS) if row[key] is None}
-        words |= {key: f"{row[key]:.8g} (approached)" for key in str(row["approached"] or "").split(", ") if key}
-    if row["critical_damping_limit"] is None:
-        words["critical_damping_limit"] = "unlimited"
-    if row["unconditional_damping_ratio"] is None:
-        words["unconditional_damping_ratio"] = "none"
-    return {**row, **words}
+
+    def text(row: Row) -> str:
+        value = row[key]
+        if value is None:
+            return "unbounded" if key in ENDS and not row["bounded"] else WITHOUT_LIMIT.get(key, MISSING)
+        near = key in (row["approached"] or "").split(", ")
+        return f"{value:.8g} (approached)" if near else formatted(value, form)
+
+    return text
 
 
 def stable_steps_text(row: Row) -> str:
@@ -160,8 +158,7 @@ def order_text(row: Row) -> str:
 
 def constant_text(row: Row) -> str:
     """Return the error constant as a rational, or as a decimal where it is none."""
-    exact = row["error_constant_exact"]
-    return formatted(exact) if exact else formatted(row["error_constant"], ".10g")
+    return row["error_constant_exact"] or formatted(row["error_constant"], ".10g")
 
 
 def diverged_text(row: Row) -> str:
@@ -171,9 +168,7 @@ def diverged_text(row: Row) -> str:
 
 def milliseconds_text(row: Row) -> str:
     """Return median and range of the processor time of a run: 3.27 (3.24 to 3.41)."""
-    times = (row["seconds"], row["seconds_min"], row["seconds_max"])
-    median, shortest, longest = (formatted(1e3 * seconds, ".3g") for seconds in times)
-    return f"{median} ({shortest} to {longest})"
+    return f"{1e3 * row['seconds']:.3g} ({1e3 * row['seconds_min']:.3g} to {1e3 * row['seconds_max']:.3g})"
 
 
 def safe_step_text(row: Row) -> str:

@@ -5,6 +5,7 @@ from fractions import Fraction
 from functools import partial
 from shlex import quote
 
+import numpy as np
 from matplotlib.backend_bases import KeyEvent, MouseEvent
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
@@ -13,8 +14,7 @@ from bezstab.errors import InputError
 from bezstab.methods import Method
 from bezstab.questions import PlanePoint
 from bezstab.show import plot
-from bezstab.show.columns import formatted
-from bezstab.show.rows import pole_cells
+from bezstab.show.fields import formatted
 from bezstab.show.style import ACCENT, COLOURS, styled
 from bezstab.stability import region, useful_window
 from bezstab.units import alpha_and_beta
@@ -46,13 +46,11 @@ class Explorer:
 
     def _lay_out(self) -> None:
         """Make the map on the left, poles and decay on the right, and the line of numbers below."""
-        grid = self.figure.add_gridspec(2, 2, width_ratios=(3, 2))
-        self.map = self.figure.add_subplot(grid[:, 0])
-        circle = self.figure.add_subplot(grid[0, 1])
+        panels = self.figure.subplot_mosaic([["map", "poles"], ["map", "decay"]], width_ratios=(3, 2))
+        self.map, circle, decay = panels["map"], panels["poles"], panels["decay"]
         circle.add_patch(Circle((0, 0), 1, fill=False, edgecolor="0.6"))
         circle.set(xlim=(-1.6, 1.6), ylim=(-1.6, 1.6), aspect="equal", title="poles z")
         (self.poles,) = circle.plot([], [], "o", color=ACCENT, markersize=4, animated=True)
-        decay = self.figure.add_subplot(grid[1, 1])
         decay.set(xlim=(0, STEPS), ylim=(1e-6, 1e3), yscale="log", xlabel="step", title="|c| after a unit kick")
         (self.decay,) = decay.plot([], [], color=COLOURS[0], animated=True)
         self.text = self.figure.text(0.01, 0.02, "", linespacing=1.5, animated=True)
@@ -78,7 +76,7 @@ class Explorer:
         point = Fraction(self.typed[0]), Fraction(self.typed[1])
         alpha, beta = alpha_and_beta(*point, self.h)
         found = PlanePoint(self.method, point)
-        largest = pole_cells(found.poles[0])
+        largest = found.poles[0]
         judgement = f"{found.verdict} (proven)" if prove else "stable" if found.stable else "unstable"
         self.poles.set_data(found.poles.real, found.poles.imag)
         self.decay.set_data(range(STEPS + 1), found.after_a_kick(STEPS))
@@ -86,7 +84,7 @@ class Explorer:
         self.text.set_text(
             rf"$\hat\alpha$ = {self.typed[0]}   $\hat\beta$ = {self.typed[1]}   "
             f"α = {alpha:.6g}   β = {formatted(beta, '.6g')} 1/s at h = {self.h:g} s\n"
-            f"$|z_p|$ = {largest['z_abs']:.6f}   ∠$z_p$ = {largest['z_angle_deg']:.2f}°   {judgement}"
+            f"$|z_p|$ = {abs(largest):.6f}   ∠$z_p$ = {np.angle(largest, deg=True):.2f}°   {judgement}"
         )
 
     def _show(self) -> None:

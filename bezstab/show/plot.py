@@ -34,9 +34,8 @@ from bezstab.show.style import (
     line_at,
     marked_line_at,
     new_axes,
-    plane_axes,
     plane_coordinates,
-    plane_labels,
+    plane_words,
     styled,
     title_lines,
 )
@@ -113,7 +112,7 @@ def region(region: Region, axes: Axes | None = None, h: float | None = None, **l
     check_kind(region, Region, "bezstab.region")
     label = region.method.name if region.bounded else f"{region.method.name} (unbounded)"
     axes = _plane(axes, rf"$|z_p| = {region.level:g}$", h)
-    drawn = _line(axes, ([], []), line, label=label, **line_at(len(axes.lines)))
+    drawn = _line(axes, ([], []), line, label=label)
     gap = np.full((1, 2), np.nan)  # lifts the pen from one closed curve to the next
     points = np.concatenate([part for curve in region.boundary for part in (curve, gap)] or [gap])
     drawn.set_data(*plane_coordinates(points[:, 0], points[:, 1], h))  # which leaves the limits of the axes alone
@@ -144,8 +143,8 @@ def moving_region(
     if hatched and moving.outside_the_law.any():
         axes.contourf(x, y, moving.outside_the_law, levels=[0.5, 1.5], colors="none", hatches=["....."])
         axes.add_patch(Rectangle((0, 0), 0, 0, fill=False, hatch=".....", label="law does not hold"))  # a key
+    axes.plot([], [], color="black", linestyle=dashes, label=label)  # a contour has no label of its own
     edge: QuadContourSet = axes.contour(x, y, moving.growth, levels=[0.0], colors="black", linestyles=[dashes])
-    axes.plot([], [], color="black", linestyle=dashes, label=label)
     return edge
 
 
@@ -238,8 +237,11 @@ def _one_point(
 
 
 def _line(axes: Axes, points: Coordinates, line: Mapping[str, Any], **usual: Any) -> Line2D:
-    """Draw a line through points (x, y) as a caller asks for it, in the usual way where he does not, and return it."""
-    (drawn,) = axes.plot(*points, **{**usual, **line})
+    """Draw a line through points (x, y) as a caller asks for it, in the usual way where he does not, and return it.
+
+    Its colour and dashes are those that no other line in the axes has, unless the usual way has its own.
+    """
+    (drawn,) = axes.plot(*points, **{**line_at(len(axes.lines)), **usual, **line})
     return drawn
 
 
@@ -249,7 +251,7 @@ def open_edges(region: Region, axes: Axes, h: float | None = None, inset: float 
     Each edge gives a line with arrows on it, `inset` (a share of the axes' sides) inside the axes, where the region
     is. Returned are these lines; none for a bounded region.
     """
-    if region.bounded or region.extent is None:
+    if region.extent is None:
         return []
     along = np.linspace(inset, 1 - inset, ALONG_AN_EDGE)
     drawn: list[Line2D] = []
@@ -262,7 +264,7 @@ def open_edges(region: Region, axes: Axes, h: float | None = None, inset: float 
             x, y = np.where(inside, np.clip(edge, inset, 1 - inset).T, np.nan)
             arrows: dict[str, Any] = {"markersize": 3, "markevery": ALONG_AN_EDGE // ARROWS, "linewidth": 0.6}
             arrows |= {"marker": ("<>", "v^")[axis][end], "label": "_nolegend_", "transform": axes.transAxes}
-            drawn.append(_line(axes, (x, y), line, **arrows))
+            drawn.append(_line(axes, (x, y), line, linestyle="-", **arrows))
     return drawn
 
 
@@ -310,9 +312,8 @@ def family(members: Sequence[Member], quantity: Quantity = "area", axes: Axes | 
     order of accuracy or error constant, which says something between members of one order alone.
     """
     axes = _axes(axes, "", "steps $n$", quantity)
-    values = [attrgetter(QUANTITIES[quantity])(member) for member in members]
-    known = [np.nan if value is None else float(value) for value in values]
-    return _line(axes, ([member.n for member in members], known), line, marker=".", **line_at(len(axes.lines)))
+    values = np.array([attrgetter(QUANTITIES[quantity])(member) for member in members], float)  # nan for None
+    return _line(axes, ([member.n for member in members], values), line, marker=".")
 
 
 def history(
@@ -329,7 +330,7 @@ def history(
     name = rf"$\dot c_{constraint}$ (SI)" if derivative else rf"$c_{constraint}$ (SI)"
     axes = _run_axes(simulation, axes, name)
     errors = simulation.cdot if derivative else simulation.c
-    return _line(axes, (simulation.t, errors[:, constraint - 1]), line, linewidth=FINE, **line_at(len(axes.lines)))
+    return _line(axes, (simulation.t, errors[:, constraint - 1]), line, linewidth=FINE)
 
 
 def largest_error(simulation: Simulation, axes: Axes | None = None, **line: Any) -> Line2D:
@@ -339,9 +340,7 @@ def largest_error(simulation: Simulation, axes: Axes | None = None, **line: Any)
     """
     axes = _run_axes(simulation, axes, "largest $|c|$ (SI)")
     axes.set_yscale("log", nonpositive="mask")
-    return _line(
-        axes, (simulation.t, simulation.observation.largest_c), line, linewidth=FINE, **line_at(len(axes.lines))
-    )
+    return _line(axes, (simulation.t, simulation.observation.largest_c), line, linewidth=FINE)
 
 
 def _run_axes(simulation: Simulation, axes: Axes | None, name: str) -> Axes:
@@ -407,16 +406,13 @@ def work_precision(
     axes = _axes(axes, "", COST_LABELS[against], ERROR_LABELS[error])
     axes.set(xscale="log", yscale="log")
     shown = [(run.cost(against), known) for run in runs if (known := run.error(error)) is not None and known > floor]
-    costs, errors = [cost for cost, _ in shown], [known for _, known in shown]
+    costs, errors = np.reshape(shown, (-1, 2)).T
     return _line(axes, (costs, errors), line, label=runs[0].method.name, **marked_line_at(len(axes.lines)))
 
 
 def _plane(axes: Axes | None, title: str, h: float | None) -> Axes:
     """Return the given axes, labelled if they are empty, or those of a new figure for the plane."""
-    if axes is None:
-        with styled():
-            return plane_axes(title, h)[1]
-    return _axes(axes, title, *plane_labels(h))
+    return _axes(axes, *plane_words(title, h))
 
 
 def _axes(axes: Axes | None, title: str, xlabel: str, ylabel: str, height: float = 1.0) -> Axes:

@@ -32,20 +32,12 @@ from bezstab.show.fields import Field, RowKind, integer, number, text, truth
 from bezstab.show.sentences import (
     answer_sentence,
     chain_sentence,
-    check_sentence,
-    cost_sentence,
-    engine_sentence,
-    finding_sentence,
-    forced_sentence,
-    front_sentence,
     held_sentence,
     measurement_sentence,
-    member_sentence,
     method_sentence,
     region_sentence,
     run_sentence,
     step_sentence,
-    summary_sentence,
     verdict_map_sentence,
     whole_method_sentence,
     witness_sentence,
@@ -123,7 +115,7 @@ PREDICTED_Z_REAL, PREDICTED_Z_IMAG, PREDICTED_Z_ABS, PREDICTED_Z_ANGLE_DEG = pol
 MEASURED_Z_REAL, MEASURED_Z_IMAG, MEASURED_Z_ABS, MEASURED_Z_ANGLE_DEG = pole_fields(
     "measured", "measured in the simulation", null=NOT_MEASURED
 )
-VERDICT = text("verdict", "What errors do, proven on the numbers as typed", "verdict", values_of=("methods.Verdict",))
+VERDICT = text("verdict", "What errors do, proven on the numbers as typed", "verdict", values_of="methods.Verdict")
 SAFE = truth("safe", "Whether every error is proven to shrink; with --scene, on the moving mechanism as well")
 KAPPA = number(
     "kappa",
@@ -219,7 +211,7 @@ TIMES_LEAST_VELOCITY = number(
     null="where errors do not decay, or it is not known, or that point is not",
     path="cost.times_least_velocity",
 )
-ROLE = text("role", "Whether the point was given, or is what to take instead", values_of=("questions.CheckedRole",))
+ROLE = text("role", "Whether the point was given, or is what to take instead", values_of="questions.CheckedRole")
 H_FACTOR = number(
     "h_factor",
     "Factor on h up to which this alpha and beta are stable",
@@ -254,7 +246,7 @@ FACTORIZATIONS = integer(
     "Factorizations of C_q M^-1 C_q^T in the whole run: one for each evaluation, and those of projections",
     "factorizations",
 )
-STABILISE = text("stabilise", "What holds the constraints", "held by", values_of=("stabilising.Stabilise",))
+STABILISE = text("stabilise", "What holds the constraints", "held by", values_of="stabilising.Stabilise")
 C_MAX = number("c_max", "Largest constraint error", "largest |c| (m, rad)", ".3e", unit="m or rad")
 CDOT_MAX = number(
     "cdot_max", "Largest rate of the constraint error", "largest |ċ| (m/s, rad/s)", ".3e", unit="m/s or rad/s"
@@ -278,13 +270,13 @@ PREDICTED_VERDICT = text(
     "predicted_verdict",
     "Verdict predicted for the mechanism at rest",
     "predicted verdict",
-    values_of=("methods.Verdict",),
+    values_of="methods.Verdict",
 )
 MEASURED_VERDICT = text(
     "measured_verdict",
     "Verdict of the simulation",
     "measured verdict",
-    values_of=("evidence.MeasuredVerdict", "evidence.Outcome"),
+    values_of="evidence.MeasuredVerdict evidence.Outcome",
 )
 REASON = text(
     "reason",
@@ -338,7 +330,7 @@ MOVING = (
         "moving_verdict",
         "What errors do on the moving mechanism",
         "moving verdict",
-        values_of=("evidence.MovingVerdict",),
+        values_of="evidence.MovingVerdict",
         path="verdict",
     ),
     number(
@@ -350,7 +342,7 @@ MOVING = (
     ),
 )
 ACCURACY = (
-    OMEGA_H.of("motion.omega_h"),
+    OMEGA_H.of("question.motion.omega_h"),
     number(
         "accurate_alpha_hat",
         "Where the goal accurate chooses to be, in alpha_hat",
@@ -456,7 +448,7 @@ DRIVE = (
         "used up",
         text=used_up_text,
         null="where none has one",
-        values_of=("questions.Gain",),
+        values_of="questions.Gain",
         path="gains.used_up",
     ),
 )
@@ -465,7 +457,7 @@ VARYING = (
         "varying",
         "Whether errors decay for every sequence of steps",
         "varying steps",
-        values_of=("stability.Varying",),
+        values_of="stability.Varying",
     ),
     number("varying_h_min", "Smallest step of such a sequence", unit="s", path="h_min"),
     number("varying_h_max", "Largest step of such a sequence", unit="s", path="h_max"),
@@ -626,7 +618,7 @@ REGIONS = RowKind(
         text(
             "stable_for_all",
             "Whether all alpha_hat, beta_hat > 0 are stable",
-            values_of=("stability.StableForAll",),
+            values_of="stability.StableForAll",
         ),
         number(
             "unconditional_damping_ratio",
@@ -669,19 +661,24 @@ LISTED_METHODS = RowKind(
 )
 NAMED_METHODS = RowKind(
     "a method that was named",
-    fields=(
-        *LISTED_METHODS.fields[:-1],
-        text("recursion", "The method's recursion"),
-        text("mapping", "The method's mapping from s to z"),
-        text("characteristic_polynomial", "Polynomial in z whose roots are the poles"),
-        text(
-            "steady_error",
-            "What the method forces on a constraint that moves as e^(i omega t), as a share of that motion: "
-            "the first term in theta = i omega h where alpha_hat and beta_hat are held",
-        ),
-        text("steady_velocity_error", "The same of the velocity, as a share of that of the motion"),
-        ORDER_LEFT,
-        *REGIONS.fields[1:],
+    fields=tuple(
+        field.shown(
+            field.key.replace("_", " "), text=unbounded_text(field.key, ".10g" if field.kind == "number" else "")
+        )
+        for field in (
+            *LISTED_METHODS.fields[:-1],
+            text("recursion", "The method's recursion"),
+            text("mapping", "The method's mapping from s to z"),
+            text("characteristic_polynomial", "Polynomial in z whose roots are the poles"),
+            text(
+                "steady_error",
+                "What the method forces on a constraint that moves as e^(i omega t), as a share of that motion: "
+                "the first term in theta = i omega h where alpha_hat and beta_hat are held",
+            ),
+            text("steady_velocity_error", "The same of the velocity, as a share of that of the motion"),
+            ORDER_LEFT,
+            *REGIONS.fields[1:],
+        )
     ),
     sentence=whole_method_sentence,
 )
@@ -697,12 +694,17 @@ MEMBERS = RowKind(
         ORDER.shown("order of accuracy"),
         ERROR_CONSTANT.shown("error constant", ".6f"),
     ),
-    sentence=member_sentence,
 )
 CHAINS = RowKind(
     "a chain of bodies in an engine that sweeps",
     fields=(
-        number("chain_mass_ratio", "Mass of the last body of the chain over that of each other", "last mass", "g"),
+        number(
+            "chain_mass_ratio",
+            "Mass of the last body of the chain over that of each other",
+            "last mass",
+            "g",
+            path="mass_ratio",
+        ),
         integer("chain_bodies", "Bodies of the chain, the first held by the world", "bodies"),
         SWEPT_ITERATIONS,
         SWEPT_Z_ABS,
@@ -838,7 +840,7 @@ ENGINES_LISTED = RowKind(
             "level",
             "Where the engine's feedback acts",
             "level",
-            values_of=("engines.Level",),
+            values_of="engines.Level",
         ),
         METHOD.shown("method", text=lambda row: row["method"] or "yours"),
         text("parameters", "What the engine calls the feedback's parameters", "parameters"),
@@ -861,7 +863,6 @@ ENGINES_LISTED = RowKind(
         text("swept_excludes", "What is left out of how it sweeps", null=NO_SWEEPS, path="sweeping.excludes"),
     ),
     sometimes=("method",),
-    sentence=engine_sentence,
 )
 SIMULATIONS = RowKind(
     "a run",
@@ -931,7 +932,7 @@ MEASUREMENTS = RowKind(
         text(
             "law_verdict",
             "Verdict predicted by the first-order law of the motion",
-            values_of=("evidence.MovingVerdict",),
+            values_of="evidence.MovingVerdict",
         ),
         number(
             "floquet_z_abs",
@@ -1019,7 +1020,6 @@ SUMMARIES = RowKind(
             "on the wrong side of one: at rest, law, exact",
         ),
     ),
-    sentence=summary_sentence,
 )
 VERDICT_MAPS = RowKind(
     "a map of simulated verdicts",
@@ -1096,7 +1096,6 @@ FORCED = RowKind(
         OBSERVED_ORDER,
         REASON.shown("not compared"),
     ),
-    sentence=forced_sentence,
 )
 WITNESSED = RowKind(
     "a run of an engine that is not ours",
@@ -1196,7 +1195,6 @@ SWEPT = RowKind(
         FAILURE,
     ),
     sometimes=("z_abs",),
-    sentence=cost_sentence,
 )
 FRONTS = RowKind(
     "the least error that a method can force with |z_p| at most so large",
@@ -1218,7 +1216,6 @@ FRONTS = RowKind(
             ".2e",
         ),
     ),
-    sentence=front_sentence,
 )
 EXTREMES = RowKind(
     "a check",
@@ -1229,7 +1226,6 @@ EXTREMES = RowKind(
         text("seen", "What came out", "seen"),
         truth("held", "Whether what came out is what was expected", "held", form="NO"),
     ),
-    sentence=check_sentence,
 )
 CLAIMS = RowKind(
     "a claim of the paper",
@@ -1242,10 +1238,9 @@ CLAIMS = RowKind(
             "agreement",
             "Whether the claim is confirmed",
             "agreement",
-            values_of=("paper.findings.Agreement",),
+            values_of="paper.findings.Agreement",
         ),
     ),
-    sentence=finding_sentence,
 )
 _APPLIED, KP, KP_MAX, KD, INERTIA, KD_MAX, _ = DRIVE
 HELD = RowKind(
@@ -1306,7 +1301,7 @@ HELD = RowKind(
             "What an unstable drive would be stable without, or which number of a stable one is nearest to its end",
             "used up",
             null="where none has an end",
-            values_of=("questions.UsedUp",),
+            values_of="questions.UsedUp",
             path="used_up",
         ),
     ),

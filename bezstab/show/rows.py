@@ -9,34 +9,59 @@ from functools import partial
 from types import SimpleNamespace
 from typing import TYPE_CHECKING
 
-from bezstab.engines import witness_of
+from bezstab.engines import DRIVE_METHODS, witness_of
 from bezstab.errors import InputError
 from bezstab.methods import Method, evaluations, implicit, steps
 from bezstab.show.cells import LIMITS
-from bezstab.show.columns import Row, Value
-from bezstab.show.fields import cells
+from bezstab.show.fields import Field, Row, Value, cells
+from bezstab.show.result_sentences import best_point_words, falling_words
 from bezstab.show.row_kinds import (
+    ACCURACY,
+    APPLIED,
+    CHAINS,
+    CHECKED,
+    CHOICES,
+    DRIVE,
+    ENGINE_H_LIMIT,
     ENGINES_LISTED,
+    EXCLUDES,
     FORCED,
     FRONTS,
+    HELD,
+    LARGEST_STEPS,
     LIKE_POINT,
     LISTED_METHODS,
     MEMBERS,
+    METHOD,
+    MOVING,
     POLE,
+    POLES,
     REGIONS,
+    SETTING,
+    SWEEPS,
+    SWEPT_OVER,
+    VARYING,
 )
 from bezstab.units import alpha_and_beta
 
 EXCLUDED_SHOWN = 5
 """Methods that do not fit and are shown where people read, the nearest; rows for programs have all."""
 
-NOT_KNOWN = "not known"
-"""How the reason begins where the search for a best point failed."""
+WITHOUT_ACCURACY = ("total_error", "order_left", "times_least_velocity")
+"""Columns that tables of a drive omit: nothing feeds the acceleration of its target forward."""
+
+OF_ONE_ALONE = (
+    *("worst", "settle_steps", "settle_seconds", "h_limit"),
+    *("alpha_factor_min", "alpha_factor_max", "beta_factor_min", "beta_factor_max"),
+)
+"""Columns that tables omit for constraints that an engine sweeps over: they are about one constraint alone."""
 
 if TYPE_CHECKING:  # so that a small row does not load what makes the large ones
+    from collections.abc import Iterable
+
     from bezstab.engines import Engine
-    from bezstab.evidence import HalvedStep, LikePoint, Measurement
-    from bezstab.questions import ChainMap, RegionAnswer
+    from bezstab.evidence import HalvedStep, LikePoint
+    from bezstab.questions import Answer, ChainMap, HeldAnswer, LargestStep, MapAnswer, Question, RegionAnswer
     from bezstab.stability import FrontPoint, Limit, Region
 
 
@@ -63,8 +88,8 @@ def method_row(method: Method, name: str = "", group: str | None = None) -> Row:
         "steps": steps(method),
         "evaluations": evaluations(method),
         "order": order,
-        "error_constant": float(constant),
-        "error_constant_exact": str(constant) if method.digits is None else None,
+        "error_constant": constant,
+        "error_constant_exact": constant if method.digits is None else None,
         "implicit": implicit(method),
         "order_position_forces": by_force.position[0],
         "order_velocity_forces": by_force.velocity[0],
@@ -72,12 +97,11 @@ def method_row(method: Method, name: str = "", group: str | None = None) -> Row:
     return cells(LISTED_METHODS.fields if group else LISTED_METHODS.fields[:-1], method, found)
 
 
-def formula_row(method: Method, latex: bool = False) -> Row:
-    """Return one method's recursion, s->z mapping, characteristic polynomial (paper Tables 1 and 2), steady errors.
+def whole_row(answer: RegionAnswer, *, latex: bool) -> Row:
+    """Return all that is known of one method: method_row, its formulas (as text or LaTeX), and region_row.
 
-    As text. `steady_error` is that of constraints, `steady_velocity_error` that of their velocities, each as a share of
-    the motion's; `order_left` the order of constraint errors where alpha_hat and beta_hat are held, at most the
-    method's own.
+    They are the recursion, s->z mapping, characteristic polynomial (paper Tables 1 and 2) and steady errors.
+    NumericalError as `region_row`.
     """
     from bezstab.methods import (  # loads sympy
         characteristic_text,
@@ -87,24 +111,17 @@ def formula_row(method: Method, latex: bool = False) -> Row:
     )
     from bezstab.stability import order_left
 
+    method = answer.region.method
     return {
-        "method": method.name,
+        **method_row(method),
         "recursion": recursion_text(method, latex),
         "mapping": mapping_text(method, latex),
         "characteristic_polynomial": characteristic_text(method, latex),
         "steady_error": steady_error_text(method, "x", latex),
         "steady_velocity_error": steady_error_text(method, "v", latex),
         "order_left": order_left(method),
+        **region_row(answer),
     }
-
-
-def whole_row(answer: RegionAnswer, *, latex: bool) -> Row:
-    """Return all that is known of one method: method_row, formula_row (as text or LaTeX) and region_row.
-
-    NumericalError as `region_row`.
-    """
-    method = answer.region.method
-    return {**method_row(method), **formula_row(method, latex), **region_row(answer)}
 
 
 def region_row(answer: RegionAnswer) -> Row:
@@ -113,12 +130,28 @@ def region_row(answer: RegionAnswer) -> Row:
     Area and limits are of |z_p| < level, None where that region is empty, or has none; `approached` names those that
     no edge attains, only comes near far out. NumericalError where a pole leaves the range of float64.
     """
-    from bezstab.show.best_point_text import best_point_words
-
     region, inside = answer.region, answer.inside
-    reason = None if inside else f"{NOT_KNOWN}: {answer.trouble}" if answer.trouble else _nowhere(answer)
+    reason = None if inside else f"not known: {answer.trouble}" if answer.trouble else _nowhere(answer)
     where = best_point_words(inside) if inside else reason
     return REGIONS.row(answer, approached=_approached(region), best_where=where, best_reason=reason)
+
+
+def map_rows(answer: MapAnswer) -> list[Row]:
+    """Return a row for the stable region, or for it at each speed of the scene, and one for each level below 1."""
+    stable, *faster = [region_row(each) for each in answer.regions]
+    if answer.question.motion:
+        forced = cells(ACCURACY, answer)
+        return [{**row, **forced} for row in (stable, *faster)]
+    if not answer.moving:
+        return [stable, *faster]
+    kappas = {float(speed): turning.kappa for speed, turning in answer.question.turnings.items()}
+    return [
+        *(
+            {**stable, "speed": speed, "kappa": kappas[speed], "area_moving": moving.area}
+            for speed, moving in answer.moving.items()
+        ),
+        *({**row, "speed": None, "kappa": None, "area_moving": None} for row in faster),
+    ]
 
 
 def _approached(region: Region) -> str | None:
@@ -129,7 +162,6 @@ def _approached(region: Region) -> str | None:
 
 def _nowhere(answer: RegionAnswer) -> str | None:
     """Return why there is no best point in a region: |z_p| is not that small, falls on, or a pole cannot be moved."""
-    from bezstab.show.best_point_text import falling_words
     from bezstab.stability import pole_place
 
     if answer.best:
@@ -143,8 +175,8 @@ def _nowhere(answer: RegionAnswer) -> str | None:
 
 def limit_row(limit: Limit) -> Row:
     """Return the row of the Bezier family's limit, of order two, which has no number of steps."""
-    found = {key: getattr(limit, key) for key in ("area", "alpha_hat_max", "beta_hat_max")}
-    return MEMBERS.row(limit, steps=None, method="B∞", order=2, **found)
+    extent = {"alpha_hat_max": limit.alpha_hat_max, "beta_hat_max": limit.beta_hat_max}
+    return MEMBERS.row(limit, steps=None, method="B∞", order=2, area=limit.area, **extent)
 
 
 def forced_rows(scene: str, pair: HalvedStep) -> list[Row]:
@@ -157,21 +189,6 @@ def forced_rows(scene: str, pair: HalvedStep) -> list[Row]:
         of_pair(pair.whole, predicted_order=None, observed_order=None),
         of_pair(pair.half, predicted_order=pair.predicted_order, observed_order=pair.observed_order),
     ]
-
-
-def exact_rate_words(measurement: Measurement, no_period: str) -> str:
-    """Return along which motion the exact rates of a method are; why there are none, where the motion ends.
-
-    `no_period` is why its drivers do not begin anew, in words.
-    """
-    name = measurement.method.name
-    if measurement.periodic:
-        return (
-            f"Exact rates of {name}: along the method's own motion, where there is none along the mechanism's motion."
-        )
-    why = no_period and f", as {no_period}"
-    shown = "What is shown is how errors grow over the run."
-    return f"No rate of {name} is exact: the motion does not begin anew{why}. {shown}"
 
 
 def nearest_rows(likenesses: Sequence[Row]) -> list[Row]:
@@ -187,7 +204,7 @@ def nearest_rows(likenesses: Sequence[Row]) -> list[Row]:
 
 def like_point_row(column: str, point: LikePoint, h: float | None) -> Row:
     """Return a point at which a method has the pole in a column of a log, with h (s) in 1/s too."""
-    return {"column": column, "method": point.method.name, **cells(LIKE_POINT, point, _in_seconds(point, h))}
+    return {"column": column, **cells((METHOD, *LIKE_POINT), point, _in_seconds(point, h))}
 
 
 def front_row(point: FrontPoint, h: float | None) -> Row:
@@ -205,15 +222,10 @@ def chain_rows(engine: Engine, found: ChainMap) -> list[Row]:
     """Return a row for each number of bodies of a map, with the engine's own number of sweeps."""
     assert engine.sweeping
     own = engine.sweeping.iterations
+    of_bodies = enumerate(zip(found.z_abs[:, own - 1], found.stable_iterations, strict=True), start=1)
     return [
-        {
-            "chain_mass_ratio": found.mass_ratio,
-            "chain_bodies": bodies,
-            "swept_iterations": own,
-            "swept_z_abs": float(found.z_abs[bodies - 1, own - 1]),
-            "stable_iterations": fewest,
-        }
-        for bodies, fewest in enumerate(found.stable_iterations, start=1)
+        CHAINS.row(found, chain_bodies=bodies, swept_iterations=own, swept_z_abs=z_abs, stable_iterations=fewest)
+        for bodies, (z_abs, fewest) in of_bodies
     ]
 
 
@@ -226,3 +238,63 @@ def engine_row(engine: Engine, point: tuple[Fraction, Fraction] | None, h: Fract
         except InputError as error:
             setting = str(error)
     return ENGINES_LISTED.row(engine, witness=witness_of(engine.name), setting=setting)
+
+
+def answer_row(answer: Answer) -> Row:
+    """Return all that an answer has as a row; keys of an engine, a drive, a scene, a range of steps where asked for."""
+    kind = CHOICES if answer.role == "chosen" else CHECKED
+    return {**kind.row(answer), **_added_cells(answer, ENGINE_H_LIMIT, SETTING)}
+
+
+def pole_rows(answer: Answer, poles: Iterable[complex]) -> list[Row]:
+    """Return a row for each pole of a method at the point of an answer (dimensionless), angles in degrees.
+
+    Keys of an engine, a drive, a scene where asked for.
+    """
+    added = _added_cells(answer)
+    return [{**POLES.row(answer, **pole_cells(z)), **added} for z in poles]
+
+
+def left_out(question: Question) -> tuple[str, ...]:
+    """Return the keys that tables of a question leave out."""
+    return (*(WITHOUT_ACCURACY if question.drive else ()), *(OF_ONE_ALONE if question.swept else ()))
+
+
+def _added_cells(answer: Answer, *of_engine: Field) -> dict[str, Value]:
+    """Return what an engine, a drive, a scene and a range of steps add to a row of an answer's point.
+
+    Of an engine it is what it does to its values, over what it sweeps, and the fields `of_engine`.
+    """
+    added: dict[str, Value] = {}
+    if answer.question.engine:
+        if answer.role != "chosen":
+            added |= _applied_cells(answer)
+        swept_over = SWEPT_OVER if answer.swept else SWEPT_OVER[:1]
+        added |= cells((SWEEPS, *swept_over, *of_engine), answer)
+    if answer.gains:
+        added |= cells(DRIVE, answer, {"drive": DRIVE_METHODS.get(answer.method.name)})
+    if answer.moving:
+        added |= cells(MOVING, answer.moving)
+    if answer.varying:
+        from bezstab.questions import growing_run
+
+        added |= cells(VARYING, answer.varying, {"shown_by": growing_run(answer)})
+    return added
+
+
+def _applied_cells(answer: Answer) -> dict[str, Value]:
+    """Return what an engine does to its values, and what is left out; None for values that were not given."""
+    if answer.role != "given" or answer.goal != "as given":
+        return {"applied": None, "excludes": None}
+    notes = answer.question.given.notes
+    return cells((APPLIED, EXCLUDES), answer, {"applied": "as typed" if notes is None else "; ".join(notes)})
+
+
+def largest_step_row(found: LargestStep) -> Row:
+    """Return up to which step (s) alpha and beta (1/s) are stable: None where small steps are not."""
+    return LARGEST_STEPS.row(found, role="given", h_limit=found.h_limit if found.safe else None)
+
+
+def held_row(answer: HeldAnswer) -> Row:
+    """Return what one way of applying a held or late drive does as a row; limits as gains and as steps."""
+    return HELD.row(answer, drive=DRIVE_METHODS[answer.method.name])

@@ -1,6 +1,7 @@
 """Figures of simulations: the history of a run, and what accuracy costs."""
 
 from collections.abc import Callable
+from functools import partial
 from itertools import product
 from typing import Any
 
@@ -60,12 +61,12 @@ def history_figure(simulation: Simulation) -> Figure:
         return figure
 
 
-def work_precision_figure(swept: SweptRuns, scene: str, error: ErrorOf, floor: float = 0.0) -> Figure:
+def work_precision_figure(swept: SweptRuns, scene: str, error: ErrorOf) -> Figure:
     """Return an error of each run (SI) against its cost, discs behind the Pareto front, failed runs on top.
 
-    Errors up to `floor`, that of the reference, are not drawn. The energy's drift has no front.
+    The trajectory's is not drawn up to that of the reference.
     """
-    runs = swept.runs
+    runs, floor = swept.runs, swept.reference_error if error == "trajectory" else 0.0
     with styled():
         figure, axes = new_axes(title_lines(scene), plot.COST_LABELS[swept.against], plot.ERROR_LABELS[error], 1.15)
         known_errors = [known for run in runs if (known := run.error(error)) is not None]
@@ -75,8 +76,7 @@ def work_precision_figure(swept: SweptRuns, scene: str, error: ErrorOf, floor: f
             plot.work_precision(own, error, floor, axes, swept.against, **marked_line_at(place))
             failed = [run.cost(swept.against) for run in own if run.failure]
             axes.plot(failed, [top] * len(failed), "x", color=line_at(place)["color"], markersize=4)
-        front = swept.constraint_front if error == "constraint" else swept.trajectory_front
-        if front:
+        if front := swept.front(error):
             discs = {"marker": "o", "linestyle": "none", "color": "0.8", "markersize": 10, "zorder": 1.5}
             of_front = [runs[number] for number in front]
             plot.work_precision(of_front, error, floor, axes, swept.against, label="front", **discs)
@@ -86,12 +86,12 @@ def work_precision_figure(swept: SweptRuns, scene: str, error: ErrorOf, floor: f
         return figure
 
 
-def projection_figure(swept: SweptRuns, scene: str, floor: float) -> Figure:
+def projection_figure(swept: SweptRuns, scene: str) -> Figure:
     """Return errors of runs with feedback and with projection against their factorizations, in three axes.
 
-    They are the trajectory's, not drawn below `floor`, that of the reference (SI), the largest |c| and the energy's
-    drift. Colour and dashes are those of a method; its markers are hollow with feedback at the advised points, crosses
-    with feedback at a given one, and filled with projection. Runs that failed are left out.
+    They are the trajectory's, not drawn up to that of the reference, the largest |c| and the energy's drift. Colour and
+    dashes are those of a method; its markers are hollow with feedback at the advised points, crosses with feedback at a
+    given one, and filled with projection. Runs that failed are left out.
     """
     methods = list(dict.fromkeys(run.method for run in swept.runs))
     used = [key for key in TREATMENTS if any((run.stabilise, run.advised) == key for run in swept.runs)]
@@ -99,12 +99,12 @@ def projection_figure(swept: SweptRuns, scene: str, floor: float) -> Figure:
         figure = column_figure(1.9)
         panels = figure.subplots(3, 1, sharex=True)
         for axes, error in zip(panels, plot.ERROR_LABELS, strict=True):
-            least = floor if error == "trajectory" else 0.0
+            floor = swept.reference_error if error == "trajectory" else 0.0
             for (place, method), key in product(enumerate(methods), used):
                 own = [run for run in swept.runs if (run.method, run.stabilise, run.advised) == (method, *key)]
                 if own:
                     line = {**MARKER, **line_at(place), **TREATMENTS[key][1]}
-                    plot.work_precision(own, error, least, axes, "projection", **line)
+                    plot.work_precision(own, error, floor, axes, "projection", **line)
             axes.label_outer()
         figure.suptitle(title_lines(scene))
         of_methods = [Line2D([], [], label=method.name, **line_at(place)) for place, method in enumerate(methods)]
@@ -118,10 +118,7 @@ def projection_figure(swept: SweptRuns, scene: str, floor: float) -> Figure:
 
 def trade_figures(swept: SweptRuns, scene: str) -> dict[str, Callable[[], Figure]]:
     """Return what draws the figures of a sweep, by name: feedback against projection, else both errors by cost."""
-    known = swept.reference_error
     if swept.against == "projection":
-        return {"projection": lambda: projection_figure(swept, scene, known)}
-    return {
-        "trajectory": lambda: work_precision_figure(swept, scene, "trajectory", known),
-        "constraint": lambda: work_precision_figure(swept, scene, "constraint"),
-    }
+        return {"projection": partial(projection_figure, swept, scene)}
+    errors: tuple[ErrorOf, ...] = ("trajectory", "constraint")
+    return {error: partial(work_precision_figure, swept, scene, error) for error in errors}

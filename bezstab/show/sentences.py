@@ -2,22 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from bezstab.show.cells import diverged_text, order_text, safe_step_text, step_limit
-from bezstab.show.columns import Row, Value, formatted
-from bezstab.show.words import change_words, growth_words, safety_words, seconds_words, sweeps_words
+from bezstab.show.cells import order_text, safe_step_text, step_limit
+from bezstab.show.fields import Row, formatted
+from bezstab.show.words import change_words, counted, growth_words, safety_words, seconds_words
 
 if TYPE_CHECKING:
-    from bezstab.engines import Point
-    from bezstab.evidence import Likeness
-
-NAMED = 3
-"""Excluded methods that a sentence names; of more it gives the number and the nearest."""
-
-FASTER = 3.0
-"""Times what is allowed for: so much faster a mechanism may turn than somebody guessed."""
+    pass
 
 
 def answer_sentence(row: Row) -> str:
@@ -42,13 +34,6 @@ def step_sentence(row: Row) -> str:
     if limit == "none":
         return "Not safe at small steps."
     return "Safe at any h." if limit == "unlimited" else f"Safe up to h = {limit} s."
-
-
-def engine_sentence(row: Row) -> str:
-    """Return what to write for the point, or what the engine calls the feedback where none is given."""
-    if row["setting"] is None:
-        return f"In {row['engine']} the feedback is set by {row['parameters']}."
-    return f"At this point: {row['setting']}."
 
 
 CAUSES = {
@@ -98,14 +83,10 @@ def _changes(row: Row) -> list[str]:
         end = "on" if kd_max is None else f"to {kd_max:.3g}"
         changes.append(f"kd from {kd_min:.3g} {end}")
     if row["every_max"] is not None:
-        changes.append(f"a torque every {_steps(row['every_max'])}")
+        changes.append("a torque every step" if row["every_max"] == 1 else f"a torque every {row['every_max']} steps")
     if row["late_max"] is not None:
-        changes.append(f"at most {_steps(row['late_max'])} late")
+        changes.append(f"at most {counted(row['late_max'], 'step')} late")
     return changes
-
-
-def _steps(number: Value) -> str:
-    return "step" if number == 1 else f"{number} steps"
 
 
 def one_pole_sentence(row: Row) -> str:
@@ -128,9 +109,9 @@ def region_sentence(row: Row) -> str:
 def method_sentence(row: Row) -> str:
     """Return what a method is: explicit or not, its order, what a step of it costs."""
     kind = "implicit" if row["implicit"] else "explicit"
-    count = "1 evaluation" if row["evaluations"] == 1 else f"{row['evaluations']} evaluations"
     each = "iteration" if row["implicit"] else "step"
-    return f"{row['method']} is {kind}, of order {order_text(row)}, with {count} in each {each}."
+    cost = counted(row["evaluations"], "evaluation")
+    return f"{row['method']} is {kind}, of order {order_text(row)}, with {cost} in each {each}."
 
 
 def whole_method_sentence(row: Row) -> str:
@@ -139,30 +120,10 @@ def whole_method_sentence(row: Row) -> str:
     return f"{method_sentence(row)} With α̂ and β̂ held as h shrinks, constraint errors {left}."
 
 
-def member_sentence(row: Row) -> str:
-    """Return how large a member's region is, and how fast errors can shrink in it."""
-    if row["area"] is None or row["best_z_abs"] is None:
-        return f"{row['method']} is stable nowhere."
-    return f"{row['method']} has a region of area {row['area']:.3g} and a least |z_p| of {row['best_z_abs']:.3g}."
-
-
 def run_sentence(row: Row) -> str:
     """Return how long a run of a mechanism went well, and how far it stayed from its constraints."""
     how = "broke down after" if row["failure"] else "went through to"
     return f"{row['method']} {how} {seconds_words(row['time'])}; the largest |c| is {formatted(row['c_max'], '.1e')}."
-
-
-def cost_sentence(row: Row) -> str:
-    """Return what one run costs and what it buys."""
-    with_step = f"{row['method']} with h = {seconds_words(row['h'])}"
-    if row["failure"]:
-        return f"{with_step} diverged."
-    return f"{with_step}: a trajectory error of {diverged_text(row)} for {row['run_evaluations']} evaluations."
-
-
-def check_sentence(row: Row) -> str:
-    """Return whether what was expected came out."""
-    return "As expected." if row["held"] else "NOT as expected."
 
 
 def measurement_sentence(row: Row) -> str:
@@ -176,11 +137,6 @@ def measurement_sentence(row: Row) -> str:
     return f"Predicted |z| {predicted}, measured {measured}: {ends[agree]}."
 
 
-def summary_sentence(row: Row) -> str:
-    """Return at how many points the poles could be measured, and how many verdicts were wrong."""
-    return f"{row['method']}: {row['measured']} of {row['points']} points measured, {row['wrong']} wrong verdicts."
-
-
 def verdict_map_sentence(row: Row) -> str:
     """Return how many runs gave a verdict, how many of these are as predicted, and how many others must not differ."""
     if not row["judged_runs"]:
@@ -189,93 +145,17 @@ def verdict_map_sentence(row: Row) -> str:
     return f"{row['method']}: {given}; {row['disagreeing']} that are not too close to call differ."
 
 
-def forced_sentence(row: Row) -> str:
-    """Return what was measured of a run, over what was predicted."""
-    at = f"{row['method']} at {row['gain_share']:g} of the gains, steps of {row['h']:g} s"
-    if row["reason"]:
-        return f"{at}: not compared: {row['reason']}."
-    return f"{at}: |c| is {formatted(row['quotient'], '.3f')} times what was predicted."
-
-
 def witness_sentence(row: Row) -> str:
     """Return what the other engine did against what was predicted."""
     as_predicted = "as" if row["measured_verdict"] == row["predicted_verdict"] else "NOT as"
     return f"MuJoCo's {row['integrator']}: {row['measured_verdict']}, {as_predicted} predicted."
 
 
-def front_sentence(row: Row) -> str:
-    """Return how little a method can force while errors decay so fast."""
-    error, z_abs = formatted(row["combined_error"], ".1e"), formatted(row["z_abs_below"], ".4g")
-    return f"With |z_p| of {z_abs} at most {row['method']} forces {error} of the motion at least."
-
-
-def finding_sentence(row: Row) -> str:
-    """Return whether a claim is confirmed."""
-    return f"{row['agreement'].capitalize()}."
-
-
 def chain_sentence(row: Row) -> str:
     """Return from how many sweeps a chain is stable, and what a step does with the engine's own number of them."""
     z_abs, stable = row["swept_z_abs"], row["stable_iterations"]
-    enough = "with no number that was tried" if stable is None else f"from {sweeps_words(stable)}"
-    count = "1 body" if row["chain_bodies"] == 1 else f"{row['chain_bodies']} bodies"
-    bodies = count if row["chain_mass_ratio"] == 1 else f"{count}, the last {row['chain_mass_ratio']:g} times as heavy"
-    own = sweeps_words(row["swept_iterations"])
-    return f"{bodies}: stable {enough}. With {own} each step multiplies the error by {z_abs:.4f}."
-
-
-def likeness_sentence(like: Sequence[Likeness], point: Point) -> str:
-    """Return in words which methods a measured pole fits at a point, the nearest first, and which are excluded."""
-    at = f"({float(point[0]):.6g}, {float(point[1]):.6g})"
-    fitting = [one for one in like if one.fits]
-    excluded = [one for one in like if not one.fits]
-    if not fitting:
-        return _nothing_fits(like[0], at)
-    first = fitting[0]
-    equal = first.same_as.split(", ") if first.same_as else []
-    parts = [f"this behaves like {first.method.name} at {at} to {max(first.distance, first.error):.1g}"]
-    if not first.dominant:
-        parts[0] += ", by a lesser pole of it"
-    if equal:
-        parts.append(f"{_listed(equal)} {'has' if len(equal) == 1 else 'have'} the same poles there")
-    others = [one.method.name for one in fitting[1:] if one.method.name not in equal]
-    if others:
-        parts.append(f"{_listed(others)} {'cannot be told from it' if len(others) == 1 else 'cannot be told apart'}")
-    if excluded:
-        names = [one.method.name for one in excluded]
-        if len(names) <= NAMED:
-            parts.append(f"{_listed(names)} {'is' if len(names) == 1 else 'are'} excluded")
-        else:
-            parts.append(f"{len(names)} others are excluded, the nearest {names[0]}, {excluded[0].distance:.1g} off")
-    return "; ".join(parts) + "."
-
-
-def _nothing_fits(nearest: Likeness, at: str) -> str:
-    """Return in words that nothing fits, or that it cannot be told: where the motion may well be faster than said."""
-    off = f"the nearest is {nearest.method.name}, {nearest.distance:.1g} off where {nearest.allowed:.1g} is allowed"
-    if nearest.distance - nearest.error < FASTER * (nearest.allowed - nearest.error):
-        return (
-            f"what this is at {at} cannot be told: {off}, and it would fit if the mechanism turned up to {FASTER:.0f} "
-            "times as fast as is allowed for (--turning)."
-        )
-    return (
-        f"nothing fits at {at}: {off}. Is α, β or h another, does the mechanism turn much faster (--turning), or are "
-        "there several steps from row to row (--every)?"
-    )
-
-
-def _listed(names: Sequence[str]) -> str:
-    """Return names as 'A', 'A and B' or 'A, B and C'."""
-    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"
-
-
-MOST_LISTED = 20  # times in a message
-
-
-def passages_words(times: Sequence[float]) -> str:
-    """Return where a run has gone through singular configurations, and what that means; times in s."""
-    listed = ", ".join(f"{time:.6g}" for time in times[:MOST_LISTED])
-    more = ", ..." if len(times) > MOST_LISTED else ""
-    what = "a singular configuration" if len(times) == 1 else f"{len(times)} singular configurations"
-    where = f"the run goes through {what}, at t = {listed}{more} s"
-    return f"{where}: there the motion can branch, and which way it goes is left to rounding"
+    enough = "with no number that was tried" if stable is None else f"from {counted(stable, 'sweep')}"
+    heavier = "" if row["chain_mass_ratio"] == 1 else f", the last {row['chain_mass_ratio']:g} times as heavy"
+    own = counted(row["swept_iterations"], "sweep")
+    bodies = counted(row["chain_bodies"], "body", "bodies")
+    return f"{bodies}{heavier}: stable {enough}. With {own} each step multiplies the error by {z_abs:.4f}."

@@ -8,11 +8,12 @@ from typing import Any, BinaryIO, TypeVar
 import numpy as np
 from matplotlib import style
 from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
 from matplotlib.legend import Legend
 from matplotlib.lines import Line2D
-from matplotlib.ticker import MaxNLocator
+from matplotlib.ticker import FixedLocator, MaxNLocator
 from numpy.typing import ArrayLike, NDArray
 
 from bezstab.show.file_forms import FIGURE_FORMS
@@ -78,7 +79,9 @@ def styled() -> AbstractContextManager[None]:
 
 def column_figure(height: float = 1.0) -> Figure:
     """Return an empty figure of column width, its height in column widths."""
-    return Figure(figsize=(COLUMN_WIDTH, height * COLUMN_WIDTH), layout="constrained")
+    figure = Figure(figsize=(COLUMN_WIDTH, height * COLUMN_WIDTH), layout="constrained")
+    FigureCanvasAgg(figure)  # which remembers the sizes of texts, while legends are tried
+    return figure
 
 
 def new_axes(title: str, xlabel: str, ylabel: str, height: float = 1.0) -> tuple[Figure, Axes]:
@@ -89,14 +92,14 @@ def new_axes(title: str, xlabel: str, ylabel: str, height: float = 1.0) -> tuple
 
 def plane_axes(title: str, h: float | None) -> tuple[Figure, Axes]:
     """Return a figure of column width with axes alpha_hat, beta_hat, or 2 alpha, beta^2 for a step of h seconds."""
-    return new_axes(title if h is None else title_lines(title, f"h = {h:g} s"), *plane_labels(h))
+    return new_axes(*plane_words(title, h))
 
 
-def plane_labels(h: float | None) -> tuple[str, str]:
-    """Return the labels of both axes: alpha_hat and beta_hat, or 2 alpha and beta^2 for a step of h seconds."""
+def plane_words(title: str, h: float | None) -> tuple[str, str, str]:
+    """Return the title and the labels of both axes, alpha_hat and beta_hat, or 2 alpha and beta^2 for a step of h s."""
     if h is None:
-        return r"$\hat\alpha = 2\alpha h$ (dimensionless)", r"$\hat\beta = \beta^2 h^2$ (dimensionless)"
-    return r"$2\alpha$ (1/s)", r"$\beta^2$ (1/s$^2$)"
+        return title, r"$\hat\alpha = 2\alpha h$ (dimensionless)", r"$\hat\beta = \beta^2 h^2$ (dimensionless)"
+    return title_lines(title, f"h = {h:g} s"), r"$2\alpha$ (1/s)", r"$\beta^2$ (1/s$^2$)"
 
 
 def plane_coordinates(alpha_hat: Number, beta_hat: Number, h: float | None) -> tuple[Number, Number]:
@@ -111,14 +114,10 @@ def mark_in_alpha_and_beta(axes: Axes) -> None:
 
     The region keeps its shape; only what is written at its axes changes. Below beta^2 = 0 there is no real beta.
     """
-    alpha = np.array(MaxNLocator(5).tick_values(*np.divide(axes.get_xlim(), 2)))
-    beta = np.array(
-        MaxNLocator(4).tick_values(0, max(axes.get_ylim()[1], 0) ** 0.5)
-    )  # so few that the first two are apart
-    for axis, values, places in ((axes.xaxis, alpha, 2 * alpha), (axes.yaxis, beta, beta**2)):
-        low, high = axis.get_view_interval()
-        shown = (low <= places) & (places <= high)
-        axis.set_ticks(places[shown], [f"{value:g}" for value in values[shown]])
+    axes.xaxis.set_major_formatter(lambda two_alpha, _: f"{two_alpha / 2:g}")
+    beta = MaxNLocator(4).tick_values(0, max(axes.get_ylim()[1], 0) ** 0.5)  # so few that the first two are apart
+    axes.yaxis.set_major_locator(FixedLocator([value**2 for value in beta]))
+    axes.yaxis.set_major_formatter(lambda beta_squared, _: f"{beta_squared**0.5:g}")
     axes.set(xlabel=r"$\alpha$ (1/s)", ylabel=r"$\beta$ (1/s), even in $\beta^2$")
 
 

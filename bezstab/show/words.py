@@ -1,6 +1,6 @@
 """Numbers as sentences have them: times, factors, and what becomes of an error from step to step."""
 
-from bezstab.show.columns import Row, Value
+from bezstab.show.fields import Row, Value
 
 MOST_DIGITS = 17  # of float64: with so many every number other than one is shown as another
 THOUSAND = 1000.0
@@ -89,7 +89,9 @@ def swept_words(row: Row) -> str:
     """
     z_abs, alone, stable = row["swept_z_abs"], row["alone_z_abs"], row["stable_iterations"]
     digits = next(digits for digits in range(4, MOST_DIGITS + 1) if float(f"{z_abs:.{digits}f}") != 1)
-    enough = "No number of sweeps that was tried is stable" if stable is None else f"Stable from {sweeps_words(stable)}"
+    enough = (
+        "No number of sweeps that was tried is stable" if stable is None else f"Stable from {counted(stable, 'sweep')}"
+    )
     safe = "Safe" if row["safe"] else "Not safe"
     begin = f"{safe} in {row['swept']}: each" if row["safe"] == (z_abs < 1) else f"{safe}. In {row['swept']} each"
     sentences = [f"{begin} step multiplies the error by {z_abs:.{digits}f} (one constraint alone: {alone:.2f})", enough]
@@ -100,6 +102,6 @@ def swept_words(row: Row) -> str:
     return f"{'. '.join(sentences)}."
 
 
-def sweeps_words(count: Value) -> str:
-    """Return a number of sweeps: 1 sweep, 10 sweeps."""
-    return "1 sweep" if count == 1 else f"{count} sweeps"
+def counted(number: int, one: str, many: str = "") -> str:
+    """Return how many there are of something: 1 sweep, 10 sweeps."""
+    return f"1 {one}" if number == 1 else f"{number} {many or one + 's'}"

@@ -21,9 +21,9 @@ from bezstab.stability.arrays import (
     even_points,
 )
 from bezstab.stability.charts import NEAR
-from bezstab.stability.closed_loop import converges, largest_modulus, largest_pole
+from bezstab.stability.closed_loop import largest_modulus, largest_pole
 from bezstab.stability.path_crossings import Path
-from bezstab.stability.pencils import Pencil, pencil_of
+from bezstab.stability.pencils import Pencil
 from bezstab.stability.searches import bisected
 
 Modulus = Callable[[FloatArray, FloatArray], FloatArray]
@@ -35,8 +35,8 @@ RINGS: FloatArray = np.array([1e-1, 1e-2, 1e-3, 1e-4, 1e-5])  # radii, as shares
 CLOSE_RINGS: FloatArray = RINGS[1:]  # as shares of a point's own coordinates
 PARTED = 4.0  # times what rounding of a point does to |z_p|: it is found from poles of the same rounding
 ROOT_OF_ROUNDING = 1e-7  # a double pole at zero, as far as float64 tells it
-FURTHEST = (1e-8, 1e8)  # factors on the way to which |z_p| is looked at where there is no end
-ONE = Fraction(1)
+FURTHEST = (1e-8, 1e8)  # factors on the way to which the verdict is asked where there is no end
+WAYPOINTS = 18  # factors from one to an end
 
 
 def sampled_points(extent: Extent, alpha_hat: float, beta_hat: float) -> tuple[FloatArray, FloatArray]:
@@ -177,26 +177,19 @@ def check_gentle(method: Method, modulus: Modulus, alpha_hat: float, rate: float
 
 
 def check_margin(path: Path, ends: tuple[float, float]) -> None:
-    """Raise NumericalError unless the proven verdict turns at both ends of a margin, and |z_p| < 1 between them.
+    """Raise NumericalError unless the proven verdict turns at both ends of a margin, and is one between them.
 
     ends: factors below and above one; 0 and infinity for none. The verdict is asked a part in 1e9 to either side of an
-    end, |z_p| at factors on the way, up to FURTHEST where there is no end; where that has it one or more, the verdict
-    again.
+    end, and at factors on the way, up to FURTHEST where there is no end.
     """
     name = path.method.name
-    pencil = pencil_of(path.method)
     for outwards, end, furthest in zip((-1, 1), ends, FURTHEST, strict=True):
         finite = 0 < end < np.inf
-        factors = np.geomspace(1, end if finite else furthest, SAMPLES // 4)[1:-1]
-        alpha_hats, beta_hats = (float(x) * factors**k for x, k in zip(path.at(ONE), path.powers, strict=True))
-        suspicious = factors[largest_modulus(pencil, alpha_hats, beta_hats) >= 1]
-        if not all(converges(path.method, *path.at(Fraction(factor))) for factor in suspicious.tolist()):
+        on_the_way = np.geomspace(1, end if finite else furthest, WAYPOINTS)[1:-1].tolist()
+        if not all(path.converges_at(Fraction(factor)) for factor in on_the_way):
             raise NumericalError(f"{name}: unstable before the margin {end:.9g}")
-        if not finite:
-            continue
-        for side, stable in ((-1, True), (1, False)):
+        for side, stable in ((-1, True), (1, False)) if finite else ():
             factor = Fraction(end) * (1 + side * outwards * exact(SAME))
-            if (factor - 1) * outwards <= 0:
-                continue  # the margin is one to rounding
-            if converges(path.method, *path.at(factor)) != stable:
+            beyond_one = (factor - 1) * outwards > 0  # else the margin is one to rounding
+            if beyond_one and path.converges_at(factor) != stable:
                 raise NumericalError(f"{name}: the margin {end:.9g} is not where the verdict turns")

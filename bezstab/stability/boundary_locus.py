@@ -34,137 +34,71 @@ from itertools import pairwise
 from math import inf, isfinite, pi
 
 import numpy as np
-from numpy.polynomial.polynomial import polyval2d
 
-from bezstab.stability.arrays import DOUBLE, ROUNDING, SAME, BoolArray, ComplexArray, FloatArray
-from bezstab.stability.locus_tracks import Track, sampled_angles, tracks
-from bezstab.stability.mu_pencils import MuPencil, moduli_in_z, roots_in_mu
-from bezstab.stability.quadratures import integrals
+from bezstab.stability.arrays import DOUBLE, ROUNDING, SAME, BoolArray, FloatArray
+from bezstab.stability.locus_tracks import Arc, tracks
+from bezstab.stability.mu_pencils import MuPencil, all_inside, roots_in_mu
 from bezstab.stability.root_finding import roots_of_table
 from bezstab.stability.searches import AT_ONCE, bisected, least_between
 
 ARC_POINTS = 400  # drawn per arc: chords stay within 1e-5 of the curve
-PANEL_SAMPLES = 50  # of an arc to each of the first panels, where it may turn so fast that halves miss it alike
 RIM = 64.0  # times everything finite: far enough out to tell how the region goes on, near enough to be checked
 AT_INFINITY = 1 / SAME  # a larger |mu| is the rounding of an infinite one
 
 Interval = tuple[float, float]
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class Arc(Track):
-    """A piece of one branch mu(theta) where it bounds S_r's upper half, sampled from end to end."""
-
-    def plane(self) -> FloatArray:
-        """Return alpha_hat and beta_hat at the samples; shape (samples, 2)."""
-        return self.pencil.user_points(self.mu, self.mu.conj())
-
-    def coordinate(self, theta: FloatArray, axis: int) -> FloatArray:
-        """Return alpha_hat (axis 0) or beta_hat of mu(theta) for a row of theta."""
-        mu = self.at(theta)
-        return self.pencil.user_points(mu, mu.conj())[:, axis]
-
-    def turns(self, axis: int) -> FloatArray:
-        """Return every theta where that coordinate turns, by narrowing in on the samples where it does."""
-        values = self.plane()[:, axis]
-        turning = np.flatnonzero(np.diff(np.sign(np.diff(values)))) + 1
-        if not turning.size:
-            return np.empty(0)
-        upwards = np.where(values[turning] > values[turning - 1], 1.0, -1.0)[:, np.newaxis]
-        low = self.theta[turning - 1]
-        high = self.theta[np.minimum(turning + 1, len(self.theta) - 1)]
-
-        def below_the_turn(theta: FloatArray) -> FloatArray:
-            return -upwards * self.coordinate(theta.ravel(), axis).reshape(theta.shape)
-
-        theta, _ = least_between(below_the_turn, low, high)
-        return theta
-
-    def ends_and_turns(self, axis: int) -> FloatArray:
-        """Return the values of that coordinate among which are its least and its largest."""
-        return self.coordinate(np.append(self.theta[[0, -1]], self.turns(axis)), axis)
-
-    def area(self) -> float:
-        """Return the arc's contribution to the area of the image of S_r's upper half, for a step of h.
-
-        (alpha_hat, beta_hat) = (-2x, x^2 + y^2) has the Jacobian 4y, and by Green int int 4y dx dy = -closed int
-        2 y^2 dx.
-        """
-        edges = np.unique(np.append(self.theta[::PANEL_SAMPLES], self.theta[-1]))
-        (area,), _ = integrals(self._area_density, np.stack([edges[:-1], edges[1:]], axis=1))
-        return float(area)
-
-    def _area_density(self, theta: FloatArray) -> FloatArray:
-        """Return -2 y^2 dx/dtheta, shape (1, *that of theta), with dmu/dz = -(d pi/dz) / (d pi/dmu)."""
-        z = self.level * np.exp(1j * theta.ravel())
-        mu = self.at(theta.ravel())
-        with np.errstate(all="ignore"):  # at an end, of no weight, two branches may meet
-            slope = -1j * z * polyval2d(z, mu, self.pencil.table_by_z) / polyval2d(z, mu, self.pencil.table_by_mu)
-            density = -2 * mu.imag**2 * slope.real
-        return np.where(np.isfinite(density), density, 0).reshape(1, *theta.shape)
-
-
 @dataclass(frozen=True, eq=False)
 class Bounds:
-    """What bounds S_r: arcs of the locus in its upper half, and the open intervals it cuts from the real axis.
+    """What bounds S_r within |mu| < radius: arcs of the locus in its upper half, and open intervals of the real axis.
 
-    `radius` is that of the rim, infinite for an explicit method, whose S_r is bounded anyway; `rim` is the angle (rad)
-    of what lies in S_r of its upper half.
+    radius: infinite for an explicit method, whose S_r is bounded anyway.
     """
 
     arcs: tuple[Arc, ...]
     intervals: tuple[Interval, ...]
     radius: float = inf
-    rim: float = 0.0
 
     @property
     def bounded(self) -> bool:
         """Whether S_r does not reach the rim, so that it is known whole."""
-        return not self.rim and all(max(-start, end) < self.radius for start, end in self.intervals)
+        ends = [end for interval in self.intervals for end in interval]
+        ends += [abs(end) for arc in self.arcs for end in arc.mu[[0, -1]].tolist()]
+        return max(map(abs, ends), default=0.0) < self.radius * (1 - SAME)
+
+    def within(self, radius: float) -> "Bounds":
+        """Return what lies within a smaller rim beyond everything that has a shape, to the last sample."""
+        arcs = []
+        for arc in self.arcs:
+            kept = np.abs(arc.mu) < radius
+            if kept.any():
+                arcs.append(Arc(arc.pencil, arc.level, arc.theta[kept], arc.mu[kept]))
+        intervals = tuple((max(start, -radius), min(end, radius)) for start, end in self.intervals)
+        return Bounds(tuple(arcs), tuple((start, end) for start, end in intervals if start < end), radius)
 
 
 @cache
-def bounds_of(pencil: MuPencil, level: float, finer: int = 1, radius: float = inf) -> Bounds:
-    """Return what bounds S_r for r = level, 0 < level <= 1, within |mu| < radius.
+def bounds_of(pencil: MuPencil, level: float) -> Bounds:
+    """Return what bounds S_r for r = level, 0 < level <= 1; of an implicit method within RIM^2 times its features.
 
-    `finer` divides the steps along the locus. NumericalError if two branches of the locus could not be told apart.
+    Features are where a branch of the locus turns towards or away from zero, and its ends at z = level and -level.
+    NumericalError if two branches of the locus could not be told apart.
     """
-    arcs: list[Arc] = []
-    for track in tracks(pencil, level, finer):
-        arcs += _bounding_arcs(track, radius)
-    intervals = _real_intervals(pencil, level, arcs, radius)
-    return Bounds(tuple(arcs), tuple(intervals), radius, _rim_inside(pencil, level, arcs, radius))
+    branches = list(tracks(pencil, level))
+    radius = RIM**2 * _size(branches) if pencil.implicit else inf
+    arcs = tuple(arc for branch in branches for arc in _bounding_arcs(branch, radius))
+    return Bounds(arcs, tuple(_real_intervals(pencil, level, arcs, radius)), radius)
 
 
-def rim_radius(pencil: MuPencil, level: float) -> float:
-    """Return the radius of the rim of an implicit method: RIM times that of the disc that holds every feature.
-
-    Features are all finite mu with a root at z = +-level, with an infinite root, with a double root, with a root at
-    zero, and those at which the locus turns towards or away from zero.
-    """
-    on_locus = np.abs(roots_in_mu(pencil, level * np.exp(1j * sampled_angles(pencil, level, finer=1))))
-    rising = np.diff(on_locus, axis=1) > 0
-    turns = on_locus[:, 1:-1][rising[:, 1:] != rising[:, :-1]] if len(on_locus) == 1 else np.zeros(0)
-    at_places = np.abs(roots_in_mu(pencil, np.array([level, -level, 0], complex)).ravel())
-    sizes = np.concatenate([at_places, np.abs(pencil.branch_points), turns])
-    return RIM * float(sizes[sizes < AT_INFINITY].max(initial=1.0))
-
-
-def _rim_inside(pencil: MuPencil, level: float, arcs: list[Arc], radius: float) -> float:
-    """Return the angle of the rim's upper half in S_r: between two places where an arc meets it all or nothing is."""
-    if not isfinite(radius):
-        return 0.0
-    ends = np.array([mu for arc in arcs for mu in (arc.mu[0], arc.mu[-1])], complex)
-    met = np.angle(ends[np.abs(ends) > radius * (1 - SAME)])
-    places = np.concatenate([[0.0], np.sort(met), [pi]])
-    middles = radius * np.exp(0.5j * (places[1:] + places[:-1]))
-    return float(np.diff(places)[_all_within(pencil, middles, level)].sum())
-
-
-def _all_within(pencil: MuPencil, mu: ComplexArray, level: float) -> BoolArray:
-    """Return whether all roots at each of a row of mu have |z| < level; False where one is infinite."""
-    within: BoolArray = moduli_in_z(pencil, mu).max(axis=0) < level
-    return within
+def _size(branches: list[Arc]) -> float:
+    """Return the largest |mu| of all features, and at least one."""
+    sizes = [np.ones(1)]
+    for branch in branches:
+        size = np.abs(branch.mu)
+        rising = np.diff(size) > 0
+        sizes += [size[1:-1][rising[1:] != rising[:-1]], size[(branch.theta == 0) | (branch.theta == pi)]]
+    every = np.concatenate(sizes)
+    return float(every[every < AT_INFINITY].max())
 
 
 # Cutting. Along a branch two functions change sign where an arc may begin or end: Im mu, and by how much the largest
@@ -177,7 +111,7 @@ def _all_within(pencil: MuPencil, mu: ComplexArray, level: float) -> BoolArray:
 #      |         ||           the short arc
 
 
-def _bounding_arcs(track: Track, radius: float) -> Iterator[Arc]:
+def _bounding_arcs(track: Arc, radius: float) -> Iterator[Arc]:
     """Yield the arcs of one branch, theta in [0, pi], that bound S_r's upper half within |mu| < radius."""
     one_step = track.pencil.steps == 1  # the root on the circle is the only one
 
@@ -212,7 +146,7 @@ def _bounding_arcs(track: Track, radius: float) -> Iterator[Arc]:
             yield Arc(track.pencil, track.level, -theta[::-1], mu[::-1].conj())
 
 
-def _largest_other(track: Track, theta: FloatArray) -> FloatArray:
+def _largest_other(track: Arc, theta: FloatArray) -> FloatArray:
     """Return by what share of the level the largest root besides that on the circle lies outside it; shape of theta."""
     z = track.level * np.exp(1j * theta)
     roots = roots_of_table(track.pencil.table, track.at(theta))
@@ -223,13 +157,13 @@ def _largest_other(track: Track, theta: FloatArray) -> FloatArray:
     return np.asarray(modulus.max(axis=0) / track.level - 1)
 
 
-def _drawn_angles(track: Track, start: float, end: float) -> FloatArray:
+def _drawn_angles(track: Arc, start: float, end: float) -> FloatArray:
     """Return the angles at which an arc is drawn, crowded at its ends (like cosines), where it may turn fastest.
 
-    With branch points about, where it may turn sharply too, also the samples by which it was followed.
+    Of all but explicit multistep methods, where it may turn sharply too, also the samples by which it was followed.
     """
     theta = start + (end - start) * (1 - np.cos(np.linspace(0, pi, ARC_POINTS))) / 2
-    if not track.pencil.branch_points_in_z.size:
+    if track.pencil.table.shape[1] == 2 and not track.pencil.implicit:
         return theta
     followed = track.theta[(track.theta > start) & (track.theta < end)]
     return np.unique(np.append(theta, followed))
@@ -274,7 +208,7 @@ def _with_dips(values_at: Callable[[FloatArray], FloatArray], theta: FloatArray)
     return theta, values_at(theta)  # all in one go: dips judged alone may be noise, and would pass for changes
 
 
-def _real_intervals(pencil: MuPencil, level: float, arcs: list[Arc], radius: float) -> list[Interval]:
+def _real_intervals(pencil: MuPencil, level: float, arcs: tuple[Arc, ...], radius: float) -> list[Interval]:
     """Return the open intervals that S_r cuts from the real axis within |mu| < radius, ascending.
 
     Their ends have a root at z = level or -level, or a conjugate pair on the circle, where an arc meets the axis. So
@@ -284,8 +218,8 @@ def _real_intervals(pencil: MuPencil, level: float, arcs: list[Arc], radius: flo
     if isfinite(radius):
         points = np.array([-radius, *points[np.abs(points) < radius], radius])
     middle = (points[1:] + points[:-1]) / 2
-    inside = _all_within(pencil, middle.astype(complex), level * (1 - ROUNDING))
-    through = _all_within(pencil, points.astype(complex), level * (1 - SAME))  # no end after all
+    inside = all_inside(pencil, middle.astype(complex), level * (1 - ROUNDING))
+    through = all_inside(pencil, points.astype(complex), level * (1 - SAME))  # no end after all
     merged: list[Interval] = []
     for k in np.flatnonzero(inside).tolist():
         start, end = float(points[k]), float(points[k + 1])
@@ -296,7 +230,7 @@ def _real_intervals(pencil: MuPencil, level: float, arcs: list[Arc], radius: flo
     return merged
 
 
-def _ends_on_the_axis(pencil: MuPencil, level: float, arcs: list[Arc]) -> FloatArray:
+def _ends_on_the_axis(pencil: MuPencil, level: float, arcs: tuple[Arc, ...]) -> FloatArray:
     """Return all mu where an interval of the axis may end, ascending, of those that coincide one.
 
     A mu with a root at +-level is solved for, good to rounding: far out, at a zero of R, S_r may be as narrow as 1e-10

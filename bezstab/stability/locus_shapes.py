@@ -28,14 +28,8 @@ import numpy as np
 from numpy.polynomial.polynomial import polyder, polyval
 
 from bezstab.errors import NumericalError
-from bezstab.stability.arrays import DOUBLE, EPS, ROUNDING, SAME, Extent, FloatArray
-from bezstab.stability.boundary_locus import (
-    AT_INFINITY,
-    RIM,
-    Bounds,
-    bounds_of,
-    rim_radius,
-)
+from bezstab.stability.arrays import DOUBLE, EPS, ROUNDING, Extent, FloatArray
+from bezstab.stability.boundary_locus import AT_INFINITY, RIM, Bounds, bounds_of
 from bezstab.stability.mu_pencils import MuPencil, deadbeat_mu, roots_in_mu
 from bezstab.stability.shapes import USUAL_SIZE, Shape, joined
 
@@ -43,35 +37,32 @@ MEETING = 1e-4  # of the curves' size: where branches meet on the circle an arc 
 GROWN = RIM ** (1 / 5)  # times the range, from a rim to one RIM further out: with the fourth root it would grow by more
 NO_DIGITS = 0.05  # of mu, lost on the locus: nothing else would find that out, or after minutes
 NOISE_ANGLES: FloatArray = np.linspace(0.1, 3.1, 16)  # at which the rounding of crossings is estimated
-WELL_WIDE = 1e-11  # of |mu|: about a zero of R that narrow a part of S_r is a hundredfold above rounding of its ends
 
 
-def locus_shape(pencil: MuPencil, level: float, finer: int) -> Shape | None:
-    """Return the region |z_p| < level; None if it is empty. `finer`: so many times the samples of the locus.
+def locus_shape(pencil: MuPencil, level: float) -> Shape | None:
+    """Return the region |z_p| < level; None if it is empty.
 
-    NumericalError if branches of the locus could not be told apart, or a part of it was not found.
+    NumericalError if branches of the locus could not be told apart.
     """
     if pencil.steps == 1 and _edge_noise(pencil, level) > NO_DIGITS:
         raise NumericalError(
             f"{pencil.method.name}: float64 keeps no digits of where |z_p| = {level:g}: too many stages"
         )
-    radius = rim_radius(pencil, level) if pencil.implicit else math.inf
-    bounds = bounds_of(pencil, level, finer, radius)
-    edges = [arc.plane() for arc in bounds.arcs]
-    edges += straight_edges(pencil, bounds)
-    extent = _extent(pencil, bounds)
-    area = _area(pencil, bounds) if bounds.bounded else None
+    far = bounds_of(pencil, level)
+    near = far if far.bounded else far.within(far.radius / RIM)
+    extent = _extent(pencil, far)
     if extent is None:
         return None
-    mu_abs = max((float(np.abs(arc.mu).max()) for arc in bounds.arcs), default=0.0)
+    area = _area(pencil, far) if far.bounded else None
+    mu_abs = max((float(np.abs(arc.mu).max()) for arc in far.arcs), default=0.0)
     noise = ROUNDING * (mu_abs / pencil.multiple) ** np.array([1, 2])
     if area is not None and (area <= 0 or (np.ptp(extent, axis=1) <= noise).any()):
         return None  # where two roots on the circle meet
+    edges = [arc.plane() for arc in near.arcs] + straight_edges(pencil, near)
     curves = joined(edges, most=MEETING * np.abs(np.concatenate(edges)).max(axis=0))
-    if not bounds.bounded:
-        extent = _unbounded_extent(pencil, level, bounds, extent, finer)
-    view = extent if bounds.bounded else _view(pencil, bounds)
-    return Shape(area, extent, view, tuple(curves), known=_known(pencil, level, bounds))
+    if far.bounded:
+        return Shape(area, extent, extent, tuple(curves))
+    return Shape(None, _unbounded_extent(pencil, near, extent), _view(pencil, far, near.radius), tuple(curves))
 
 
 def _edge_noise(pencil: MuPencil, level: float) -> float:
@@ -124,7 +115,7 @@ def _extent(pencil: MuPencil, bounds: Bounds) -> Extent | None:
         return None
 
     def ends_of(axis: int) -> tuple[float, float]:
-        on_arcs = [arc.ends_and_turns(axis) for arc in bounds.arcs]
+        on_arcs = [arc.coordinate(arc.turns(axis), axis) for arc in bounds.arcs]
         values = np.concatenate([*(points[:, axis] for points in corners), *on_arcs])
         low, high = float(values.min()), float(values.max())
         negligible = ROUNDING * (high - low)
@@ -133,40 +124,19 @@ def _extent(pencil: MuPencil, bounds: Bounds) -> Extent | None:
     return ends_of(0), ends_of(1)
 
 
-def _known(pencil: MuPencil, level: float, bounds: Bounds) -> FloatArray:
-    """Return the points at which every pole of a one-step method is zero: conjugate zeros of R.
+def _unbounded_extent(pencil: MuPencil, near: Bounds, far: Extent) -> Extent:
+    """Return the ranges of an unbounded region, from those within the further rim: infinite where they grow with it.
 
-    By the maximum principle each part of S_r has a zero of R. NumericalError if a real one lies in no interval. Parts
-    too narrow for float64, of a size of about level / |R'|, are left out.
+    A range without limit grows at least as a root of the radius: from a rim to one RIM times further out more than
+    GROWN times, while one with a limit has come near it.
     """
-    zeros = deadbeat_mu(pencil)
-    with np.errstate(all="ignore"):
-        size = level * np.abs(polyval(zeros, pencil.table[-1]) / polyval(zeros, polyder(pencil.table[0])))
-    wide = size > WELL_WIDE * np.abs(zeros)
-    real = np.abs(zeros.imag) <= SAME * np.abs(zeros)
-    for zero in zeros[wide & real].real.tolist():
-        if not any(start < zero < end for start, end in bounds.intervals):
-            raise NumericalError(f"{pencil.method.name}: |z_p| < {level:g} around mu = {zero:.6g} was not found")
-    pairs = zeros[wide & ~real]
-    return pencil.user_points(pairs, pairs.conj())
-
-
-def _unbounded_extent(pencil: MuPencil, level: float, bounds: Bounds, near: Extent, finer: int) -> Extent:
-    """Return the ranges of an unbounded region, from those within the rim: infinite where they grow with its radius.
-
-    Where all of the rim is stable they all do. Else a range without limit grows at least as a root of the radius: from
-    a rim to one RIM times further out more than GROWN times, while one with a limit has come near it.
-    """
-    everywhere = ((-math.inf, math.inf), (-math.inf, math.inf))
-    if bounds.rim >= math.pi * (1 - ROUNDING):
-        return everywhere
-    far = _extent(pencil, bounds_of(pencil, level, finer, RIM * bounds.radius))
-    assert far
-    size = bounds.radius / RIM / pencil.multiple
+    nearer_ends = _extent(pencil, near)
+    assert nearer_ends
+    size = near.radius / RIM / pencil.multiple
     scales = size, size**2
 
     def limit(axis: int, end: int) -> float:
-        nearer, further = near[axis][end], far[axis][end]
+        nearer, further = nearer_ends[axis][end], far[axis][end]
         sign = -1 if end == 0 else 1
         if sign * further > GROWN * max(sign * nearer, scales[axis]):
             return sign * math.inf
@@ -176,26 +146,25 @@ def _unbounded_extent(pencil: MuPencil, level: float, bounds: Bounds, near: Exte
     return (limit(0, 0), limit(0, 1)), (limit(1, 0), limit(1, 1))
 
 
-def _view(pencil: MuPencil, bounds: Bounds) -> Extent:
-    """Return ranges that hold what an unbounded region has of shape where alpha_hat, beta_hat >= 0, and USUAL_SIZE.
+def _view(pencil: MuPencil, bounds: Bounds, radius: float) -> Extent:
+    """Return ranges that hold what there is of shape within a rim where alpha_hat, beta_hat >= 0, and USUAL_SIZE.
 
     That is its corners (both mu at an end of an interval), the arcs that do not run to infinity, of those that do their
     ends and turns, and where every pole of a one-step method is zero. What lies at negative parameters, which nobody
     asks for, may be far larger.
     """
-    off_rim = bounds.radius * (1 - SAME)
-    ends = np.array([end for interval in bounds.intervals for end in interval if abs(end) < off_rim])
+    ends = np.array([end for interval in bounds.intervals for end in interval if abs(end) < radius])
     shapely = [pencil.user_points(np.full(len(ends), end), ends) for end in ends]
     deadbeat = deadbeat_mu(pencil)
     shapely.append(pencil.user_points(deadbeat, deadbeat.conj()))
     for arc in bounds.arcs:
         mu = arc.mu
-        if np.abs(mu[[0, -1]]).max() >= off_rim:
+        if np.abs(mu[[0, -1]]).max() >= radius:
             # a coordinate that hardly varies is constant, and turns by rounding alone
             steep = np.flatnonzero(np.ptp(arc.plane(), axis=0) > DOUBLE * np.abs(mu).max() / pencil.multiple)
             turns = [arc.turns(axis) for axis in steep.tolist()]
             mu = arc.at(np.concatenate([arc.theta[[0, -1]], *turns]))
-            mu = mu[np.abs(mu) < off_rim]
+            mu = mu[np.abs(mu) < radius]
         shapely.append(pencil.user_points(mu, mu.conj()))
     points = np.concatenate([*shapely, np.zeros((1, 2))])
     size = USUAL_SIZE / pencil.multiple ** np.array([1, 2])

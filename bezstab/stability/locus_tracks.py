@@ -1,41 +1,44 @@
 r"""Branches of the boundary locus pi(r e^(i theta), mu) = 0, followed from theta = 0 to pi by steps that are safe.
 
 To one theta belong as many mu as pi has degree in mu. Which of those at the next theta continues which of those here?
-The nearest one, if the step is short against what could part them. Two branches meet at branch points z* alone; where
-one lies near the circle, the branches pass close by each other within an angle of about ||z*| - r| / r:
+The nearest one, if it moves by far less than the branches are apart; else the step is halved. Two branches that pass
+close by each other turn there, and are told apart only by steps that see them turn:
 
-    Im mu                                    z plane
-      |    \        /                           . - |- .
-      |     \  a  /       a turns up, b down   /    |    \ circle |z| = r
-      |      \__/         within that angle,  |     |     x z*, a branch point of mu just outside
-      |       __          however short:       \    |    /
-      |      /  \         a fixed grid steps     ' - |- '
-      |     /  b \        across from a to b
+    Im mu
+      |    \        /
+      |     \  a  /       a turns up, b down, within an angle however short:
+      |      \__/         a step across leads from a to b, but is about as long
+      |       __          as a and b are apart
+      |      /  \
+      |     /  b \
       +-------------- Re mu
 
-So the grid's step is a share of the distance to the nearest branch point. For z = R(mu) that proves the match: mu(z)
-is one-to-one on the disc of radius d around z, so by Koebe's theorems mu(z + s d) is within s / (1 - s)^2 d |mu'| of
-mu(z), and every other branch further away than d |mu'| / 4 less the same. s < 3 - 2 sqrt 2 = 0.17 is enough.
+Where two branches meet on the circle itself no step is short enough: there each ends, and another begins.
 """
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.polynomial.polynomial import polyval2d
 
 from bezstab.errors import NumericalError
-from bezstab.stability.arrays import BoolArray, ComplexArray, FloatArray
+from bezstab.stability.arrays import ComplexArray, FloatArray
 from bezstab.stability.mu_pencils import MuPencil, roots_in_mu
+from bezstab.stability.quadratures import integrals
+from bezstab.stability.searches import least_between
 
 SAMPLES = 1024  # of theta over half the circle: what is shorter is looked for by itself
-STEP_SHARE = 0.12  # of the distance to the nearest branch point; the proof above allows 0.17
-SHORTEST = 1e-11  # rad; a branch point this close to the circle lies on it, as far as float64 can tell
+APART = 4  # times as far as a branch moves in a step must all others be: if it were twice, two might claim one mu
+SHORTEST = 1e-11  # rad: branches that come together within it meet on the circle, as far as float64 can tell
+MOST_SAMPLES = 64 * SAMPLES  # towards a few hundred places where branches pass; more, and they lie on one another
+PANEL_SAMPLES = 50  # of an arc to each of the first panels, where it may turn so fast that halves miss it alike
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Track:
-    """One branch mu(theta) of the locus of |z| = level, sampled at ascending theta; both of shape (samples,)."""
+class Arc:
+    """A piece of one branch mu(theta) of the locus of |z| = level, at ascending theta; both of shape (samples,)."""
 
     pencil: MuPencil
     level: float
@@ -47,77 +50,92 @@ class Track:
         right = np.clip(np.searchsorted(self.theta, theta), 1, len(self.theta) - 1)
         left_is_nearer = theta - self.theta[right - 1] < self.theta[right] - theta
         samples = self.mu[np.where(left_is_nearer, right - 1, right)]
-        return nearest(roots_in_mu(self.pencil, self.level * np.exp(1j * theta)), samples)
+        candidates = roots_in_mu(self.pencil, self.level * np.exp(1j * theta))
+        distance = np.abs(candidates - samples)
+        closest = np.argmin(np.where(np.isnan(distance), np.inf, distance), axis=0)
+        found: ComplexArray = candidates[closest, np.arange(theta.size)]
+        return found
+
+    def plane(self) -> FloatArray:
+        """Return alpha_hat and beta_hat at the samples; shape (samples, 2)."""
+        return self.pencil.user_points(self.mu, self.mu.conj())
+
+    def coordinate(self, theta: FloatArray, axis: int) -> FloatArray:
+        """Return alpha_hat (axis 0) or beta_hat of mu(theta) for a row of theta."""
+        mu = self.at(theta)
+        return self.pencil.user_points(mu, mu.conj())[:, axis]
+
+    def turns(self, axis: int) -> FloatArray:
+        """Return every theta where that coordinate turns, by narrowing in on the samples where it does."""
+        values = self.plane()[:, axis]
+        turning = np.flatnonzero(np.diff(np.sign(np.diff(values)))) + 1
+        if not turning.size:
+            return np.empty(0)
+        upwards = np.where(values[turning] > values[turning - 1], 1.0, -1.0)[:, np.newaxis]
+        low = self.theta[turning - 1]
+        high = self.theta[np.minimum(turning + 1, len(self.theta) - 1)]
+
+        def below_the_turn(theta: FloatArray) -> FloatArray:
+            return -upwards * self.coordinate(theta.ravel(), axis).reshape(theta.shape)
+
+        theta, _ = least_between(below_the_turn, low, high)
+        return theta
+
+    def area(self) -> float:
+        """Return the arc's contribution to the area of the image of S_r's upper half, for a step of h.
+
+        (alpha_hat, beta_hat) = (-2x, x^2 + y^2) has the Jacobian 4y, and by Green int int 4y dx dy = -closed int
+        2 y^2 dx.
+        """
+        edges = np.unique(np.append(self.theta[::PANEL_SAMPLES], self.theta[-1]))
+        (area,), _ = integrals(self._area_density, np.stack([edges[:-1], edges[1:]], axis=1))
+        return float(area)
+
+    def _area_density(self, theta: FloatArray) -> FloatArray:
+        """Return -2 y^2 dx/dtheta, shape (1, *that of theta), with dmu/dz = -(d pi/dz) / (d pi/dmu)."""
+        z = self.level * np.exp(1j * theta.ravel())
+        mu = self.at(theta.ravel())
+        with np.errstate(all="ignore"):  # at an end, of no weight, two branches may meet
+            slope = -1j * z * polyval2d(z, mu, self.pencil.table_by_z) / polyval2d(z, mu, self.pencil.table_by_mu)
+            density = -2 * mu.imag**2 * slope.real
+        return np.where(np.isfinite(density), density, 0).reshape(1, *theta.shape)
 
 
-def nearest(candidates: ComplexArray, targets: ComplexArray) -> ComplexArray:
-    """Return from each column of candidates the one closest to that column's target."""
-    distance = np.abs(candidates - targets)
-    closest = np.argmin(np.where(np.isnan(distance), np.inf, distance), axis=0)
-    found: ComplexArray = candidates[closest, np.arange(len(targets))]
-    return found
-
-
-def tracks(pencil: MuPencil, level: float, finer: int) -> Iterator[Track]:
+def tracks(pencil: MuPencil, level: float) -> Iterator[Arc]:
     """Yield every branch of the locus for theta in [0, pi], broken off where it is infinite or meets another.
 
-    That is at branch points on the circle. `finer` divides the steps. NumericalError if two branches claim one
-    continuation.
+    NumericalError if branches lie on one another.
     """
-    every_theta = sampled_angles(pencil, level, finer)
-    every_mu = roots_in_mu(pencil, level * np.exp(1j * every_theta))
-    finite = np.flatnonzero(np.isfinite(every_mu).all(axis=0))
-    theta = every_theta[finite]
-    mu = every_mu[:, finite]
-    continuation = np.argmin(np.abs(mu[:, np.newaxis, :-1] - mu[np.newaxis, :, 1:]), axis=1)  # (branch, step)
-    breaks = np.flatnonzero(_too_long(pencil, level, theta, finer) | (np.diff(finite) > 1))
-    starts = [0, *(breaks + 1).tolist()]
-    ends = [*(breaks + 1).tolist(), len(theta)]
-    for start, end in zip(starts, ends, strict=True):
-        if end - start > 1:
-            order = _followed(pencil, level, continuation[:, start : end - 1])
-            piece = np.take_along_axis(mu[:, start:end], order, axis=0)
-            for branch in piece:
-                yield Track(pencil, level, theta[start:end], branch)
-
-
-def sampled_angles(pencil: MuPencil, level: float, finer: int) -> FloatArray:
-    """Return the angles of the samples, ascending from 0 to pi, finer towards branch points and either end."""
-    towards_ends = np.geomspace(1e-5, 1e-2, 30 * finer)  # near a kink S_r is a lens whose arcs lie close to 0 and pi
-    even = np.linspace(1e-2, np.pi - 1e-2, SAMPLES * finer)
-    points = pencil.branch_points_in_z
-    at_branch_points = np.abs(np.angle(points[points.imag >= 0]))  # -0j counts as on the axis from below
-    theta = np.unique(np.concatenate([[0], towards_ends, even, np.pi - towards_ends, [np.pi], at_branch_points]))
-    theta = theta[np.append(True, np.diff(theta) > SHORTEST)]
+    towards_ends = np.geomspace(1e-5, 1e-2, 30)[:-1]  # near a kink S_r is a lens whose arcs lie close to 0 and pi
+    even = np.linspace(1e-2, np.pi - 1e-2, SAMPLES)
+    theta: FloatArray = np.concatenate([[0], towards_ends, even, np.pi - towards_ends[::-1], [np.pi]])
+    mu = roots_in_mu(pencil, level * np.exp(1j * theta))
     while True:
-        split = _too_long(pencil, level, theta, finer) & (np.diff(theta) > SHORTEST)
+        moves = np.abs(mu[:, np.newaxis, :-1] - mu[np.newaxis, :, 1:])  # (branch, next branch, step)
+        unsafe = ~(APART * moves.min(axis=1) < _distance_of_nearest(mu)[:, :-1]).all(axis=0)
+        split = unsafe & (np.diff(theta) > SHORTEST)
         if not split.any():
             break
-        middle = (theta[1:] + theta[:-1]) / 2
-        theta = np.sort(np.append(theta, middle[split]))
-    return np.asarray(theta, float)
+        if theta.size > MOST_SAMPLES:
+            raise NumericalError(f"{pencil.method.name}: branches of |z_p| = {level:g} could not be told apart")
+        middle = (theta[:-1][split] + theta[1:][split]) / 2
+        mu = np.insert(mu, np.flatnonzero(split) + 1, roots_in_mu(pencil, level * np.exp(1j * middle)), axis=1)
+        theta = np.insert(theta, np.flatnonzero(split) + 1, middle)
+    continuation = np.argmin(moves, axis=1)
+    breaks = [0, *(np.flatnonzero(unsafe) + 1).tolist(), theta.size]
+    for start, end in pairwise(breaks):
+        root = np.arange(len(mu))
+        order = [root]
+        for step in range(start, end - 1):
+            root = continuation[root, step]
+            order.append(root)
+        if end - start > 1:
+            for branch in np.take_along_axis(mu[:, start:end], np.stack(order, axis=1), axis=0):
+                yield Arc(pencil, level, theta[start:end], branch)
 
 
-def _too_long(pencil: MuPencil, level: float, theta: FloatArray, finer: int) -> BoolArray:
-    """Return which steps are longer than their share of the distance to the nearest branch point; shape (steps,)."""
-    points = pencil.branch_points_in_z
-    z = level * np.exp(1j * theta)
-    distance = np.abs(z[:, np.newaxis] - points).min(axis=1, initial=np.inf)
-    allowed = STEP_SHARE / finer * np.minimum(distance[1:], distance[:-1])
-    too_long: BoolArray = level * np.diff(theta) > allowed
-    return too_long
-
-
-def _followed(pencil: MuPencil, level: float, continuation: NDArray[np.intp]) -> NDArray[np.intp]:
-    """Return at each sample the number of each branch's root; shape (branches, samples).
-
-    `continuation` has the number of the next root for each root and step. NumericalError unless no two share one.
-    """
-    branches, steps = continuation.shape
-    if not (np.sort(continuation, axis=0) == np.arange(branches)[:, np.newaxis]).all():
-        raise NumericalError(f"{pencil.method.name}: two branches of |z_p| = {level:g} could not be told apart")
-    order = np.empty((branches, steps + 1), np.intp)
-    order[:, 0] = np.arange(branches)
-    for step in range(steps):
-        order[:, step + 1] = continuation[order[:, step], step]
-    return order
+def _distance_of_nearest(mu: ComplexArray) -> FloatArray:
+    """Return how far the nearest other branch is from each; of shape (branches, samples), as mu."""
+    distance = np.abs(mu[:, np.newaxis] - mu)
+    distance[range(len(mu)), range(len(mu))] = np.inf
+    return np.asarray(distance.min(axis=1))

@@ -10,14 +10,14 @@ known, and next to beta_hat = alpha_hat^2/4.
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cache, cached_property
+from functools import cache
 
 import numpy as np
-from numpy.polynomial.polynomial import polyder, polymul, polyroots, polysub, polyval, polyval2d
+from numpy.polynomial.polynomial import polyder, polyval, polyval2d
 from numpy.typing import NDArray
 
 from bezstab.errors import NumericalError
-from bezstab.methods import Method, branch_polynomial, coefficient_table
+from bezstab.methods import Method, coefficient_table
 from bezstab.stability.arrays import DOUBLE, EPS, SAME, BoolArray, ComplexArray, FloatArray
 from bezstab.stability.exact_sums import feedback_discriminant, feedback_roots
 from bezstab.stability.low_degrees import largest_quadratic_root, polynomial_of_pair
@@ -48,9 +48,6 @@ class MuPencil:
     table_by_z: FloatArray
     table_by_mu: FloatArray
     multiple: float
-
-    def __repr__(self) -> str:
-        return f"MuPencil({self.method.name})"
 
     @property
     def degree(self) -> int:
@@ -101,58 +98,6 @@ class MuPencil:
     def implicit(self) -> bool:
         """Whether the leading coefficient in z depends on mu: at some mu a root is infinite."""
         return bool(self.table[-1, 1:].any())
-
-    @cached_property
-    def infinite_at(self) -> ComplexArray:
-        """Every mu at which a root z is infinite, so that an implicit step has no solution; none if explicit."""
-        leading = np.trim_zeros(self.table[-1], "b")
-        return polyroots(leading).astype(complex) if len(leading) > 1 else np.zeros(0, complex)
-
-    @cached_property
-    def branch_points(self) -> ComplexArray:
-        """Every mu at which two roots z of pi(., mu) meet, or one is infinite; shape (points,).
-
-        Beyond the nearest of them a root's power series diverges. Found on first use: the resultant takes longer than
-        a pole. NumericalError if it leaves the range of float64.
-        """
-        exact = branch_polynomial(self.method)
-        largest = max(map(abs, exact))  # perhaps beyond float64, or below it: a scale says nothing about roots
-        z = polyroots(np.trim_zeros(_floats(self.method, [c / largest for c in exact]), "b")).astype(complex)
-        mu = roots_in_mu(self, z)
-        with np.errstate(invalid="ignore"):  # an infinite mu has no slope, which some versions of numpy warn of
-            slope = np.abs(polyval2d(np.broadcast_to(z, mu.shape), mu, self.table_by_z))
-        flattest = np.argmin(slope, axis=0)  # of all mu with a root at this z, the one whose root is double
-        met: ComplexArray = np.take_along_axis(mu, flattest[np.newaxis], axis=0)[0]
-        return np.append(met[np.isfinite(met)], self.infinite_at)
-
-    @cached_property
-    def branch_points_in_z(self) -> ComplexArray:
-        """Every z at which two roots mu of pi(z, .) meet, or one is infinite; shape (points,).
-
-        Explicit multistep: none, as mu = rho / sigma has one value, and where it is infinite nothing is stable.
-        Implicit multistep: the zeros of sigma. One step, z = R(mu): R at the zeros of R', and at infinity. PECE, a
-        quadratic in mu: the zeros of its discriminant and of its leading coefficient.
-        """
-        if self.table.shape[1] == 2:
-            return polyroots(self.table[:, 1]).astype(complex) if self.implicit else np.zeros(0, complex)
-        if self.steps == 1:
-            numerator, denominator = -self.table[0], self.table[1]
-            if not self.implicit:
-                numerator, denominator = numerator / denominator[0], np.ones(1)
-            slope = polysub(polymul(polyder(numerator), denominator), polymul(numerator, polyder(denominator)))
-            flat = polyroots(np.trim_zeros(slope, "b")).astype(complex)
-            with np.errstate(all="ignore"):
-                values = polyval(flat, numerator) / polyval(flat, denominator)
-                values = np.append(values, numerator[-1] / self.table[1, -1])
-            return np.asarray(values[np.isfinite(values)], complex)
-        constant, linear, quadratic = self.table.T
-        discriminant = polysub(polymul(linear, linear), 4 * polymul(constant, quadratic))
-        zeros = [np.zeros(0)]
-        for polynomial in (discriminant, quadratic):
-            trimmed = np.trim_zeros(polynomial, "b")
-            if len(trimmed) > 1:
-                zeros.append(polyroots(trimmed))
-        return np.concatenate(zeros).astype(complex)
 
 
 @cache
@@ -224,12 +169,6 @@ def has_infinite_root(pencil: MuPencil, mu: ComplexArray) -> BoolArray:
         size = polyval(np.abs(mu), np.abs(pencil.table[-1]))
         vanishes: BoolArray = (np.abs(leading) <= LEADING * size) & np.isfinite(size)
     return vanishes
-
-
-def moduli_in_z(pencil: MuPencil, mu: ComplexArray) -> FloatArray:
-    """Return the moduli of all roots z at each of a row of mu, infinite for all where one is; shape as roots_in_z."""
-    z_abs = np.abs(roots_of_table(pencil.table, mu))
-    return np.asarray(np.where(np.isnan(z_abs).any(axis=0), np.inf, z_abs))
 
 
 def roots_in_mu(pencil: MuPencil, z: ComplexArray) -> ComplexArray:

@@ -34,7 +34,7 @@ class Pencil:
     `turning_shift` and `own_feedback_root` are about poles z at points, arrays of one shape (turning).
     `deadbeat_points` returns the points known from R(mu) at which every pole is zero, `far_limit` the least value that
     |z_p| tends to as parameters grow; `chart` takes what is seen of the region, its curves if it is bounded, and by how
-    much its grid is finer. `shape` returns the region below a level, None if empty, from so many times finer samples.
+    much its grid is finer. `shape` returns the region below a level, None if empty.
     """
 
     method: Method
@@ -47,7 +47,7 @@ class Pencil:
     deadbeat_points: Callable[[], list[tuple[float, float]]]
     far_limit: Callable[[], FarLimit]
     chart: Callable[[Extent, Sequence[FloatArray], int], Chart]
-    shape: Callable[[float, int], Shape | None]
+    shape: Callable[[float], Shape | None]
 
 
 @cache
@@ -91,5 +91,5 @@ def _through_p(method: Method, free: bool) -> Pencil:
         deadbeat_points=list,
         far_limit=partial(least_far_limit, pencil),
         chart=partial(plane_chart, pencil),
-        shape=lambda level, finer: strips_shape(method, level),
+        shape=partial(strips_shape, method),
     )

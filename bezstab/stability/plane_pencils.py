@@ -9,7 +9,6 @@ from functools import cache, cached_property, partial
 
 import numpy as np
 from numpy.polynomial.polynomial import polyder, polyval3d
-from numpy.typing import NDArray
 
 from bezstab.errors import NumericalError
 from bezstab.methods import Method, closed_loop_table, reduced_table
@@ -35,9 +34,6 @@ class PlanePencil:
     degree: int
     table: FloatArray
     split: tuple[tuple[tuple[tuple[float, float], ...], ...], ...]
-
-    def __repr__(self) -> str:
-        return f"PlanePencil({self.method.name})"
 
     def poles(self, alpha_hat: FloatArray, beta_hat: FloatArray) -> ComplexArray:
         """Return all poles at a row of points; shape (degree, points). Errors as `plane_roots`."""
@@ -89,7 +85,11 @@ def discriminants(
     pencil: PlanePencil, coefficients: list[FloatArray], alpha_hat: FloatArray, beta_hat: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return (half, last, half^2 - last) of the monic z^2 + 2 half z + last; the third exact to rounding."""
-    half, last, discriminant, close = _rounded_discriminants(coefficients)
+    last, twice_half, leading = coefficients
+    half, last = 0.5 * twice_half / leading, last / leading
+    square = half * half
+    discriminant = square - last
+    close = np.flatnonzero(np.abs(discriminant) < CANCELS * square)
     if close.size:
         a, b, c = (double_polynomial(table, alpha_hat[close], beta_hat[close]) for table in pencil.split[::-1])
         b = (0.5 * b[0], 0.5 * b[1])
@@ -97,17 +97,6 @@ def discriminants(
         better = (unscaled[0] + unscaled[1]) / a[0] / a[0]
         discriminant[close] = np.where(np.isfinite(better), better, discriminant[close])
     return half, last, discriminant
-
-
-def _rounded_discriminants(
-    coefficients: list[FloatArray],
-) -> tuple[FloatArray, FloatArray, FloatArray, NDArray[np.intp]]:
-    """Return (half, last, half^2 - last) of the same, and the places where the third loses digits."""
-    last, twice_half, leading = coefficients
-    half, last = 0.5 * twice_half / leading, last / leading
-    square = half * half
-    discriminant = square - last
-    return half, last, discriminant, np.flatnonzero(np.abs(discriminant) < CANCELS * square)
 
 
 def plane_roots(pencil: PlanePencil, alpha_hat: FloatArray, beta_hat: FloatArray) -> ComplexArray:
@@ -144,10 +133,10 @@ def largest_plane_root(
     Infinite where an implicit step has no solution. NumericalError if a finite pole leaves the range of float64.
     """
     with np.errstate(all="ignore"):
-        if pencil.degree == 2:
-            _write_largest_of_quadratics(pencil, alpha_hat, beta_hat, into)
-        elif pencil.degree == 3:
-            _write_largest_of_cubics(pencil, alpha_hat, beta_hat, into)
+        if pencil.degree in (2, 3):
+            for start in range(0, alpha_hat.size, CHUNK):
+                chunk = slice(start, start + CHUNK)
+                _write_largest_of_few(pencil, alpha_hat[chunk], beta_hat[chunk], into[chunk])
         elif alpha_hat.size < FEWEST:
             z = roots_of_rows(np.stack(coefficients_at(pencil, alpha_hat, beta_hat)).astype(complex))
             into[:] = largest_in_upper_half(z)
@@ -162,36 +151,18 @@ def largest_plane_root(
         _check_finite(pencil, np.where(unsolvable, 0, into)[np.newaxis], alpha_hat, beta_hat)
 
 
-def _write_largest_of_quadratics(
-    pencil: PlanePencil, alpha_hat: FloatArray, beta_hat: FloatArray, into: ComplexArray
-) -> None:
-    """Write the larger pole of two; exactly where they nearly meet, of all chunks at once, as these points are few."""
-    close = []
-    for start in range(0, alpha_hat.size, CHUNK):
-        chunk = slice(start, start + CHUNK)
-        coefficients = coefficients_at(pencil, alpha_hat[chunk], beta_hat[chunk])
-        half, _, discriminant, places = _rounded_discriminants(coefficients)
-        largest_quadratic_root(half, discriminant, into[chunk])
-        close.append(start + places)
-    few = np.concatenate(close)
-    exactly = np.empty(few.size, complex)
-    coefficients = coefficients_at(pencil, alpha_hat[few], beta_hat[few])
-    half, _, discriminant = discriminants(pencil, coefficients, alpha_hat[few], beta_hat[few])
-    largest_quadratic_root(half, discriminant, exactly)
-    into[few] = exactly
-
-
-def _write_largest_of_cubics(
-    pencil: PlanePencil, alpha_hat: FloatArray, beta_hat: FloatArray, into: ComplexArray
-) -> None:
-    for start in range(0, alpha_hat.size, CHUNK):
-        chunk = slice(start, start + CHUNK)
-        d, c, b, leading = coefficients_at(pencil, alpha_hat[chunk], beta_hat[chunk])
-        apart, half, last = cubic_parts(b / leading, c / leading, d / leading)
-        largest = into[chunk]
-        largest_quadratic_root(half, half * half - last, largest)
-        alone = np.flatnonzero(~(np.abs(apart) <= np.abs(largest)))  # nan too
-        largest[alone] = apart[alone]
+def _write_largest_of_few(pencil: PlanePencil, alpha_hat: FloatArray, beta_hat: FloatArray, into: ComplexArray) -> None:
+    """Write the largest pole of two or three, by formula."""
+    coefficients = coefficients_at(pencil, alpha_hat, beta_hat)
+    if pencil.degree == 2:
+        half, _, discriminant = discriminants(pencil, coefficients, alpha_hat, beta_hat)
+        largest_quadratic_root(half, discriminant, into)
+        return
+    d, c, b, leading = coefficients
+    apart, half, last = cubic_parts(b / leading, c / leading, d / leading)
+    largest_quadratic_root(half, half * half - last, into)
+    alone = np.flatnonzero(~(np.abs(apart) <= np.abs(into)))  # nan too
+    into[alone] = apart[alone]
 
 
 def _check_finite(pencil: PlanePencil, z: ComplexArray, alpha_hat: FloatArray, beta_hat: FloatArray) -> None:

@@ -1,6 +1,6 @@
 r"""Every region held against the poles before it is given: what contradicts them is a NumericalError, never an area.
 
-Nothing is asked of where its edges come from, and four things must be true:
+Nothing is asked of where its edges come from, and three things must be true:
 
       beta_hat |       . - - .             edges   just to either side of a drawn point: all poles are within
                |    in/ out                        the level on one side, and not on the other
@@ -8,15 +8,14 @@ Nothing is asked of where its edges come from, and four things must be true:
                |    (-|---|---|-) ----             up to the area, and to what the curves enclose
                |     \|   |   |/           ends    just within an end of the extent something is stable, just beyond it
                |       ' - - '                     nothing; where there is no end, something is stable far out
-               +---------------- alpha_hat known   points that lie inside whatever the edges are: every part of a
-                                                   one-step method's region has one, where every pole is zero
+               +---------------- alpha_hat
 
 Where float64 contradicts a region, Schur's recursion in rationals decides: rounding of a double root is no error. And
 some points of every edge, and what is stable within an end and far out, are proven so in any case.
 """
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from fractions import Fraction
 from functools import partial
 
@@ -26,7 +25,7 @@ from numpy.typing import NDArray
 from bezstab.errors import NumericalError
 from bezstab.methods import Method
 from bezstab.rationals import exact
-from bezstab.stability.arrays import DOUBLE, MULTIPLE, ROUNDING, SAME, BoolArray, FloatArray, even_points
+from bezstab.stability.arrays import DOUBLE, ROUNDING, SAME, BoolArray, FloatArray, even_points
 from bezstab.stability.closed_loop import decays_faster, largest_modulus
 from bezstab.stability.pencils import Pencil, pencil_of
 from bezstab.stability.quadratures import integrals
@@ -35,15 +34,13 @@ from bezstab.stability.searches import AT_ONCE, bisected, least_between
 from bezstab.stability.shapes import GOES_ON, Shape
 
 THIN = 1e-4  # of its distance: around a double mu a curve of that size is known to less, as rounding parts the two
-CORNER = 3  # points: around corners, where poles meet, more may contradict
-PROVEN = 16  # points of each curve, and of a stretch that contradicts: to prove all would take seconds
+CORNER, CORNERS = 3, 1 / 16  # points, and of all the share, that may contradict: around corners, where poles meet
+PROVEN = 16  # points of a curve, or of what contradicts: to prove all would take seconds
 ALONG: FloatArray = (1 - np.cos(np.linspace(0, np.pi, 34)[1:-1])) / 2  # of it, the places that are asked about
-NEAR_CUSP = 1 / 25  # of a curve's length: where poles nearly meet, edges are less exact
-FURTHER_ASIDE = 100  # times as far, there
 TURNED = 0.1  # rad, from one chord to the next: a corner
 PANEL_STEP = 1 / 4  # of tanh-sinh: 25 nodes, good to 1e-9 where every other one is good to 1e-5
 CURVE_ERROR = 2e-2  # of the area: chords enclose less by 1e-5, and of a region of 1e10, drawn by few, by a hundredth
-EFFORTS = ((1e-5, 128), (1e-6, 256), (1e-7, 256))  # of the area, half the nodes off by it: halve; points on a line
+EFFORTS = ((1e-5, 128), (1e-7, 256))  # of the area, half the nodes off by it: halve; points on a line
 PROVEN_EFFORT = (1e-4, 8)  # the same, of verdicts in rationals: next to one float64 may tell no edge well enough
 CROSSING_HALVINGS = 36  # of a bracket of a hundredth of a line: its end is good to 1e-12 of the line
 TOWARDS = np.geomspace(1e-9, 1e18, 217)  # times what is seen: where a line is looked at, from what is known there
@@ -70,7 +67,6 @@ def check_region(method: Method, level: float, shape: Shape | None) -> None:
     for curve in shape.curves:
         _check_closed(name, shape, curve)
         _check_edge(name, shape, curve, inside, proven)
-    _check_known(name, shape)
     _check_ends(name, shape, pencil, inside, proven)
     _check_lines(name, shape, inside, proven)
 
@@ -117,36 +113,22 @@ def _check_edge(name: str, shape: Shape, curve: FloatArray, inside: Verdicts, pr
     length = np.hypot(*along.T)
     kept = (length > SAME) & (_seen(shape, points[1:-1]) | (shape.area is not None))
     points, along = points[1:-1][kept], along[kept] / length[kept, np.newaxis]
-    if len(points) <= CORNER:
-        return
     # just to either side, as far as verdicts tell; of a small curve that is far away points are known to less
     offset = np.maximum(TOLD * size, ROUNDING * away) * np.stack([-along[:, 1], along[:, 0]], axis=1)
 
-    def parted(verdicts: Verdicts, some: NDArray[np.intp], times: float = 1) -> BoolArray:
-        """Return at which points one side is stable alone, or both are, and not what is between."""
-        middle, aside = points[some], times * offset[some]
-        left, right = (verdicts(*(middle + sign * aside).T) for sign in (1, -1))
-        both = left & right
-        both[both] = ~verdicts(*middle[both].T)
-        return np.asarray((left != right) | both)
+    def is_no_edge(verdicts: Verdicts, some: NDArray[np.intp]) -> BoolArray:
+        """Return at which points both sides are the same, and so is what is between."""
+        left, right, middle = (verdicts(*(points[some] + sign * offset[some]).T) for sign in (1, -1, 0))
+        return np.asarray((left == right) & (left == (left & middle)))
 
-    good = parted(inside, np.arange(len(points)))
-    way = np.append(0, np.cumsum(np.hypot(*(np.diff(points, axis=0) / size).T)))
-    for first, last in _stretches(~good, way, way[-1]):
-        some = np.arange(first, last + 1)[:: 1 + (last - first) // PROVEN]
-        there = parted(proven, some)
-        if way[last] - way[first] <= NEAR_CUSP * way[-1]:
-            there |= parted(proven, some, FURTHER_ASIDE)
-        for k, _ in _stretches(~there, way[some], way[-1]):
-            _refuse_edge(name, points[some[k]])
-    some = np.arange(len(points))[:: 1 + len(points) // PROVEN]
-    wrong = some[~parted(proven, some)]
-    if len(wrong) > len(some) / 2:
-        _refuse_edge(name, points[wrong[0]])
-
-
-def _refuse_edge(name: str, point: FloatArray) -> None:
-    raise NumericalError(f"{name}: an edge was drawn through ({point[0]:.6g}, {point[1]:.6g}), where none is")
+    every = np.arange(len(points))
+    doubtful = np.flatnonzero(is_no_edge(inside, every))
+    asked = doubtful if len(doubtful) > CORNER + CORNERS * len(points) else every
+    asked = asked[:: 1 + len(asked) // PROVEN]
+    wrong = asked[is_no_edge(proven, asked)]
+    if len(wrong) > len(asked) / 2:
+        place = "({:.6g}, {:.6g})".format(*points[wrong[0]])
+        raise NumericalError(f"{name}: an edge was drawn through {place}, where none is")
 
 
 def _with_points_between(curve: FloatArray, size: FloatArray) -> FloatArray:
@@ -159,72 +141,42 @@ def _with_points_between(curve: FloatArray, size: FloatArray) -> FloatArray:
     return np.insert(curve, np.repeat(straight + 1, len(ALONG)), between.reshape(-1, 2), axis=0)
 
 
-def _stretches(wrong: BoolArray, way: FloatArray, length: float) -> Iterator[tuple[int, int]]:
-    """Yield the first and last number of what is wrong in a row of points, but for corners and what is short.
-
-    way: where each point lies on a curve of this length.
-    """
-    turns = np.flatnonzero(np.diff(np.concatenate([[False], wrong, [False]]).astype(int)))
-    for first, beyond in zip(turns[::2].tolist(), turns[1::2].tolist(), strict=True):
-        if beyond - first > CORNER and way[beyond - 1] - way[first] > MULTIPLE * length:
-            yield first, beyond - 1
-
-
-def _check_known(name: str, shape: Shape) -> None:
-    """Raise NumericalError unless the curves have around them each point that is known to lie inside."""
-    for (_, beta_hat), crossings in zip(shape.known, _crossings(shape, shape.known[:, 0]), strict=True):
-        if shape.area is not None and (crossings < beta_hat).sum() % 2 == 0:
-            raise NumericalError(f"{name}: a part of the region was not found, near beta_hat = {beta_hat:.6g}")
-
-
 def _check_ends(name: str, shape: Shape, pencil: Pencil, inside: Verdicts, proven: Verdicts) -> None:
     """Raise NumericalError unless the region comes to the ends of the extent, and no further, or goes on far out."""
     sizes = np.ptp(shape.view, axis=1)
     drawn = np.concatenate([np.zeros((0, 2)), *shape.curves])
-    goes_on = shape.area is None
     for axis in (0, 1):
         for end, outwards in zip(shape.extent[axis], (-1, 1), strict=True):
             stable_at = partial(_stable_on_line, shape, pencil, inside, proven, axis, outwards)
             if math.isinf(end):
-                right = all(stable_at(outwards * far * sizes[axis], thin=True) for far in FAR_OUT)
+                right = all(stable_at(outwards * far * sizes[axis]) for far in FAR_OUT)
             else:
                 beside = outwards * DOUBLE * sizes[axis]
                 # perhaps as the tip of a cusp
                 attained = bool((np.abs(drawn[:, axis] - end) <= SAME * sizes[axis]).any())
-                right = attained or stable_at(end - beside, thin=goes_on)
-                right = right and not stable_at(end + beside, thin=False)
+                right = (attained or stable_at(end - beside)) and not stable_at(end + beside)
             if not right:
                 parameter = ("alpha_hat", "beta_hat")[axis]
                 raise NumericalError(f"{name}: the extent contradicts the poles at {parameter} = {end:.6g}")
 
 
 def _stable_on_line(
-    shape: Shape,
-    pencil: Pencil,
-    inside: Verdicts,
-    proven: Verdicts,
-    axis: int,
-    outwards: int,
-    place: float,
-    thin: bool,
+    shape: Shape, pencil: Pencil, inside: Verdicts, proven: Verdicts, axis: int, outwards: int, place: float
 ) -> bool:
-    """Return whether a line of constant alpha_hat (axis 0) or beta_hat is stable anywhere, proven.
-
-    thin: also where |z_p| is least between the points that are looked at.
-    """
+    """Return whether a line of constant alpha_hat (axis 0) or beta_hat is stable anywhere, proven."""
 
     def on_line(along: FloatArray) -> tuple[FloatArray, FloatArray]:
-        points = np.full(along.shape, place), along
+        points = np.full(along.size, place), along.ravel()
         return points[axis], points[1 - axis]
 
-    along = _looked_at(shape, axis, place, outwards)
-    some = along[inside(*on_line(along))]
-    if any(proven(*on_line(each)).any() for each in some[:, np.newaxis]):
-        return True
-    if not thin:
-        return False
-    least = _least_along(lambda along: largest_modulus(pencil, *on_line(along)), along)
-    return bool(proven(*on_line(least)).any())
+    def modulus(along: FloatArray) -> FloatArray:
+        return largest_modulus(pencil, *on_line(along)).reshape(along.shape)
+
+    samples = _looked_at(shape, axis, place, outwards)
+    stable = samples[inside(*on_line(samples))]
+    if shape.area is None:  # what goes on may be a strip so thin that it lies between two samples
+        stable = np.append(stable, _lowest(modulus, samples))
+    return any(proven(*on_line(each)).any() for each in stable)
 
 
 def _looked_at(shape: Shape, axis: int, place: float, outwards: int) -> FloatArray:
@@ -239,18 +191,16 @@ def _looked_at(shape: Shape, axis: int, place: float, outwards: int) -> FloatArr
         (crossed,) = _crossings(shape, np.array([place]), axis)
         bases.append((crossed[1:] + crossed[:-1]) / 2)
     away = np.ptp(shape.view[1 - axis]) * np.concatenate([-TOWARDS, [0.0], TOWARDS])
-    return np.asarray(np.add.outer(np.concatenate(bases), away).ravel(), float)
+    return np.unique(np.add.outer(np.concatenate(bases), away))
 
 
-def _least_along(modulus: Callable[[FloatArray], FloatArray], along: FloatArray) -> FloatArray:
-    """Return where |z_p| is least between samples of a line, next to the lowest of them: a strip may be that thin."""
-    samples = np.unique(along)
-    values = modulus(samples)
-    least = 1 + np.flatnonzero((values[1:-1] <= values[:-2]) & (values[1:-1] <= values[2:]))
-    lowest = least[np.argsort(values[least], kind="stable")[:PROVEN]]
-    found, _ = least_between(
-        lambda points: modulus(points.ravel()).reshape(points.shape), samples[lowest - 1], samples[lowest + 1]
-    )
+def _lowest(modulus: Callable[[FloatArray], FloatArray], samples: FloatArray) -> FloatArray:
+    """Return where |z_p| is least next to the lowest of the samples of a line."""
+    values = np.pad(modulus(samples), 1, constant_values=np.inf)
+    least = np.flatnonzero((values[1:-1] <= values[:-2]) & (values[1:-1] <= values[2:]))
+    lowest = least[np.argsort(values[1:-1][least], kind="stable")[:PROVEN]]
+    before, after = np.maximum(lowest - 1, 0), np.minimum(lowest + 1, samples.size - 1)
+    found, _ = least_between(modulus, samples[before], samples[after])
     return found
 
 

@@ -14,8 +14,7 @@ from bezstab.stability.charts import Chart
 from bezstab.stability.closed_loop import spectral_radius
 from bezstab.stability.pencils import Pencil, pencil_of
 from bezstab.stability.region_checks import check_region
-from bezstab.stability.searches import checked
-from bezstab.stability.shapes import ATTAINED, GOES_ON, Approached, Shape
+from bezstab.stability.shapes import ATTAINED, GOES_ON, Approached
 
 MARGIN = 0.05  # of what is to be seen of a bounded region
 
@@ -81,12 +80,8 @@ def region(method: Method, level: float = 1.0) -> Region:
     if stuck and abs(stuck[0]) >= level * (1 - ROUNDING):
         return empty
 
-    def checked_shape(finer: int) -> Shape | None:
-        shape = pencil_of(method, free=True).shape(level, finer)
-        check_region(method, level, shape)
-        return shape
-
-    shape = checked(checked_shape)
+    shape = pencil_of(method, free=True).shape(level)
+    check_region(method, level, shape)
     if shape is None:
         return empty
     return Region(

@@ -7,7 +7,7 @@ Edges are arrays of points, in any order and direction. Where the ends of two me
         ' - - o - - '
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -28,8 +28,7 @@ ATTAINED: Approached = ((False, False), (False, False))
 class Shape:
     """What a region is, dimensionless: area (None: unbounded), extent, a finite view of it, and its boundary curves.
 
-    `approached`: of each finite end of the extent, whether edges only come near it, towards infinity. `known`: points
-    that are known to lie inside, shape (points, 2), found without any edge.
+    `approached`: of each finite end of the extent, whether edges only come near it, towards infinity.
     """
 
     area: float | None
@@ -37,7 +36,6 @@ class Shape:
     view: Extent
     curves: tuple[FloatArray, ...]
     approached: Approached = ATTAINED
-    known: FloatArray = field(default_factory=lambda: np.zeros((0, 2)))
 
 
 def joined(edges: list[FloatArray], most: float | FloatArray) -> list[FloatArray]:

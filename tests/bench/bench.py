@@ -306,7 +306,7 @@ def self_checks() -> Iterator[Line]:
                 remembered.cache_clear()
             return region(pencil.method)
 
-        shape = pencil_of(pencil.method, free=True).shape(1.0, 1)
+        shape = pencil_of(pencil.method, free=True).shape(1.0)
         (whole, _), (check, _) = interleaved(found, partial(check_region, pencil.method, 1.0, shape))
         note = f"{1e3 * check:.1f} ms of {1e3 * whole:.0f} ms"
         yield Line("check", f"{name}: a region and its check", (whole - check) / check, 0.4, note)

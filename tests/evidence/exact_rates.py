@@ -1,7 +1,6 @@
 """Exact rates of moving mechanisms as tests ask for them: by method, step and points."""
 
-from bezstab.evidence.floquet import gains_on, rates_on_the_motion
-from bezstab.evidence.linearized_steps import course_of_steps
+from bezstab.evidence.floquet import course_of_steps, rates_on_the_motion
 from bezstab.evidence.own_motions import find_own_motions
 from bezstab.mechanism import Mechanism
 from bezstab.methods import Method
@@ -13,7 +12,7 @@ def floquet_rates(
 ) -> FloatArray:
     """Return |z| per step over the motion of the mechanism, shape (points,); h and the duration of a run in s."""
     course = course_of_steps(mechanism, method, h, duration)
-    return rates_on_the_motion(course, gains_on(course, method, alpha_hat, beta_hat))
+    return rates_on_the_motion(course, course.gains(alpha_hat, beta_hat))
 
 
 def own_motion_rates(

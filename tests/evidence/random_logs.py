@@ -68,7 +68,7 @@ def _written(method: Method, scene: str, alpha_hat: float, beta_hat: float, rows
     kicks = (KICK if stable else SMALL_KICK, 0.0)
     written: list[list[float]] = []
     with np.errstate(all="ignore"):
-        ((_, blocks),) = kicked_motions(
+        blocks = kicked_motions(
             _mechanism(scene), method, H, np.array([alpha_hat]), np.array([beta_hat]), kicks, rows - 1
         )
         for c in chain.from_iterable(c for c, _ in blocks):

@@ -6,12 +6,12 @@ import pytest
 from bezstab.evidence import (
     METHODS,
     Cost,
+    ErrorOf,
+    SweptRuns,
     summary,
     sweep_compiled,
-    with_fronts,
 )
 from bezstab.evidence.sweep_summaries import cost_for
-from bezstab.mechanism import load_scene
 from bezstab.methods import accuracy, evaluations, lookup
 from bezstab.rationals import exact
 from bezstab.stability import choose
@@ -103,10 +103,10 @@ def test_a_run_that_fails_is_kept_and_says_so() -> None:
 def test_a_sweep_knows_its_fronts(against: Cost) -> None:
     runs = [*swept("B2", (0.004, 0.0125), SOFT), *swept("AB4", (0.004, 0.0125), SOFT)]
     assert any(run.failure for run in runs)  # AB4 at the larger step
-    whole = with_fronts(runs, reference().error, against)
-    fronts = (whole.trajectory_front, "trajectory_error", "T"), (whole.constraint_front, "c_max", "c")
-    for front, error, letter in fronts:
-        points = [(run.cost(against), None if run.failure else getattr(run, error)) for run in whole.runs]
+    whole = SweptRuns(runs, reference().error, against)
+    of: ErrorOf
+    for of, letter in (("trajectory", "T"), ("constraint", "c")):
+        front, points = whole.front(of), [(run.cost(against), run.error(of)) for run in runs]
         assert {points[index] for index in front} == undominated(points)
         assert [index for index, label in enumerate(whole.front_labels) if letter in label] == sorted(front)
 
@@ -122,4 +122,4 @@ def test_all_runs_of_a_sweep_are_compiled_or_none(monkeypatch: pytest.MonkeyPatc
         ("no", [fast], 1e-5, False),
     ):
         monkeypatch.setenv("BEZSTAB_COMPILED", choice)
-        assert sweep_compiled(load_scene("four_bar"), methods, (1e-3, least_step), 1.0, 3) is expected
+        assert sweep_compiled(methods, (1e-3, least_step), 1.0, 3) is expected

@@ -58,7 +58,7 @@ def test_a_resumed_job_does_only_what_is_missing(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_a_lost_worker_costs_its_chunk_alone_and_one_that_kills_every_worker_is_reported(tmp_path: Path) -> None:
+def test_a_lost_worker_costs_no_chunk_and_one_that_kills_every_worker_is_reported(tmp_path: Path) -> None:
     deaths = tuple(tmp_path / f"death {number}" for number in range(1 + ATTEMPTS))
     with worker_pool(2) as workers:
         found = arrived([Job(number, deaths[:1] * (number == 2)) for number in range(5)], workers, tmp_path)
@@ -66,7 +66,7 @@ def test_a_lost_worker_costs_its_chunk_alone_and_one_that_kills_every_worker_is_
     assert os.getpid() not in {int(arrays["by"]) for arrays in found.values()}
     assert deaths[0].exists()
     with worker_pool(1) as workers, chunk_store(tmp_path / "other", "squares", resume=False) as store:
-        with pytest.raises(NumericalError, match="chunk 1 lost its worker 3 times"):
+        with pytest.raises(NumericalError, match="workers were lost 3 times: 1 of 2 chunks"):
             list(completed_chunks(square, [Job(0), Job(1, deaths)], workers, store))
         assert store.has(0)
 
@@ -104,14 +104,8 @@ def cluster() -> Iterator[str]:
 def test_a_cluster_does_the_same_work(cluster: str, tmp_path: Path) -> None:
     death = tmp_path / "died"
     jobs = [Job(number, (death,) * (number == 2)) for number in range(6)]
-    deadline = time.monotonic() + 60
-    while True:
-        with worker_pool(scheduler=cluster) as workers:
-            if workers.count == 2:
-                found = arrived(jobs, workers, tmp_path)
-                break
-        assert time.monotonic() < deadline, "the workers did not come up"
-        time.sleep(0.2)
+    with worker_pool(scheduler=cluster) as workers:
+        found = arrived(jobs, workers, tmp_path)
     command = [sys.executable, "-m", "bezstab", "verify", "--map", "4", "--method", "SYM", "--scene", "pendulum"]
     maps = {}
     for name, more in (("here", ["--workers", "1"]), ("there", ["--scheduler", cluster])):

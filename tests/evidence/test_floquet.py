@@ -58,5 +58,4 @@ def test_a_run_without_a_driver_has_the_rate_of_its_constraint_errors() -> None:
     mechanism = compiled_mechanism(load_scene("slider_crank"))
     rates = floquet_rates(mechanism, lookup("B4"), 1e-3, np.array([0.1, 0.5]), np.array([0.1, 0.1]), 0.2)
     at_rest = spectral_radius(lookup("B4"), np.array([0.1, 0.5]), np.array([0.1, 0.1]))
-    # a conjugate pair is seen at two phases, apart by a factor of about two, 40 steps or more from each other
-    assert np.abs(rates / at_rest - 1).max() < 3e-2
+    assert rates == pytest.approx(at_rest, rel=2e-2)  # a conjugate pair is seen at several phases

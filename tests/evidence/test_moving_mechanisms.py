@@ -8,7 +8,6 @@ import pytest
 from bezstab.evidence import (
     LAW_HOLDS,
     growth_rates,
-    moving_pole,
     moving_poles,
 )
 from bezstab.mechanism import compiled_mechanism, load_scene, turning_normals
@@ -69,10 +68,11 @@ def test_the_law_closes_most_of_the_gap_to_the_exact_rate(name: str) -> None:
 def test_up_to_the_safe_speed_errors_decay_and_the_law_holds(name: str, alpha_hat: float, beta_hat: float) -> None:
     """A mechanism F times as fast turns as far in a step as one whose step is F times as long."""
     h = 0.005
-    safe = moving_pole(lookup(name), turning(), h, alpha_hat, beta_hat).safe_speed
+    (pole,) = moving_poles(lookup(name), turning(), h, alpha_hat, beta_hat)
+    safe = pole.safe_speed
     assert safe > 1
     slower, faster = (
-        moving_pole(lookup(name), turning(), share * safe * h, alpha_hat, beta_hat) for share in (0.999, 1.001)
+        moving_poles(lookup(name), turning(), share * safe * h, alpha_hat, beta_hat)[0] for share in (0.999, 1.001)
     )
     assert slower.z_abs_moving < 1
     if turning().kappa * safe * h < 0.999 * LAW_HOLDS:  # else the law ends there
@@ -83,7 +83,7 @@ def test_at_rest_poles_stay_where_they_are_however_large_chi_is() -> None:
     """SYM at (1, 1/2): the pole 0 has no finite chi."""
     moving = turning()
     at_rest = replace(moving, rates=np.zeros_like(moving.rates))
-    pole = moving_pole(lookup("SYM"), at_rest, 0.01, 1.0, 0.5)
+    (pole,) = moving_poles(lookup("SYM"), at_rest, 0.01, 1.0, 0.5)
     assert (pole.verdict, pole.z_abs) == ("converges", 0.5)
 
 
@@ -96,7 +96,7 @@ def test_an_error_that_stays_as_it_is_does_not_surely_grow() -> None:
     assert rates[0] > 0.5
     assert sure[0] == pytest.approx(0.0, abs=1e-12)
     assert (sure <= rates).all()
-    near_the_corner = moving_pole(lookup("AB8"), run, 1e-3, 0.001356, 0.000529)
+    (near_the_corner,) = moving_poles(lookup("AB8"), run, 1e-3, 0.001356, 0.000529)
     assert near_the_corner.z_abs_moving > 1
     assert not near_the_corner.settled
 
@@ -112,7 +112,7 @@ def test_nothing_converges_beyond_the_law() -> None:
     """AB4 where chi is 1e-4, at kappa h = 0.19: the law sees a decay that the exact rate has not."""
     step, alpha_hat, beta_hat = 0.06, 0.15, 0.006
     (exact,) = floquet_rates(four_bar(), lookup("AB4"), step, np.array([alpha_hat]), np.array([beta_hat]), 1.0)
-    moving = moving_pole(lookup("AB4"), turning(), step, alpha_hat, beta_hat)
+    (moving,) = moving_poles(lookup("AB4"), turning(), step, alpha_hat, beta_hat)
     assert moving.z_abs_worst < 0.95
     assert exact > 1.05
     assert moving.verdict == "not settled for this mechanism"

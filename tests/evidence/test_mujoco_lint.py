@@ -324,11 +324,8 @@ def test_a_drive_is_told_which_gain_uses_up_its_limit_and_what_to_write() -> Non
         # friction has no timeconst that refsafe could raise
         (Case("", SLIDE.format('frictionloss="1" solreffriction="0 -50"')), "converges", False, ""),
         *(
-            (drive(text), None, False, f"not judged: its {reason}")
-            for text, reason in (
-                ('<damper joint="x" kv="2" ctrlrange="0 1"/>', "gain depends on the control"),
-                ('<muscle joint="x" lengthrange="0 1"/>', "force is no constant stiffness and damping"),
-            )
+            (drive(text), None, False, "not judged: its force is no constant stiffness and damping")
+            for text in ('<damper joint="x" kv="2" ctrlrange="0 1"/>', '<muscle joint="x" lengthrange="0 1"/>')
         ),
     ],
 )

@@ -1,7 +1,6 @@
 """What is read of a MuJoCo model is what MuJoCo itself makes of it, and what it refuses is one line."""
 
 import sys
-from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -52,27 +51,28 @@ def solrefs(robot: ModelData, kind: str) -> dict[str, tuple[float, float]]:
 
 
 def test_mixtures_of_contacts_are_mujocos_own(robot: ModelData) -> None:
-    """Where two geoms touch in a model of their own, MuJoCo's contact has the same solref."""
+    """By weight, by priority, the smaller of direct ones; a listed pair has its own."""
     contacts = solrefs(robot, "contact")
     assert contacts["geom 'floor' and geom 'a'"] == pytest.approx((0.08 / 3, 1))  # 2 : 1
     assert contacts["geom 'floor' and geom 'd'"] == (-900, -40)  # direct: the smaller
     assert contacts["geom 'floor' and geom 'e'"] == (0.07, 1)  # by priority
-    assert solrefs(robot, "contact pair") == {"geom 'b' and geom 'd'": (0.008, 1.5)}
-    solrefs_of_both = (
-        *(("0.03 1", "0.01 1"), ("0.03 0", "0.01 1"), ("0 0", "0.01 1")),
-        *(("0.03 1", "-900 -40"), ("-500 -60", "-900 -40")),
+    assert contacts["geom 'b' and geom 'd'"] == (0.008, 1.5)  # a pair
+
+
+def test_geoms_of_all_shapes_meet_however_far_apart_they_are() -> None:
+    """Each has a solref of its own, and priority: so each of them makes one contact."""
+    shapes = ("plane", "sphere", "capsule", "ellipsoid", "cylinder", "box")
+    bodies = "".join(
+        f'<body pos="{10 * number} 0 9"><freejoint/><geom type="{shape}" size=".1 .1 .1" priority="{number}"'
+        f' solref="{number / 100} 1"/></body>'
+        for number, shape in enumerate(shapes)
+        if number
     )
-    for (first, second), (mix, other) in product(solrefs_of_both, ((2, 1), (0, 1), (0, 0), (1, 0))):
-        touching = mujoco.MjModel.from_xml_string(
-            f"""<mujoco><worldbody><geom type="plane" size="1 1 .1" solref="{first}" solmix="{mix}"/>
-            <body pos="0 0 .09"><freejoint/><geom size=".1" solref="{second}" solmix="{other}"/></body>
-            </worldbody></mujoco>"""
-        )
-        data = mujoco.MjData(touching)
-        mujoco.mj_forward(touching, data)
-        (contact,) = model_data(mujoco, touching).constraints
-        assert contact.solref == pytest.approx(tuple(data.contact[0].solref))
-        assert contact.solimp == pytest.approx(tuple(data.contact[0].solimp[:3]))
+    floor = '<geom type="plane" size="1 1 1"/><geom type="plane" size="1 1 1" pos="0 0 -1"/>'
+    model = mujoco.MjModel.from_xml_string(f"<mujoco><worldbody>{floor}{bodies}</worldbody></mujoco>")
+    found = [contact.solref[0] for contact in model_data(mujoco, model).constraints]
+    assert sorted(found) == [0.01, 0.02, 0.03, 0.04, 0.05]
+    assert model.geom_margin.max() == 0  # the model itself is left as it was
 
 
 def test_geoms_that_cannot_touch_make_no_contact(robot: ModelData) -> None:
@@ -99,7 +99,7 @@ def test_options_hold_for_all_that_is_read() -> None:
     found = read('<option actuatorgroupdisable="2"/>', grouped)
     assert [each.element for each in found.feedbacks if each.kind == "drive"] == ["actuator 1"]
     found = read('<option o_solref="0.2 1"><flag override="enable"/></option>')
-    assert {each.solref for each in found.constraints if each.kind.startswith("contact")} == {(0.2, 1)}
+    assert {each.solref for each in found.constraints if each.kind == "contact"} == {(0.2, 1)}
 
 
 @pytest.mark.parametrize(

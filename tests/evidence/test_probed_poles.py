@@ -187,7 +187,7 @@ def growing(modulus: float) -> FloatArray:
         *((1e-3 * RESPONSE + offset, None, Z, 1e-5, "taken off") for offset in (1e-6, 1e-4, -1e-3, 0.3)),
         (1e-3 * geometric(600, 0.99), None, 0.99, 1e-6, "may be forced"),
         (ON_THE_CIRCLE, 0 * ON_THE_CIRCLE, np.exp(0.5j), 1e-6, "marginal"),
-        (0.5 ** np.arange(40.0), np.zeros(40), 0.5, 1e-9, ""),  # powers of one half are no quantiser's
+        (0.5 ** np.arange(40.0), np.zeros(40), 0.5, 1e-9, ""),
         (ENDS, np.zeros(300), Z, 1e-6, "row 151"),  # a missing number ends the log
         (LATE + 1e-3 * FORCED[0], np.full(340, 1e-3 * FORCED[0]), Z, 1e-4, ""),  # rows before the kick do not count
         (np.stack([RESPONSE, 1e-3 * two_poles(300, 0.9, 0.5, 2.0, 0.4)], axis=1), np.zeros((300, 2)), Z, 1e-6, ""),
@@ -215,7 +215,6 @@ def test_a_plateau_that_a_motion_forces_is_never_taken_for_a_pole(size: float) -
         (np.full(100, 0.25), "nothing changes"),
         (ON_THE_CIRCLE, "|z| is one"),
         (np.round(1e-3 * RESPONSE, 5), "rounded to 1e-05"),
-        (np.round(RESPONSE * 256) / 256, "rounded to 0.00391"),  # of a quantiser, with many decimals
         (np.append([1.0, -0.5], np.zeros(98)), "gone after 2 rows"),
         (np.append(geometric(5, 0.5), np.full(95, np.nan)), "row 6 holds no number"),
     ],

@@ -13,7 +13,6 @@ from bezstab.mechanism import (
     load_scene,
     march,
     resume,
-    resume_in_groups,
     states_needed,
 )
 from bezstab.methods import lookup
@@ -39,9 +38,7 @@ def test_kicked_runs_are_the_same_in_a_batch_compiled_and_alone(name: str) -> No
     count = 300
     together = states_of(resume(mechanism, method, H, gains, history, count, undisturbed=undisturbed))
     assert together.shape == (count, 2 * mechanism.size, 2, points)
-    compiled = np.full_like(together, np.inf)
-    for some, group in resume_in_groups(mechanism, method, H, gains, history, count, How(compiled=True), undisturbed):
-        compiled[..., some] = states_of(group)
+    compiled = states_of(resume(mechanism, method, H, gains, history, count, How(compiled=True), undisturbed))
     with np.errstate(invalid="ignore"):  # of what is infinite
         calm = (np.abs(together[:, :, 0] - together[:, :, 1]) < 1e-2).all(axis=(0, 1))
     assert calm.any()

@@ -38,7 +38,7 @@ def test_a_distance_joint_holds_two_points_a_length_apart() -> None:
 
 
 ON_A_LINE = {"type": "point-on-line", "bodies": ["ground", "plate"], "points": [[0, 0], [0, 0]], "direction": [1, 2]}
-ARM_END, PLATE_END = (0.3, -0.1), (-0.2, 0.4)
+ARM_END, PLATE_END = [0.3, -0.1], [-0.2, 0.4]
 
 
 def arm_and_plate(**spring: float) -> Mechanism:

@@ -1,5 +1,6 @@
 """Orders of steps before rounding ends their descent, and the text of generated accelerations."""
 
+import cmath
 import math
 import re
 from functools import cache
@@ -17,7 +18,8 @@ from bezstab.mechanism import (
     parse_scene,
     state_function,
 )
-from bezstab.mechanism.generated_code import CODES, acceleration_code, compiled_source, machine_code, state_source
+from bezstab.mechanism.compiled_stepping import _by_operations, take_operations
+from bezstab.mechanism.generated_code import CODES, acceleration_code, operations, state_source
 from bezstab.methods import REGISTRY, accuracy, lookup, steps
 from tests.evidence.samples import of_campaign
 from tests.mechanism.test_scenes import pendulum
@@ -104,33 +106,28 @@ def chain(count: int) -> Mechanism:
 
 
 @pytest.mark.slow
-def test_a_long_acceleration_by_its_shapes_is_the_same_to_the_last_bit() -> None:
-    """And so are its slopes and corrections; here as Python, two lanes side by side."""
-    mechanism, lanes, gains = chain(12), 2, (3.0, 4.0)
+def test_single_operations_are_the_text_to_the_last_bit() -> None:
+    """Of floats and, for slopes, of complex numbers; here as Python, in the second of two lanes."""
+    mechanism, gains = chain(12), (3.0, 4.0)
     n = mechanism.size
-    codes = {name: CODES[name](mechanism.equations) for name in ("accelerations", "corrections", "slope")}
-    code = machine_code(codes, stride=lanes)
-    functions = compiled_source(code.source, math, code.tables)
-    state = 0.1 * np.sin(7.0 * np.arange(4 * n * lanes)).reshape(4, -1)
-    found, off, changes, room = np.zeros(n * lanes), np.zeros(2 * n * lanes), np.zeros(n * lanes), np.zeros(code.size)
-    situation = (0.0, np.array([gains, gains]).T, state)
-    functions["accelerations"](*situation, found, room)
-    functions["corrections"](*situation, off, room)
-    functions["slope"](*situation, changes, room, np.array([False, True]))
-    assert not changes[::lanes].any()  # of the lane that was not asked for
-    functions["slope"](*situation, changes, room, np.array([True, False]))
-    for lane in range(lanes):
-        of_lane = state[:, lane::lanes].tolist()
-        for name, results in (("accelerations", found), ("corrections", off), ("slope", changes)):
-            given = of_lane[: len(codes[name].given)]
-            assert tuple(results[lane::lanes]) == state_function(mechanism, name, math)(0.0, *gains, *given)
+    state = 0.1 * np.sin(7.0 * np.arange(4 * n)).reshape(2, -1)
+    for moved, library in ((state, math), (state + 1e-30j * np.cos(state), cmath)):
+        places: dict[str | float, int] = {}
+        for name in ("accelerations", "corrections"):
+            code = CODES[name](mechanism.equations)
+            function = _by_operations(operations(code, places), n, 2, take_operations)
+            variables = np.array([key if isinstance(key, float) else 0.0 for key in places]).astype(moved.dtype)
+            found = np.zeros(2 * len(code.results), moved.dtype)
+            function(0.0, np.array([gains, gains]).T, moved, found, variables, 1)
+            expected = state_function(mechanism, name, library)(0.0, *gains, *moved[:, 1::2].tolist())
+            assert found[1::2] == pytest.approx(expected, rel=1e-14 if library is cmath else 0.0, abs=0.0)
+            assert not found[::2].any()
 
 
 @pytest.mark.slow
-def test_a_chain_twice_as_long_takes_twice_the_arithmetic_and_no_more_shapes() -> None:
+def test_a_chain_twice_as_long_takes_twice_the_arithmetic() -> None:
     """Its matrices are banded: entries that are zero are not computed."""
     short, long = (acceleration_code(chain(count).equations) for count in (12, 24))
     assert len(long.lines) < 2.2 * len(short.lines)
-    of_short, of_long = (machine_code({"accelerations": code}, 1) for code in (short, long))
-    assert len(of_long.source) <= 1.1 * len(of_short.source)
-    assert len(of_long.tables["accelerations_places"]) > 1.9 * len(of_short.tables["accelerations_places"])
+    of_short, of_long = (operations(code, {}) for code in (short, long))
+    assert len(of_long.rows) < 2.2 * len(of_short.rows)

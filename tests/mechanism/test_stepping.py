@@ -28,7 +28,7 @@ KINDS = (*EXPLICIT_KINDS, "bdf2", "gauss4", "sdirk2", "hht")
 UNSTABLE = {"AB6", "AB7", "AB8"}
 """With the feedback of these tests: rounding grows."""
 SCENES = [name for name in shipped_scenes() if name != "n_four_bar"]
-"""Besides the chain of 40 four-bars, for which one of twelve stands, compiled by its shapes, too."""
+"""Besides the chain of 40 four-bars, for which one of twelve stands, compiled as single operations, too."""
 
 
 def step_for(scene: str) -> float:

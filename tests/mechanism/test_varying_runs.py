@@ -162,14 +162,6 @@ def test_multipliers_are_those_of_the_step_that_begins() -> None:
     assert run.multipliers[1] == pytest.approx(seen.multipliers[0], rel=1e-12)
 
 
-def test_steps_of_two_lengths_cost_newtons_method_no_more_than_equal_ones() -> None:
-    # of either length the Jacobian is kept: with one for both a step takes more than twice as many evaluations
-    equal = run_with([H], 40 * H, "gauss4").trajectory
-    in_turn = run_with([H, H / 2], 30 * H, "gauss4").trajectory
-    assert len(in_turn.t) == len(equal.t) == 41
-    assert in_turn.evaluations < 1.2 * equal.evaluations
-
-
 def compiled_and_not(name: str, monkeypatch: pytest.MonkeyPatch, **point: Any) -> Simulation:
     """Return a run of the pendulum, the same by Python and compiled, to rounding and in all that is said of it."""
     pendulum, runs = compiled_mechanism(load_scene("pendulum")), []

@@ -1,4 +1,4 @@
-"""Method files: read exactly, or refused in one line; a family by coefficients, whatever the name."""
+"""Method files: read exactly, or refused in one line."""
 
 from collections.abc import Sequence
 from fractions import Fraction
@@ -46,11 +46,11 @@ def test_what_is_implicit_is_found_not_declared(tmp_path: Path) -> None:
         assert implicit(read_method(written(tmp_path, content)))
 
 
-def test_a_file_without_name_and_source_takes_both_from_its_path_and_has_no_family(tmp_path: Path) -> None:
+def test_a_file_without_name_and_source_takes_both_from_its_path(tmp_path: Path) -> None:
     for content in (HEUN, EBDF2):
         path = written(tmp_path, content)
         method = read_method(path)
-        assert (method.name, method.source, method.family) == ("own", str(path), None)
+        assert (method.name, method.source) == ("own", str(path))
 
 
 def listed(coefficients: Sequence[Fraction]) -> str:
@@ -66,20 +66,15 @@ def file_content(scheme: LinearMultistep | RungeKutta) -> str:
 
 
 @pytest.mark.parametrize("name", [*kinds.MULTISTEP, *kinds.RUNGE_KUTTA])
-def test_a_file_has_the_scheme_of_its_coefficients_and_its_family_whatever_it_is_called(
-    name: str, tmp_path: Path
-) -> None:
+def test_a_file_has_the_scheme_of_its_coefficients_whatever_it_is_called(name: str, tmp_path: Path) -> None:
     scheme = lookup(name).scheme
     assert isinstance(scheme, LinearMultistep | RungeKutta)
-    method = read_method(written(tmp_path, f'name = "AB4"\nsource = "me"\n{file_content(scheme)}'))
-    # B1 is AB1 and B2 is AB2, under whose names everybody knows them
-    family = lookup({"B1": "AB1", "B2": "AB2"}.get(name, name)).family
-    assert (method.scheme, method.family) == (scheme, family)
-    assert (method.name, method.source) == ("AB4", "me")
+    path = written(tmp_path, f'name = "AB4"\nsource = "me"\n{file_content(scheme)}')
+    assert read_method(path) == Method("AB4", scheme, "me")
 
 
 def test_a_file_of_many_steps_is_read_at_once(tmp_path: Path) -> None:
-    """Explicit Euler, its weight followed by 99 zeros: no family's weights are derived for so many steps."""
+    """Explicit Euler, its weight followed by 99 zeros."""
     zeros = [Fraction(0)] * 99
     rho, sigma = listed([Fraction(1), Fraction(-1), *zeros]), listed([Fraction(0), Fraction(1), *zeros])
     assert steps(read_method(written(tmp_path, f"rho = {rho}\nsigma = {sigma}"))) == 100
@@ -105,7 +100,7 @@ REFUSED: dict[str, tuple[str | bytes, str]] = {
     "update: number": ("[update]\nx1 = 3", "update: 'x1' = 3: expected a text like 'x0"),
     "update with rho": (f"{EBDF2}{UPDATE}", "update"),
     "update: empty": ("[update]", "no equation"),
-    "update: code": ("[update]\nx1 = \"__import__('os').system('true')\"", 'x1 = ...: found "\'"'),
+    "update: code": ("[update]\nx1 = \"__import__('os').system('true')\"", "expected numbers, names"),
     "update: line breaks in a key": ('[update]\n"a\\nb\\u2028" = "x0"', ""),
     "update: long equation": (f'[update]\nx1 = "{"x0 + " * 50_000}x0"', ""),
     "update: 20000 equations": ("[update]\n" + "\n".join(f'w{i} = "x0"' for i in range(20_000)), "20000 equations"),

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from bezstab.errors import InputError
-from bezstab.methods import GROUPS, REGISTRY, Family, lookup, read_method, second_order_form
+from bezstab.methods import GROUPS, REGISTRY, lookup, read_method, second_order_form
 
 NAMES = list(REGISTRY)
 
@@ -68,10 +68,10 @@ def test_a_misspelt_name_suggests_the_right_one(name: str, misspell: Callable[[s
 
 
 def test_a_suggestion_heeds_the_name_and_not_the_step_multiple() -> None:
-    assert "did you mean B5?" in refusal("b 5@12")
+    assert "did you mean B5?" in refusal("b:5@12")
 
 
-@pytest.mark.parametrize("text", ["", "@5", "x", "RK4 ", "B0", "a\nb", "B４"])
+@pytest.mark.parametrize("text", ["", "@5", "x", "B0", "a\nb", "B４"])
 def test_an_unknown_name_is_refused_in_one_line_that_names_it(text: str) -> None:
     message = refusal(text)
     assert repr(text.rpartition("@")[0] or text) in message or repr(text) in message
@@ -113,13 +113,15 @@ def test_some_names_stand_for_the_same_step(given: str, explicit: str) -> None:
 @pytest.mark.parametrize(
     ("typed", "why"),
     [
-        ("newmark(1/4)", "1 parameters given, expected newmark(beta,gamma)"),
+        ("newmark(1/4)", "expected newmark(beta,gamma) or newmark(beta=...,gamma=...)"),
+        ("newmark(1/4,1/2,1)", "expected newmark(beta,gamma)"),
+        ("newmark()", "expected newmark(beta,gamma)"),
         ("newmark(-1/4,1/2)", "beta = -1/4: expected 0 to 10"),
         ("newmark(1/4,x)", "gamma: 'x' is not"),
         ("hht(1/5)", "alpha = 1/5: expected -1/3 to 0"),
-        ("hht(beta=0)", "expected hht(alpha=...), or the values alone"),
-        ("newmark(beta=1/4,beta=1/2)", "expected newmark(beta=...,gamma=...)"),
-        ("Semi-Implicit-Euler(1)", "SYM has no parameters"),
+        ("hht(beta=0)", "expected hht(alpha) or hht(alpha=...)"),
+        ("newmark(beta=1/4,beta=1/2)", "newmark(beta=...,gamma=...)"),
+        ("Semi-Implicit-Euler(1)", "'Semi-Implicit-Euler' has no parameters"),
         ("newmark(1/4,1/2)x", "did you mean newmark"),
     ],
 )
@@ -141,19 +143,3 @@ def test_a_file_takes_a_step_multiple_and_an_at_sign_in_its_name_is_part_of_it(t
         path.write_text('rho = ["1", "-1"]\nsigma = ["0", "1"]', encoding="utf-8")
         assert lookup(str(path)) == read_method(path)
         assert lookup(f"{path}@5") == replace(read_method(path), name=f"{name}@5", step_multiple=Fraction(5))
-
-
-FAMILIES = {
-    "B12": Family("Bezier", 12),
-    "AB8": Family("Adams-Bashforth", 8),
-    "ABM3": Family("Adams-Bashforth-Moulton", 3),
-    "RK4@5": Family("Runge-Kutta", 4),
-    "SIE@1/2": Family("SIE", 0),
-    "SYM": Family("symplectic Euler", 0),
-    "heun": None,
-}
-
-
-@pytest.mark.parametrize("name", FAMILIES)
-def test_a_built_in_method_is_of_its_family_at_any_step_multiple(name: str) -> None:
-    assert lookup(name).family == FAMILIES[name]

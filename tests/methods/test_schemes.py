@@ -5,23 +5,22 @@ from dataclasses import FrozenInstanceError, replace
 from fractions import Fraction
 
 import pytest
+import sympy as sp
 
 from bezstab.errors import InputError
 from bezstab.methods import (
     REGISTRY,
     LinearMultistep,
-    Method,
     PredictorCorrector,
     RungeKutta,
-    Z,
     adams_bashforth,
     closed_loop_polynomial,
     evaluations,
-    implicit,
     lookup,
     second_order_form,
     steps,
 )
+from bezstab.methods.derivation import ALPHA_HAT, BETA_HAT, MU, Z, characteristic_polynomial
 from tests.methods import kinds
 from tests.methods.exact_lists import fractions
 
@@ -97,15 +96,16 @@ def test_an_implicit_or_mismatched_pair_cannot_be_built(predictor: LinearMultist
 
 
 @pytest.mark.promise("Schemes written as second-order ones", proven="have the same P")
-@pytest.mark.parametrize("name", [*kinds.MU_METHODS, "bdf2@2"])
-def test_the_form_has_the_same_closed_loop(name: str) -> None:
-    method = lookup(name)
-    form = Method("form", method.scheme.second_order, "", step_multiple=method.step_multiple)
-    assert implicit(form) == implicit(method)
-    derived, of_form = closed_loop_polynomial(method), closed_loop_polynomial(form)
-    unused = derived.degree() - of_form.degree()  # past values that no parameters bring in: roots z = 0
-    assert unused >= 0
-    assert derived.as_expr().expand() == (of_form.as_expr() * Z**unused).expand()
+@pytest.mark.parametrize("name", kinds.MU_METHODS)
+def test_p_of_the_form_is_the_product_of_pi_over_both_mu_of_the_feedback(name: str) -> None:
+    """The resultant of pi and mu^2 + alpha_hat mu + beta_hat, whose roots are mu_1 and mu_2."""
+    pi = characteristic_polynomial(lookup(name))
+    by_pi = sp.Poly(sp.resultant(pi.as_expr(), MU**2 + ALPHA_HAT * MU + BETA_HAT, MU), Z, ALPHA_HAT, BETA_HAT)
+    of_form = sp.Poly(closed_loop_polynomial(lookup(name)).as_expr(), Z, ALPHA_HAT, BETA_HAT)
+    factor, rest = sp.div(by_pi, of_form)
+    assert rest.is_zero
+    assert len(factor.terms()) == 1  # a number, times z for each past value that no parameters bring in
+    assert factor.degree(ALPHA_HAT) == factor.degree(BETA_HAT) == 0
 
 
 @pytest.mark.parametrize(("name", "groups"), [("bdf3", 1), ("am4", 1), ("gauss4", 1), ("dirk3", 3), ("RK4", 0)])

@@ -31,17 +31,7 @@ def test_as_text_each_claim_stands_below_the_other(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_one_part_alone_is_written_without_a_ledger_and_without_the_times_that_are_measured(tmp_path: Path) -> None:
-    result = CliRunner().invoke(main, ["paper", "--only", "table6", "-o", str(tmp_path)])
-    assert "processor time now" in result.stdout
+def test_one_part_alone_is_written_without_a_ledger(tmp_path: Path) -> None:
+    assert CliRunner().invoke(main, ["paper", "--only", "table6", "-o", str(tmp_path)]).exit_code == 0
     (path,) = tmp_path.iterdir()
-    kept = path.read_text(encoding="utf-8")
-    assert kept == (FIGURES / "paper_table6.md").read_text(encoding="utf-8")
-    assert "processor time now" not in kept
-
-
-@pytest.mark.slow
-def test_table_5_begins_with_how_many_of_its_numbers_match(tmp_path: Path) -> None:
-    result = CliRunner().invoke(main, ["paper", "--only", "table5", "-o", str(tmp_path)])
-    assert result.stdout.startswith("46 of 48 numbers match; B4 at (0.1, 0.1): 0.898 should be 0.899")
-    assert (tmp_path / "paper_table5.md").read_text(encoding="utf-8").count("* ") == 2
+    assert path.read_text(encoding="utf-8") == (FIGURES / "paper_table6.md").read_text(encoding="utf-8")

@@ -1,44 +1,28 @@
-from dataclasses import replace
-
 import pytest
 
 from bezstab.methods import evaluations, lookup
 from bezstab.paper import cost
-from bezstab.paper.cost import Cost, costs, findings, one_step_methods_take_longer, recorded_costs, report, same_times
+from bezstab.paper.cost import Cost, findings, one_step_methods_take_longer, recorded_costs, report, same_times
 from bezstab.paper.printed import COMPARED, TABLE_6
+from tests.paper.record_times import costs
 
 
 @pytest.mark.slow
 def test_the_four_methods_do_not_cost_the_same() -> None:
-    rows = costs()
+    rows = costs(repeats=1)
     assert [row.method for row in rows] == list(COMPARED)
     starter = 3 * (evaluations(lookup("RK4")) - 1)
     expected = {"B4": 10000 + starter, "AB4": 10000 + starter, "RK4@5": 8000, "SIE": 20000}
     assert {row.method: row.evaluations for row in rows} == expected
-    assert all(row.seconds > 0 for row in rows)
-    agreements = [finding.agreement for finding in findings(rows, recorded_costs())]
+    assert [(row.method, row.evaluations) for row in recorded_costs()] == list(expected.items())
+    agreements = [finding.agreement for finding in findings(recorded_costs())]
     assert agreements == ["not confirmed", "not confirmed", "confirmed with a correction"]
 
 
-@pytest.mark.slow
-def test_the_recorded_times_are_of_these_runs() -> None:
-    assert [(row.method, row.evaluations) for row in recorded_costs()] == [
-        (row.method, row.evaluations) for row in costs()
-    ]
-
-
-@pytest.mark.slow
-def test_the_table_holds_recorded_times_and_no_others(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_table_holds_recorded_times() -> None:
     made = report(lambda runs, label, length: runs)
-    slower = [replace(row, seconds=2 * row.seconds) for row in costs()]
-    monkeypatch.setattr(cost, "costs", lambda: slower)
-    later = report(lambda runs, label, length: runs)
-    assert made.tables == later.tables
-    assert made.findings == later.findings
-    assert made.aside != later.aside
     assert "recorded once" in made.tables["table6"]
     assert "8.34, 8.42, 8.39" in made.tables["table6"]
-    assert "now" in made.aside
 
 
 def test_equal_times_would_be_confirmed() -> None:

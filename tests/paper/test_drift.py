@@ -56,7 +56,7 @@ def test_the_first_constraint_is_the_largest_and_its_derivative_is_followed() ->
     runs = list(unstabilized((0.01,), GROWTH_DURATION))
     for run in runs:
         c, cdot = run.observation.c, run.observation.cdot
-        assert run.largest_rate(50, 100) == np.abs(cdot[5000:, 0]).max()
+        assert run.largest(50, 100, rate=True) == np.abs(cdot[5000:, 0]).max()
         assert np.abs(c).max(axis=0).argmax() == 0  # c_1 is the largest
     found = first_constraint_represents_all(runs)
     assert "in 4 of 4 runs" in found.here

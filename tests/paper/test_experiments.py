@@ -5,7 +5,7 @@ from bezstab.methods import lookup
 from bezstab.paper.experiments import experiment
 from bezstab.stability import dominant_pole
 
-RUN = experiment(lookup("B4"), h=1e-3, duration=0.05, alpha_hat=0.6, beta_hat=0.35, kick=1e-3)
+RUN = experiment("B4", 0.6, 0.35, duration=0.05, kick=1e-3)
 
 
 def test_an_experiment_begins_with_its_kick_and_knows_its_pole() -> None:

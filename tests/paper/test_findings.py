@@ -1,6 +1,6 @@
 import pytest
 
-from bezstab.paper.findings import Agreement, finding
+from bezstab.paper.findings import Agreement, Finding
 
 
 @pytest.mark.parametrize(
@@ -13,6 +13,6 @@ from bezstab.paper.findings import Agreement, finding
     ],
 )
 def test_the_agreement_follows_from_the_conditions(holds: list[bool], agreement: Agreement) -> None:
-    found = finding(where="Eq. 1", claim="c = 0", paper="0", here="1e-16", holds=holds)
+    found = Finding(where="Eq. 1", claim="c = 0", paper="0", here="1e-16", holds=holds)
     assert found.agreement == agreement
     assert (found.where, found.claim, found.paper, found.here) == ("Eq. 1", "c = 0", "0", "1e-16")

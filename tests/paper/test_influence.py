@@ -36,14 +36,14 @@ def test_the_points_of_table_4_lie_where_the_paper_puts_them() -> None:
     for row in rows:
         assert np.isclose(poles(lookup("B4"), row.case.alpha_hat, row.case.beta_hat), row.pole).any()
         if row.pole.imag > 0.01:  # else a double pole, where the decay is slower at first
-            assert row.rate == pytest.approx(abs(row.pole), abs=0.03)  # the wave's phase at either end of the window
+            assert row.c.rate == pytest.approx(abs(row.pole), abs=0.03)  # the wave's phase at either end of the window
             turns = np.angle(row.pole) / np.pi  # half turns, that is crossings, a step
-            seen = row.crossings / (400 if row.failure is None and row.rate > 0.9 else row.crossings / turns)
+            seen = row.c.crossings / (400 if row.failure is None and row.c.rate > 0.9 else row.c.crossings / turns)
             assert seen == pytest.approx(turns, rel=0.05)
-        assert row.rate_of_cdot == pytest.approx(row.rate, abs=0.06)
+        assert row.cdot.rate == pytest.approx(row.c.rate, abs=0.06)
     corrected = [finding.claim for finding in findings(rows) if finding.agreement != "confirmed"]
     assert corrected == ["the smaller |z_p|, the faster"]  # not so of double poles
-    assert all(row.fallen > np.log(0.01) / np.log(abs(row.pole)) for row in (rows[1], rows[3]))
+    assert all(row.c.fallen > np.log(0.01) / np.log(abs(row.pole)) for row in (rows[1], rows[3]))
 
 
 def test_cases_that_do_otherwise_are_not_confirmed() -> None:
@@ -51,11 +51,18 @@ def test_cases_that_do_otherwise_are_not_confirmed() -> None:
     exchanged = [rows[0], rows[3], rows[4], rows[1], rows[2], rows[5]]  # slow for fast
     assert derivative_behaves_alike(rows).agreement == "confirmed"
     assert derivative_behaves_alike(exchanged).agreement == "not confirmed"
-    grown = [replace(row, rate=1 / row.rate) for row in rows]
+    grown = [replace(row, c=replace(row.c, rate=1 / row.c.rate)) for row in rows]
     assert "in 0 of 6 cases" in unit_circle_decides(grown).here
-    slower = [replace(row, fallen=1000 - row.fallen, cdot_fallen=1000 - row.cdot_fallen) for row in rows]
+    slower = [
+        replace(
+            row,
+            c=replace(row.c, fallen=1000 - row.c.fallen),
+            cdot=replace(row.cdot, fallen=1000 - row.cdot.fallen),
+        )
+        for row in rows
+    ]
     assert smaller_poles_are_faster(slower).agreement == regions_h_are_faster(slower).agreement == "not confirmed"
-    turned = [replace(row, crossings=row.followed - row.crossings) for row in rows]
+    turned = [replace(row, c=replace(row.c, crossings=row.followed - row.c.crossings)) for row in rows]
     assert angle_is_the_frequency(turned).agreement == "not confirmed"
 
 

@@ -7,8 +7,8 @@ import pytest
 from bezstab.engines import ENGINES, hard_velocity_step
 from bezstab.errors import InputError
 from bezstab.mechanism import Scene, parse_scene
-from bezstab.questions import Chain, Question, answers
-from bezstab.questions.chains import constraints_of
+from bezstab.questions import Question, answers
+from bezstab.questions.chains import constraints_of, constraints_of_chain
 from bezstab.stability import chain, swept_growth
 
 CHIPMUNK = ENGINES["chipmunk"]
@@ -26,7 +26,7 @@ def test_a_chain_decides_whether_an_answer_is_safe() -> None:
     (safe,) = answers(asked(iterations=12))
     assert safe.safe
     assert safe.swept_over == "a chain of 10 with the last body 10 times as heavy"
-    assert Chain(3).constraints.words == "a chain of 3"
+    assert constraints_of_chain(3).words == "a chain of 3"
     assert "one constraint alone: safe" in repr(next(answers(Question(engine=CHIPMUNK, values=DEFAULT, h=Fraction(1)))))
 
 

@@ -5,24 +5,24 @@ import pytest
 from bezstab.engines import engine_and_values
 from bezstab.errors import InputError
 from bezstab.methods import lookup
-from bezstab.questions.points import all_points, engine_holds, meant_in_seconds, point_of_engine
+from bezstab.questions.points import engine_holds, meant_in_seconds
 
 H = Fraction(1, 500)
 
 
 def test_an_engines_clamps_are_noted_and_may_be_left_out() -> None:
     engine, values = engine_and_values("mujoco=0.0001,1")
-    applied = point_of_engine(engine, values, H, as_typed=False)
+    applied = engine.applied(values, H)
     assert applied.notes
     assert "refsafe raises timeconst" in applied.notes[0]
-    typed = point_of_engine(engine, values, H, as_typed=True)
+    typed = engine.applied(values, H, as_typed=True)
     assert typed.point == (Fraction(40), Fraction(400))
     assert typed.notes is None
 
 
 def test_an_engine_may_take_further_points() -> None:
     engine, values = engine_and_values(f"mujoco={-0.54 / 0.002**2!r},{-1.84 / 0.002!r}")
-    assert len(all_points(engine, values, H, as_typed=False)) == 2
+    assert len(engine.applied(values, H).points) == 2
 
 
 def test_an_engine_holds_alpha_hat_and_beta_hat_or_alpha_and_beta_or_is_refused() -> None:

@@ -1,32 +1,37 @@
 from fractions import Fraction
+from typing import Any
 
 import pytest
 
 from bezstab.engines import ENGINES
 from bezstab.methods import lookup
-from bezstab.questions import MapAnswer, MapQuestion, forced_errors_of, motion_of, region_answer
+from bezstab.questions import MapAnswer, MapQuestion, region_answer
 from bezstab.stability import combined_error, spectral_radius
 
 
+def answer_about(name: str, **asked: Any) -> MapAnswer:
+    method = lookup(name)
+    return MapAnswer(MapQuestion(points=2, methods=(method,), **asked), method)
+
+
 def test_the_best_point_is_inside_only_where_z_is_that_small() -> None:
-    question = MapQuestion(points=2, methods=(lookup("B4"),), levels=(Fraction(1), Fraction(1, 2)))
-    stable, faster = MapAnswer(question, lookup("B4")).regions
+    stable, faster = answer_about("B4", levels=(Fraction(1), Fraction(1, 2))).regions
     assert stable.best == faster.best
     assert stable.best
     assert stable.best.z_abs > 0.5
     assert stable.inside == stable.best
     assert faster.inside is None
-    (level,) = stable.faster_levels
+    (level,) = answer_about("B4").drawn_levels
     assert stable.best.z_abs < level < 1
 
 
 @pytest.mark.parametrize("name", ["B4", "gauss4", "verlet-kdk"])
 def test_the_window_holds_the_best_point(name: str) -> None:
-    answer = region_answer(lookup(name))
+    answer = answer_about(name)
     (_, alpha_hat_max), (_, beta_hat_max) = answer.window
-    if answer.best:
-        assert answer.best.alpha_hat <= alpha_hat_max
-        assert answer.best.beta_hat <= beta_hat_max
+    if best := answer.stable.best:
+        assert best.alpha_hat <= alpha_hat_max
+        assert best.beta_hat <= beta_hat_max
 
 
 def test_symplectic_euler_has_its_triangle_to_tell() -> None:
@@ -36,13 +41,13 @@ def test_symplectic_euler_has_its_triangle_to_tell() -> None:
 
 
 def test_the_most_accurate_point_forces_less_than_the_fastest() -> None:
-    forced = forced_errors_of(lookup("RK4"), motion_of(None, None, Fraction(1), None))
-    assert forced.chosen
-    assert forced.best
+    forced = answer_about("RK4", accuracy=True)
+    best = forced.stable.best
+    assert best
     assert forced.accurate_error
     assert forced.best_error
     assert forced.accurate_error < forced.best_error
-    fastest = forced.best.alpha_hat, forced.best.beta_hat
+    fastest = best.alpha_hat, best.beta_hat
     assert forced.best_error == float(combined_error(lookup("RK4"), *fastest, Fraction(1, 100)))
     assert all(low > 0 for low, _ in forced.window)
 

@@ -1,4 +1,4 @@
-"""Floquet multipliers and periodic motions from the runner itself, by steps on complex numbers, and kicked runs."""
+"""Floquet multipliers and periodic motions from the runner itself, by steps on complex numbers."""
 
 from collections.abc import Iterator
 from itertools import islice
@@ -15,12 +15,11 @@ from bezstab.units import feedback_gains
 AnyArray = NDArray[Any]  # of real or complex numbers
 
 EPSILON = 1e-30
-ENDLESS = 10**9  # steps, of which some are taken
+ENDLESS = 10**5  # steps, of which some are taken
 CORRECTIONS = 12  # of Newton's method
 PERIODIC = 1e-10  # m, rad: what a revolution may leave
 REVOLUTIONS, SETTLED = 30, 1e-9  # m, rad: what the last of so many may still change
 REACH = 1e-5  # m, rad and per s: cubic terms leave 1e-10, rounding 1e-11
-LARGEST, SMALLEST = 1e-4, 1e-12  # m, rad: a difference of runs that is linear, and one that is no rounding
 
 
 def runner_multipliers(mechanism: Mechanism, method: Method, count: int, alpha_hat: float, beta_hat: float) -> float:
@@ -78,40 +77,6 @@ def settled_multiplier(mechanism: Mechanism, method: Method, count: int, alpha_h
     shifts = REACH * np.eye(state.size)
     columns = [(after_a_revolution(state + each) - after_a_revolution(state - each)) / (2 * REACH) for each in shifts]
     return float(np.abs(np.linalg.eigvals(np.transpose(columns))).max() ** (1 / count))
-
-
-def rates_after_kicks(
-    mechanism: Mechanism,
-    method: Method,
-    count: int,
-    alpha_hat: FloatArray,
-    beta_hat: FloatArray,
-    starts: FloatArray,
-    kicks: FloatArray,
-    revolutions: int,
-) -> FloatArray:
-    """Return |z| per step of the difference of two runs, kicked up and down from what `runner_motion` found.
-
-    One for each of a row of points; `starts` has shape (points, states 2 n), `kicks` are in m, rad and their like.
-    Over the later half of the whole revolutions in which a difference is linear and above rounding; nan where these
-    are fewer than three.
-    """
-    direction = np.random.default_rng(0).standard_normal(starts.shape[1])
-    amounts = np.multiply.outer(direction, np.stack([kicks, -kicks]))  # (carried, 2, points)
-    run = _run(mechanism, method, count, alpha_hat, beta_hat, starts.T[:, np.newaxis] + amounts)
-    squares = np.zeros((revolutions, kicks.size))
-    with np.errstate(all="ignore"):  # of runs that run into infinity
-        for k, state in enumerate(islice(run, revolutions * count)):
-            up, down = np.moveaxis(state[: mechanism.size], 1, 0)
-            squares[k // count] += ((up - down) ** 2).sum(axis=0) / count
-        sizes = np.sqrt(squares)
-        usable = (sizes < LARGEST) & (sizes > SMALLEST)  # what is not a number is not
-    last = np.where(usable.all(axis=0), revolutions, np.argmin(usable, axis=0)) - 1
-    first = last // 2
-    point = np.arange(kicks.size)
-    with np.errstate(all="ignore"):
-        rates = (sizes[last, point] / sizes[first, point]) ** (1 / ((last - first) * count))
-    return np.where(last >= 2, rates, np.nan)
 
 
 def _on_the_motion(mechanism: Mechanism, method: Method, count: int) -> FloatArray:

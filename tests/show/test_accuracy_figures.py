@@ -8,8 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.contour import QuadContourSet
 
 from bezstab.methods import lookup
-from bezstab.show.accuracy_figures import accuracy_map_figure, error_front_figure
-from bezstab.show.plane_figures import PlaneMap
+from bezstab.show.map_figures import PlaneMap, accuracy_map_figure, error_front_figure
 from bezstab.stability import FrontPoint, combined_error, region, spectral_radius
 from tests.show.drawn import lines_of
 

@@ -10,8 +10,14 @@ from matplotlib.collections import QuadMesh
 from bezstab.evidence import map_rows, simulated_verdicts, verdict_map
 from bezstab.mechanism import load_scene
 from bezstab.methods import lookup
-from bezstab.show.accuracy_figures import accuracy_map_figure
-from bezstab.show.plane_figures import PlaneMap, comparison_figure, family_figure, region_figure, verdict_figure
+from bezstab.show.map_figures import (
+    PlaneMap,
+    accuracy_map_figure,
+    comparison_figure,
+    family_figure,
+    region_figure,
+    verdict_figure,
+)
 from bezstab.stability import best_point, bezier_limit, choose, family_members, region, spectral_radius, window
 from tests.show.drawn import lines_of
 

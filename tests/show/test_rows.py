@@ -8,7 +8,7 @@ import re
 from dataclasses import replace
 from fractions import Fraction
 from types import SimpleNamespace
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 import pytest
@@ -27,10 +27,10 @@ from bezstab.show import (
     render,
     row_kinds,
 )
-from bezstab.show.answer_rows import pole_rows
 from bezstab.show.arrays import map_arrays, untimed_arrays, write_arrays
-from bezstab.show.cells import LIMITS, filled, pole_text, safe_step_text, stable_steps_text, with_unbounded
-from bezstab.show.rows import region_row
+from bezstab.show.cells import LIMITS, filled, pole_text, safe_step_text, stable_steps_text, unbounded_text
+from bezstab.show.row_kinds import Z_ABS
+from bezstab.show.rows import pole_rows, region_row
 from bezstab.show.schemas import _row_schema
 
 KINDS = [kind for kinds in ROW_KINDS.values() for kind in kinds]
@@ -86,7 +86,7 @@ def test_json_and_csv_keep_every_digit_and_text_rounds() -> None:
         "NO",
         "-",
     ]
-    infinite = [{**ROWS[0], "z_abs": math.inf}]
+    infinite = [{**ROWS[0], **cells((Z_ABS,), SimpleNamespace(pole=complex(math.inf)))}]
     assert json.loads(render(infinite, COLUMNS, "json")) == [{**ROWS[0], "z_abs": None}]
     assert " -  " in render(infinite, COLUMNS, "text")
 
@@ -98,9 +98,8 @@ def test_limits_are_rounded_to_the_safe_side_or_said_in_words() -> None:
     assert [both({"a": 0.1, "b": 2}), both({"a": 0.1, "b": None})] == ["1.0e-01 ± 2", "-"]
     row = region_row(region_answer(lookup("bdf3")))
     assert [row[key] for key in ("bounded", "area", *LIMITS)] == [False, *[None] * 5]
-    words = with_unbounded(row)
-    assert [words[key] for key in ("area", *LIMITS)] == ["unbounded"] * 5
-    assert words["critical_damping_limit"] == "unlimited"
+    words = {key: unbounded_text(key, "g")(row) for key in ("area", *LIMITS, "critical_damping_limit")}
+    assert list(words.values()) == ["unbounded"] * 5 + ["unlimited"]
     assert stable_steps_text(row) == "all, as from α/β = 0.0691929"
 
 
@@ -108,8 +107,11 @@ def test_limits_are_rounded_to_the_safe_side_or_said_in_words() -> None:
 def test_written_arrays_come_back_exactly(form: Literal["csv", "npz"]) -> None:
     a, b = np.linspace(0, 1, 3) / 3, np.linspace(0, 2, 2) / 7
     z = np.asarray((a + 1j * b[:, None]) / np.pi, complex)
-    assert "two_alpha" not in map_arrays(a, b, z, None)
-    arrays = map_arrays(a, b, z, 0.001)
+    answers_: dict[float | None, Any] = {
+        h: SimpleNamespace(axes=(a, b), question=SimpleNamespace(seconds=h, motion=None)) for h in (None, 0.001)
+    }
+    assert "two_alpha" not in map_arrays(answers_[None], z)
+    arrays = map_arrays(answers_[0.001], z)
     assert (arrays["alpha_hat"][:3] == a).all()  # alpha_hat runs fastest
     arrays |= {"a,b": np.array(["B4", "newmark(1/4,1/2)", 'said "so"', "two\nlines", "", "α̂"])}
     files = [io.BytesIO(), io.BytesIO()]

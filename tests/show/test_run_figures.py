@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from bezstab.evidence import Cost, ErrorOf, Run, with_fronts
+from bezstab.evidence import Cost, ErrorOf, Run, SweptRuns
 from bezstab.mechanism import compiled_mechanism, load_scene, simulated
 from bezstab.methods import lookup
 from bezstab.show.arrays import history_arrays
@@ -34,7 +34,7 @@ RUNS = [
 
 @pytest.mark.parametrize(("error", "against"), [("constraint", "evaluations"), ("trajectory", "time")])
 def test_the_work_precision_figure_has_every_run_and_rings_the_front(error: ErrorOf, against: Cost) -> None:
-    (axes,) = work_precision_figure(with_fronts(RUNS, 0.0, against), "made up", error).axes
+    (axes,) = work_precision_figure(SweptRuns(RUNS, 0.0, against), "made up", error).axes
     scale = [1 if against == "evaluations" else 1e-3, 0.1 if error == "constraint" else 1]
     lines = lines_of(axes)
     for name, places in {
@@ -55,7 +55,7 @@ def test_the_projection_figure_shows_all_three_errors_of_every_way_to_hold_the_c
         for method in ("B2", "SYM")
         for number, (stabilise, advised) in enumerate(ways)
     ]
-    figure = projection_figure(with_fronts(runs, 0.0, "projection"), "made up", 0.0)
+    figure = projection_figure(SweptRuns(runs, 0.0, "projection"), "made up")
     for axes, share in zip(figure.axes, (1, 0.1, 2), strict=True):
         drawn = [point for line in axes.lines for point in np.array(line.get_xydata()).tolist()]
         assert np.array(drawn) == pytest.approx(np.array([(20 + 2 * k, share * 10.0**-k) for k in range(3)] * 2))

@@ -10,7 +10,7 @@ from matplotlib.lines import Line2D
 
 from bezstab.methods import lookup
 from bezstab.show import FIGURE_FORMS
-from bezstab.show.plane_figures import comparison_figure
+from bezstab.show.map_figures import comparison_figure
 from bezstab.show.style import marked_line_at, save, title_lines
 from bezstab.stability import region
 
@@ -45,7 +45,7 @@ def test_equal_figures_are_equal_bytes_whatever_the_users_settings(form: str) ->
 @pytest.mark.slow
 def test_two_processes_draw_the_same_bytes() -> None:
     code = (
-        "import sys; from bezstab.show.plane_figures import comparison_figure; from bezstab.show.style import save;"
+        "import sys; from bezstab.show.map_figures import comparison_figure; from bezstab.show.style import save;"
         "from bezstab.methods import lookup;"
         "from bezstab.stability import region;"
         "save(comparison_figure([region(lookup('B4'))]), 'svg', sys.stdout.buffer)"

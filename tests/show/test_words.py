@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bezstab.methods import lookup
-from bezstab.show.best_point_text import best_point_words, falling_words
+from bezstab.show.result_sentences import best_point_words, falling_words
 from bezstab.show.words import change_words, seconds_words, times_words
 from bezstab.stability import FarLimit, best_point
 
@@ -53,7 +53,7 @@ def test_words_for_the_best_point() -> None:
     [
         (FarLimit(0.5, (1, 0), 2.0), "0.5 as α̂ grows at β̂ = 0.5"),
         (FarLimit(0.5, (1, 2), 3.0), "0.5 as α̂ and β̂ grow, α̂^2 = 3 β̂"),
-        (FarLimit(0.5, (-1, 2)), "0.5 as β̂ grows and α̂ falls, α̂^2 like 1/β̂"),
+        (FarLimit(0.5, (-1, 2)), "0.5 as β̂ grows and α̂ falls, α̂^2 like β̂^-1"),
     ],
 )
 def test_words_for_where_it_falls_towards(limit: FarLimit, words: str) -> None:

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from bezstab.methods import Method, lookup, recipe
-from bezstab.questions import RegionAnswer
-from bezstab.show import region_row, with_unbounded
+from bezstab.questions import region_answer
+from bezstab.show import region_row
+from bezstab.show.cells import unbounded_text
 from bezstab.stability import region
 from tests.methods.kinds import sampled
 from tests.reference.extents import contradictions
@@ -61,6 +62,6 @@ def test_beta_hat_may_come_near_its_limit_as_alpha_hat_grows() -> None:
     assert found.extent == ((0.0, np.inf), (0.0, 4.0))
     assert found.approached == ((False, False), (False, True))
     assert contradictions(found.method, 1.0, found.extent) == []
-    row = region_row(RegionAnswer(found, None, None))
+    row = region_row(region_answer(found.method))
     assert row["approached"] == "beta_hat_max"
-    assert with_unbounded(row)["beta_hat_max"] == "4 (approached)"
+    assert unbounded_text("beta_hat_max", "")(row) == "4 (approached)"

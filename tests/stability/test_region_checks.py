@@ -1,4 +1,4 @@
-"""Deliberately wrong regions: each is a NumericalError, unless a finer sampling puts it right."""
+"""Deliberately wrong regions: each is a NumericalError."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -9,8 +9,8 @@ import pytest
 from bezstab.errors import NumericalError
 from bezstab.methods import Method, lookup
 from bezstab.stability import boundary_locus, locus_shapes, region
-from bezstab.stability.boundary_locus import Arc, Bounds, bounds_of
-from bezstab.stability.locus_tracks import Track, tracks
+from bezstab.stability.boundary_locus import Bounds, bounds_of
+from bezstab.stability.locus_tracks import Arc, tracks
 from bezstab.stability.mu_pencils import MuPencil
 from bezstab.stability.pencils import pencil_of
 from bezstab.stability.region_checks import check_region
@@ -40,16 +40,6 @@ def identify(case: object) -> str:
     return case.name if isinstance(case, Method) else str(case)
 
 
-def with_bounds(monkeypatch: pytest.MonkeyPatch, wrong: Wrong, finest: int) -> None:
-    """Have regions made from wrong bounds, up to a sampling that is so many times finer."""
-
-    def made_wrong(pencil: MuPencil, level: float, finer: int, radius: float) -> Bounds:
-        right = bounds_of(pencil, level, finer, radius)
-        return wrong(right) if finer <= finest else right
-
-    monkeypatch.setattr(locus_shapes, "bounds_of", made_wrong)
-
-
 def without_arc(bounds: Bounds) -> Bounds:
     return replace(bounds, arcs=bounds.arcs[1:])
 
@@ -74,22 +64,19 @@ def with_a_bulge(bounds: Bounds) -> Bounds:
 @pytest.mark.parametrize("wrong", [without_arc, without_interval, with_a_bulge])
 @pytest.mark.parametrize(("method", "level"), REGIONS, ids=identify)
 @pytest.mark.slow_except("B4", "RK4")
-def test_a_wrong_region_is_no_answer_and_a_finer_sampling_puts_it_right(
+def test_a_wrong_region_is_no_answer(
     method: Method, level: float, wrong: Wrong, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    right = region(method, level).area
+    assert region(method, level).area
     region.cache_clear()
-    with_bounds(monkeypatch, wrong, finest=1)
-    assert region(method, level).area == pytest.approx(right, rel=1e-11)
-    region.cache_clear()
-    with_bounds(monkeypatch, wrong, finest=100)
+    monkeypatch.setattr(locus_shapes, "bounds_of", lambda pencil, level: wrong(bounds_of(pencil, level)))
     with pytest.raises(NumericalError):
         region(method, level)
 
 
 def test_a_branch_followed_twice_in_place_of_another_is_no_answer(monkeypatch: pytest.MonkeyPatch) -> None:
-    def swapped(pencil: MuPencil, level: float, finer: int) -> list[Track]:
-        first, _, *others = tracks(pencil, level, finer)
+    def swapped(pencil: MuPencil, level: float) -> list[Arc]:
+        first, _, *others = tracks(pencil, level)
         return [first, first, *others]
 
     monkeypatch.setattr(boundary_locus, "tracks", swapped)
@@ -106,7 +93,7 @@ SHAPES = [
 def found(name: str, level: float) -> tuple[Method, Shape]:
     """Return the shape of a region, from the locus or from strips."""
     method = second_order(name) if name in RECIPES else lookup(name)
-    shape = pencil_of(method, free=True).shape(level, 1)
+    shape = pencil_of(method, free=True).shape(level)
     assert shape
     return method, shape
 

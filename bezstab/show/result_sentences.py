@@ -1,0 +1,326 @@
+"""What results say in sentences, beside their rows: what feedback costs, which poles meet, when errors grow."""
+
+from __future__ import annotations
+
+from itertools import groupby
+from typing import TYPE_CHECKING
+
+from bezstab.rationals import typed_number
+from bezstab.show.words import counted, seconds_words, times_words
+from bezstab.units import from_dimensionless
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from fractions import Fraction
+
+    from bezstab.engines import Point
+    from bezstab.evidence import Likeness, Measurement
+    from bezstab.questions import Answer, ReferenceMotion
+    from bezstab.stability import BestPoint, FarLimit, FeedbackCost, Timing, VaryingSteps
+
+COSTLY = 10.0
+"""Times the least error: from here on a sentence says what the feedback costs."""
+
+GAIN = 0.95
+"""Of an error: what is not below is called no gain."""
+
+NAMED = 3
+"""Excluded methods that a sentence names; of more it gives the number and the nearest."""
+
+FASTER = 3.0
+"""Times what is allowed for: so much faster a mechanism may turn than somebody guessed."""
+
+MOST_LISTED = 20  # times in a message
+
+TIMES = {2: "double", 3: "triple"}
+
+LATE_COMMANDS = (
+    "A target that comes late only delays the motion. A torque or a measurement that comes late takes stability. "
+    "Not judged: a limit of the torque, friction, and what else the drive is connected to."
+)
+
+
+def costs_words(answer: Answer) -> str | None:
+    """Return that the feedback of an answer costs accuracy, and how much; None where that is little, or not known.
+
+    The better point is given in 1/s where there is a step, and not at all where an engine has words of its own.
+    """
+    cost = answer.cost
+    if cost is None or cost.least_at is None:
+        return None
+    name, h = answer.method.name, answer.question.h
+    least = "the least" if answer.question.engine else f"that at {_point_words(cost.least_at, h)}"
+    if _is_costly(cost.times_least):
+        return f"This feedback costs accuracy: {_constraint_words(name, cost, answer.question.motion, least)}"
+    if _is_costly(cost.times_least_velocity):
+        assert cost.times_least_velocity
+        return (
+            f"This feedback costs accuracy: with {name} the error it forces on velocities is "
+            f"{times_words(cost.times_least_velocity)} times {least}. It is {cost.velocity_error:.1e} of their "
+            "amplitude."
+        )
+    return None
+
+
+def _is_costly(times: float | None) -> bool:
+    return times is not None and times >= COSTLY
+
+
+def _constraint_words(name: str, cost: FeedbackCost, motion: ReferenceMotion, least: str) -> str:
+    """Return which order is left and how large the constraint's error is, `least` being what it is compared with."""
+    assert cost.times_least is not None
+    assert cost.total_error is not None
+    keeps = f"order {cost.order_left} of {cost.order}" if cost.order_left < cost.order else f"its order {cost.order}"
+    in_units = "" if motion.amplitude is None else f", {cost.total_error * motion.amplitude:.1e} m or rad"
+    return (
+        f"{name} keeps {keeps}; the error it forces is {times_words(cost.times_least)} times {least}. "
+        f"It is {cost.total_error:.1e} of the motion's amplitude{in_units}."
+    )
+
+
+def _point_words(point: tuple[float, float], h: Fraction | None) -> str:
+    """Return a point in 1/s, or without a step (s) as it is."""
+    if h is None:
+        return "α̂ = {:.3g}, β̂ = {:.3g}".format(*point)
+    return "α = {:.3g} 1/s, β = {:.3g} 1/s".format(*from_dimensionless(*point, float(h)))
+
+
+def trade_words(answer: Answer) -> list[str]:
+    """Return what faster decay than a choice's costs, and what slower decay gains, where that is known."""
+    if answer.cost is None or answer.cost.total_error is None:
+        return []
+    return [line for line in (_faster_words(answer), _slower_words(answer)) if line]
+
+
+def _faster_words(answer: Answer) -> str | None:
+    faster = answer.faster
+    if faster is None:
+        return "Faster decay: there is none."
+    times = answer.times_the_errors(faster)
+    if times is None:
+        return None
+    return (
+        f"Faster decay: --goal {faster.goal} takes |z_p| from {abs(answer.pole):.4f} to {abs(faster.pole):.4f} a step, "
+        f"and the feedback forces {_errors_words(times)}."
+    )
+
+
+def _slower_words(answer: Answer) -> str | None:
+    slower, settle = answer.slower, answer.slower_settle
+    times = None if slower is None else answer.times_the_errors(slower)
+    if times is None or settle is None:
+        return None
+    gain = "Slower decay:" if min(times) < GAIN else "Slower decay gains nothing:"
+    goal = "" if answer.goal == "accurate" else "--goal accurate "
+    return f"{gain} with {goal}--settle {typed_number(settle)} the feedback forces {_errors_words(times)}."
+
+
+def _errors_words(times: tuple[float, float]) -> str:
+    """Return how many times as large the errors of constraint and velocity are."""
+    of_constraint, of_velocity = times
+    return f"{times_words(of_constraint)} times the error, {times_words(of_velocity)} times that of velocities"
+
+
+def alone_words(answer: Answer) -> str | None:
+    """Return what a choice would be for one constraint alone, and how many sweeps it takes; None where it is this."""
+    alone = answer.alone
+    if alone is None:
+        return None
+    needed = alone.sweeps_to_spare
+    takes = "no number of sweeps that was tried" if needed is None else counted(needed, "sweep")
+    return f"One constraint alone would get {alone.setting}: with the spread to spare that takes {takes}."
+
+
+def motion_words(motion: ReferenceMotion) -> str:
+    """Return what errors are shares of, and what is called the least."""
+    shares = f"Errors are shares of the amplitude of a motion, here {motion.words}."
+    return f"{shares} The least are those of --goal accurate."
+
+
+def combined_words(motion: ReferenceMotion) -> str:
+    """Return what combined errors are shares of."""
+    return (
+        "\nErrors of position and velocity are shares of the amplitudes of a motion's own position and velocity, here "
+        f"{motion.words}."
+    )
+
+
+def timing_words(timing: Timing, h: float) -> str:
+    """Return how a controller works in words: the torque is computed every 8 ms and applied 2 ms late."""
+    words = "The torque is computed in every step"
+    if timing.every > 1:
+        words = f"The torque is computed every {timing.every} steps ({seconds_words(timing.every * h)})"
+    if timing.late:
+        late = float(timing.late)
+        words += f" and applied {late:g} step{'s' * (late > 1)} ({seconds_words(late * h)}) late"
+    if timing.filter_steps:
+        words += f", with the velocity filtered over {seconds_words(float(timing.filter_steps) * h)}"
+    return f"{words}."
+
+
+def varying_words(name: str, varying: VaryingSteps) -> str:
+    """Return the verdict on a range of steps of the method of that name, and why, in one sentence."""
+    held = "α̂ and β̂ held" if varying.hold else "α and β fixed"
+    of_range = f"steps between {_seconds(varying.h_min)} and {_seconds(varying.h_max)}"
+    match varying.varying:
+        case "proven":
+            return f"{name}, {held}: proven to decay for every sequence of {of_range} ({_reason(varying)})."
+        case "refuted":
+            assert varying.sequence
+            steps = sequence_text(varying.sequence)
+            if len(varying.sequence) == 1:
+                return f"{name}, {held}: refuted for {of_range}: a step of {steps} alone does not decay."
+            return f"{name}, {held}: refuted for {of_range}: {steps}, over and over, {_growth(varying)}."
+        case "not known":
+            return f"{name}, {held}: not known whether every sequence of {of_range} decays."
+
+
+def sequence_text(sequence: Sequence[Fraction]) -> str:
+    """Return steps in s as text, with how often each is taken: 3 of 0.01 s, then 0.02 s."""
+    repeated = [(_seconds(step), len(list(same))) for step, same in groupby(sequence)]
+    return ", then ".join(step if count == 1 else f"{count} of {step}" for step, count in repeated)
+
+
+def _growth(varying: VaryingSteps) -> str:
+    """Return what a sequence does to errors: how many times as large they are after each round, where that is seen."""
+    growth = "" if varying.growth is None else f"{varying.growth:.3g}"
+    return f"grow {growth}-fold each time" if growth and float(growth) > 1 else "do not decay"
+
+
+def _seconds(step: Fraction) -> str:
+    return f"{float(step):.6g} s"
+
+
+def _reason(varying: VaryingSteps) -> str:
+    match varying.kind:
+        case "quadratic":
+            return "a quadratic form falls with each step"
+        case "polygon":
+            assert varying.certificate
+            return f"each step maps a polygon of {2 * len(varying.certificate)} corners into itself"
+        case _:
+            return "each step decays alone, and steps commute"
+
+
+def best_point_words(best: BestPoint) -> str:
+    """Return in words which poles meet at the best point, and where else |z_p| is as small (dimensionless, as text)."""
+    from bezstab.stability import pole_place  # which a sentence without poles does not load
+
+    stays = "" if best.fixed is None else f"a pole stays at {pole_place(best.fixed)} whatever α̂ and β̂"
+    if best.fixed is not None and best.z_abs <= abs(best.fixed):
+        return stays
+    words = _poles_in_words(best)
+    points = " and ".join(f"({alpha_hat:.6f}, {beta_hat:.6f})" for alpha_hat, beta_hat in best.elsewhere)
+    if best.arc:
+        words += f"; the same |z_p| on a whole arc, to {points}"
+    elif points:
+        words += f"; also at {points}"
+    return f"{words}; {stays}" if stays else words
+
+
+def falling_words(limit: FarLimit) -> str:
+    """Return what |z_p| falls towards without a least value, and along which way of alpha_hat and beta_hat."""
+    return f"|z_p| falls towards {limit.z_abs:.6g} as {_way(limit)}"
+
+
+def _way(limit: FarLimit) -> str:
+    """Return "β̂ grows at α̂ = 2", or "α̂ and β̂ grow, α̂² = 3 β̂"."""
+    (p, q), ratio = limit.direction, limit.ratio
+    if p == 0 or q == 0:
+        grows, stays = ("α̂", "β̂") if q == 0 else ("β̂", "α̂")
+        return f"{grows} grows" + ("" if ratio is None else f" at {stays} = {limit.point(1.0)[q == 0]:.6g}")
+    times = "" if ratio is None or f"{ratio:.6g}" == "1" else f"{ratio:.6g} "
+    equal = "like" if ratio is None else "="
+    grow = "α̂ and β̂ grow" if p > 0 and q > 0 else "β̂ grows and α̂ falls" if q > 0 else "α̂ grows and β̂ falls"
+    return f"{grow}, {_power('α̂', q)} {equal} {times}{_power('β̂', p)}"
+
+
+def _power(name: str, exponent: int) -> str:
+    return name if exponent == 1 else f"{name}^{exponent}"
+
+
+def _poles_in_words(best: BestPoint) -> str:
+    if best.z_abs == 0:
+        return "deadbeat: every pole is 0"
+    words = f"z = {' and '.join(_pole_text(z) for z in best.meeting)}"
+    if len(best.meeting) > 1:
+        words += " meet"
+    if best.multiplicity > 1:
+        words += f", {'each ' if len(best.meeting) > 1 else ''}{TIMES.get(best.multiplicity, 'multiple')}"
+    if best.double:
+        words += ", each double, on β̂ = α̂²/4"
+    return words
+
+
+def _pole_text(z: complex) -> str:
+    """Return +0.625884, or -0.140131 ± 0.504013i for a pair."""
+    return f"{z.real:+.6f} ± {z.imag:.6f}i" if z.imag else f"{z.real:+.6f}"
+
+
+def exact_rate_words(measurement: Measurement, no_period: str) -> str:
+    """Return along which motion the exact rates of a method are; why there are none, where the motion ends.
+
+    `no_period` is why its drivers do not begin anew, in words.
+    """
+    name = measurement.method.name
+    if measurement.periodic:
+        return (
+            f"Exact rates of {name}: along the method's own motion, where there is none along the mechanism's motion."
+        )
+    why = no_period and f", as {no_period}"
+    shown = "What is shown is how errors grow over the run."
+    return f"No rate of {name} is exact: the motion does not begin anew{why}. {shown}"
+
+
+def likeness_sentence(like: Sequence[Likeness], point: Point) -> str:
+    """Return in words which methods a measured pole fits at a point, the nearest first, and which are excluded."""
+    at = f"({float(point[0]):.6g}, {float(point[1]):.6g})"
+    fitting = [one for one in like if one.fits]
+    excluded = [one for one in like if not one.fits]
+    if not fitting:
+        return _nothing_fits(like[0], at)
+    first = fitting[0]
+    equal = first.same_as.split(", ") if first.same_as else []
+    parts = [f"this behaves like {first.method.name} at {at} to {max(first.distance, first.error):.1g}"]
+    if not first.dominant:
+        parts[0] += ", by a lesser pole of it"
+    if equal:
+        parts.append(f"{_listed(equal)} {'has' if len(equal) == 1 else 'have'} the same poles there")
+    others = [one.method.name for one in fitting[1:] if one.method.name not in equal]
+    if others:
+        parts.append(f"{_listed(others)} {'cannot be told from it' if len(others) == 1 else 'cannot be told apart'}")
+    if excluded:
+        names = [one.method.name for one in excluded]
+        if len(names) <= NAMED:
+            parts.append(f"{_listed(names)} {'is' if len(names) == 1 else 'are'} excluded")
+        else:
+            parts.append(f"{len(names)} others are excluded, the nearest {names[0]}, {excluded[0].distance:.1g} off")
+    return "; ".join(parts) + "."
+
+
+def _nothing_fits(nearest: Likeness, at: str) -> str:
+    """Return in words that nothing fits, or that it cannot be told: where the motion may well be faster than said."""
+    off = f"the nearest is {nearest.method.name}, {nearest.distance:.1g} off where {nearest.allowed:.1g} is allowed"
+    if nearest.distance - nearest.error < FASTER * (nearest.allowed - nearest.error):
+        return (
+            f"what this is at {at} cannot be told: {off}, and it would fit if the mechanism turned up to {FASTER:.0f} "
+            "times as fast as is allowed for (--turning)."
+        )
+    return (
+        f"nothing fits at {at}: {off}. Is α, β or h another, does the mechanism turn much faster (--turning), or are "
+        "there several steps from row to row (--every)?"
+    )
+
+
+def _listed(names: Sequence[str]) -> str:
+    """Return names as 'A', 'A and B' or 'A, B and C'."""
+    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"
+
+
+def passages_words(times: Sequence[float]) -> str:
+    """Return where a run has gone through singular configurations, and what that means; times in s."""
+    listed = ", ".join(f"{time:.6g}" for time in times[:MOST_LISTED])
+    more = ", ..." if len(times) > MOST_LISTED else ""
+    what = "a singular configuration" if len(times) == 1 else f"{len(times)} singular configurations"
+    where = f"the run goes through {what}, at t = {listed}{more} s"
+    return f"{where}: there the motion can branch, and which way it goes is left to rounding"

@@ -1,0 +1,90 @@
+"""Rows as text: a table, a block of lines for each on a narrow terminal, Markdown, CSV or JSON; and text that wraps."""
+
+import csv
+import io
+import json
+import textwrap
+import unicodedata
+from collections.abc import Sequence
+from typing import Literal
+
+from bezstab.show.fields import MISSING, Field, Row, visible
+
+Format = Literal["text", "json", "csv", "markdown"]
+
+LEAST_ROOM = 20  # characters for a value, however narrow the terminal: below that every word stands alone
+GAP = "  "
+"""Between a heading and its value, and between the columns of a table."""
+
+
+def render(rows: Sequence[Row], columns: Sequence[Field], form: Format) -> str:
+    """Return the rows in the given form: every key for json and csv, the chosen columns for text and markdown.
+
+    A key that only other rows have is missing: null, an empty cell; every row has the same. KeyError if a row lacks
+    the key of a chosen column.
+    """
+    nothing = dict.fromkeys(key for row in rows for key in row)
+    if form == "json":
+        return json.dumps([{**nothing, **row} for row in rows], indent=2, allow_nan=False)
+    if form == "csv":
+        return _comma_separated(rows, list(nothing))
+    headings = [column.heading for column in columns]
+    return _table([headings, *([column.cell(row) for column in columns] for row in rows)], form)
+
+
+def _comma_separated(rows: Sequence[Row], keys: Sequence[str]) -> str:
+    """Return rows as CSV; a list is one cell, as JSON has it."""
+    text = io.StringIO()
+    writer = csv.DictWriter(text, keys, lineterminator="\n")
+    writer.writeheader()
+    for row in rows:
+        writer.writerow({key: json.dumps(value) if isinstance(value, list) else value for key, value in row.items()})
+    return text.getvalue().rstrip("\n")
+
+
+def _table(lines: list[list[str]], form: Format) -> str:
+    """Return lines of cells, the first the headings, with each cell as wide as its column."""
+    if form == "markdown":
+        lines = [[cell.replace("|", "\\|") for cell in line] for line in lines]
+    widths = [max(map(shown_width, cells)) for cells in zip(*lines, strict=True)]
+    padded = [[_filled_up(cell, width) for cell, width in zip(line, widths, strict=True)] for line in lines]
+    if form == "markdown":
+        rule = ["-" * width for width in widths]
+        return "\n".join(f"| {' | '.join(line)} |" for line in (padded[0], rule, *padded[1:]))
+    return "\n".join(GAP.join(line).rstrip() for line in padded)
+
+
+def _filled_up(text: str, width: int) -> str:
+    return text + " " * (width - shown_width(text))
+
+
+def shown_width(text: str) -> int:
+    """Return the number of character cells; the hat of alpha-hat is a combining character and takes none."""
+    return sum(not unicodedata.combining(character) for character in text)
+
+
+def fits(table: str, width: int) -> bool:
+    """Return whether every line of a table has at most `width` character cells."""
+    return all(shown_width(line) <= width for line in table.split("\n"))
+
+
+def wrapped(text: str, width: int) -> str:
+    """Return a text whose lines, broken between words, are at most `width` characters long, if its words are."""
+    return "\n".join(
+        textwrap.fill(line, width=max(width, LEAST_ROOM), break_long_words=False, break_on_hyphens=False)
+        for line in text.split("\n")
+    )
+
+
+def block(row: Row, columns: Sequence[Field], width: int, sentence: str = "") -> str:
+    """Return the row as a line for each column that has a value, its heading in front, below the sentence.
+
+    A value that is longer than its line goes on below itself. KeyError if the row lacks the key of a column.
+    """
+    present = [(column.heading, text) for column in columns if (text := column.cell(row)) not in (MISSING, "")]
+    indent = max((shown_width(heading) for heading, _ in present), default=0) + len(GAP)
+    lines = []
+    for heading, text in present:
+        value = wrapped(text, width - indent).replace("\n", "\n" + " " * indent)
+        lines.append(_filled_up(heading, indent) + value)
+    return "\n".join([wrapped(visible(sentence), width), "", *lines] if sentence else lines)
