@@ -40,6 +40,9 @@ FIRST_GRID = 301
 STARTS = 6
 """Of its minima, for each rate: there may be islands and valleys in which N vanishes."""
 
+GRID, ROUNDS = 21, 22
+"""Points per axis of a zoom, and how many: thirteen would stall in narrow corners."""
+
 CHECKED = 230
 """Points per axis of another grid, which no point may have a lesser error on, by more than BETTER."""
 
@@ -160,7 +163,12 @@ def _front(
     for rate in reversed(rates):
         at_rate = partial(objective, rate=rate)
         found, _ = lowest_minima(
-            at_rate, axes(finer * FIRST_GRID), STARTS, fold=lambda points: np.clip(points, low, high)
+            at_rate,
+            axes(finer * FIRST_GRID),
+            STARTS,
+            points=GRID,
+            rounds=ROUNDS,
+            fold=lambda points: np.clip(points, low, high),
         )
         points = np.concatenate([found, best])
         values = at_rate(points)

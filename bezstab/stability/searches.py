@@ -153,11 +153,11 @@ def zoom_from_grid(
 
 
 def lowest_minima(
-    objective: Points, axes: Sequence[FloatArray], starts: int, rounds: int = ROUNDS, fold: Points | None = None
+    objective: Points, axes: Sequence[FloatArray], starts: int, **zoom: Any
 ) -> tuple[FloatArray, FloatArray]:
     """Return the lowest local minima on a grid, `starts` of them, each narrowed by a zoom: places and values there.
 
-    axes: the grid's points along one or two of them, rising. objective, rounds and fold: as for `zoom_on_minimum`.
+    axes: the grid's points along one or two of them, rising. zoom: further arguments of `zoom_on_minimum`.
     """
     grid = grid_of(axes)
     sampled = objective(grid)
@@ -165,9 +165,7 @@ def lowest_minima(
     minima = np.flatnonzero(sampled <= neighbours.min(axis=tuple(range(-len(axes), 0))))
     lowest = minima[np.argsort(sampled.ravel()[minima], kind="stable")[:starts]]
     reach = grid_of([_spacings(axis) for axis in axes]).reshape(-1, len(axes))[lowest]
-    return zoom_on_minimum(
-        objective, grid.reshape(-1, len(axes))[lowest], reach, rounds=rounds, patient=True, fold=fold
-    )
+    return zoom_on_minimum(objective, grid.reshape(-1, len(axes))[lowest], reach, patient=True, **zoom)
 
 
 def grid_of(axes: Sequence[FloatArray]) -> FloatArray:
