@@ -197,9 +197,11 @@ def _fitted(samples: FloatArray, rounding: float, of_two_runs: bool) -> ProbedPo
         uncertainty = max(as_given.uncertainty, abs(as_given.pole - of_changes.pole) + of_changes.uncertainty)
         return _claimed(replace(as_given, uncertainty=uncertainty), len(samples), SLOWLY)
     leaves_the_linear_range = len(_linear_limits(samples)) > 1  # then what is left over is no noise, but looks like it
-    covered = None if leaves_the_linear_range else fit_in_noise(samples, ORDER)
-    if covered is not None:
-        return _told_in_noise(covered, len(samples), of_two_runs)
+    in_noise = [] if leaves_the_linear_range else [fit_in_noise(response, ORDER) for response in samples.T]
+    fits_in_noise = [fit for fit in in_noise if fit is not None]
+    if fits_in_noise:  # of several responses that which shows its pole best
+        best = min(fits_in_noise, key=lambda fit: fit.poles[0].uncertainty if fit.poles else np.inf)
+        return _told_in_noise(best, len(samples), of_two_runs)
     if isinstance(as_given, Refusal):
         return _refused(len(samples), as_given.reason)
     return _refused(len(samples), ON_THE_CIRCLE if _on_the_circle(as_given) else FORCED)
@@ -210,7 +212,7 @@ def _told_in_noise(fit: NoisyFit, rows: int, of_two_runs: bool) -> ProbedPole:
 
     In one run a pole near 1 is what the motion forces, and one on the circle may be.
     """
-    noise = ", ".join(f"{level:.2g}" for level in fit.noise)
+    noise = f"{fit.noise:.2g}"
     poles = [each for each in fit.poles if of_two_runs or abs(each.pole - 1) > RESOLVED]
     if not poles:
         return _refused(rows, (FORCED_IN_NOISE if fit.poles else ALL_NOISE).format(noise))

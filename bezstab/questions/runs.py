@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from typing import Any
 
 from bezstab.engines import Point
 from bezstab.errors import InputError
@@ -16,10 +15,8 @@ from bezstab.mechanism import (
     Scene,
     Simulation,
     Start,
-    check_after_step,
     compiled_mechanism,
     simulated,
-    simulated_with_steps,
 )
 from bezstab.methods import Method, check_one_step
 from bezstab.questions.motions import scene_at_speed
@@ -53,7 +50,7 @@ class RunQuestion:
     start: Start = "rk4"
 
     def __post_init__(self) -> None:
-        check_after_step(self.method, self.after)
+        after_step(self.stabilise, self.iterations)  # which refuses what does not go together
         if self.sequence:
             check_one_step(self.method)
         elif self.hold:
@@ -81,15 +78,16 @@ def run_answer(question: RunQuestion) -> Simulation:
     """Return the run; what goes wrong on the way is its `failure`. Errors as `simulated` and `scene_at_speed`."""
     mechanism = question.mechanism
     alpha_hat, beta_hat = map(float, question.point or (0, 0))
-    of_both: dict[str, Any] = {
-        "h": float(question.h),
-        "duration": float(question.duration),
-        "alpha_hat": alpha_hat,
-        "beta_hat": beta_hat,
-        "perturb": float(question.perturb),
-        "after": question.after,
-    }
-    if not question.sequence:
-        return simulated(mechanism, question.method, start=question.start, **of_both)
-    lengths = [float(step) for step in question.sequence]
-    return simulated_with_steps(mechanism, question.method, sequence=lengths, hold=question.hold, **of_both)
+    return simulated(
+        mechanism,
+        question.method,
+        h=float(question.h),
+        duration=float(question.duration),
+        alpha_hat=alpha_hat,
+        beta_hat=beta_hat,
+        perturb=float(question.perturb),
+        start=question.start,
+        after=question.after,
+        sequence=[float(step) for step in question.sequence],
+        hold=question.hold,
+    )

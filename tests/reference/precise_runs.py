@@ -33,7 +33,7 @@ def _run(
     scheme = second_order_form(method.scheme)
     program, remembered, n = program_of(scheme), memory(scheme), mechanism.size
     acceleration = acceleration_function(mechanism, mp)
-    first = len(states) - 1 - remembered.newest
+    first = len(states) - 1
 
     def found(t: Any, position: Vector, velocity: Vector) -> Vector:
         """Return h^2 a for a position and h times a velocity."""
@@ -46,7 +46,7 @@ def _run(
     carried = len(registers)
     registers += [[mp.mpf(0)] * n for _ in program.evaluations]
     later = []
-    for k in range(first, len(states) - 1 + count):
+    for k in range(first, first + count):
         for start, end, waiting in program.groups:
             numbers = range(start, end)
             if waiting:
@@ -69,7 +69,7 @@ def _run(
         for source, target in program.moves:
             all_registers[target] = all_registers[source]
         registers = all_registers[: len(registers)]
-    return later[len(states) - 1 - first :]
+    return later
 
 
 def as_number(ratio: Fraction) -> Any:
