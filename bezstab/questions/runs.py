@@ -88,6 +88,6 @@ def run_answer(question: RunQuestion) -> Simulation:
         perturb=float(question.perturb),
         start=question.start,
         after=question.after,
-        sequence=[float(step) for step in question.sequence],
+        sequence=[float(step) for step in question.sequence or ()],
         hold=question.hold,
     )
