@@ -20,7 +20,7 @@ from bezstab.mechanism import (
 )
 from bezstab.methods import Method, check_one_step
 from bezstab.questions.motions import scene_at_speed
-from bezstab.questions.points import Meant, meant_in_seconds
+from bezstab.questions.points import meant_in_seconds
 from bezstab.stabilising import AfterStep, Stabilise, after_step
 
 
@@ -44,7 +44,7 @@ class RunQuestion:
     speed: Fraction = Fraction(1)
     stabilise: Stabilise = "baumgarte"
     iterations: int | None = None
-    sequence: Sequence[Fraction] = ()
+    sequence: Sequence[Fraction] | None = None
     hold: bool = False
     perturb: float | Fraction = 0
     start: Start = "rk4"
@@ -59,9 +59,9 @@ class RunQuestion:
             raise InputError("--alpha and --beta are those of feedback: they go with --stabilise baumgarte")
 
     @property
-    def meant_in_seconds(self) -> Meant | None:
-        """Whether the point looks like alpha and beta in 1/s; None with a sequence, which may be to let errors grow."""
-        return None if self.sequence else meant_in_seconds((self.method,), self.point, self.h)
+    def meant_in_seconds(self) -> bool:
+        """Whether the point looks like alpha and beta in 1/s; not with a sequence, which may be to let errors grow."""
+        return not self.sequence and meant_in_seconds((self.method,), self.point)
 
     @cached_property
     def mechanism(self) -> Mechanism:

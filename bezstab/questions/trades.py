@@ -32,7 +32,7 @@ from bezstab.evidence import (
 from bezstab.mechanism import Scene
 from bezstab.methods import Method
 from bezstab.questions import motions
-from bezstab.questions.points import Meant, meant_in_seconds
+from bezstab.questions.points import meant_in_seconds
 from bezstab.rationals import exact
 from bezstab.stabilising import NOTHING, AfterStep, Stabilise, after_step
 from bezstab.stability import RATES, FrontPoint, error_front
@@ -78,9 +78,9 @@ class TradeQuestion:
             raise InputError(f"--time {float(self.duration):g}: expected {expected}")
 
     @property
-    def meant_in_seconds(self) -> Meant | None:
+    def meant_in_seconds(self) -> bool:
         """Whether the numbers look like alpha and beta in 1/s, where they are not."""
-        return None if self.physical else meant_in_seconds(self.methods, self.numbers, max(self.steps, default=None))
+        return not self.physical and meant_in_seconds(self.methods, self.numbers)
 
     @cached_property
     def step_sizes(self) -> tuple[float, ...]:
