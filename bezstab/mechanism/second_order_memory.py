@@ -80,21 +80,12 @@ def _carried(scheme: SecondOrder) -> list[Quantity]:
             earliest[quantity.name] = min(quantity.step, earliest.get(quantity.name, quantity.step))
     for name in (POSITION, VELOCITY):  # both are reported at step 1
         earliest[name] = min(earliest.get(name, 1), 1)
-    for evaluation in implicit_evaluations(scheme):
-        name, step = evaluation.result.name, evaluation.result.step
-        earliest[name] = min(earliest.get(name, step), step - 1)
+    for group in scheme.groups:
+        for equation in group:
+            if isinstance(equation, Evaluation) and is_solved_together(group):
+                name, step = equation.result.name, equation.result.step
+                earliest[name] = min(earliest.get(name, step), step - 1)
     return [Quantity(name, step) for name in earliest for step in range(earliest[name], latest[name])]
-
-
-def implicit_evaluations(scheme: SecondOrder) -> list[Evaluation]:
-    """Return the evaluations that take place in groups of equations that are solved together."""
-    return [
-        equation
-        for group in scheme.groups
-        if is_solved_together(group)
-        for equation in group
-        if isinstance(equation, Evaluation)
-    ]
 
 
 def is_solved_together(group: tuple[Equation, ...]) -> bool:

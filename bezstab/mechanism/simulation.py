@@ -10,12 +10,13 @@ import numpy as np
 
 from bezstab.errors import InputError
 from bezstab.mechanism.compiled import Mechanism
-from bezstab.mechanism.energies import NODES, EnergyBalance, energy_balance
+from bezstab.mechanism.energies import NODES, energy_balance
 from bezstab.mechanism.observation import FloatArray, Observation, observe, singular_passages
 from bezstab.mechanism.registers import Steps
 from bezstab.mechanism.runner import Start, Trajectory, simulate, simulate_steps
 from bezstab.mechanism.start import perturbed_state
 from bezstab.methods import Method, check_one_step
+from bezstab.read_only import ReadOnlyArrays
 from bezstab.stabilising import NOTHING, AfterStep, Stabilise, held_by
 from bezstab.units import check_step, feedback_gains
 
@@ -25,17 +26,20 @@ MOST_STEPS = 10**8
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Simulation:
+class Simulation(ReadOnlyArrays):
     """A run at one point of the plane, with steps of h (s), and the constraint errors along it; SI units.
 
-    t has shape (times,), q and v (times, coordinates), c, cdot and multipliers (times, constraints), energy and the
-    work of drivers and forces, with their balance, (times,). `failure` says when and why the run ended early; None if
-    it did not.
+    t has shape (times,), q and v (times, coordinates), c, cdot and multipliers (times, constraints). Of energy and
+    work, (times,): `driver_work` is what the drivers have put in since the start, `force_work` what constant forces and
+    torques have put in and dampers taken out, and `energy_drift` what no work explains, an error. `failure` says when
+    and why the run ended early; None if it did not.
     """
 
     trajectory: Trajectory
     observation: Observation
-    balance: EnergyBalance
+    driver_work: FloatArray
+    force_work: FloatArray
+    energy_drift: FloatArray
     h: float
     alpha_hat: float
     beta_hat: float
@@ -74,21 +78,6 @@ class Simulation:
     def energy(self) -> FloatArray:
         """Kinetic and potential energy (J)."""
         return self.observation.energy
-
-    @property
-    def driver_work(self) -> FloatArray:
-        """What the drivers have put in since the start (J)."""
-        return self.balance.driver_work
-
-    @property
-    def force_work(self) -> FloatArray:
-        """What constant forces and torques have put in and dampers taken out since the start (J)."""
-        return self.balance.force_work
-
-    @property
-    def energy_drift(self) -> FloatArray:
-        """The change of energy since the start that no work explains (J): an error."""
-        return self.balance.drift
 
     @property
     def singular_times(self) -> FloatArray:
@@ -166,7 +155,8 @@ def simulated(
         trajectory = simulate(mechanism, method, h, duration, constant, state, start, after=after)
         gains, lengths, nodes = np.array(constant), np.array(h * multiple), NODES
     observation = observe(mechanism, trajectory.t, trajectory.q, trajectory.v, gains[0], gains[1])
-    return Simulation(trajectory, observation, energy_balance(observation, lengths, nodes), h, alpha_hat, beta_hat)
+    balance = energy_balance(observation, lengths, nodes)
+    return Simulation(trajectory, observation, *balance, h, alpha_hat, beta_hat)
 
 
 def _lengths(sequence: Sequence[float], duration: float) -> FloatArray:

@@ -1,4 +1,4 @@
-"""Exact rates of a moving mechanism: against the runner on complex numbers, and against the poles at rest."""
+"""Exact rates of a moving mechanism: against the poles at rest."""
 
 import numpy as np
 import pytest
@@ -6,39 +6,8 @@ import pytest
 from bezstab.mechanism import compiled_mechanism, load_scene
 from bezstab.methods import lookup
 from bezstab.stability import spectral_radius
-from tests.evidence.driven_four_bar import four_bar, swinging_four_bar
+from tests.evidence.driven_four_bar import four_bar
 from tests.evidence.exact_rates import floquet_rates
-from tests.reference.perturbed_revolutions import runner_multipliers
-
-STABLE = {
-    "B4": (0.25, 0.2),
-    "AB4": (0.2, 0.08),
-    "AB2": (0.3, 0.3),
-    "RK4": (0.3, 1.5),
-    "SYM": (0.2, 1.5),
-    "B2": (0.3, 0.3),
-}
-"""Points with |z| of 0.9 to 0.97, where the motion makes a difference."""
-
-
-@pytest.mark.promise("Rates over a motion")
-@pytest.mark.promise("Rates where drivers turn and oscillate")
-@pytest.mark.parametrize(
-    ("name", "swinging"), [*((name, False) for name in STABLE), *((name, True) for name in ("AB4", "RK4"))]
-)
-@pytest.mark.slow_except("AB2")
-def test_the_runner_itself_shows_the_same_rate(name: str, swinging: bool) -> None:
-    """Its run and the motion differ by truncation errors, of (omega h)^2 = 1e-3 and less in the Jacobians.
-
-    Where drivers swing, too: of a turn and two swings in a second the runner's own steps give the multiplier.
-    """
-    mechanism, method, count = swinging_four_bar(2 * np.pi, 4 * np.pi) if swinging else four_bar(), lookup(name), 200
-    alpha_hat, beta_hat = STABLE[name]
-    (found,) = floquet_rates(mechanism, method, 1 / count, np.array([alpha_hat]), np.array([beta_hat]), 1.0)
-    expected = runner_multipliers(mechanism, method, count, alpha_hat, beta_hat)
-    at_rest = float(spectral_radius(method, alpha_hat, beta_hat))
-    assert found == pytest.approx(expected, abs=1e-4)
-    assert abs(found - expected) < abs(at_rest - expected)
 
 
 @pytest.mark.parametrize("name", ["B4", "RK4", "SYM", "ABM3", "trapezoid", "verlet-half", "newmark(1/4,1/2)"])
