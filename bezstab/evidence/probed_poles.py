@@ -20,6 +20,7 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from itertools import product
 
 import numpy as np
 from numpy.polynomial.polynomial import polyder, polyval2d, polyval3d
@@ -391,12 +392,8 @@ def kicked_responses(
 
 def _polynomial_without_zeros(method: Method, alpha_hat: Fraction, beta_hat: Fraction) -> tuple[Fraction, ...]:
     """Return P at one point in ascending powers of z, monic and without roots at zero."""
-    polynomial = closed_loop_at(method, alpha_hat, beta_hat)
-    while polynomial and polynomial[-1] == 0:
-        polynomial.pop()
-    while polynomial and polynomial[0] == 0:
-        polynomial.pop(0)
-    return tuple(coefficient / polynomial[-1] for coefficient in polynomial)
+    polynomial = np.trim_zeros(np.array(closed_loop_at(method, alpha_hat, beta_hat)))
+    return tuple(polynomial / polynomial[-1])
 
 
 def _likeness(
@@ -516,11 +513,8 @@ def _newton(equations: ComplexArray, point: FloatArray) -> tuple[FloatArray, Com
 
 def _starting_points(method: Method, z: ComplexArray) -> FloatArray:
     """Return points, shape (starts, 2): that of an exact integrator, z = e^mu, and some over a method's region."""
-    (low_alpha, high_alpha), (low_beta, high_beta) = window(region(method))
-    alpha_hat, beta_hat = np.meshgrid(
-        np.linspace(low_alpha, high_alpha, STARTS), np.linspace(low_beta, high_beta, STARTS)
-    )
-    return np.concatenate([[_exact_integrators_point(z)], np.stack([alpha_hat.ravel(), beta_hat.ravel()], axis=1)])
+    axes = (np.linspace(low, high, STARTS) for low, high in window(region(method)))
+    return np.array([_exact_integrators_point(z), *product(*axes)])
 
 
 def _exact_integrators_point(z: ComplexArray) -> tuple[float, float]:
