@@ -84,10 +84,8 @@ def from_dimensionless(alpha_hat: FloatOrArray, beta_hat: FloatOrArray, h: float
 
     _check_real(alpha_hat=alpha_hat, beta_hat=beta_hat)
     check_step(h)
-    imaginary = ~(np.asarray(beta_hat) >= 0)  # not a number included
-    if imaginary.any():
-        first = np.asarray(beta_hat)[imaginary][0]
-        raise InputError(f"β̂ = {first:g}: expected 0 or more, as β = √β̂/h is real")
+    if not (np.asarray(beta_hat) >= 0).all():  # not a number included
+        raise InputError(f"β̂ = {np.min(beta_hat):g}: expected 0 or more, as β = √β̂/h is real")
     with np.errstate(over="ignore"):  # found and named below
         two_alpha, beta_squared = feedback_gains(alpha_hat, beta_hat, h)
     if not (np.isfinite(two_alpha).all() and np.isfinite(beta_squared).all()):

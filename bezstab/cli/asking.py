@@ -1,12 +1,9 @@
 """The question that was typed, and the sentences below its answers."""
 
-import shlex
 from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Any, TypeVar
 
-import click
-
-from bezstab.cli.command_group import AS_TYPED, NUMERICAL_TROUBLE
+from bezstab.cli.command_group import NUMERICAL_TROUBLE
 from bezstab.cli.options import typed_options
 from bezstab.cli.output import for_reading, say, show_command, show_text, worked_out
 from bezstab.engines import Engine
@@ -15,7 +12,7 @@ from bezstab.methods import Method
 from bezstab.show import Row, motion_words, varying_words
 
 if TYPE_CHECKING:
-    from bezstab.questions import Answer, Meant, Question
+    from bezstab.questions import Answer, Question
 
 Asked = TypeVar("Asked")
 
@@ -44,8 +41,7 @@ def asked_of_feedback(**typed: Any) -> "Question":
     from bezstab.questions import Question
 
     question = asked(Question, **typed)
-    worked_out([lambda: question.turning, lambda: question.motion], typed["scene"])
-    say_each(question.warnings)
+    say_each(worked_out(lambda: question.warnings, typed["scene"]))
     return question
 
 
@@ -119,11 +115,7 @@ def say_varying(answers: "Iterable[Answer]") -> None:
 
 def say_if_units_were_mistaken(question: Any) -> None:
     """Say on standard error if the point of a question looks like alpha and beta in 1/s, and how to say that it is."""
-    meant: Meant | None = question.meant_in_seconds
-    if meant is None:
-        return
-    note = "note: --alpha and --beta were taken as α̂ and β̂, without unit; if they are in 1/s, add --physical"
-    if meant == "at this step":
-        say(f"{note}: bezstab {shlex.join(click.get_current_context().meta[AS_TYPED])} --physical")
-    else:
-        say(f"{note}{'' if '--h' in typed_options() else ' and your --h'}")
+    if question.meant_in_seconds:
+        needed = "" if "--h" in typed_options() else " and your --h"
+        note = "--alpha and --beta were taken as α̂ and β̂, without unit; if they are in 1/s, add --physical"
+        say(f"note: {note}{needed}")

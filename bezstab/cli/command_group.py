@@ -24,12 +24,6 @@ SECTIONS: Mapping[str, Sequence[str]] = {
 ELSEWHERE: Mapping[str, str] = {"paper": "bezstab.paper.command"}
 """The module of each command that is an extension: nothing imports it, the group finds it by name."""
 
-COMPLETE = "_BEZSTAB_COMPLETE"
-"""Environment variable in which a shell says that it wants to complete a command."""
-
-AS_TYPED = "bezstab.as_typed"
-"""In the meta data of a context: the words of the command line."""
-
 NUMERICAL_TROUBLE = 3
 """Exit status if a part of an answer could not be found, or a run broke down; a message says why."""
 
@@ -51,11 +45,6 @@ class BezstabGroup(click.Group):
     (`| head`).
     """
 
-    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        """Take the command line apart, and keep its words."""
-        ctx.meta[AS_TYPED] = tuple(args)
-        return super().parse_args(ctx, args)
-
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Return the names of all commands in the order of their sections."""
         return [name for names in SECTIONS.values() for name in names]
@@ -66,11 +55,9 @@ class BezstabGroup(click.Group):
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write a heading for each section and a sentence for each command."""
-        longest = max(map(len, self.list_commands(ctx)))
         for heading, names in SECTIONS.items():
             with formatter.section(heading):
-                sentences = [(_loaded(name).help or "").partition("\n")[0] for name in names]
-                formatter.write_dl([(name.ljust(longest), said) for name, said in zip(names, sentences, strict=True)])
+                formatter.write_dl([(name, (_loaded(name).help or "").partition("\n")[0]) for name in names])
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run the command that was typed; matplotlib, which warns if it finds no home, is silent."""
@@ -85,8 +72,6 @@ class BezstabGroup(click.Group):
 
     def main(self, *args: Any, **kwargs: Any) -> NoReturn:
         """Run the command line and exit."""
-        if COMPLETE in os.environ:  # the shell asks what it may offer
-            importlib.import_module("bezstab.cli.completion")
         try:
             status = super().main(*args, **{**kwargs, "standalone_mode": False})
         except click.ClickException as error:

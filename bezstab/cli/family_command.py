@@ -46,10 +46,7 @@ def family(name: str, first: int, last: int | None, files: Files) -> None:
     show_rows(MEMBERS, rows)
 
     def draw() -> "Figure":
-        families = {
-            each: members if each == name else family_members(each, 2, family.largest)
-            for each, family in STEP_FAMILIES.items()
-        }
-        return show.family_figure(families, name, limit)
+        families = {each: family_members(each, 2, family.largest) for each, family in STEP_FAMILIES.items()}
+        return show.family_figure(families | {name: members}, name, limit)
 
     files.write(files.path("family", name), draw)

@@ -33,9 +33,6 @@ MOST_IN_SEQUENCE = 10**6  # steps: a run of minutes
 USUAL_METHODS = ("B2", "B3", "B4", "AB2", "AB3", "AB4", "RK4@5", "SIE")
 """The methods that poles and explore show without --method: the Bezier methods and their usual alternatives."""
 
-WITH_PARAMETERS = ("newmark(1/4,1/2)", "hht(-1/20)", "generalized-alpha(4/5)")
-"""Methods whose names have parameters, with usual values: the shell offers them, too."""
-
 GAINS = ("kp", "kd", "inertia")
 
 
@@ -132,7 +129,7 @@ POSITIVE = ParsedType("number", _positive)
 SECONDS = ParsedType("seconds", partial(_within_squares, unit="s"))
 SPEED = ParsedType("number", partial(_within_squares, unit="times the scene's own speed"))
 SEQUENCE = ParsedType("steps", _sequence)
-METHOD = ParsedType("method", lookup, lambda: (*REGISTRY, *WITH_PARAMETERS))
+METHOD = ParsedType("method", lookup, lambda: REGISTRY)
 SHARE = ParsedType("number", lambda text: float(rational(text)))
 ENGINE = ParsedType("name", engine_named, lambda: ENGINES)
 ENGINE_VALUES = ParsedType("name=values", engine_and_values, lambda: [f"{name}=" for name in ENGINES])

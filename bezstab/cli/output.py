@@ -2,6 +2,7 @@
 
 import re
 import sys
+import textwrap
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
@@ -92,13 +93,14 @@ def show_text(text: str) -> None:
 
 def show_command(command: str) -> None:
     """Print a command line to be copied: in one line, or, where the terminal is narrower, continued as in sh."""
-    first, *options = visible(command).split(" --")
-    lines = [INDENT + first]
-    for option in options:
-        if len(lines[-1]) + len(f" --{option}{CONTINUED}") <= text_width():
-            lines[-1] += f" --{option}"
-        else:
-            lines.append(f"{2 * INDENT}--{option}")
+    lines = textwrap.wrap(
+        visible(command),
+        text_width() - len(CONTINUED),
+        initial_indent=INDENT,
+        subsequent_indent=2 * INDENT,
+        break_long_words=False,
+        break_on_hyphens=False,
+    )
     click.echo(f"{CONTINUED}\n".join(lines))
 
 
@@ -178,9 +180,10 @@ def progress(items: Iterable[Item], label: str | None, length: int | None = None
         yield from bar
 
 
-def worked_out(works: Sequence[Callable[[], Item]], label: str | None) -> list[Item]:
-    """Return what each of some works finds, with a bar as `progress` has it."""
-    return [work() for work in progress(works, label)]
+def worked_out(work: Callable[[], Item], label: str | None) -> Item:
+    """Return what some work finds, with a bar as `progress` has it."""
+    (found,) = [each() for each in progress([work], label)]
+    return found
 
 
 @contextmanager
@@ -190,7 +193,7 @@ def results_of_chunks(
     """Give the results of independent chunks, in their order; processes or a cluster's workers compute them.
 
     Finished chunks are kept in `path` + .chunks, so that a run of the same `job` can resume; once the results are used
-    they are deleted. A damaged chunk is computed again, and a message says so. InputError while another run uses them.
+    they are deleted. A damaged chunk is computed again. InputError while another run uses them.
     """
     from bezstab.evidence import chunk_store, completed_chunks, worker_pool
 
@@ -198,9 +201,7 @@ def results_of_chunks(
     kept = f"bezstab: what is finished lies in {kept_in}: --resume goes on from there"
     with worker_pool(work.workers, work.scheduler) as pool, chunk_store(kept_in, job, work.resume) as store:
         with if_stopped(partial(say, kept)):
-            arriving = completed_chunks(
-                compute, chunks, pool, store, lambda file: say(f"bezstab: {file} is damaged: computed again")
-            )
+            arriving = completed_chunks(compute, chunks, pool, store)
             results = dict(progress(arriving, path.name, len(chunks)))
             yield [results[number] for number in range(len(chunks))]
         store.discard()

@@ -82,8 +82,7 @@ def region(quality: str, grid: int | None, files: Files, **typed: Any) -> int:
         return 0
     del typed["drive"]
     question = asked(MapQuestion, points=points, **typed)
-    worked_out([lambda: question.motion, lambda: question.turnings], typed["scene"])
-    say_each(question.warnings)
+    say_each(worked_out(lambda: question.warnings, typed["scene"]))
     files.check_output()
     if question.compare:
         rows, status = _write_boundaries(question, files), 0

@@ -63,8 +63,8 @@ def simulate(files: Files, **typed: Any) -> None:
         typed["point"] = None
     question = asked(RunQuestion, **typed)
     files.check_output()
-    worked_out([lambda: question.mechanism], typed["scene"])
-    (run,) = worked_out([lambda: run_answer(question)], question.method.name)
+    worked_out(lambda: question.mechanism, typed["scene"])
+    run = worked_out(lambda: run_answer(question), question.method.name)
     files.write(
         files.path("simulate", typed["scene"], question.method.name),
         lambda: show.history_figure(run),

@@ -91,8 +91,8 @@ def tradeoff(predicted: bool, point: TypedPoint, tolerance: Fraction, work: Work
     say_if_units_were_mistaken(question)
     path = files.path("tradeoff", typed["scene"])
     job = f"{question.methods} {question}"
-    worked_out([lambda: question.rate, lambda: question.reference], typed["scene"])
-    with results_of_chunks(evidence.measured_runs, question.sweeps, path, job, work) as results:
+    sweeps = worked_out(lambda: question.sweeps, typed["scene"])
+    with results_of_chunks(evidence.measured_runs, sweeps, path, job, work) as results:
         swept = question.swept(results)
         rows = [SWEPT.row(run, front=front) for run, front in zip(swept.runs, swept.front_labels, strict=True)]
         files.write(path, None, lambda: show.untimed_arrays(rows))

@@ -65,7 +65,7 @@ def verify(across: int | None, accuracy: bool, witness: str | None, work: Work, 
     from bezstab.questions import VerifyQuestion
 
     question = asked(VerifyQuestion, **typed)
-    worked_out([lambda: question.mechanism], typed["scene"])
+    worked_out(lambda: question.mechanism, typed["scene"])
     if accuracy:
         return _show_forced_errors(question)
     if witness:
@@ -107,7 +107,7 @@ def _show_measurements(question: "VerifyQuestion") -> None:
     if not for_reading():
         return
     for of_method in measured if floquet else ():
-        show_text(show.exact_rate_words(of_method[0], question.no_period))
+        show_text(show.exact_rate_words(of_method[0]))
     if len(rows) > len(measured):  # of one point each there is nothing to sum up
         click.echo()
         summaries = map(evidence.measurement_summary, measured)

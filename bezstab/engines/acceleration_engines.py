@@ -27,7 +27,6 @@ def _read_gains(h: Fraction, stiffness: Fraction, damping: Fraction) -> Point:
 CROCODDYL = Engine(
     name="crocoddyl",
     level="acceleration",
-    method="SYM",
     parameters=("gains[0]", "gains[1]"),
     units=("1/s^2", "1/s"),
     read=_read_gains,
@@ -46,7 +45,7 @@ PINOCCHIO = Engine(
     units=("1/s^2", "1/s"),
     read=_read_gains,
     write=gains_in_words,
-    marks=(("Pinocchio: Kp = Kd = 0", lambda h: NO_FEEDBACK),),
+    marks=(("Pinocchio: Kp = Kd = 0", "0 0"),),
     source="Pinocchio source, contact-info.hpp (corrector, 0 and 0 unless set); constrained-dynamics.hxx",
     excludes="errors of orientation, which are logarithms of rotations; the proximal solver's mu",
 )
@@ -61,7 +60,7 @@ RIGID_BODY_DYNAMICS = Engine(
     read=_read_gains,
     write=gains_in_words,
     paste="PDGains({}, {})",
-    marks=(("RigidBodyDynamics.jl: PDGains(100, 20)", lambda h: _read_gains(h, Fraction(100), Fraction(20))),),
+    marks=(("RigidBodyDynamics.jl: PDGains(100, 20)", "100 20"),),
     source="RigidBodyDynamics.jl source, mechanism_algorithms.jl, pdcontrol.jl, simulate.jl (Munthe-Kaas with RK4)",
     excludes="errors of orientation; integrators other than its simulate",
 )
@@ -100,7 +99,7 @@ RBDL = Engine(
     units=("s",),
     read=_read_rbdl,
     write=lambda point, h: (in_words(_time_constant("rbdl", point, h)),),
-    marks=(("RBDL: T_stab = 0.1", lambda h: _read_rbdl(h, Fraction("0.1"))),),
+    marks=(("RBDL: T_stab = 0.1", "0.1"),),
     curve=_critical_damping(FASTEST_ASKED_FOR),
     source="RBDL source, Constraint.h (setBaumgarteTimeConstant, default 0.1 s, off unless enabled)",
     excludes="contact constraints, which have it on velocities alone",
@@ -217,7 +216,6 @@ def _write_solref(point: Point, h: Fraction) -> tuple[str, ...]:
 MUJOCO = Engine(
     name="mujoco",
     level="acceleration",
-    method="SYM",
     parameters=("solref[0]", "solref[1]"),
     optional=("solimp[0]", "solimp[1]"),
     units=("s or -1/s^2", "- or -1/s", "-", "-"),
@@ -226,8 +224,8 @@ MUJOCO = Engine(
     paste='solref="{} {}" solimp="{} {}"',
     apply=_apply_mujoco,
     marks=(
-        ("MuJoCo: timeconst = 2h", lambda h: _read_solref(h, 2 * h, Fraction(1))),
-        ("MuJoCo: solref = 0.02 1", lambda h: _read_solref(h, Fraction("0.02"), Fraction(1))),
+        ("MuJoCo: timeconst = 2h", "2h 1 0.95 0.95"),  # equal impedances: r = 1
+        ("MuJoCo: solref = 0.02 1", "0.02 1 0.95 0.95"),
     ),
     source="MuJoCo documentation, Modeling, Constraint parameters: Reference; engine_core_constraint.c",
     excludes="the soft bias of 1 - d; the shape of solimp between no error and its width; implicit joint damping; "
@@ -262,7 +260,6 @@ def _write_genesis(point: Point, h: Fraction) -> tuple[str, ...]:
 GENESIS = Engine(
     name="genesis",
     level="acceleration",
-    method="SYM",
     parameters=("constraint_timeconst",),
     units=("s",),
     read=_read_genesis,

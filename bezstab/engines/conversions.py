@@ -51,28 +51,43 @@ class Engine:
     `parameters` are the values needed, `optional` those that may follow, `units` the units of both; `paste` is the
     line to paste where it is not name = value, for as many values as it has {}. `apply(h, *values)` is what the
     engine does to values before it uses them (clamps, scaling), None if nothing. `marks` are the settings everybody
-    meets: a label, and the point as a function of h. `excludes` is what the conversion leaves out. `curve` are the
-    points to choose among, None for all of the plane. `sweeps` is whether the engine solves each constraint by
-    itself, one after another, rather than all together: then what holds for one constraint alone says little about
-    a chain of them. `sweeping` is how it goes through such a step, None where that is not written down here.
+    meets: a label, and the values as they are typed, or 2h for two steps. `excludes` is what the conversion leaves
+    out. `curve` are the points to choose among, None for all of the plane. `jointly` is whether it solves all
+    constraints together below acceleration level, too. `sweeping` is how it goes through a step in which it solves
+    one after another, None where that is not written down here.
     """
 
     name: str
     level: Level
-    method: str | None
     parameters: tuple[str, ...]
     units: tuple[str, ...]
     read: Callable[..., Point]
     write: Callable[[Point, Fraction], tuple[str, ...]]
     source: str
     excludes: str
+    method: str | None = "SYM"
     optional: tuple[str, ...] = ()
     apply: Callable[..., Applied] | None = None
-    marks: tuple[tuple[str, Callable[[Fraction], Point]], ...] = ()
+    marks: tuple[tuple[str, str], ...] = ()
     paste: str | None = None
     curve: Curve | None = None
-    sweeps: bool = False
+    jointly: bool = False
     sweeping: Sweeping | None = None
+
+    @property
+    def sweeps(self) -> bool:
+        """Whether the engine solves each constraint by itself, one after another.
+
+        Then what holds for one constraint alone says little about a chain of them.
+        """
+        return self.level != "acceleration" and not self.jointly
+
+    def marked(self, h: Fraction) -> dict[str, Point]:
+        """Return the points of the settings everybody meets, by their labels; h in s."""
+        return {
+            label: self.applied(tuple(_typed(number, h) for number in typed.split()), h).point
+            for label, typed in self.marks
+        }
 
     def point(self, values: tuple[Fraction, ...], h: Fraction) -> Point:
         """Return (alpha_hat, beta_hat) for values as typed; InputError as for `applied`."""
@@ -140,7 +155,6 @@ def engine_without_parameters(
     source: str,
     excludes: str,
     paste: str = "nothing to set",
-    sweeps: bool = False,
     sweeping: Sweeping | None = None,
 ) -> Engine:
     """Return an engine whose feedback cannot be set: symplectic Euler at one point."""
@@ -160,7 +174,6 @@ def engine_without_parameters(
     return Engine(
         name=name,
         level=level,
-        method="SYM",
         parameters=(),
         units=(),
         read=read,
@@ -169,9 +182,12 @@ def engine_without_parameters(
         curve=curve,
         source=source,
         excludes=excludes,
-        sweeps=sweeps,
         sweeping=sweeping,
     )
+
+
+def _typed(number: str, h: Fraction) -> Fraction:
+    return Fraction(number.removesuffix("h")) * (h if number.endswith("h") else 1)
 
 
 def gains_in_words(point: Point, h: Fraction) -> tuple[str, str]:

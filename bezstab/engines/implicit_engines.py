@@ -53,7 +53,6 @@ JOLT_SPRING = Engine(
     units=("Hz", "-"),
     read=_read_jolt_spring,
     write=_write_jolt_spring,
-    sweeps=True,
     source="Jolt source, SpringPart.h (Catto, Soft constraints, GDC 2011, without relaxation)",
     excludes="its modes by stiffness; the error of iterations; for a hard constraint see jolt",
     sweeping=Sweeping(
@@ -79,7 +78,6 @@ PHYSX_DRIVE = Engine(
     units=("1/s^2", "1/s"),
     read=_read_physx,
     write=gains_in_words,
-    sweeps=True,
     source="PhysX source, DyCpuGpuArticulation.h, computeImplicitDriveParams (AccelerationDrive)",
     excludes="the inertia, by which both are divided in force drives (see --pd); force limits; h is TGS's substep",
 )
@@ -114,7 +112,6 @@ XPBD = Engine(
     units=("m/N", "N s/m", "1/kg"),
     read=_read_xpbd,
     write=_write_xpbd,
-    sweeps=True,
     source="Macklin, Mueller & Chentanez, XPBD, Motion in Games 2016, Eqs 18 and 26; derived",
     excludes="one iteration; h is the substep's; no compliance at all is the rigid limit: see pbd with stiffness 1",
 )
@@ -131,7 +128,6 @@ def _read_brax_spring(h: Fraction, stiffness: Fraction, damping: Fraction, mass:
 BRAX_SPRING = Engine(
     name="brax-spring",
     level="acceleration",
-    method="SYM",
     parameters=("constraint_stiffness", "constraint_vel_damping"),
     optional=("mass",),
     units=("N/m", "N s/m", "kg"),

@@ -38,15 +38,13 @@ def _read_pbd(h: Fraction, share: Fraction, iterations: Fraction = ONE) -> Point
 PBD = Engine(
     name="pbd",
     level="position",
-    method="SYM",
     parameters=("stiffness",),
     optional=("iterations",),
     units=("-", "-"),
     read=_read_pbd,
     write=lambda point, h: _share_in_words("pbd", point),
-    marks=(("PBD: stiffness 1", lambda h: (ONE, ONE)),),
+    marks=(("PBD: stiffness 1", "1"),),
     curve=lambda share: (share, share),  # not more than all
-    sweeps=True,
     source="Mueller et al., Position based dynamics, J. Vis. Commun. Image R. 18, 2007; derived",
     excludes="other constraints in between; above 1 it is over-relaxation; velocity damping",
     sweeping=Sweeping(
@@ -64,14 +62,12 @@ PBD = Engine(
 BRAX_POSITIONAL = Engine(
     name="brax-positional",
     level="position",
-    method="SYM",
     parameters=("joint_scale_pos",),
     units=("-",),
     read=lambda h, share: (share, share),
     write=lambda point, h: _share_in_words("brax-positional", point),
-    marks=(("Brax positional: 0.5", lambda h: (Fraction("0.5"), Fraction("0.5"))),),
+    marks=(("Brax positional: 0.5", "0.5"),),
     curve=lambda share: (share, share),  # not more than all
-    sweeps=True,
     source="Brax source, positional/pipeline.py, joints.py, integrator.py (project_xd); io/mjcf.py (default)",
     excludes="joint_scale_ang (0.2 unless set), the same for angles; constraint_vel_damping; joints that share bodies",
 )
@@ -96,15 +92,13 @@ def _jolt_step(iterations: int, h: Fraction, baumgarte: Fraction, position_steps
 JOLT = Engine(
     name="jolt",
     level="position",
-    method="SYM",
     parameters=("mBaumgarte",),
     optional=("mNumPositionSteps",),
     units=("-", "-"),
     read=_read_jolt,
     write=_write_jolt,
-    marks=(("Jolt: 0.2, 2 position steps", lambda h: _read_jolt(h, Fraction("0.2"))),),
+    marks=(("Jolt: 0.2, 2 position steps", "0.2"),),
     curve=hard,
-    sweeps=True,
     source="Jolt source, PhysicsSettings.h, AxisConstraintPart.h (SolvePositionConstraint)",
     excludes="constraints with springs, which are jolt-spring; contacts' slop; constraints that share bodies",
     sweeping=Sweeping(
@@ -128,7 +122,6 @@ BOX2D_V2 = engine_without_parameters(
     "box2d-v2",
     "position",
     (ONE, ONE),
-    sweeps=True,
     source="Box2D 2.4 source, b2_revolute_joint.cpp (SolvePositionConstraints), b2_island.cpp",
     excludes="joints; contacts take back a fifth; errors within the slop of 5 mm, which end the sweeps; joint springs",
     sweeping=Sweeping(

@@ -50,7 +50,7 @@ def _engine_with_erp(
     excludes: str,
     *,
     word: str = "ERP",
-    sweeps: bool = False,
+    jointly: bool = False,
     sweeping: Sweeping | None = None,
 ) -> Engine:
     def read(h: Fraction, erp: Fraction) -> Point:
@@ -63,16 +63,15 @@ def _engine_with_erp(
     return Engine(
         name=name,
         level="velocity",
-        method="SYM",
         parameters=(word,),
         units=("-",),
         read=read,
         write=write,
-        marks=((f"{name}: {word} = {default}", lambda h: read(h, Fraction(default))),),
+        marks=((f"{name}: {word} = {default}", default),),
         source=source,
         excludes=excludes,
         curve=hard,
-        sweeps=sweeps,
+        jointly=jointly,
         sweeping=sweeping,
     )
 
@@ -90,7 +89,6 @@ BULLET = _engine_with_erp(
     "0.2",
     "Bullet source, btContactSolverInfo.h",
     f"CFM = 0; {IMPULSES}",
-    sweeps=True,
     sweeping=Sweeping(
         _cold_step,
         iterations=10,
@@ -100,13 +98,12 @@ BULLET = _engine_with_erp(
         excludes="contacts, which it starts warm (0.85), and random order where that is switched on",
     ),
 )
-DART = _engine_with_erp("dart", "0.01", "DART issue 317", f"CFM = 0; {IMPULSES}")
+DART = _engine_with_erp("dart", "0.01", "DART issue 317", f"CFM = 0; {IMPULSES}", jointly=True)
 BRAX_CONTACT = _engine_with_erp(
     "brax-contact",
     "0.1",
     "Brax source, spring/collisions.py (baumgarte_erp), io/mjcf.py (default)",
     "contacts of its spring pipeline only, as long as they touch; its joints are brax-spring",
-    sweeps=True,
 )
 GODOT = _engine_with_erp(
     "godot",
@@ -115,7 +112,6 @@ GODOT = _engine_with_erp(
     "Jolt, which is jolt, and which new projects use in 3D; PinJoint3D's damping other than 1; other joints in 3D; "
     f"2D, which is godot-2d; {IMPULSES}",
     word="bias",
-    sweeps=True,
     sweeping=Sweeping(
         _cold_step,
         iterations=16,
@@ -133,7 +129,6 @@ GODOT_2D = _engine_with_erp(
     "Godot source, godot_joints_2d.cpp (PinJoint2D without softness: a bias impulse for positions alone)",
     f"softness; angular limits; grooves and springs; {IMPULSES}",
     word="bias",
-    sweeps=True,
     sweeping=Sweeping(
         lambda iterations, h, bias: SweptStep(
             1.0, (Pass("velocity", iterations), Pass("position", iterations, float(bias)), Move())
@@ -152,6 +147,7 @@ KAMINO = _engine_with_erp(
     "Newton source, solvers/kamino: config.py, dynamics/dual.py, integrators/euler.py and moreau.py",
     "joint limits (beta) and contacts (gamma); armature and implicit drives; what its solver leaves over",
     word="alpha",
+    jointly=True,
 )
 
 
@@ -182,16 +178,14 @@ def _ode_step(
 ODE = Engine(
     name="ode",
     level="velocity",
-    method="SYM",
     parameters=("ERP",),
     optional=("CFM", "mass"),
     units=("-", "s/kg", "kg"),
     read=_read_ode,
     write=_write_ode,
-    marks=(("ode: ERP = 0.2", lambda h: _read_ode(h, Fraction("0.2"))),),
+    marks=(("ode: ERP = 0.2", "0.2"),),
     source="ODE wiki, Manual: Concepts",
     curve=hard,  # which needs no effective mass
-    sweeps=True,
     excludes=f"CFM = 0 unless given, with the effective mass 1 / (J M^-1 J'); {IMPULSES}",
     sweeping=Sweeping(
         _ode_step,
@@ -212,7 +206,6 @@ CHRONO_LINEARIZED = engine_without_parameters(
     "velocity",
     (ONE, ONE),
     paste="EULER_IMPLICIT_LINEARIZED",
-    sweeps=True,  # its default solver, PSOR
     source="Chrono source, ChTimestepperImplicit.cpp (EulerImplicitLinearized: Qc = C / dt)",
     excludes="the recovery speed (0.6 m/s unless set), above which an error is taken back at that speed; contacts",
 )
@@ -241,14 +234,12 @@ def _write_chipmunk(point: Point, h: Fraction) -> tuple[str, ...]:
 CHIPMUNK = Engine(
     name="chipmunk",
     level="velocity",
-    method="SYM",
     parameters=("errorBias",),
     units=("- (per second)",),
     read=_read_chipmunk,
     write=_write_chipmunk,
-    marks=(("Chipmunk: errorBias = 0.9^60", lambda h: _read_chipmunk(h, Fraction("0.9") ** 60)),),
+    marks=(("Chipmunk: errorBias = 0.9^60", str(Fraction("0.9") ** 60)),),
     curve=hard,
-    sweeps=True,
     source="Chipmunk source, cpConstraint.c, cpPivotJoint.c, cpSpaceStep.c (pymunk: error_bias)",
     excludes="maxBias and maxForce (infinite unless set); warm starts and the error of iterations; damped springs",
     sweeping=Sweeping(
@@ -266,14 +257,22 @@ CHIPMUNK = Engine(
 
 # Soft constraints by frequency and damping ratio. With the turn t = 2 pi hertz h and x = t (2 zeta + t), the velocity
 # is solved as v1 = (1 - s) v0 - s e c0 with s = x / (1 + x), e = t / (2 zeta + t), so that s e = t^2 / (1 + x), and the
-# constraint moves with it. Then it is relaxed: solved again, without error.
+# constraint moves with it. Then it is relaxed: solved again, without error. In a sweep the softness is 1 / x.
 #
 #     Box2D    relaxed hard: c' = 0. Roots 0 and 1 - s e.
 #     Rapier   relaxed as soft as before: c' = (1 - s) c'. Roots 1 - s and 1 - s e.
 
 
-def _turn(hertz: Fraction, h: Fraction) -> Fraction:
-    return Fraction(2 * math.pi) * hertz * h
+def _soft(h: Fraction, hertz: Fraction, damping_ratio: Fraction) -> tuple[Fraction, Fraction]:
+    """Return s and s e of a soft constraint."""
+    turn = Fraction(2 * math.pi) * hertz * h
+    x = turn * (2 * damping_ratio + turn)
+    return x / (1 + x), turn**2 / (1 + x)
+
+
+def _soft_pass(iterations: int, h: Fraction, hertz: Fraction, damping_ratio: Fraction) -> Pass:
+    scale, share = _soft(h, hertz, damping_ratio)
+    return Pass("velocity", iterations, float(share / scale), float(1 / scale - 1))
 
 
 MOST_TURNS = Fraction("0.25")  # per substep: Box2D's joints are no faster
@@ -284,8 +283,7 @@ USUAL_DAMPING_RATIO = 2.0  # of Box2D's joints
 
 def _read_box2d(h: Fraction, hertz: Fraction, damping_ratio: Fraction) -> Point:
     refuse_below_zero("box2d", hertz=hertz, dampingRatio=damping_ratio)
-    turn = _turn(hertz, h)
-    return ONE, turn**2 / (1 + turn * (2 * damping_ratio + turn))
+    return ONE, _soft(h, hertz, damping_ratio)[1]
 
 
 def _apply_box2d(h: Fraction, hertz: Fraction, damping_ratio: Fraction) -> Applied:
@@ -310,31 +308,21 @@ def _write_box2d(point: Point, h: Fraction) -> tuple[str, ...]:
     return f"{turn / (2 * math.pi * float(h)):.12g}", in_words(zeta)
 
 
-def _soft_terms(h: Fraction, hertz: Fraction, damping_ratio: Fraction) -> tuple[float, float]:
-    """Return the share e and the softness (1 - s) / s of a soft constraint."""
-    turn = float(_turn(hertz, h))
-    zeta = float(damping_ratio)
-    return turn / (2 * zeta + turn), 1 / (turn * (2 * zeta + turn))
-
-
 def _box2d_step(iterations: int, h: Fraction, hertz: Fraction, damping_ratio: Fraction) -> SweptStep:
-    share, softness = _soft_terms(h, min(hertz, MOST_TURNS / h), damping_ratio)
-    solved = Pass("velocity", iterations, share, softness)
+    solved = _soft_pass(iterations, h, min(hertz, MOST_TURNS / h), damping_ratio)
     return SweptStep(1.0, (solved, Move(), Pass("velocity", 1)))
 
 
 BOX2D = Engine(
     name="box2d",
     level="velocity",
-    method="SYM",
     parameters=("hertz", "dampingRatio"),
     units=("Hz", "-"),
     read=_read_box2d,
     write=_write_box2d,
     apply=_apply_box2d,
-    marks=(("Box2D joints: 60 Hz, 2", lambda h: _apply_box2d(h, Fraction(60), Fraction(2)).point),),
+    marks=(("Box2D joints: 60 Hz, 2", "60 2"),),
     curve=lambda share: (1.0, LARGEST_SHARE * share),
-    sweeps=True,
     source="Box2D v3 source, solver.h: b2MakeSoft; joint.c; revolute_joint.c (solved, then relaxed without bias)",
     excludes="h is the substep's; contacts, joint springs, warm starts and the error of Gauss-Seidel sweeps",
     sweeping=Sweeping(
@@ -350,9 +338,7 @@ BOX2D = Engine(
 
 def _read_rapier(h: Fraction, natural_frequency: Fraction, damping_ratio: Fraction) -> Point:
     refuse_unless_positive("rapier", natural_frequency=natural_frequency, damping_ratio=damping_ratio)
-    turn = _turn(natural_frequency, h)
-    x = turn * (2 * damping_ratio + turn)
-    scale, share = x / (1 + x), turn**2 / (1 + x)
+    scale, share = _soft(h, natural_frequency, damping_ratio)
     return scale + share - scale * share, scale * share
 
 
@@ -375,22 +361,19 @@ def _write_rapier(point: Point, h: Fraction) -> tuple[str, ...]:
 
 def _rapier_step(iterations: int, h: Fraction, natural_frequency: Fraction, damping_ratio: Fraction) -> SweptStep:
     # its softness is the square of (1 / e - 1) over 4 zeta^2 / e: the same as Box2D's
-    share, softness = _soft_terms(h, natural_frequency, damping_ratio)
-    solved, relaxed = Pass("velocity", iterations, share, softness), Pass("velocity", 1, 0.0, softness)
-    return SweptStep(0.0, (solved, Move(), relaxed))
+    solved = _soft_pass(iterations, h, natural_frequency, damping_ratio)
+    return SweptStep(0.0, (solved, Move(), Pass("velocity", 1, 0.0, solved.softness)))
 
 
 RAPIER = Engine(
     name="rapier",
     level="velocity",
-    method="SYM",
     parameters=("natural_frequency", "damping_ratio"),
     units=("Hz", "-"),
     read=_read_rapier,
     write=_write_rapier,
-    marks=(("Rapier joints: 1e6 Hz, 1", lambda h: _read_rapier(h, Fraction(1_000_000), ONE)),),
+    marks=(("Rapier joints: 1e6 Hz, 1", "1e6 1"),),
     curve=lambda share: (STIFFEST, STIFFEST * DOUBLE_POLE * share),
-    sweeps=True,
     source="Rapier source, integration_parameters.rs, solve.rs in staged_island_solver, joint_velocity_constraint.rs",
     excludes="h is the substep's, dt / num_solver_iterations; limits' largest corrective speed; warmstart_joints",
     sweeping=Sweeping(
@@ -423,23 +406,17 @@ def _sap_q(h: Fraction, stiffness: Fraction, relaxation_time: Fraction, inverse_
     return inverse_mass * h * (h + relaxation_time) * stiffness
 
 
-def _read_sap(
-    h: Fraction, stiffness: Fraction | None = None, relaxation_time: Fraction | None = None, w: Fraction | None = None
-) -> Point:
-    if stiffness is None:
+def _read_sap(h: Fraction, *typed: Fraction) -> Point:
+    if not typed:
         return _sap_point(h, NEAR_RIGID, h)
-    if relaxation_time is None or w is None:
+    if len(typed) < 3:
         raise InputError("--engine drake-sap: k, tau and w go together; none of them for a ball or a weld")
-    return _sap_point(h, _sap_q(h, stiffness, relaxation_time, w), relaxation_time)
+    return _sap_point(h, _sap_q(h, *typed), typed[1])
 
 
-def _apply_sap(
-    h: Fraction, stiffness: Fraction | None = None, relaxation_time: Fraction | None = None, w: Fraction | None = None
-) -> Applied:
-    as_typed = _read_sap(h, stiffness, relaxation_time, w)
-    if stiffness is None or relaxation_time is None or w is None:
-        return Applied(as_typed)
-    if _sap_q(h, stiffness, relaxation_time, w) <= NEAR_RIGID:
+def _apply_sap(h: Fraction, *typed: Fraction) -> Applied:
+    as_typed = _read_sap(h, *typed)
+    if not typed or _sap_q(h, *typed) <= NEAR_RIGID:
         return Applied(as_typed)
     note = f"near rigid: k is lowered until w/R = {float(NEAR_RIGID):.0f}, and tau is h"
     return Applied(_sap_point(h, NEAR_RIGID, h), (note,))
@@ -461,7 +438,6 @@ def _write_sap(point: Point, h: Fraction) -> tuple[str, ...]:
 DRAKE_SAP = Engine(
     name="drake-sap",
     level="velocity",
-    method="SYM",
     parameters=(),
     optional=("k", "tau", "w"),
     units=("N/m", "s", "1/kg"),
@@ -470,7 +446,8 @@ DRAKE_SAP = Engine(
     paste="k = inf",
     curve=lambda share: (STIFFEST, STIFFEST * share),
     apply=_apply_sap,
-    marks=(("Drake SAP: near rigid", _read_sap),),
+    jointly=True,
+    marks=(("Drake SAP: near rigid", ""),),
     source="Drake source, sap_holonomic_constraint.h and .cc; sap_ball_constraint.cc",
     excludes="without values a ball or a weld, which are near rigid; limits of impulses; constraints that share bodies",
 )
@@ -495,7 +472,6 @@ PHYSX = engine_without_parameters(
     (ONE, ONE),
     source="PhysX source, DyConstraintSetup.cpp (erp = 1), DySolverControl.cpp, DyCpuGpu1dConstraint.h",
     excludes=f"TGS, which is physx-tgs; {PHYSX_JOINTS}",
-    sweeps=True,
     sweeping=Sweeping(
         lambda iterations, h: SweptStep(0.0, (Pass("velocity", iterations, 1.0), Move(), Pass("velocity", 1))),
         iterations=4,
@@ -510,7 +486,6 @@ PHYSX_TGS = engine_without_parameters(
     (ONE, 1 - (1 - Fraction(1, 2)) ** TGS_ITERATIONS),
     source="PhysX source, DyTGSDynamics.cpp (mBiasCoefficient), DyTGSContactPrep.cpp (erp = mBiasCoefficient / 2)",
     excludes=f"minPositionIters other than {TGS_ITERATIONS}, but for --chain; {PHYSX_JOINTS}",
-    sweeps=True,
     sweeping=Sweeping(
         _physx_tgs_step,
         iterations=TGS_ITERATIONS,

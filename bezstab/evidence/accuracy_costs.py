@@ -1,5 +1,6 @@
 """Speed against accuracy: what a method and a step size cost in simulation, and what they buy."""
 
+import json
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -157,12 +158,12 @@ def sweep_compiled(methods: Sequence[Method], step_sizes: Sequence[float], durat
 
 
 def measured_runs(sweep: Sweep) -> dict[str, NDArray[np.generic]]:
-    """Return for each step, in their order, what Run has, as arrays to be stored; what a failed run lacks is nan.
+    """Return for each step, in their order, what Run has, as a JSON text that can be stored like arrays.
 
     InputError where alpha and beta in 1/s leave the range of float64 at a step; errors of `choose`.
     """
     measured = [_measured_run(sweep, h, point) for h, point in zip(sweep.steps, _points(sweep), strict=True)]
-    return {key: np.array([values[key] for values in measured]) for key in measured[0]}
+    return {"runs": np.array(json.dumps(measured))}
 
 
 def _points(sweep: Sweep) -> list[tuple[float, float]]:
@@ -182,23 +183,23 @@ def _points(sweep: Sweep) -> list[tuple[float, float]]:
     return points
 
 
-def _measured_run(sweep: Sweep, h: float, point: tuple[float, float]) -> dict[str, float | str]:
+def _measured_run(sweep: Sweep, h: float, point: tuple[float, float]) -> dict[str, float | str | None]:
     """Return what one run, as often as it is to be repeated, costs and buys; h in s."""
     mechanism = compiled_mechanism(sweep.scene)
     method = sweep.method
     gains = feedback_gains(*point, h)
     run, seconds = _timed_run(sweep, h, gains)
     seen = observe(mechanism, run.t, run.q, run.v, *gains)
-    trajectory_error = np.nan if run.failure else float(np.abs(run.q - sweep.reference.along.at(run.t)[0]).max())
-    z_abs = float(spectral_radius(method, *point)) if sweep.stabilise == "baumgarte" else np.nan
+    z_abs = float(spectral_radius(method, *point)) if sweep.stabilise == "baumgarte" else None
+    whole = not run.failure
     return {
         "alpha_hat": point[0],
         "beta_hat": point[1],
         "z_abs": z_abs,
-        "trajectory_error": trajectory_error,
+        "trajectory_error": float(np.abs(run.q - sweep.reference.along.at(run.t)[0]).max()) if whole else None,
         "c_max": seen.c_max,
-        "measured_error": np.nan if run.failure else float(np.abs(seen.c[run.t >= COMPARED * run.t[-1]]).max()),
-        "predicted_error": _predicted_error(sweep, h, point) if z_abs < 1 else np.nan,
+        "measured_error": float(np.abs(seen.c[run.t >= COMPARED * run.t[-1]]).max()) if whole else None,
+        "predicted_error": _predicted_error(sweep, h, point) if z_abs is not None and z_abs < 1 else None,
         "c_rms": float(np.sqrt((seen.c**2).mean())),
         "cdot_max": seen.cdot_max,
         "cdot_rms": float(np.sqrt((seen.cdot**2).mean())),
@@ -208,16 +209,16 @@ def _measured_run(sweep: Sweep, h: float, point: tuple[float, float]) -> dict[st
         "seconds": float(np.median(seconds)),
         "seconds_min": min(seconds),
         "seconds_max": max(seconds),
-        "failure": run.failure or "",
+        "failure": run.failure,
     }
 
 
-def _predicted_error(sweep: Sweep, h: float, point: tuple[float, float]) -> float:
-    """Return the largest |c| (SI) that the feedback forces in the later half of a run; nan where that is not known."""
+def _predicted_error(sweep: Sweep, h: float, point: tuple[float, float]) -> float | None:
+    """Return the largest |c| (SI) that the feedback forces in the later half of a run; None where that is not known."""
     try:
         (error,) = predicted_errors(compiled_mechanism(sweep.scene), sweep.method, h, [point], sweep.duration)
     except (InputError, NumericalError):  # the motion is followed for longer than the run
-        return np.nan
+        return None
     return error
 
 
@@ -241,12 +242,8 @@ def swept_runs(sweep: Sweep, measured: Mapping[str, NDArray[np.generic]]) -> lis
     `measured` is what `measured_runs` gave.
     """
     runs: list[Run] = []
-    for index in np.argsort(sweep.steps)[::-1].tolist():
-        values = {key: column[index].item() for key, column in measured.items()}
-        for key in ("z_abs", "trajectory_error", "measured_error", "predicted_error"):
-            values[key] = None if np.isnan(values[key]) else values[key]
-        values["failure"] = values["failure"] or None
-        h = sweep.steps[index]
+    found = zip(sweep.steps, json.loads(str(measured["runs"])), strict=True)
+    for h, values in sorted(found, key=lambda pair: -pair[0]):
         order = _observed_order(runs[-1], h, values["trajectory_error"], sweep.reference.error) if runs else None
         advised = sweep.point is None
         runs.append(Run(method=sweep.method, h=h, order=order, stabilise=sweep.stabilise, advised=advised, **values))

@@ -37,12 +37,8 @@ class ChunkStore:
         """Return where a chunk is kept."""
         return self.path / f"{number}.npz"
 
-    def has(self, number: int) -> bool:
-        """Return whether a chunk has a file, damaged or not."""
-        return self.file(number).is_file()
-
     def load(self, number: int) -> Arrays | None:
-        """Return a finished chunk; None if its file is damaged. No object in a file is ever unpickled."""
+        """Return a finished chunk; None if it has no file, or a damaged one. No object in it is ever unpickled."""
         try:
             # Opened here, for numpy forgets to close what turns out to be damaged.
             with self.file(number).open("rb") as file, np.load(file, allow_pickle=False) as archive:

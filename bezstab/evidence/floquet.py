@@ -16,7 +16,6 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bezstab.mechanism import (
     Mechanism,
@@ -36,8 +35,6 @@ from bezstab.units import feedback_gains
 FIRST_SHARE = 1 / 3  # of the steps in which errors stand out: there the lesser poles still count
 STANDS_OUT = 1e-7  # of the change of the coordinates: the free motion of a method has a constraint error of this size
 NUMBERS = 2**21  # of all steps of the points that are taken together: fewer spend their time in Python, more in memory
-
-IntArray = NDArray[np.int_]
 
 
 @dataclass(frozen=True)
@@ -71,10 +68,10 @@ class Course:
 
     def starts(self) -> FloatArray:
         """Return what each step starts with on the motion of the mechanism, shape (steps, quantities, n)."""
-        turns, place = np.divmod(np.add.outer(np.arange(self.steps), self.memory.state_steps), self.steps)
-        if not self.along.closed:
-            turns, place = 0 * turns, place + self.steps * turns
-        q, v, a = (each.reshape(*place.shape, -1) for each in self.along.at(np.asarray(self.step * place.ravel())))
+        place = np.add.outer(np.arange(self.steps), self.memory.state_steps)
+        turns = place // self.steps if self.along.closed else 0 * place
+        times = self.step * (place - turns * self.steps)
+        q, v, a = (each.reshape(*place.shape, -1) for each in self.along.at(times.ravel()))
         q = q + np.multiply.outer(turns, self.whole_turn)
         by_q, by_v, by_a = np.array(self.memory.shares, float).T[:, :, np.newaxis]
         return np.asarray(by_q * q + by_v * self.step * v + by_a * self.step**2 * a)
@@ -161,9 +158,8 @@ def _sizes_of_errors(course: Course) -> list[FloatArray]:
     of L^-1 w with S = C_q M^-1 C_q^T = L L^T.
     """
     mass = np.array(course.mechanism.equations.mass, float)
-    t = np.asarray(
-        course.step * (course.memory.carried[course.positions[-1]].step + np.arange(course.steps + 1)), float
-    )
+    first = course.memory.carried[course.positions[-1]].step
+    t = course.step * np.arange(first, first + course.steps + 1, dtype=np.float64)
     sizes: list[FloatArray] = []
     for time, q in zip(t, course.along.at(t)[0], strict=True):
         jacobian = constraint_jacobian(course.mechanism, float(time), q)

@@ -12,13 +12,13 @@ Runs that set out from the scene's initial state show another rate for as long a
 """
 
 from collections.abc import Iterator
-from itertools import islice
+from itertools import islice, pairwise
 from typing import Any
 
 import numpy as np
 
 from bezstab.evidence.own_motions import OwnMotions
-from bezstab.mechanism import Mechanism, resume, states_needed
+from bezstab.mechanism import resume, states_needed
 from bezstab.methods import Method, steps
 from bezstab.stability import BoolArray, FloatArray
 
@@ -29,29 +29,26 @@ DIRECTION = 1e-11  # m, rad: part of a difference in a direction of its own, ten
 REVOLUTIONS = 5  # at most: where lesser multipliers are nearly as large, each takes their share off the rate
 
 
-def rates_of_kicked_revolutions(mechanism: Mechanism, method: Method, motions: OwnMotions) -> FloatArray:
+def rates_of_kicked_revolutions(motions: OwnMotions) -> FloatArray:
     """Return |z| per step of the differences of runs that are kicked from the method's own motion; shape (points,).
 
     Not a number where there is no such motion, and where after two revolutions the differences are no longer linear, or
     nearly lost in rounding.
     """
-    rates = np.full(motions.rates.size, np.nan)
+    rates, course = np.full(motions.rates.size, np.nan), motions.course
     there = np.flatnonzero(motions.there)
-    known = 1 + steps_before_a_kick(method)
-    if known > motions.steps or not there.size:
+    known = 1 + steps_before_a_kick(course.method)
+    if known > course.steps or not there.size:
         return rates
+    following = np.full(there.size, True)
     with np.errstate(all="ignore"):  # of runs that run into infinity
-        run = _kicked_runs(mechanism, method, motions, there, known)
-        before = _differences(next(islice(run, motions.steps - 1, None)), motions.step)
-        following = _in_range(before)
-        for _ in range(REVOLUTIONS - 1):
+        ends = islice(_kicked_runs(motions, there, known), course.steps - 1, None, course.steps)
+        for before, after in pairwise(_differences(state, course.step) for state in ends):
+            following &= _in_range(before) & _in_range(after)
             if not following.any():
                 break
-            after = _differences(next(islice(run, motions.steps - 1, None)), motions.step)
-            following &= _in_range(after)
             for point in np.flatnonzero(following):
-                rates[there[point]] = _largest_multiplier(before[point], after[point]) ** (1 / motions.steps)
-            before = after
+                rates[there[point]] = _largest_multiplier(before[point], after[point]) ** (1 / course.steps)
     return rates
 
 
@@ -81,20 +78,18 @@ def _differences(state: FloatArray, h: float) -> FloatArray:
     return np.moveaxis(q_and_v[:, 0] - q_and_v[:, 1], 2, 0)
 
 
-def _kicked_runs(
-    mechanism: Mechanism, method: Method, motions: OwnMotions, there: Any, known: int
-) -> Iterator[FloatArray]:
+def _kicked_runs(motions: OwnMotions, there: Any, known: int) -> Iterator[FloatArray]:
     """Yield the states of the runs of some points, shape (2 n, 2, kicks, points), step by step.
 
     They begin with so many states of the own motion, of which the newest is kicked, q or h v, a coordinate each.
     """
-    n = mechanism.size
+    course, n = motions.course, motions.course.mechanism.size
     gains = motions.gains[0, there], motions.gains[1, there]
     history = [state.T for state in motions.states[:known, there]]
     undisturbed = history[-1]
     kick = np.where(motions.rates[there] > 1, KICK_OF_GROWTH, KICK_OF_DECAY) * np.array([[[1]], [[-1]]])
-    directions = np.eye(2 * n) / np.repeat([1, motions.step], n)
+    directions = np.eye(2 * n) / np.repeat([1, course.step], n)
     history[-1] = undisturbed[:, np.newaxis, np.newaxis] + directions[:, np.newaxis, :, np.newaxis] * kick
-    count = REVOLUTIONS * motions.steps
-    blocks = resume(mechanism, method, motions.step, gains, history, count, undisturbed=undisturbed)
+    count = REVOLUTIONS * course.steps
+    blocks = resume(course.mechanism, course.method, course.step, gains, history, count, undisturbed=undisturbed)
     return (state for block in blocks for state in block.states)

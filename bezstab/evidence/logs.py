@@ -10,6 +10,7 @@ import re
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
+from decimal import Decimal
 from pathlib import Path
 from typing import BinaryIO
 
@@ -20,9 +21,6 @@ from bezstab.stability import FloatArray
 
 LARGEST = 200_000_000
 """Bytes: minutes to read. A pole needs some hundred rows."""
-
-NUMBER = re.compile(r"[-+]?(?:(?:\d+[.,]?\d*|[.,]\d+)(?:e[-+]?\d+)?|nan|inf(?:inity)?)", re.ASCII | re.IGNORECASE)
-"""A number as simulators write it. float() would take 1_0, which is a label, and digits of other scripts."""
 
 COMMENTS = ("#", "%")
 """What lines begin with that are no data; the last of them above the data may hold the names, as numpy writes it."""
@@ -85,50 +83,45 @@ def log_from(file: BinaryIO, name: str) -> Log:
 
 def parse_log(text: str, name: str) -> Log:
     """Return the log that a text holds; InputError, naming the line, for cells that are no numbers and ragged rows."""
-    lines = list(enumerate(text.splitlines(), start=1))
-    comments = [line.strip() for _, line in lines if line.strip().startswith(COMMENTS)]
-    filled = [(number, line) for number, line in lines if line.strip() and not line.strip().startswith(COMMENTS)]
+    lines = [(number, line.strip(" ")) for number, line in enumerate(text.splitlines(), start=1) if line.strip()]
+    comments = [line for _, line in lines if line.startswith(COMMENTS)]
+    filled = [(number, line) for number, line in lines if not line.startswith(COMMENTS)]
     if not filled:
         raise InputError(f"{name}: is empty")
-    delimiter = _delimiter(filled[min(1, len(filled) - 1)][1])  # the first line may hold names, the last be cut off
+    sample = filled[min(1, len(filled) - 1)][1]  # the first line may hold names, the last be cut off
+    delimiter = next((each for each in (";", "\t", ",") if each in sample.strip()), None)
     rows = [(number, _cells(line, delimiter)) for number, line in filled]
     width = len(rows[0][1])
-    of_comment = _cells(comments[-1].lstrip("".join(COMMENTS)), delimiter) if comments else []
+    of_comment = _cells(comments[-1].lstrip("".join(COMMENTS)).strip(), delimiter) if comments else []
     names = of_comment if len(of_comment) == width else [str(k) for k in range(1, width + 1)]
-    if not all(map(_is_number_or_missing, rows[0][1])):
+    if None in map(_number, rows[0][1]):
         _, names = rows.pop(0)
     if not rows:
         raise InputError(f"{name}: has names, but no rows of numbers")
     values = np.empty((len(rows), width))
-    for place, (number, row) in enumerate(rows):
-        if len(row) != width:
-            raise InputError(f"{name}, line {number}: {len(row)} cells, expected {width} as above")
-        values[place] = _numbers(row, f"{name}, line {number}")
+    for place, (number, cells) in enumerate(rows):
+        if len(cells) != width:
+            raise InputError(f"{name}, line {number}: {len(cells)} cells, expected {width} as above")
+        numbers = [_number(cell) for cell in cells]
+        if None in numbers:
+            raise InputError(f"{name}, line {number}: {cells[numbers.index(None)][:50]!r} is not a number")
+        values[place] = numbers
     return Log(name, tuple(cell.strip() for cell in names), values)
 
 
-def _delimiter(line: str) -> str | None:
-    """Return what separates the cells of a line of numbers; None for blanks."""
-    return next((delimiter for delimiter in (";", "\t", ",") if delimiter in line.strip()), None)
-
-
 def _cells(line: str, delimiter: str | None) -> list[str]:
+    """Return the cells of a line, which blanks separate where no delimiter is given."""
     if delimiter is None:
         return line.split()
-    return next(csv.reader([line.strip(" ")], delimiter=delimiter, skipinitialspace=True))
+    return next(csv.reader([line], delimiter=delimiter, skipinitialspace=True))
 
 
-def _numbers(row: Sequence[str], place: str) -> list[float]:
-    """Return the numbers of a row's cells; InputError for a cell that holds none."""
-    for cell in row:
-        if not _is_number_or_missing(cell):
-            raise InputError(f"{place}: {cell[:50]!r} is not a number")
-    return [float(cell.replace(",", ".")) if cell.strip() else math.nan for cell in row]
-
-
-def _is_number_or_missing(cell: str) -> bool:
-    """Return whether a cell holds a number, with a decimal point or a decimal comma, or nothing."""
-    return not cell.strip() or NUMBER.fullmatch(cell.strip()) is not None
+def _number(cell: str) -> float | None:
+    """Return the number of a cell, with a decimal point or a decimal comma; nan where it is empty, None for text."""
+    try:
+        return float(cell.replace(",", ".")) if cell.strip() else math.nan
+    except ValueError:
+        return None
 
 
 def time_column(log: Log, chosen: str | None = None) -> int | None:
@@ -204,12 +197,5 @@ def decimal_place(values: FloatArray) -> float:
 
     The numbers of a log that was written with a fixed number of decimals are multiples of it. Zero shows none.
     """
-    shown = (repr(value) for value in values[np.isfinite(values) & (values != 0)].tolist())
-    places = [_last_place(text) for text in shown]
-    return 10.0 ** min(places) if places else 0.0
-
-
-def _last_place(text: str) -> int:
-    mantissa, _, exponent = text.partition("e")
-    decimals = mantissa.partition(".")[2]
-    return int(exponent or 0) - (0 if decimals == "0" else len(decimals))
+    shown = [Decimal(repr(value)).normalize() for value in values[np.isfinite(values) & (values != 0)].tolist()]
+    return 10.0 ** min(int(each.as_tuple().exponent) for each in shown) if shown else 0.0

@@ -197,7 +197,7 @@ def measure_poles(
     exact_rates, shown_rates = np.full((2, alpha_hat.size), np.nan)
     if floquet:
         motions = find_own_motions(mechanism, method, h, alpha_hat, beta_hat, duration)
-        exact_rates, shown_rates = motions.rates, rates_of_kicked_revolutions(mechanism, method, motions)
+        exact_rates, shown_rates = motions.rates, rates_of_kicked_revolutions(motions)
     found = []
     for i, (a, b) in enumerate(zip(alpha_hat.tolist(), beta_hat.tolist(), strict=True)):
         responses = difference[:, :, i], size[:, :, i]

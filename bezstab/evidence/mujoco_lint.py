@@ -58,11 +58,8 @@ DIGITS = 12
 AS_IT_IS = Fraction(1)
 """Factor on the step: the model's own."""
 
-FURTHEST = 1e3
-"""Factor on the step beyond which nobody asks, and its inverse."""
-
-FACTORS = np.geomspace(1, FURTHEST, 120)
-"""Where an end of stability is looked for first: the maps here have no gap of 6 %."""
+FACTORS = np.geomspace(1, 1e3, 120)
+"""On the step, or its inverse, where an end of stability is looked for first: the maps here have no gap of 6 %."""
 
 ROUNDING = 1e-9
 """Of |z|, which without damping is one but for it, or zero; and of shares: of less a direction has no mass."""
@@ -298,36 +295,27 @@ def _h_factor(unstable: Callable[[FloatArray], BoolArray]) -> float | None:
 
 @dataclass(frozen=True)
 class _Pull:
-    """What a constraint does with one impedance, if it gets all of its reference: its point at the model's step.
-
-    At a factor f on the step it is (alpha_hat r, beta_hat r^2), r = f but for refsafe: from f = `held_from` on
-    timeconst is 2h, and the point no longer moves.
-    """
+    """What a constraint does with one impedance if it gets all of its reference, and where it has that."""
 
     impedance: float
     where: str
-    alpha_hat: Fraction
-    beta_hat: Fraction
-    held_from: Fraction
-
-    def at(self, factor: Fraction) -> Point:
-        """Return the point at a factor on the step."""
-        reached = min(factor, self.held_from)
-        return self.alpha_hat * reached, self.beta_hat * reached**2
+    point: Point
 
 
-def _pulls(plant: _Plant, constraint: Constraint, solref: tuple[float, float]) -> list[_Pull]:
-    """Return what a constraint does with that solref at the constraint, and past solimp's width."""
+def _pulls(plant: _Plant, constraint: Constraint, solref: tuple[float, float], factor: Fraction) -> list[_Pull]:
+    """Return what a constraint does with that solref at the constraint, and past solimp's width, at a factor on h."""
     first, second = (exact(value) for value in (solref if _of_one_sign(solref) else DEFAULT_SOLREF))
-    alpha_hat, beta_hat = ENGINES["mujoco"].read(plant.h, first, second)
-    held_from = first / (2 * plant.h) if plant.model.refsafe and first > 0 else exact(FURTHEST)
+    h = plant.h * factor
+    if plant.model.refsafe and first > 0:
+        h = min(h, first / 2)  # from there on timeconst is 2h, and the point no longer moves
+    alpha_hat, beta_hat = ENGINES["mujoco"].read(h, first, second)
     at_rest, largest, width = constraint.solimp
     impedances = [at_rest, largest] if width > 0 else [(at_rest + largest) / 2]
     if not constraint.positional:  # friction has no position to be off
         impedances, beta_hat = impedances[:1], Fraction(0)
     share = 1 / exact(largest)
     return [
-        _Pull(impedance, where, alpha_hat * share, beta_hat * exact(impedance) * share**2, held_from)
+        _Pull(impedance, where, (alpha_hat * share, beta_hat * exact(impedance) * share**2))
         for impedance, where in zip(impedances, ("at the constraint", "past solimp's width"), strict=False)
     ]
 
@@ -344,8 +332,8 @@ def _constraint_points(
 ) -> list[tuple[Point, str]]:
     """Return the points that a constraint takes with that solref, and what makes each of it."""
     points = []
-    for pull in _pulls(plant, constraint, solref):
-        alpha_hat, beta_hat = pull.at(factor)
+    for pull in _pulls(plant, constraint, solref, factor):
+        alpha_hat, beta_hat = pull.point
         for share in _shares(plant, constraint, pull.impedance, float(factor) * plant.model.h):
             rounded = exact(round(share, DIGITS))
             why = f"d = {pull.impedance:g} {pull.where}{_share_text(constraint, share, pull.impedance)}"
@@ -559,14 +547,14 @@ def _linted_together(plant: _Plant, constraints: Sequence[Constraint], controlle
     dofs = len(plant.model.mass)
     if dofs > MOST_DOFS:
         return _not_judged("all at qpos0", "together", f"{dofs} degrees of freedom, at most {MOST_DOFS}")
-    pulls = [_pulls(plant, each, each.solref) for each in constraints]
-    # with the equalities' impedances at the constraint, or past solimp's width, whichever is worse
-    choices = {tuple(of_each[which] for of_each in pulls) for which in (0, -1)}
 
     @cache
     def modulus(factor: float) -> float:
-        held_so = (list(zip(constraints, choice, strict=True)) for choice in choices)
-        return max(_modulus(plant, held, controlled, factor) for held in held_so)
+        """Return |z| with impedances at the constraints or past solimp's width, whichever is worse."""
+        pulls = [_pulls(plant, each, each.solref, exact(factor)) for each in constraints]
+        ends = {tuple(of_each[end] for of_each in pulls) for end in (0, -1)}
+        held = (list(zip(constraints, of_all, strict=True)) for of_all in ends)
+        return max(_modulus(plant, each, controlled, factor) for each in held)
 
     def unstable(factors: FloatArray) -> BoolArray:
         return np.array([modulus(factor) > 1 + ROUNDING for factor in factors.tolist()])
@@ -614,7 +602,7 @@ def _step(plant: _Plant, held: Held, controlled: Sequence[Controlled], factor: f
     stiffness, damping = _springs_and_dampers(model, model.feedbacks)
     acceleration = inverse @ np.hstack([-stiffness, -damping, arms.T])  # by positions, velocities and forces
     if held:
-        jacobian, softening, wanted = _constrained(held, factor, h)
+        jacobian, softening, wanted = _constrained(held, h)
         missing = np.hstack([wanted, np.zeros((len(jacobian), motors))]) - jacobian @ acceleration
         forces = np.linalg.solve(jacobian @ inverse @ jacobian.T + np.diag(softening), missing)
         acceleration = acceleration + inverse @ jacobian.T @ forces
@@ -633,13 +621,13 @@ def _step(plant: _Plant, held: Held, controlled: Sequence[Controlled], factor: f
     return whole[: 2 * dofs, : 2 * dofs], whole[: 2 * dofs, 2 * dofs :]
 
 
-def _constrained(held: Held, factor: float, h: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+def _constrained(held: Held, h: float) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return J and R of the constraints' rows, and the acceleration that positions and velocities ask of them."""
     jacobians, softenings, wanted = [], [], []
     for constraint, pull in held:
         assert constraint.jacobian is not None
         assert constraint.diagonal is not None
-        alpha_hat, beta_hat = map(float, pull.at(exact(factor)))
+        alpha_hat, beta_hat = map(float, pull.point)
         jacobians.append(constraint.jacobian)
         softenings.append(_softening(constraint.diagonal, pull.impedance))
         wanted.append(-np.hstack([beta_hat / h**2 * constraint.jacobian, alpha_hat / h * constraint.jacobian]))

@@ -184,6 +184,9 @@ def model_data(mujoco: types.ModuleType, model: Any) -> ModelData:
     directions = {"joint": units, "tendon": np.transpose(tendons), "actuator": np.transpose(actuators)}
     loaded = _Loaded(mujoco, model, data, directions)
     found = [*_of_rows(loaded), *_contacts(loaded), *_passive(loaded), *_actuators(loaded), *_flexes(loaded)]
+    full = (mujoco.mjtWarning.mjWARN_CONTACTFULL, mujoco.mjtWarning.mjWARN_CNSTRFULL)
+    if any(data.warning[each].number for each in full):
+        raise InputError('too little memory for all that can touch and be held: give it more, <size memory="1G"/>')
     _require_sizes("timestep", (model.opt.timestep,))
     if model.opt.timestep <= 0:
         raise InputError(f"timestep = {model.opt.timestep:g}: expected a positive number")
@@ -283,7 +286,7 @@ def _of_rows(loaded: _Loaded) -> Iterator[Constraint | Unjudged]:
             )
 
 
-def _contacts(loaded: _Loaded) -> Iterator[Constraint | Unjudged]:
+def _contacts(loaded: _Loaded) -> Iterator[Constraint]:
     """Yield a contact for each mixture of parameters that two geoms can meet with, as MuJoCo mixes them.
 
     It filters and mixes as soon as two geoms are nearer than their margins, so these are made to reach anywhere.
@@ -294,8 +297,6 @@ def _contacts(loaded: _Loaded) -> Iterator[Constraint | Unjudged]:
     model.opt.o_margin = ANY_DISTANCE
     model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_MIDPHASE  # which goes by margins of before
     mujoco.mj_collision(model, data)
-    if data.warning[mujoco.mjtWarning.mjWARN_CONTACTFULL].number:
-        yield Unjudged("contacts", "contact", "there are more than MuJoCo has memory for")
     geoms = np.sort(data.contact.geom, axis=1)
     order = np.lexsort(geoms.T[::-1])
     order = order[geoms[order, 0] >= 0]  # those of flexes have no two geoms

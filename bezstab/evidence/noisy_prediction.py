@@ -55,29 +55,27 @@ class NoisyPole:
 class NoisyFit:
     """What a stretch of a response shows beside white noise: `poles` by modulus, none where all is noise.
 
-    `noise` is the standard deviation of the noise of each response, in its unit, `start` the first sample of the
-    stretch and `samples` its length.
+    `noise` is the standard deviation of the noise, in the unit of the response, `samples` the length of the stretch.
     """
 
     poles: tuple[NoisyPole, ...]
-    noise: tuple[float, ...]
-    start: int
+    noise: float
     samples: int
 
 
-def fit_in_noise(responses: FloatArray, order: int) -> NoisyFit | None:
-    """Return the poles that responses of one linear system show beside white noise; None if what is left is no noise.
+def fit_in_noise(response: FloatArray, order: int) -> NoisyFit | None:
+    """Return the poles that a response of a linear system shows beside white noise; None if what is left is no noise.
 
-    `responses` has shape (samples, responses), equally spaced in time; the unit is the user's. `order`: largest number
-    of poles. A number that is not finite ends all. Of the stretches from the start on the first that can be explained
-    counts, beginning with the longest. Nonlinear least squares by variable projection (Golub and Pereyra, SIAM J.
-    Numer. Anal. 10, 1973), from the matrix pencil's poles (Hua and Sarkar, IEEE Trans. ASSP 38, 1990).
+    `response` has shape (samples,), equally spaced in time; the unit is the user's. `order`: largest number of poles.
+    A number that is not finite ends it. Of the stretches from the start on the first that can be explained counts,
+    beginning with the longest. Nonlinear least squares by variable projection (Golub and Pereyra, SIAM J. Numer. Anal.
+    10, 1973), from the matrix pencil's poles (Hua and Sarkar, IEEE Trans. ASSP 38, 1990).
     """
-    usable = responses[: int(np.logical_and.accumulate(np.isfinite(responses).all(axis=1)).sum())]
+    usable = response[: int(np.logical_and.accumulate(np.isfinite(response)).sum())]
     for start, end in _stretches(len(usable), order):
         fit = _fit_stretch(usable[start:end], order)
-        if fit is not None and _goes_on(fit[1], usable[end:]):
-            return NoisyFit(*fit, start, end - start)
+        if fit is not None and _goes_on(fit.noise, usable[end:]):
+            return fit
     return None
 
 
@@ -93,7 +91,7 @@ def _stretches(rows: int, order: int) -> Iterator[tuple[int, int]]:
         end //= 2
 
 
-def _goes_on(noise: Sequence[float], rest: FloatArray) -> bool:
+def _goes_on(noise: float, rest: FloatArray) -> bool:
     """Return whether the rows after a stretch have noise of that size too: differences take off what is smooth.
 
     A difference of fourth order of white noise has 70 times its variance.
@@ -101,32 +99,23 @@ def _goes_on(noise: Sequence[float], rest: FloatArray) -> bool:
     if len(rest) < FREEDOM:
         return True
     with np.errstate(all="ignore"):  # zero, and what is too large for float64, are no noise of that size
-        variances = np.mean(np.diff(rest / noise, n=4, axis=0) ** 2, axis=0) / 70
-        apart = np.abs(np.log(variances))
+        apart = np.abs(np.log(np.mean(np.diff(rest / noise, n=4) ** 2) / 70))
     # White noise has logarithms of mean squares with the variance 2 / n, and that of its fourth differences some 4.5
     # times as much, as they are related.
-    return bool((apart < STANDARD_ERRORS * np.sqrt(9 / len(rest))).all())
+    return bool(apart < STANDARD_ERRORS * np.sqrt(9 / len(rest)))
 
 
-def _fit_stretch(samples: FloatArray, order: int) -> tuple[tuple[NoisyPole, ...], tuple[float, ...]] | None:
-    """Return the poles and the noise of one stretch, shape (samples, responses); None if what is left is no noise."""
-    levels = np.abs(samples).max(axis=0)
-    if not levels.all():
+def _fit_stretch(samples: FloatArray, order: int) -> NoisyFit | None:
+    """Return the poles and the noise of one stretch, shape (samples,); None if what is left is no noise."""
+    level = np.abs(samples).max()
+    if not level:
         return None
-    if len(levels) > 1:  # each has noise of its own size: what many poles leave over of it
-        levels *= [_sums(column[:, np.newaxis], order)[-1].deviation for column in (samples / levels).T]
-        if not levels.all():
-            return None
-    samples = samples / levels
-    sums = _sums(samples, order)
-    worth = [each.left_over_worth for each in sums[: order + 1]]
-    best = int(np.argmin(worth))
-    chosen = sums[best]
-    if not chosen.deviation or not _is_white(chosen):
+    sums = _sums(samples / level, order)
+    best = int(np.argmin([each.left_over_worth for each in sums[: order + 1]]))
+    chosen, richer = sums[best], sums[best + 1 : best + BEYOND]
+    if not (chosen.deviation and _unrelated(chosen.left_over) and _even(chosen.left_over)):
         return None
-    richer = sums[best + 1 : best + BEYOND]
-    noise = tuple((chosen.deviation * levels).tolist())
-    return _visible_poles(chosen, richer), noise
+    return NoisyFit(_visible_poles(chosen, richer), float(chosen.deviation * level), len(samples))
 
 
 def _sums(samples: FloatArray, order: int) -> "list[_Sum]":
@@ -161,10 +150,10 @@ def _visible_poles(chosen: "_Sum", richer: "Sequence[_Sum]") -> tuple[NoisyPole,
 
 @dataclass(frozen=True)
 class _Sum:
-    """A sum of powers of the poles z, conjugates too, and what it leaves over of a stretch, (samples, responses).
+    """A sum of powers of the poles z, conjugates too, and what it leaves over of a stretch, (samples,).
 
-    `slopes` (samples * responses, poles) are those of what is left over by ln z of each pole, the amplitudes
-    eliminated. `explained` (poles, samples, responses) is what each explains; of a pair the sum is real.
+    `slopes` (samples, poles) are those of what is left over by ln z of each pole, the amplitudes eliminated.
+    `explained` (samples, poles) is what each explains; of a pair the sum is real.
     """
 
     z: ComplexArray
@@ -177,7 +166,7 @@ class _Sum:
         """Return the sum that leaves least over, of as many poles as nearly fit, by Gauss and Newton's method."""
         best = cls.of(samples, z)
         for _ in range(ITERATIONS):
-            change = -np.linalg.lstsq(best.slopes, best.left_over.ravel(), rcond=None)[0]
+            change = -np.linalg.lstsq(best.slopes, best.left_over, rcond=None)[0]
             following = cls.of(samples, _moved(best.z, np.asarray(change)))
             gained = best.squares - following.squares
             if gained > 0:
@@ -193,10 +182,9 @@ class _Sum:
         growth = (len(samples) - 1) * np.maximum(np.log(np.abs(z)), 0.0)  # so that what grows ends at one
         powers = np.exp(k * np.log(z) - growth)
         inverse = np.linalg.pinv(powers, rcond=EPS * len(samples))
-        explained = powers.T[:, :, np.newaxis] * (inverse @ samples)[:, np.newaxis, :]
+        explained = powers * (inverse @ samples)
         slopes = -k * explained
-        slopes = slopes - powers @ (inverse @ slopes)
-        return cls(z, (samples - explained.sum(axis=0)).real, slopes.reshape(len(z), samples.size).T, explained)
+        return cls(z, samples - explained.real.sum(axis=1), slopes - powers @ (inverse @ slopes), explained)
 
     @property
     def squares(self) -> float:
@@ -205,13 +193,13 @@ class _Sum:
 
     @property
     def unknowns(self) -> int:
-        """Of poles and of their amplitudes in each response."""
-        return len(self.z) * (1 + int(self.left_over.shape[1]))
+        """Of poles and of their amplitudes."""
+        return 2 * len(self.z)
 
     @property
     def freedom(self) -> int:
         """Samples more than unknowns."""
-        return int(np.size(self.left_over)) - self.unknowns
+        return len(self.left_over) - self.unknowns
 
     @property
     def deviation(self) -> float:
@@ -224,7 +212,7 @@ class _Sum:
 
         With a larger price weak poles are left out, and shift the others unseen.
         """
-        samples = self.left_over.size
+        samples = len(self.left_over)
         with np.errstate(divide="ignore"):
             return float(samples * np.log(self.squares) + self.unknowns * np.log(samples))
 
@@ -235,15 +223,14 @@ class _Sum:
 
     def visible(self) -> NDArray[np.intp]:
         """Return in how many samples each pole, a pair together, explains more than the noise."""
-        both = np.where(self.z.imag == 0, 1, 2)[:, np.newaxis, np.newaxis] * np.abs(self.explained.real)
-        return np.asarray((both > self.deviation).any(axis=2).sum(axis=1))
+        both = np.where(self.z.imag == 0, 1, 2) * np.abs(self.explained.real)
+        return np.asarray((both > self.deviation).sum(axis=0))
 
 
 def _signal_vectors(samples: FloatArray) -> FloatArray:
-    """Return the singular vectors of the Hankel matrices of samples, those of the largest values first."""
-    rows = len(samples) // 2
-    hankel = np.concatenate([sliding_window_view(column, len(samples) - rows + 1).T for column in samples.T], axis=1)
-    return np.linalg.svd(hankel.T, full_matrices=False)[2].T
+    """Return the singular vectors of the Hankel matrix of samples, those of the largest values first."""
+    hankel = sliding_window_view(samples, len(samples) // 2)
+    return np.asarray(np.linalg.svd(hankel, full_matrices=False)[2].T)
 
 
 def _shifting_poles(vectors: FloatArray) -> ComplexArray:
@@ -259,12 +246,8 @@ def _moved(z: ComplexArray, change: ComplexArray | FloatArray) -> ComplexArray:
     return np.asarray(moved * np.maximum(1, NEGLIGIBLE / np.abs(moved)))
 
 
-def _is_white(fitted: _Sum) -> bool:
-    """Return whether what is left over has samples that are not related, and is of one size (Ljung and Box)."""
-    return all(_unrelated(column) and _even(column) for column in fitted.left_over.T)
-
-
 def _unrelated(noise: FloatArray) -> bool:
+    """Return whether samples are not related to those a few before them (Ljung and Box)."""
     count = len(noise)
     lags = round(np.log(count))  # as many distances, in samples: Tsay, Analysis of Financial Time Series, section 2.2
     total = float(noise @ noise)

@@ -37,14 +37,13 @@ BESIDE = 1.0  # m, rad, from the motion of the mechanism: weak feedback drifts b
 
 @dataclass(frozen=True, eq=False, repr=False)
 class OwnMotions:
-    """The method's own motions at a row of points, `steps` steps of `step` (s) each, with 2 alpha and beta^2, `gains`.
+    """The method's own motions at a row of points, along a course, with 2 alpha and beta^2, `gains`, shape (2, points).
 
     `rates` are |z| per step, on the mechanism's motion where there is none of the method's own; shape (points,).
     `states` hold q and v (SI units) as steps begin, shape (steps, points, 2 n), not a number where there is none.
     """
 
-    step: float
-    steps: int
+    course: Course
     gains: FloatArray
     rates: FloatArray
     states: FloatArray
@@ -75,7 +74,7 @@ def find_own_motions(
     lost = np.isnan(rates)
     if lost.any():
         rates[lost] = rates_on_the_motion(course, gains[:, lost])
-    return OwnMotions(course.step, course.steps, gains, rates, states)
+    return OwnMotions(course, gains, rates, states)
 
 
 def _rates_and_states(course: Course, gains: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -20,6 +20,7 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from itertools import product
 
 import numpy as np
 from numpy.polynomial.polynomial import polyder, polyval2d, polyval3d
@@ -197,9 +198,11 @@ def _fitted(samples: FloatArray, rounding: float, of_two_runs: bool) -> ProbedPo
         uncertainty = max(as_given.uncertainty, abs(as_given.pole - of_changes.pole) + of_changes.uncertainty)
         return _claimed(replace(as_given, uncertainty=uncertainty), len(samples), SLOWLY)
     leaves_the_linear_range = len(_linear_limits(samples)) > 1  # then what is left over is no noise, but looks like it
-    covered = None if leaves_the_linear_range else fit_in_noise(samples, ORDER)
-    if covered is not None:
-        return _told_in_noise(covered, len(samples), of_two_runs)
+    in_noise = [] if leaves_the_linear_range else [fit_in_noise(response, ORDER) for response in samples.T]
+    fits_in_noise = [fit for fit in in_noise if fit is not None]
+    if fits_in_noise:  # of several responses that which shows its pole best
+        best = min(fits_in_noise, key=lambda fit: fit.poles[0].uncertainty if fit.poles else np.inf)
+        return _told_in_noise(best, len(samples), of_two_runs)
     if isinstance(as_given, Refusal):
         return _refused(len(samples), as_given.reason)
     return _refused(len(samples), ON_THE_CIRCLE if _on_the_circle(as_given) else FORCED)
@@ -210,7 +213,7 @@ def _told_in_noise(fit: NoisyFit, rows: int, of_two_runs: bool) -> ProbedPole:
 
     In one run a pole near 1 is what the motion forces, and one on the circle may be.
     """
-    noise = ", ".join(f"{level:.2g}" for level in fit.noise)
+    noise = f"{fit.noise:.2g}"
     poles = [each for each in fit.poles if of_two_runs or abs(each.pole - 1) > RESOLVED]
     if not poles:
         return _refused(rows, (FORCED_IN_NOISE if fit.poles else ALL_NOISE).format(noise))
@@ -389,12 +392,8 @@ def kicked_responses(
 
 def _polynomial_without_zeros(method: Method, alpha_hat: Fraction, beta_hat: Fraction) -> tuple[Fraction, ...]:
     """Return P at one point in ascending powers of z, monic and without roots at zero."""
-    polynomial = closed_loop_at(method, alpha_hat, beta_hat)
-    while polynomial and polynomial[-1] == 0:
-        polynomial.pop()
-    while polynomial and polynomial[0] == 0:
-        polynomial.pop(0)
-    return tuple(coefficient / polynomial[-1] for coefficient in polynomial)
+    polynomial = np.trim_zeros(np.array(closed_loop_at(method, alpha_hat, beta_hat)))
+    return tuple(polynomial / polynomial[-1])
 
 
 def _likeness(
@@ -514,11 +513,8 @@ def _newton(equations: ComplexArray, point: FloatArray) -> tuple[FloatArray, Com
 
 def _starting_points(method: Method, z: ComplexArray) -> FloatArray:
     """Return points, shape (starts, 2): that of an exact integrator, z = e^mu, and some over a method's region."""
-    (low_alpha, high_alpha), (low_beta, high_beta) = window(region(method))
-    alpha_hat, beta_hat = np.meshgrid(
-        np.linspace(low_alpha, high_alpha, STARTS), np.linspace(low_beta, high_beta, STARTS)
-    )
-    return np.concatenate([[_exact_integrators_point(z)], np.stack([alpha_hat.ravel(), beta_hat.ravel()], axis=1)])
+    axes = (np.linspace(low, high, STARTS) for low, high in window(region(method)))
+    return np.array([_exact_integrators_point(z), *product(*axes)])
 
 
 def _exact_integrators_point(z: ComplexArray) -> tuple[float, float]:

@@ -19,7 +19,6 @@ import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import product
 
 import mpmath as mp
 
@@ -92,15 +91,18 @@ def _mus(method: Method, alpha_hat: float, beta_hat: float) -> list[mp.mpc]:
 def _seen_and_reference(
     table: Sequence[Sequence[mp.mpf]], mu: mp.mpc, found: Sequence[mp.mpc]
 ) -> list[tuple[mp.mpc, mp.mpc]]:
-    """Return the roots of pi(z, mu), each beside the pole that was found for it."""
+    """Return the roots of pi(z, mu), each beside the nearest pole that was found."""
     polynomial = [mp.polyval(row[::-1], mu) for row in table][::-1]  # in z, descending powers
     smallest = min(abs(c) * abs(mu) ** j for row in table for j, c in enumerate(row) if c)
     if smallest < sys.float_info.min:  # float64 no longer holds all of its digits
-        next_to_one = _polished(polynomial, mp.mpc(1))
-        if not next_to_one:
-            raise NumericalError("no root next to 1 was found")
-        return [(min(found, key=lambda z: abs(z - next_to_one)), next_to_one)]
-    return [(found[index], root) for index, root in all_roots(polynomial, found).items()]
+        roots = different_roots(polynomial, [mp.mpc(1)], 1)
+    else:
+        roots = different_roots(polynomial, found, len(polynomial) - 1)
+
+    def beside(root: mp.mpc) -> mp.mpc:
+        return min(found, key=lambda z: abs(z - root))
+
+    return [(beside(root), root) for root in roots]
 
 
 def _judged_pole(table: Sequence[Sequence[mp.mpf]], mu: mp.mpc, seen: mp.mpc, z: mp.mpc) -> PoleDigits:
@@ -122,30 +124,19 @@ def _condition(table: Sequence[Sequence[mp.mpf]], mu: mp.mpc, z: mp.mpc) -> mp.m
     return sum(terms) / abs(z * slope)
 
 
-def all_roots(polynomial: Sequence[mp.mpf], starts: Sequence[mp.mpc]) -> dict[int, mp.mpc]:
-    """Return every root by the number of the start that is nearest to it, relative to its size.
+def different_roots(polynomial: Sequence[mp.mpf], starts: Sequence[mp.mpc], count: int) -> list[mp.mpc]:
+    """Return the different roots to which Newton's method leads from the starts; NumericalError if fewer than `count`.
 
-    The polynomial's coefficients stand in descending powers. Each start belongs to one root at most: of two roots that
-    nearly coincide both starts may lead to the same, and yet each root has a start beside it. NumericalError if the
-    starts do not lead to as many different roots as the degree.
+    The polynomial's coefficients stand in descending powers.
     """
     roots: list[mp.mpc] = []
     for start in starts:
         root = _polished(polynomial, start)
         if root is not None and all(abs(root - other) > SAME * abs(other) for other in roots):
             roots.append(root)
-    degree = len(polynomial) - 1
-    if len(roots) < degree:
-        raise NumericalError(f"only {len(roots)} of {degree} roots were found")
-    pairs = sorted(
-        product(range(len(starts)), range(degree)),
-        key=lambda pair: abs(starts[pair[0]] - roots[pair[1]]) / (abs(roots[pair[1]]) or 1),
-    )
-    beside: dict[int, int] = {}  # start by root
-    for index, number in pairs:
-        if number not in beside and index not in beside.values():
-            beside[number] = index
-    return {index: roots[number] for number, index in beside.items()}
+    if len(roots) < count:
+        raise NumericalError(f"only {len(roots)} of {count} roots were found")
+    return roots
 
 
 def _polished(polynomial: Sequence[mp.mpf], z: mp.mpc) -> mp.mpc | None:

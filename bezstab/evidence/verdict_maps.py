@@ -9,10 +9,11 @@ from numpy.typing import NDArray
 from bezstab.errors import InputError, NumericalError
 from bezstab.evidence.kick_fates import fates, follow
 from bezstab.evidence.measured_poles import kicked_motions, nothing_happens_without_feedback
+from bezstab.evidence.mixing_poles import nearest_poles
 from bezstab.mechanism import Scene, compiled_mechanism, runs_compiled, turning_normals
 from bezstab.methods import Method, evaluations
 from bezstab.read_only import ReadOnlyArrays
-from bezstab.stability import BoolArray, FloatArray, pole_map, poles, region, turning_shift, useful_window
+from bezstab.stability import BoolArray, FloatArray, pole_map, region, useful_window
 
 MAP_RUN = 2000
 """Steps after the kick."""
@@ -175,11 +176,11 @@ def verdict_map(chunks: Sequence[MapRows], found: Sequence[Mapping[str, NDArray[
 
 def _furthest(rows: MapRows) -> FloatArray:
     """Return the largest modulus that the motion can make of any pole, |z| + |z chi| kappa h; shape of the rows."""
-    alpha_hat, beta_hat = rows.alpha_hat, rows.beta_hat[:, np.newaxis]
-    z = poles(rows.method, alpha_hat, beta_hat)
-    shift = turning_shift(rows.method, alpha_hat[:, np.newaxis], beta_hat[..., np.newaxis], z)
+    alpha_hat, beta_hat = np.meshgrid(rows.alpha_hat, rows.beta_hat)
+    nearest = nearest_poles(rows.method, alpha_hat.ravel(), beta_hat.ravel())
     with np.errstate(invalid="ignore"):  # zero times infinite: nothing is known
-        return np.asarray((np.abs(z) + np.abs(shift) * _turning_of_a_step(rows)).max(axis=-1))
+        furthest = (np.abs(nearest.z) + np.abs(nearest.shift) * _turning_of_a_step(rows)).max(axis=1)
+    return np.asarray(furthest.reshape(alpha_hat.shape))
 
 
 def _turning_of_a_step(rows: MapRows) -> float:

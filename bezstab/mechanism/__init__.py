@@ -26,7 +26,6 @@ from bezstab.mechanism.runner import (
 )
 from bezstab.mechanism.scene_files import load_scene, parse_scene, read_scene, shipped_scenes
 from bezstab.mechanism.scenes import COORDINATES, GROUND, Body, Driver, Force, Revolute, Scene, at_speed
-from bezstab.mechanism.second_order_memory import Memory, check_after_step, memory
+from bezstab.mechanism.second_order_memory import Memory, memory
 from bezstab.mechanism.simulation import MOST_STEPS, Simulation, simulated
 from bezstab.mechanism.start import constraint_errors, constraint_jacobian, initial_state, perturbed_state
-from bezstab.mechanism.varying_runs import simulated_with_steps

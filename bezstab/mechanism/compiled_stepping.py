@@ -7,10 +7,10 @@ numba makes of a scene is kept in the user's cache folder, under a name that is 
 import hashlib
 import os
 import sys
-from collections.abc import Callable
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
+from types import FunctionType
 from typing import Any
 
 import numpy as np
@@ -18,22 +18,7 @@ import numpy as np
 from bezstab import compiling, stabilising
 from bezstab.compiling import INNER, check_numba, compiled_choice, compiler, numba_is_installed
 from bezstab.mechanism.compiled import Mechanism
-from bezstab.mechanism.generated_code import (
-    CODES,
-    COSINE,
-    LONG,
-    MINUS,
-    OVER,
-    PLUS,
-    ROOT,
-    SINE,
-    TAKE,
-    TIMES,
-    Operations,
-    compiled_source,
-    machine_source,
-    operations,
-)
+from bezstab.mechanism.generated_code import CODES, TAKE, compiled_source, function_of_a_lane
 from bezstab.mechanism.registers import FloatArray
 from bezstab.mechanism.stepping import TakeSteps, read
 
@@ -99,63 +84,20 @@ def machine_steps(mechanism: Mechanism, solving: bool, projecting: bool, stride:
         Code from disk is linked by its names: two scenes must not share any.
         """
         inline = "never" if function.__name__ in CALLED_OFTEN else "always"
-        function.__name__ = function.__qualname__ = f"{function.__name__}_{file.parent.name}"
+        name = f"{function.__name__}_{file.parent.name}"
+        named = FunctionType(function.__code__, function.__globals__, name, None, function.__closure__)
+        named.__qualname__ = name
         # where nothing allocates, nothing need count references to arrays: that takes longer than most operations
-        return numba.njit(error_model="numpy", _nrt=False, inline=inline, **INNER)(function)
+        return numba.njit(error_model="numpy", _nrt=False, inline=inline, **INNER)(named)
 
     places: dict[str | float, int] = {}
     for name, code in codes.items():
-        if len(codes["accelerations"].lines) > LONG:
-            of_a_lane = _by_operations(operations(code, places), n, stride, made(take_operations))
-        else:
-            of_a_lane = compiled_source(machine_source(name, code, stride), np)[f"{name}_of"]
-        own[f"{name}_of"] = made(of_a_lane)
+        own[f"{name}_of"] = made(function_of_a_lane(name, code, stride, places, made))
     # numba keeps what is called from a text with a file, if it has nothing but that text from around it
     take = compiled_source(TAKE, np, {"take_steps": read(own, made)}, str(file))["take"]
     take.__name__ = take.__qualname__ = f"take_{file.parent.name}"
     steps = numba.njit(error_model="numpy", _nrt=False, no_cfunc_wrapper=True, cache=_keep(file))(take)
     return steps, np.array([key if isinstance(key, float) else 0.0 for key in places])
-
-
-def _by_operations(code: Operations, n: int, stride: int, take: Callable[..., None]) -> Callable[..., float]:
-    """Return the function of a lane that a long code stands for."""
-    rows, results, pivots = code.rows, code.results, code.pivots
-
-    def of_a_lane(t: float, gains: Any, state: Any, found: Any, variables: Any, lane: int) -> float:
-        variables[0], variables[1], variables[2] = t, gains[0, lane], gains[1, lane]
-        for i in range(n):
-            variables[3 + i] = state[0, i * stride + lane]
-            variables[3 + n + i] = state[1, i * stride + lane]
-        take(rows, variables)
-        for i in range(len(results)):
-            found[i * stride + lane] = variables[results[i]]
-        pivot = 1.0
-        for j in range(len(pivots)):
-            pivot = min(pivot, (variables[pivots[j, 0]] / variables[pivots[j, 1]]).real)
-        return pivot
-
-    return of_a_lane
-
-
-def take_operations(rows: Any, variables: Any) -> None:
-    """Take single operations on variables, one after the other."""
-    for k in range(len(rows)):
-        kind, result = rows[k, 0], rows[k, 1]
-        left, right = variables[rows[k, 2]], variables[rows[k, 3]]
-        if kind == TIMES:
-            variables[result] = left * right
-        elif kind == MINUS:
-            variables[result] = left - right
-        elif kind == PLUS:
-            variables[result] = left + right
-        elif kind == OVER:
-            variables[result] = left / right
-        elif kind == SINE:
-            variables[result] = np.sin(left)
-        elif kind == COSINE:
-            variables[result] = np.cos(left)
-        elif kind == ROOT:
-            variables[result] = np.sqrt(left)
 
 
 def _kept_file(made_of: object) -> Path:

@@ -4,42 +4,31 @@ Along the true motion d/dt (kinetic + potential) is the power of the drivers plu
 known at the run's times; their integrals are the work.
 """
 
-from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bezstab.linear_equations import solution
 from bezstab.mechanism.observation import Observation
-from bezstab.read_only import ReadOnlyArrays
 
 FloatArray = NDArray[np.float64]
 
 NODES = 10  # of the polynomials that are integrated: order 10, above that of nearly every method, by weights below 3
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class EnergyBalance(ReadOnlyArrays):
-    """Along a run, each of shape (times,) and in J: kinetic and potential energy, work of drivers and of forces.
+class EnergyBalance(NamedTuple):
+    """Along a run, each of shape (times,) and in J: work of drivers and of forces, and the drift.
 
     The forces are the applied ones of the scene, constant forces, torques and dampers; gravity and springs have a
     potential instead. Work counts from the start. `drift` is what the energy has gained without it: an error.
     """
 
-    energy: FloatArray
     driver_work: FloatArray
     force_work: FloatArray
-
-    @property
-    def drift(self) -> FloatArray:
-        """The change of energy since the start that no work explains (J)."""
-        gained: FloatArray = self.energy - self.energy[0]
-        return gained - self.driver_work - self.force_work
-
-    def __repr__(self) -> str:
-        return f"EnergyBalance({len(self.energy)} times, drift {self.drift[-1]:.3g} J)"
+    drift: FloatArray
 
 
 def energy_balance(observation: Observation, steps: float | FloatArray, nodes: int = NODES) -> EnergyBalance:
@@ -47,10 +36,11 @@ def energy_balance(observation: Observation, steps: float | FloatArray, nodes: i
 
     In J, shape (times,) each; powers are integrated as by `running_integral`.
     """
+    gained = observation.energy - observation.energy[0]
     with np.errstate(all="ignore"):  # of a broken-down run's last multipliers
         driver_work = running_integral(observation.driver_power, steps, nodes)
         force_work = running_integral(observation.applied_power, steps, nodes)
-    return EnergyBalance(energy=observation.energy, driver_work=driver_work, force_work=force_work)
+        return EnergyBalance(driver_work, force_work, gained - driver_work - force_work)
 
 
 def running_integral(rates: FloatArray, steps: float | FloatArray, nodes: int = NODES) -> FloatArray:

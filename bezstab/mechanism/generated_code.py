@@ -332,22 +332,31 @@ def _tuple_text(entries: Iterable[str]) -> str:
 #                                       variables[w] = variables[t] - variables[c]      (MINUS, w, t, c)
 
 LONG = 1000
-"""Lines of an acceleration above which it becomes a table of operations; a shorter one runs faster as it is."""
+"""Lines above which a code becomes a table of operations; a shorter one runs faster as it is."""
 
 PLUS, MINUS, TIMES, OVER, SINE, COSINE, ROOT = range(7)
 KINDS = {ast.Add: PLUS, ast.Sub: MINUS, ast.Mult: TIMES, ast.Div: OVER, "sin": SINE, "cos": COSINE, "sqrt": ROOT}
 """The kinds of operations, by what the text has for them."""
 
 
-def machine_source(name: str, code: StateCode, stride: int) -> str:
-    """Return the source of the function of that name for a lane of so many."""
+def function_of_a_lane(
+    name: str, code: StateCode, stride: int, places: dict[str | float, int], made: Callable[[Any], Any]
+) -> Callable[..., float]:
+    """Return the function of that name for a lane of so many, to be made machine code as `made` does.
+
+    `places` gets those of its variables and numbers, where it is long.
+    """
+    if len(code.lines) > LONG:
+        return by_operations(operations(code, places), code.coordinates, stride, made(take_operations))
     lines = ["two_alpha, beta_squared = gains[0, lane], gains[1, lane]"]
     for half, given in enumerate(("q", "v")):
         lines += [f"{given}{i} = state[{half}, {i * stride} + lane]" for i in range(code.coordinates)]
     lines += code.lines
     lines += [f"found[{place * stride} + lane] = {result}" for place, result in enumerate(code.results)]
     lines += ["pivot = 1.0", *(f"pivot = min(pivot, ({each}).real)" for each in code.pivots), "return pivot"]
-    return "\n".join([f"def {name}_of(t, gains, state, found, variables, lane):", *(f" {line}" for line in lines)])
+    source = "\n".join([f"def {name}_of(t, gains, state, found, variables, lane):", *(f" {line}" for line in lines)])
+    function: Callable[..., float] = compiled_source(source, np)[f"{name}_of"]
+    return function
 
 
 @dataclass(frozen=True)
@@ -400,3 +409,44 @@ def operations(code: StateCode, places: dict[str | float, int]) -> Operations:
     pivots = [[places[f"D{j}"], places[f"S{j}"]] for j in range(code.constraints)]
     # without a sign: numba need not ask whether they count from the end
     return Operations(*(np.array(each, np.uint32) for each in (rows, [places[each] for each in code.results], pivots)))
+
+
+def by_operations(code: Operations, n: int, stride: int, take: Callable[..., None]) -> Callable[..., float]:
+    """Return the function of a lane that takes single operations, by `take_operations` or what is made of it."""
+    rows, results, pivots = code.rows, code.results, code.pivots
+
+    def of_a_lane(t: float, gains: Any, state: Any, found: Any, variables: Any, lane: int) -> float:
+        variables[0], variables[1], variables[2] = t, gains[0, lane], gains[1, lane]
+        for i in range(n):
+            variables[3 + i] = state[0, i * stride + lane]
+            variables[3 + n + i] = state[1, i * stride + lane]
+        take(rows, variables)
+        for i in range(len(results)):
+            found[i * stride + lane] = variables[results[i]]
+        pivot = 1.0
+        for j in range(len(pivots)):
+            pivot = min(pivot, (variables[pivots[j, 0]] / variables[pivots[j, 1]]).real)
+        return pivot
+
+    return of_a_lane
+
+
+def take_operations(rows: Any, variables: Any) -> None:
+    """Take single operations on variables, one after the other."""
+    for k in range(len(rows)):
+        kind, result = rows[k, 0], rows[k, 1]
+        left, right = variables[rows[k, 2]], variables[rows[k, 3]]
+        if kind == TIMES:
+            variables[result] = left * right
+        elif kind == MINUS:
+            variables[result] = left - right
+        elif kind == PLUS:
+            variables[result] = left + right
+        elif kind == OVER:
+            variables[result] = left / right
+        elif kind == SINE:
+            variables[result] = np.sin(left)
+        elif kind == COSINE:
+            variables[result] = np.cos(left)
+        elif kind == ROOT:
+            variables[result] = np.sqrt(left)

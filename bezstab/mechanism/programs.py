@@ -108,7 +108,7 @@ def program_of(scheme: SecondOrder) -> Program:
         moves=tuple((register[new], register[old]) for old, new in zip(carried, newer, strict=True)),
         state=(register[state[0]], register[state[1]]),
         corrected=tuple(
-            shares[:2] if step == remembered.newest else (ZERO, ZERO)
+            shares[:2] if step == 0 else (ZERO, ZERO)
             for shares, step in zip(remembered.shares, remembered.state_steps, strict=True)
         ),
     )

@@ -76,7 +76,7 @@ class Room(NamedTuple):
 
 
 class Steps(NamedTuple):
-    """When steps begin (s), how long they are (s), and their gains, shape (steps or 1, 2, runs), SI units."""
+    """When steps begin (s), how long they are (s), and their gains, shape (steps, 2, runs), SI units."""
 
     times: FloatArray
     lengths: FloatArray

@@ -15,7 +15,7 @@ from bezstab.mechanism.compiled import SINGULAR, Mechanism, acceleration_functio
 from bezstab.mechanism.compiled_stepping import LANES, machine_steps, runs_compiled
 from bezstab.mechanism.programs import program_of
 from bezstab.mechanism.registers import MOST_ITERATIONS, Steps, room_of, rows_of
-from bezstab.mechanism.second_order_memory import check_after_step, memory
+from bezstab.mechanism.second_order_memory import memory
 from bezstab.mechanism.start import initial_state
 from bezstab.mechanism.stepping import (
     BLOWN_UP,
@@ -136,9 +136,8 @@ def simulate(
     not solve ends the run, and `failure` says so. `compiled` says whether machine code takes the steps; by default that
     is as BEZSTAB_COMPILED says, or where it pays. What is done `after` a step is done to each new state,
     those of the start too.
-    InputError for a start that has blown up before, where numba is asked for and missing, and as `check_after_step`.
+    InputError for a start that has blown up before, where numba is asked for and missing, and as `memory`.
     """
-    check_after_step(method, after)
     whole_step = h * float(method.step_multiple)
     count = round(duration / whole_step)
     first = checked_start(initial_state(mechanism) if state is None else state)
@@ -149,6 +148,23 @@ def simulate(
     return recorded(
         mechanism, method, first, times, march(mechanism, method, whole_step, gains, first, start, count, how), how
     )
+
+
+def simulate_steps(
+    mechanism: Mechanism, method: Method, steps: Steps, state: tuple[FloatArray, FloatArray], after: AfterStep
+) -> Trajectory:
+    """Return the run of a one-step method by steps of lengths of their own; else as `simulate`.
+
+    The next state follows from the last and, with some methods, an acceleration stored beside it. Inside a second-order
+    scheme h = 1, where positions, h v and h^2 a are carried: a step r times as long as the one before begins with r
+    times that h v and r^2 times that h^2 a. The acceleration itself is what it was, whatever the gains do.
+    """
+    first, length = checked_start(state), float(steps.lengths[0])
+    how = How(runs_compiled(len(steps.lengths) * evaluations(method)), judged=True, after=after)
+    two_alpha, beta_squared = steps.gains[0, :, 0].tolist()
+    carried = carried_quantities(mechanism, method, length, (two_alpha, beta_squared), [first], first, how.counts)
+    times = np.append(steps.times, steps.times[-1] + steps.lengths[-1])
+    return recorded(mechanism, method, first, times, steps_in_blocks(mechanism, method, steps, carried, (), how), how)
 
 
 def checked_start(state: tuple[FloatArray, FloatArray]) -> FloatArray:
@@ -238,16 +254,11 @@ def resume(
     given = [np.asarray(state) for state in (*history, history[-1] if undisturbed is None else undisturbed)]
     batch = np.broadcast_shapes(*(state.shape[1:] for state in given), *map(np.shape, gains))
     *states, calm = (_for_batch(state, batch) for state in given)
-    carried, start, repeated = carried_quantities(mechanism, method, h, gains, states, calm, how.counts)
-    spread_gains = np.array([[np.broadcast_to(gain, batch).ravel() for gain in gains]], np.float64)
-    times = start + h * np.arange(count + repeated, dtype=np.float64)
-    steps = Steps(times, np.broadcast_to(np.float64(h), times.shape), spread_gains)
-    # of turns whose states are in the history already only what they give beyond them matters: the next needs it
-    for block in steps_in_blocks(mechanism, method, steps, carried, batch, how):
-        left_out = min(repeated, len(block.states))
-        repeated -= left_out
-        if len(block.states) > left_out or block.cause:
-            yield Block(block.states[left_out:], block.pivots[left_out:], block.cause)
+    carried = carried_quantities(mechanism, method, h, gains, states, calm, how.counts)
+    of_lanes = np.array([np.broadcast_to(gain, batch).ravel() for gain in gains], np.float64)
+    times = h * np.arange(len(states) - 1, len(states) - 1 + count, dtype=np.float64)
+    steps = Steps(times, np.broadcast_to(np.float64(h), count), np.broadcast_to(of_lanes, (count, *of_lanes.shape)))
+    yield from steps_in_blocks(mechanism, method, steps, carried, batch, how)
 
 
 def _for_batch(state: FloatArray, batch: tuple[int, ...]) -> FloatArray:
@@ -277,8 +288,7 @@ def steps_in_blocks(
     at_once = max(1, NUMBERS_OF_A_BLOCK // (2 * n * stride))
     for first in range(0, len(steps.times), at_once):
         some = slice(first, first + at_once)
-        times, lengths = steps.times[some], np.ascontiguousarray(steps.lengths[some])
-        gains = steps.gains if len(steps.gains) == 1 else steps.gains[some]
+        times, lengths, gains = (np.ascontiguousarray(each[some]) for each in steps)
         parts, told = [], np.zeros((len(times), 6))
         for group, room in zip(groups, rooms, strict=True):
             found = np.empty((len(times), 2, n * stride), carried.dtype)
@@ -314,18 +324,17 @@ def carried_quantities(
     history: Sequence[FloatArray],
     undisturbed: FloatArray,
     counts: FloatArray,
-) -> tuple[FloatArray, float, int]:
-    """Return what a method carries into its first turn after `history`, when that begins, and what it repeats.
+) -> FloatArray:
+    """Return what a method carries into its first turn after `history`, as on a motion through its states.
 
-    That is a time in s, and a number of turns. It is as on a motion through the states of the history: helpers are
-    what belongs to position, velocity and acceleration, and accelerations those of the states. Shape
+    Helpers are what belongs to position, velocity and acceleration, and accelerations those of the states. Shape
     (quantities, n lanes), in units in which h = 1.
     """
     scheme = second_order_form(method.scheme)
     remembered = memory(scheme)
     n = mechanism.size
     acceleration = acceleration_function(mechanism, np)
-    first = len(history) - 1 - remembered.newest
+    newest = len(history) - 1
     # those of a method with steps of its own have been evaluated by the steps before
     counted = implicit(method) or isinstance(method.scheme, SecondOrder)
 
@@ -333,18 +342,18 @@ def carried_quantities(
     def accelerations(place: int) -> FloatArray:
         """Return qddot at a place of the history."""
         counts[EVALUATIONS] += counted
-        state = undisturbed if place == len(history) - 1 else history[place]
+        state = undisturbed if place == newest else history[place]
         return np.stack(np.broadcast_arrays(*acceleration(place * h, *gains, state[:n], state[n:])))
 
     carried = []
     for shares, step in zip(remembered.shares, remembered.state_steps, strict=True):
         by_q, by_v, by_a = (float(share) * h**power for power, share in enumerate(shares))
-        state = history[first + step]
+        state = history[newest + step]
         entries = by_q * state[:n] + by_v * state[n:]
         if by_a:
-            entries = entries + by_a * accelerations(first + step)
+            entries = entries + by_a * accelerations(newest + step)
         carried.append(np.broadcast_to(entries, (n, *history[-1].shape[1:])).reshape(-1))
-    return np.array(carried), first * h, remembered.newest
+    return np.array(carried)
 
 
 def breakdown(state: FloatArray, pivot: float = 1.0, unsolved: float = 0.0, unsettled: float = 0.0) -> str | None:

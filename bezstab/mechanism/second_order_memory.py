@@ -1,14 +1,8 @@
 """What a second-order scheme carries from step to step, when it evaluates, and how it starts.
 
-A turn of its equations gives x, v, a and helpers at their latest steps. What the next turn needs of them, one step
-further back, is carried. Most schemes end with x1 and v1; one such as
-
-    x2 = 2 x1 - x0 + a1,   v1 = 1/2 x2 - 1/2 x0,   a1 = acceleration(x1, v1)
-
-knows the position one step earlier: its turn begins with the newest state at step 1, not 0, and gives v there anew.
-
-All of it is read off the three exact motions of the scheme: a helper that starts has the value that belongs to the
-state there, that of the motion at rest times x, and so on.
+A turn of its equations gives x1, v1, accelerations and helpers at their latest steps. What the next turn needs of them,
+one step further back, is carried. All of it is read off the three exact motions of the scheme: a helper that starts has
+the value that belongs to the state there, that of the motion at rest times x, and so on.
 """
 
 from dataclasses import dataclass
@@ -22,16 +16,13 @@ from bezstab.methods import (
     STEADY,
     Assignment,
     Evaluation,
-    Method,
     Motions,
     Quantity,
     SecondOrder,
     evaluation_times,
     exact_motions,
-    second_order_form,
     value_at_start,
 )
-from bezstab.stabilising import NOTHING, AfterStep, held_by
 
 POSITION, VELOCITY, ACCELERATION = "x", "v", "a"
 Equation = Assignment | Evaluation
@@ -45,14 +36,13 @@ Shares = tuple[Fraction, Fraction, Fraction]
 class Memory:
     """What a scheme carries from turn to turn, and when it evaluates.
 
-    `carried` names the quantities by their step as a turn begins, each name's oldest first. The newest state has step
-    `newest` then, and `past` states before it are needed. `shares` say what a carried quantity starts with, in terms
+    `carried` names the quantities by their step as a turn begins, each name's oldest first. The newest state has step 0
+    then, and `past` states before it are needed. `shares` say what a carried quantity starts with, in terms
     of the state at step `state_steps`, in the same order. `moments` are the times of the evaluations from step 0 on, in
     steps, by their results.
     """
 
     carried: tuple[Quantity, ...]
-    newest: int
     past: int
     shares: tuple[Shares, ...]
     state_steps: tuple[int, ...]
@@ -61,17 +51,17 @@ class Memory:
 
 @cache
 def memory(scheme: SecondOrder) -> Memory:
-    """Return what the scheme carries, and when it evaluates."""
+    """Return what the scheme carries, and when it evaluates. InputError where its turn ends with no state."""
     carried = tuple(_carried(scheme))
-    latest = {equation.result.name: equation.result.step for equation in scheme.equations}
-    newest = max(latest[POSITION], latest[VELOCITY]) - 1
+    for equation in scheme.equations:
+        if equation.result.name in (POSITION, VELOCITY) and equation.result.step > 1:
+            raise InputError(f"{equation.result}: a step that a run can take ends with x1 and v1, none later")
     motions = exact_motions(scheme)
     # a quantity starts from the state of its own step, where the history of the scheme has it
-    state_steps = tuple(max(min(quantity.step, newest), scheme.oldest) for quantity in carried)
+    state_steps = tuple(max(min(quantity.step, 0), scheme.oldest) for quantity in carried)
     return Memory(
         carried=carried,
-        newest=newest,
-        past=newest - scheme.oldest,
+        past=-scheme.oldest,
         shares=tuple(
             _shares(motions, quantity, quantity.step - state_step)
             for quantity, state_step in zip(carried, state_steps, strict=True)
@@ -79,15 +69,6 @@ def memory(scheme: SecondOrder) -> Memory:
         state_steps=state_steps,
         moments=evaluation_times(scheme),
     )
-
-
-def check_after_step(method: Method, after: AfterStep) -> None:
-    """Raise InputError where something is to be done after a step, and no turn of the method ends with a state."""
-    if after != NOTHING and memory(second_order_form(method.scheme)).newest:
-        raise InputError(
-            f"{held_by(after, feedback=False)}: {method.name} has its position a step ahead of its velocity: "
-            "expected a method that has both at once"
-        )
 
 
 def _carried(scheme: SecondOrder) -> list[Quantity]:
@@ -99,21 +80,12 @@ def _carried(scheme: SecondOrder) -> list[Quantity]:
             earliest[quantity.name] = min(quantity.step, earliest.get(quantity.name, quantity.step))
     for name in (POSITION, VELOCITY):  # both are reported at step 1
         earliest[name] = min(earliest.get(name, 1), 1)
-    for evaluation in implicit_evaluations(scheme):
-        name, step = evaluation.result.name, evaluation.result.step
-        earliest[name] = min(earliest.get(name, step), step - 1)
+    for group in scheme.groups:
+        for equation in group:
+            if isinstance(equation, Evaluation) and is_solved_together(group):
+                name, step = equation.result.name, equation.result.step
+                earliest[name] = min(earliest.get(name, step), step - 1)
     return [Quantity(name, step) for name in earliest for step in range(earliest[name], latest[name])]
-
-
-def implicit_evaluations(scheme: SecondOrder) -> list[Evaluation]:
-    """Return the evaluations that take place in groups of equations that are solved together."""
-    return [
-        equation
-        for group in scheme.groups
-        if is_solved_together(group)
-        for equation in group
-        if isinstance(equation, Evaluation)
-    ]
 
 
 def is_solved_together(group: tuple[Equation, ...]) -> bool:

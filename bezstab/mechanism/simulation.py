@@ -1,36 +1,45 @@
 """A run together with what its constraints did: what `simulate` on the command line and in Python shows."""
 
 import math
-from collections.abc import Iterable
+from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import cycle
 from typing import get_args
+
+import numpy as np
 
 from bezstab.errors import InputError
 from bezstab.mechanism.compiled import Mechanism
-from bezstab.mechanism.energies import NODES, EnergyBalance, energy_balance
+from bezstab.mechanism.energies import NODES, energy_balance
 from bezstab.mechanism.observation import FloatArray, Observation, observe, singular_passages
-from bezstab.mechanism.runner import Start, Trajectory, simulate
+from bezstab.mechanism.registers import Steps
+from bezstab.mechanism.runner import Start, Trajectory, simulate, simulate_steps
 from bezstab.mechanism.start import perturbed_state
-from bezstab.methods import Method
+from bezstab.methods import Method, check_one_step
+from bezstab.read_only import ReadOnlyArrays
 from bezstab.stabilising import NOTHING, AfterStep, Stabilise, held_by
 from bezstab.units import check_step, feedback_gains
 
+LAST_STEP = 1e-9  # of the shortest step: a rest of the duration that is rounding
 MOST_STEPS = 10**8
 """Of one run, which keeps its whole history: 10 GB and an hour for the slider-crank."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Simulation:
+class Simulation(ReadOnlyArrays):
     """A run at one point of the plane, with steps of h (s), and the constraint errors along it; SI units.
 
-    t has shape (times,), q and v (times, coordinates), c, cdot and multipliers (times, constraints), energy and the
-    work of drivers and forces, with their balance, (times,). `failure` says when and why the run ended early; None if
-    it did not.
+    t has shape (times,), q and v (times, coordinates), c, cdot and multipliers (times, constraints). Of energy and
+    work, (times,): `driver_work` is what the drivers have put in since the start, `force_work` what constant forces and
+    torques have put in and dampers taken out, and `energy_drift` what no work explains, an error. `failure` says when
+    and why the run ended early; None if it did not.
     """
 
     trajectory: Trajectory
     observation: Observation
-    balance: EnergyBalance
+    driver_work: FloatArray
+    force_work: FloatArray
+    energy_drift: FloatArray
     h: float
     alpha_hat: float
     beta_hat: float
@@ -69,21 +78,6 @@ class Simulation:
     def energy(self) -> FloatArray:
         """Kinetic and potential energy (J)."""
         return self.observation.energy
-
-    @property
-    def driver_work(self) -> FloatArray:
-        """What the drivers have put in since the start (J)."""
-        return self.balance.driver_work
-
-    @property
-    def force_work(self) -> FloatArray:
-        """What constant forces and torques have put in and dampers taken out since the start (J)."""
-        return self.balance.force_work
-
-    @property
-    def energy_drift(self) -> FloatArray:
-        """The change of energy since the start that no work explains (J): an error."""
-        return self.balance.drift
 
     @property
     def singular_times(self) -> FloatArray:
@@ -126,37 +120,51 @@ def simulated(
     perturb: float = 0.0,
     start: Start = "rk4",
     after: AfterStep = NOTHING,
+    sequence: Sequence[float] = (),
+    hold: bool = False,
 ) -> Simulation:
     """Return a run over `duration` (s) from the scene's initial state, its first constraint off by `perturb` (m).
 
     h (s) is the user's step, a method's own is its step multiple of that. What is done `after` each step goes with
-    alpha_hat = beta_hat = 0. InputError for a scene that cannot start, an h outside 1e-100 to 1e100 s, a duration below
-    a step or above 1e8 of them, another `start`, and as `check_after_step`; NumericalError where the scene cannot be
-    perturbed; what goes wrong on the way is the run's `failure`. Paper Eqs 6 to 9.
+    alpha_hat = beta_hat = 0. A `sequence` has the lengths (s) of steps that are taken over and over, until the duration
+    is reached: alpha_hat and beta_hat belong to a step of h, and the alpha and beta that they are stay as they are;
+    with `hold` alpha_hat and beta_hat stay, and alpha and beta follow the steps. Work and drift of energy are then
+    integrated by the trapezoidal rule.
+    InputError for a scene that cannot start, an h outside 1e-100 to 1e100 s, a duration below a step or above 1e8 of
+    them, another `start`, a sequence with a method of several steps, and as `memory`; NumericalError where the scene
+    cannot be perturbed; what goes wrong on the way is the run's `failure`. Paper Eqs 6 to 9.
     """
     check_step(h)
     if start not in get_args(Start):
         raise InputError(f"start {start!r}: expected {', '.join(get_args(Start))}")
-    check_duration(duration, h * float(method.step_multiple))
-    gains = feedback_gains(alpha_hat, beta_hat, h)
-    state = perturbed_state(mechanism, perturb)
-    trajectory = simulate(mechanism, method, h, duration, gains, state, start, after=after)
-    return seen_run(trajectory, gains, h * float(method.step_multiple), h, alpha_hat, beta_hat)
+    multiple = float(method.step_multiple)
+    check_duration(duration, min(sequence, default=h) * multiple)
+    constant, state = feedback_gains(alpha_hat, beta_hat, h), perturbed_state(mechanism, perturb)
+    if sequence:
+        check_one_step(method)
+        lengths = _lengths([step * multiple for step in sequence], duration)
+        of_steps = [feedback_gains(alpha_hat, beta_hat, step / multiple) if hold else constant for step in lengths]
+        times = np.concatenate([[0.0], np.cumsum(lengths)[:-1]])
+        steps = Steps(times, lengths, np.array(of_steps)[:, :, np.newaxis])
+        trajectory = simulate_steps(mechanism, method, steps, state, after)
+        taken = len(trajectory.t) - 1
+        # at each time the gains of the step that begins there; at the last, those of the step that led to it
+        gains = steps.gains[np.minimum(np.arange(taken + 1), len(times) - 1), :, 0].T
+        lengths, nodes = lengths[:taken], 2
+    else:
+        trajectory = simulate(mechanism, method, h, duration, constant, state, start, after=after)
+        gains, lengths, nodes = np.array(constant), np.array(h * multiple), NODES
+    observation = observe(mechanism, trajectory.t, trajectory.q, trajectory.v, gains[0], gains[1])
+    balance = energy_balance(observation, lengths, nodes)
+    return Simulation(trajectory, observation, *balance, h, alpha_hat, beta_hat)
 
 
-def seen_run(
-    trajectory: Trajectory,
-    gains: Iterable[float | FloatArray],
-    steps: float | FloatArray,
-    h: float,
-    alpha_hat: float,
-    beta_hat: float,
-    nodes: int = NODES,
-) -> Simulation:
-    """Return a run with what its constraints did, for the gains at its times and its own `steps` (s).
-
-    Powers are integrated as by `running_integral`, with so many nodes.
-    """
-    observation = observe(trajectory.mechanism, trajectory.t, trajectory.q, trajectory.v, *gains)
-    balance = energy_balance(observation, steps, nodes)
-    return Simulation(trajectory, observation, balance, h, alpha_hat, beta_hat)
+def _lengths(sequence: Sequence[float], duration: float) -> FloatArray:
+    """Return the steps (s) of a run: those of the sequence, over and over, until the duration (s) is reached."""
+    taken = []
+    for step in cycle(sequence):
+        if duration <= LAST_STEP * min(sequence):
+            break
+        taken.append(step)
+        duration -= step
+    return np.array(taken)

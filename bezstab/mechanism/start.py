@@ -17,10 +17,8 @@ FloatArray = NDArray[np.float64]
 NEWTON_STEPS = 50  # quadratic: a handful suffices from any guess that leads anywhere
 SETTLED = 1e-15  # m, rad: a step of Newton's method that changes the last digits of a coordinate at most
 CLOSED = 1e-12  # m: what Newton reaches at mechanism sizes around a metre, and what a whole state must keep
-RANK = 1e-9  # of the largest entry of C_q: a row that depends on the others to this is redundant
-DEPENDENT = 1e-6  # of a row of length one: what others leave of it where RANK has found that it depends on them
+DEPENDENT = 1e-9  # of a row of C_q, at length one: what earlier ones leave of one that depends on them
 MOST_NAMED = 3  # dependences in a message: one tells where to look, and a long chain may have dozens
-BESIDE = 1e-3  # m, rad: far enough from a singular start for singular values that grow in proportion to pass RANK
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,9 +77,14 @@ def _closed_position(mechanism: Mechanism) -> FloatArray:
     """Return q at t = 0: the scene's coordinates, completed by Newton's method on c(q, 0) = 0 from its guesses."""
     scene = mechanism.scene
     at = geometry(mechanism)
-    first_guess = np.array([scene.position.get(name, scene.guess.get(name, 0.0)) for name in scene.coordinates])
+    q = np.array([scene.position.get(name, scene.guess.get(name, 0.0)) for name in scene.coordinates])
     unknown = _unknown(scene.position, scene.coordinates)
-    q = _closed(mechanism, first_guess, unknown)
+    for _ in range(NEWTON_STEPS if unknown else 0):
+        # least squares: it also has an answer where the linear system has none, on the way or for good
+        step = np.linalg.lstsq(at.jacobian(q, 0.0)[:, unknown], at.constraints(q, 0.0)[:, 0], rcond=None)[0]
+        q[unknown] -= step
+        if np.abs(step).max() < SETTLED:
+            break
     error = float(np.abs(at.constraints(q, 0.0)).max())
     closed = error <= CLOSED  # not if it is not a number
     if closed:
@@ -95,74 +98,28 @@ def _closed_position(mechanism: Mechanism) -> FloatArray:
     return q
 
 
-def _closed(mechanism: Mechanism, guess: FloatArray, unknown: Sequence[int]) -> FloatArray:
-    """Return q after Newton's method on c(q, 0) = 0 for the unknown coordinates; where it fails, c is not zero."""
-    at = geometry(mechanism)
-    q = guess.copy()
-    for _ in range(NEWTON_STEPS if unknown else 0):
-        jacobian = at.jacobian(q, 0.0)[:, unknown]
-        # least squares: it also has an answer where the linear system has none, on the way or for good
-        step = np.linalg.lstsq(jacobian, at.constraints(q, 0.0)[:, 0], rcond=None)[0]
-        q[unknown] -= step
-        if np.abs(step).max() < SETTLED:
-            break
-    return q
-
-
 def _refuse_dependent_constraints(mechanism: Mechanism, q: FloatArray) -> None:
-    """Raise InputError, naming them, if constraints follow from others in a closed position q."""
-    jacobian = geometry(mechanism).jacobian(q, 0.0)
-    rank = _rank(jacobian)
-    if rank == mechanism.constraints:
-        return
-    rank_beside = _rank_beside(mechanism, q, jacobian)
-    if rank_beside is None:
-        what = "redundant constraints or a singular start"
-    elif rank_beside < mechanism.constraints:
-        what = "redundant constraints"
-    else:
-        what = "a singular start, beside which no constraint depends on others"
-    dependences = _dependences(mechanism.scene.constraint_names, jacobian)
-    more = [f"and {len(dependences) - MOST_NAMED} more"] if len(dependences) > MOST_NAMED else []
-    named = "; ".join(dependences[:MOST_NAMED] + more)
-    raise InputError(f"joint: {what}: {mechanism.constraints} constraints, rank {rank}: {named}")
-
-
-def _rank(jacobian: FloatArray) -> int:
-    return int(np.linalg.matrix_rank(jacobian, tol=RANK * np.abs(jacobian).max()))
-
-
-def _rank_beside(mechanism: Mechanism, q: FloatArray, jacobian: FloatArray) -> int | None:
-    """Return the rank of C_q in a closed position a little further on; None where the mechanism does not move there.
-
-    Constraints that depend on others at a singular start alone do not there; redundant ones do.
-    """
-    _, _, directions = np.linalg.svd(jacobian)
-    free = directions[_rank(jacobian) :]  # C_q times these is zero
-    if not len(free):
-        return None
-    weights = np.sin(1.0 + np.arange(len(free)))  # any: no two alike, so that no symmetry is kept
-    beside = _closed(mechanism, q + BESIDE * weights @ free, range(mechanism.size))
-    moved = np.abs(beside - q).max() > BESIDE / 10
-    if not (moved and np.abs(geometry(mechanism).constraints(beside, 0.0)).max() <= CLOSED):
-        return None
-    return _rank(geometry(mechanism).jacobian(beside, 0.0))
-
-
-def _dependences(names: Sequence[str], jacobian: FloatArray) -> list[str]:
-    """Return for each row of C_q that depends on earlier ones a sentence that says on which."""
-    sentences = []
-    independent: list[int] = []
+    """Raise InputError, naming them, if constraints depend on others in a closed position q."""
+    names, jacobian = mechanism.scene.constraint_names, geometry(mechanism).jacobian(q, 0.0)
     rows = jacobian / np.maximum(np.linalg.norm(jacobian, axis=1, keepdims=True), np.finfo(float).tiny)
+    if np.linalg.matrix_rank(rows, tol=DEPENDENT) == len(rows):
+        return
+    independent: list[int] = []
+    dependences = []
     for index, row in enumerate(rows):
-        weights = np.linalg.lstsq(rows[independent].T, row, rcond=None)[0] if independent else np.zeros(0)
-        left = row - weights @ rows[independent]
-        if np.linalg.norm(left) > DEPENDENT:
+        shares = np.linalg.lstsq(rows[independent].T, row, rcond=None)[0] if independent else np.zeros(0)
+        if np.linalg.norm(row - shares @ rows[independent]) > DEPENDENT:
             independent.append(index)
             continue
-        others = [names[k] for k, weight in zip(independent, weights, strict=True) if abs(weight) > DEPENDENT]
-        sentences.append(f"{names[index]} follows from {' and '.join(others)}" if others else f"{names[index]} is void")
-    return sentences
+        others = [names[k] for k, share in zip(independent, shares, strict=True) if abs(share) > DEPENDENT]
+        dependences.append(
+            f"{names[index]} follows from {' and '.join(others)}" if others else f"{names[index]} is void"
+        )
+    more = [f"and {len(dependences) - MOST_NAMED} more"] if len(dependences) > MOST_NAMED else []
+    raise InputError(
+        "joint: redundant constraints, or a singular start, beside which none follows from others: "
+        f"{len(rows)} constraints, rank {len(independent)}: {'; '.join(dependences[:MOST_NAMED] + more)}"
+    )
 
 
 def _consistent_velocity(mechanism: Mechanism, q: FloatArray) -> FloatArray:

@@ -220,8 +220,7 @@ def finish(rows: Rows, h: float, room: Room, state: FloatArray) -> None:
 def take_steps(rows: Rows, steps: Steps, room: Room, states: FloatArray, told: FloatArray) -> None:
     """Take steps. `states` (steps, 2, width) get q and v after each, `told` (steps, 6) what is told of each."""
     for k in range(len(steps.times)):
-        time, h = steps.times[k], steps.lengths[k]
-        gains = steps.gains[min(k, len(steps.gains) - 1)]
+        time, h, gains = steps.times[k], steps.lengths[k], steps.gains[k]
         if h != room.step[0]:
             for number in range(len(rows.powers)):
                 register = room.registers[number]

@@ -6,13 +6,11 @@ Each kind of scheme gives both (schemes.py); here they are taken to the user's h
 from collections.abc import Sequence
 from fractions import Fraction
 from functools import cache
-from math import lcm
-from operator import mul
 
 import sympy as sp
 
 from bezstab.methods.determinants import in_field
-from bezstab.methods.polynomials import MuTable, PlaneTable
+from bezstab.methods.polynomials import MuTable, PlaneTable, horner
 from bezstab.methods.schemes import Method
 
 Z, MU, ALPHA_HAT, BETA_HAT, S, H = sp.symbols("z mu alpha_hat beta_hat s h")
@@ -82,27 +80,8 @@ def closed_loop_at(method: Method, alpha_hat: Fraction, beta_hat: Fraction) -> l
 
     The last is zero where a root is infinite: there an implicit step has no solution.
     """
-    planes, scale_of_planes = _whole_planes(method)
-    alpha_powers = _whole_powers(alpha_hat, len(planes[0]) - 1)
-    beta_powers = _whole_powers(beta_hat, len(planes[0][0]) - 1)
-    scale = scale_of_planes * alpha_powers[0] * beta_powers[0]
-    return [
-        Fraction(sum(a * sum(map(mul, row, beta_powers)) for a, row in zip(alpha_powers, in_plane, strict=True)), scale)
-        for in_plane in planes
-    ]
-
-
-@cache
-def _whole_planes(method: Method) -> tuple[list[list[list[int]]], int]:
-    """Return a multiple of the closed loop's table that is whole, and the factor."""
     table = closed_loop_table(method)
-    scale = lcm(*(c.denominator for in_plane in table for row in in_plane for c in row))
-    return [[[int(c * scale) for c in row] for row in in_plane] for in_plane in table], scale
-
-
-def _whole_powers(number: Fraction, most: int) -> list[int]:
-    """Return d^most number^k for k = 0 to `most`, d its denominator: whole numbers, whose sums are fast."""
-    return [number.numerator**k * number.denominator ** (most - k) for k in range(most + 1)]
+    return [horner([horner(row, beta_hat) for row in in_plane], alpha_hat) for in_plane in table]
 
 
 def rational_feedback_roots(method: Method, z: int) -> list[Fraction]:

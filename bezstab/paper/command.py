@@ -11,8 +11,7 @@ from bezstab.files import output_directory
 from bezstab.paper.printed import PARTS
 
 if TYPE_CHECKING:  # so that `bezstab --help`, which lists this command, loads nothing that computes or draws
-    from bezstab.paper.findings import Finding
-    from bezstab.paper.reports import Report
+    from bezstab.paper.reports import Finding, Report
 
 
 @command(

@@ -11,9 +11,8 @@ from matplotlib.figure import Figure
 from bezstab.mechanism import constraint_motion
 from bezstab.methods import lookup, steps
 from bezstab.paper.experiments import DURATION, STEP, Experiment, experiment
-from bezstab.paper.findings import Finding
 from bezstab.paper.printed import COMPARED, TABLE_5, PrintedCase, PrintedPole
-from bezstab.paper.reports import Progress, Report, captioned_table
+from bezstab.paper.reports import Finding, Progress, Report, captioned_table
 from bezstab.rationals import bisected_integers, exact
 from bezstab.show import (
     Field,

@@ -5,9 +5,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from bezstab.paper.findings import Finding
 from bezstab.paper.printed import TABLE_6
-from bezstab.paper.reports import Progress, Report, captioned_table
+from bezstab.paper.reports import Finding, Progress, Report, captioned_table
 from bezstab.show import Row, column
 
 EQUAL = 0.04  # of the least: by how much the paper's times differ

@@ -9,9 +9,8 @@ from matplotlib.figure import Figure
 
 from bezstab.mechanism import Start
 from bezstab.paper.experiments import START_NAMES, Experiment, experiment
-from bezstab.paper.findings import Finding
 from bezstab.paper.printed import TABLE_3
-from bezstab.paper.reports import Progress, Report
+from bezstab.paper.reports import Finding, Progress, Report
 from bezstab.show import DASHES, column_figure, legend_below, line_at, styled
 from bezstab.stability import FloatArray
 

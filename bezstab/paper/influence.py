@@ -9,9 +9,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from bezstab.paper.experiments import STEP, Experiment, experiment
-from bezstab.paper.findings import Finding
 from bezstab.paper.printed import FASTER_LEVEL, TABLE_5
-from bezstab.paper.reports import Progress, Report, captioned_table
+from bezstab.paper.reports import Finding, Progress, Report, captioned_table
 from bezstab.show import Field, Row, column, column_figure, line_at, pole_cells, pole_text, styled
 from bezstab.stability import FloatArray, poles
 

@@ -5,8 +5,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import get_args
 
 from bezstab.paper import comparison, cost, drift, influence, methods, regions, slider_crank
-from bezstab.paper.findings import Agreement, Finding
-from bezstab.paper.reports import Progress, Report
+from bezstab.paper.reports import Agreement, Finding, Progress, Report
 from bezstab.show import CLAIMS, Row, render
 
 SUBJECTS: Mapping[tuple[str, ...], Callable[[Progress], Report]] = {

@@ -1,7 +1,7 @@
 """What cannot be tested: the scan lost it, the paper never said it, or bezstab does not have what it is about."""
 
-from bezstab.paper.findings import Finding
 from bezstab.paper.printed import NOT_HERE
+from bezstab.paper.reports import Finding
 
 LOST = (
     (

@@ -14,8 +14,7 @@ from bezstab.methods import (
     recursion_text,
     steps,
 )
-from bezstab.paper.findings import Finding
-from bezstab.paper.reports import Progress, Report, captioned_table
+from bezstab.paper.reports import Finding, Progress, Report, captioned_table
 from bezstab.show import column
 from bezstab.stability import verdict
 from bezstab.units import to_dimensionless

@@ -9,9 +9,8 @@ from matplotlib.figure import Figure
 from bezstab.methods import Method, evaluations, lookup
 from bezstab.paper import comparison
 from bezstab.paper.experiments import STEP
-from bezstab.paper.findings import Finding
 from bezstab.paper.printed import COMPARED, FASTER_LEVEL, LEAST_Z_ABS
-from bezstab.paper.reports import Progress, Report
+from bezstab.paper.reports import Finding, Progress, Report
 from bezstab.rationals import exact
 from bezstab.show import PlaneMap, comparison_figure, region_figure
 from bezstab.stability import QUALITY, best_point, region, spectral_radius, verdict, window

@@ -17,9 +17,8 @@ from bezstab.mechanism import (
 )
 from bezstab.paper import lost
 from bezstab.paper.experiments import DURATION, STEP, experiment
-from bezstab.paper.findings import Finding
 from bezstab.paper.printed import TABLE_3
-from bezstab.paper.reports import Progress, Report, captioned_table
+from bezstab.paper.reports import Finding, Progress, Report, captioned_table
 from bezstab.show import Row, column, plot, styled
 from bezstab.stability import FloatArray
 

@@ -139,9 +139,7 @@ class Answer(Choice):
     def varying(self) -> VaryingSteps | None:
         """Whether errors decay for every sequence of steps from h_min to h_max."""
         steps = self.question.steps
-        if steps is None:
-            return None
-        return varying_steps(self.method, *self.point, h=steps.h, h_min=steps.h_min, h_max=steps.h_max, hold=steps.hold)
+        return None if steps is None else varying_steps(self.method, *self.point, **vars(steps))
 
     @property
     def cost(self) -> FeedbackCost | None:

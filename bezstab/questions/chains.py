@@ -7,7 +7,7 @@ from functools import partial
 
 import numpy as np
 
-from bezstab.engines import Engine, Point, SweptStep, check_iterations
+from bezstab.engines import Engine, Point, check_iterations
 from bezstab.errors import InputError
 from bezstab.mechanism import Revolute, Scene, compiled_mechanism, constraint_jacobian, initial_state
 from bezstab.questions.motions import name_of, scene_at_speed
@@ -44,11 +44,6 @@ class Constraints:
     def count(self) -> int:
         """How many they are."""
         return len(self.joints)
-
-    def growth(self, engine: Engine, step: SweptStep) -> Growth:
-        """Return the factor by which a step of an engine multiplies their errors."""
-        together = engine.sweeping is not None and engine.sweeping.together
-        return swept_growth(self.inverse_masses, step, self.joints if together else None)
 
 
 ALONE = Constraints("one constraint alone", np.ones((1, 1)), (0,))
@@ -145,9 +140,11 @@ class SweptConstraints:
 
     def growth(self, values: Sequence[Fraction], sweeps: int | None = None) -> Growth:
         """Return the factor by which a step multiplies their errors, with another number of sweeps if one is given."""
-        assert self.engine.sweeping
-        step = self.engine.sweeping.step(sweeps or self.iterations, self.h, *values)
-        return self.constraints.growth(self.engine, step)
+        sweeping = self.engine.sweeping
+        assert sweeping
+        step = sweeping.step(sweeps or self.iterations, self.h, *values)
+        joints = self.constraints.joints if sweeping.together else None
+        return swept_growth(self.constraints.inverse_masses, step, joints)
 
     def fewest(self, values: Sequence[Fraction]) -> int | None:
         """Return from how many sweeps their errors decay; None if from none that is tried."""

@@ -22,25 +22,19 @@ MOST_STEPS = 10**5  # of a run: some seconds
 def growing_run(answer: Answer) -> str | None:
     """Return the line with which simulate shows an error of PERTURBED grow about GROWN times.
 
-    None unless a sequence of steps was found that lets errors grow, and where no run shows it: of a method or a scene
-    without a name to type, and where errors grow too slowly.
+    None unless a sequence of steps was found that lets errors grow, and where no run shows it: of a method without a
+    name to type, and where errors grow too slowly.
     """
-    varying, steps, question = answer.varying, answer.question.steps, answer.question
+    varying, steps = answer.varying, answer.question.steps
     if varying is None or steps is None or varying.sequence is None or not (varying.growth and varying.growth > 1):
         return None
-    scene = question.scene
-    if not _can_be_typed(answer) or not (scene is None or isinstance(scene, str)):
-        return None
     rounds = max(1, math.floor(math.log(GROWN) / math.log(varying.growth)))
-    if rounds * len(varying.sequence) > MOST_STEPS:
+    if not _can_be_typed(answer) or rounds * len(varying.sequence) > MOST_STEPS:
         return None
-    mechanism = AT_REST if scene is None else f"--scene {shlex.quote(scene)}"
-    if scene and question.speed != 1:
-        mechanism += f" --speed {typed_number(question.speed)}"
     alpha_hat, beta_hat = answer.point
     time = sum(varying.sequence) * answer.method.step_multiple * rounds
     return (
-        f"bezstab simulate {mechanism} --method {shlex.quote(answer.method.name)} --alpha {typed_number(alpha_hat)} "
+        f"bezstab simulate {AT_REST} --method {shlex.quote(answer.method.name)} --alpha {typed_number(alpha_hat)} "
         f"--beta {typed_number(beta_hat)} --h {typed_number(steps.h)} --steps {_typed_sequence(varying.sequence)}"
         f"{' --hold' if steps.hold else ''} --perturb {PERTURBED:g} --time {float(time):.6g}"
     )

@@ -24,7 +24,7 @@ from bezstab.evidence import (
     time_column,
 )
 from bezstab.methods import REGISTRY, Method, lookup
-from bezstab.questions.points import Meant, meant_in_seconds
+from bezstab.questions.points import meant_in_seconds
 from bezstab.stability import FloatArray
 
 SAME_STEP = 1e-3
@@ -53,9 +53,9 @@ class PoleQuestion:
         _ = self.turned
 
     @property
-    def meant_in_seconds(self) -> Meant | None:
+    def meant_in_seconds(self) -> bool:
         """Whether the point looks like alpha and beta in 1/s: for the methods, without any for what engines have."""
-        return meant_in_seconds(self.methods or (lookup(USUAL),), self.point, self.h)
+        return meant_in_seconds(self.methods or (lookup(USUAL),), self.point)
 
     @property
     def row_step(self) -> float | None:

@@ -5,13 +5,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from typing import Literal
 
 from bezstab.engines import Engine, Point
 from bezstab.errors import InputError
 from bezstab.methods import Method, Verdict
 from bezstab.stability import ComplexArray, FloatArray, kick_response, poles, verdict
-from bezstab.units import feedback_gains, to_dimensionless
+from bezstab.units import feedback_gains
 
 SAME_GAINS = 1e-9
 """Of gains in 1/s and 1/s^2: roots and powers that engines take are rounded to float64."""
@@ -70,27 +69,11 @@ LARGE = 10
 """From this alpha_hat or beta_hat on, 1/s was probably meant: as alpha_hat it leaves e^-5 of an error after a step."""
 
 
-Meant = Literal["at this step", "at another step"]
-"""At which step (s) numbers are stable if they are alpha and beta in 1/s."""
-
-
-def meant_in_seconds(methods: Sequence[Method], point: Point | None, h: float | Fraction | None) -> Meant | None:
+def meant_in_seconds(methods: Sequence[Method], point: Point | None) -> bool:
     """Return whether numbers that were given as alpha_hat and beta_hat look like alpha and beta in 1/s.
 
-    They do if no method is stable there, and all methods are stable at alpha and beta in 1/s for the step h (s). They
-    also do if no method is stable and one of the numbers is LARGE.
+    They do if no method is stable there and one of the numbers is LARGE.
     """
-    if point is None or max(point) < 1 or any(verdict(method, *point) == "converges" for method in methods):
-        return None
-    if h is not None and _all_stable(methods, point, Fraction(h)):
-        return "at this step"
-    return "at another step" if max(point) > LARGE else None
-
-
-def _all_stable(methods: Sequence[Method], point: Point, h: Fraction) -> bool:
-    """Return whether alpha and beta in 1/s are stable with every method at a step of h (s)."""
-    try:
-        alpha_hat, beta_hat = to_dimensionless(*point, h)
-    except InputError:  # out of range: not meant
+    if point is None or max(point) <= LARGE:
         return False
-    return all(verdict(method, alpha_hat, beta_hat) == "converges" for method in methods)
+    return not any(verdict(method, *point) == "converges" for method in methods)

@@ -14,7 +14,7 @@ from bezstab.mechanism import Scene, TurningNormals
 from bezstab.methods import Method, check_one_step, lookup
 from bezstab.questions.chains import SweptConstraints, check_sweeps, constraints_of, constraints_of_chain
 from bezstab.questions.motions import ReferenceMotion, check_speed, motion_of, turn_too_far, turning_of
-from bezstab.questions.points import Meant, engine_holds, meant_in_seconds
+from bezstab.questions.points import engine_holds, meant_in_seconds
 from bezstab.units import check_step
 
 WHICH_METHOD = (
@@ -89,19 +89,19 @@ class Question:
 
     def _check_given(self) -> None:
         """Raise InputError unless a point is given in one way, with the step that this way needs."""
-        ways = [self.point is not None, self.values is not None, self.drive is not None]
+        in_other_words = self.values is not None or self.drive is not None
         if self.h_max is not None and self.h_min is None:
             raise InputError("--h-max needs --h-min: together they are the range of steps")
-        if (self.values is not None or self.drive) and self.h is None and self.h_max is None:
+        if in_other_words and self.h is None and self.h_max is None:
             raise InputError("--physical, --engine and --pd need --h: the step in s")
         if self.as_typed and self.values is None:
             raise InputError("--as-typed needs --engine: it leaves out what that engine does to its values")
         if self.values is not None and self.drive:
             raise InputError("--engine and --pd each give a point: use one of them")
-        if sum(ways) > 1:
+        if in_other_words and self.point is not None:
             option = "--engine" if self.engine else "--pd"
             raise InputError(f"{option} takes the place of --alpha, --beta and --physical")
-        if not any(ways):
+        if not in_other_words and self.point is None:
             raise InputError("a point is needed: --alpha with --beta, --engine, or --pd")
         if self.h is None and self.h_min is not None:
             object.__setattr__(self, "h", self.h_max)
@@ -147,9 +147,9 @@ class Question:
         return Applied(self.point, None)
 
     @property
-    def meant_in_seconds(self) -> Meant | None:
+    def meant_in_seconds(self) -> bool:
         """Whether the point looks like alpha and beta in 1/s."""
-        return meant_in_seconds(self.methods, self.point, self.h)
+        return meant_in_seconds(self.methods, self.point)
 
     @cached_property
     def steps(self) -> StepRange | None:
@@ -193,8 +193,10 @@ class Question:
 
     @property
     def warnings(self) -> list[str]:
-        """What is to be known before the answers."""
-        return turn_too_far({self.speed: self.turning}, self.scene, self.h)
+        """What is to be known before the answers; errors as `turning` and `motion`, which they need."""
+        found = turn_too_far({self.speed: self.turning}, self.scene, self.h)
+        _ = self.motion
+        return found
 
     @cached_property
     def turning(self) -> TurningNormals | None:

@@ -193,7 +193,7 @@ class MapQuestion:
     @property
     def marks(self) -> dict[str, tuple[float, float]]:
         """The points (alpha_hat, beta_hat) to mark, by label: the engine's defaults and rules of thumb."""
-        points = {label: point(self.h) for label, point in self.engine.marks} if self.engine and self.h else {}
+        points = self.engine.marked(self.h) if self.engine and self.h else {}
         return {label: (float(alpha_hat), float(beta_hat)) for label, (alpha_hat, beta_hat) in points.items()}
 
 

@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from typing import Any
 
 from bezstab.engines import Point
 from bezstab.errors import InputError
@@ -16,14 +15,12 @@ from bezstab.mechanism import (
     Scene,
     Simulation,
     Start,
-    check_after_step,
     compiled_mechanism,
     simulated,
-    simulated_with_steps,
 )
 from bezstab.methods import Method, check_one_step
 from bezstab.questions.motions import scene_at_speed
-from bezstab.questions.points import Meant, meant_in_seconds
+from bezstab.questions.points import meant_in_seconds
 from bezstab.stabilising import AfterStep, Stabilise, after_step
 
 
@@ -47,13 +44,13 @@ class RunQuestion:
     speed: Fraction = Fraction(1)
     stabilise: Stabilise = "baumgarte"
     iterations: int | None = None
-    sequence: Sequence[Fraction] = ()
+    sequence: Sequence[Fraction] | None = None
     hold: bool = False
     perturb: float | Fraction = 0
     start: Start = "rk4"
 
     def __post_init__(self) -> None:
-        check_after_step(self.method, self.after)
+        after_step(self.stabilise, self.iterations)  # which refuses what does not go together
         if self.sequence:
             check_one_step(self.method)
         elif self.hold:
@@ -62,9 +59,9 @@ class RunQuestion:
             raise InputError("--alpha and --beta are those of feedback: they go with --stabilise baumgarte")
 
     @property
-    def meant_in_seconds(self) -> Meant | None:
-        """Whether the point looks like alpha and beta in 1/s; None with a sequence, which may be to let errors grow."""
-        return None if self.sequence else meant_in_seconds((self.method,), self.point, self.h)
+    def meant_in_seconds(self) -> bool:
+        """Whether the point looks like alpha and beta in 1/s; not with a sequence, which may be to let errors grow."""
+        return not self.sequence and meant_in_seconds((self.method,), self.point)
 
     @cached_property
     def mechanism(self) -> Mechanism:
@@ -81,15 +78,16 @@ def run_answer(question: RunQuestion) -> Simulation:
     """Return the run; what goes wrong on the way is its `failure`. Errors as `simulated` and `scene_at_speed`."""
     mechanism = question.mechanism
     alpha_hat, beta_hat = map(float, question.point or (0, 0))
-    of_both: dict[str, Any] = {
-        "h": float(question.h),
-        "duration": float(question.duration),
-        "alpha_hat": alpha_hat,
-        "beta_hat": beta_hat,
-        "perturb": float(question.perturb),
-        "after": question.after,
-    }
-    if not question.sequence:
-        return simulated(mechanism, question.method, start=question.start, **of_both)
-    lengths = [float(step) for step in question.sequence]
-    return simulated_with_steps(mechanism, question.method, sequence=lengths, hold=question.hold, **of_both)
+    return simulated(
+        mechanism,
+        question.method,
+        h=float(question.h),
+        duration=float(question.duration),
+        alpha_hat=alpha_hat,
+        beta_hat=beta_hat,
+        perturb=float(question.perturb),
+        start=question.start,
+        after=question.after,
+        sequence=[float(step) for step in question.sequence or ()],
+        hold=question.hold,
+    )

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from itertools import chain, product
+from itertools import chain
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,10 +29,10 @@ from bezstab.evidence import (
     sweep_sentences,
     swept_runs,
 )
-from bezstab.mechanism import Scene, check_after_step
+from bezstab.mechanism import Scene
 from bezstab.methods import Method
 from bezstab.questions import motions
-from bezstab.questions.points import Meant, meant_in_seconds
+from bezstab.questions.points import meant_in_seconds
 from bezstab.rationals import exact
 from bezstab.stabilising import NOTHING, AfterStep, Stabilise, after_step
 from bezstab.stability import RATES, FrontPoint, error_front
@@ -69,8 +69,8 @@ class TradeQuestion:
     def __post_init__(self) -> None:
         if self.omega is not None and self.numbers and self.against != "projection":
             raise InputError("--omega does not go with --alpha and --beta: points are chosen for that motion")
-        for (_, after), method in product(self.treatments, self.methods):
-            check_after_step(method, after)
+        # which refuses what does not go together
+        after_step("projection" if self.against == "projection" else self.stabilise, self.iterations)
         longest = self.step_sizes[-1] * float(max(method.step_multiple for method in self.methods))
         most = MOST_SWEPT * self.step_sizes[0]
         if not longest <= self.duration <= most:
@@ -78,9 +78,9 @@ class TradeQuestion:
             raise InputError(f"--time {float(self.duration):g}: expected {expected}")
 
     @property
-    def meant_in_seconds(self) -> Meant | None:
+    def meant_in_seconds(self) -> bool:
         """Whether the numbers look like alpha and beta in 1/s, where they are not."""
-        return None if self.physical else meant_in_seconds(self.methods, self.numbers, max(self.steps, default=None))
+        return not self.physical and meant_in_seconds(self.methods, self.numbers)
 
     @cached_property
     def step_sizes(self) -> tuple[float, ...]:

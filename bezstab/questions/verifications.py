@@ -12,12 +12,11 @@ import numpy as np
 
 from bezstab.engines import Point
 from bezstab.evidence import HalvedStep, Measurement, halved_steps, measure_poles, random_points
-from bezstab.mechanism import Driver, Mechanism, Scene, compiled_mechanism, revolution_period
+from bezstab.mechanism import Mechanism, Scene, compiled_mechanism
 from bezstab.methods import Method
 from bezstab.questions.motions import scene_at_speed
-from bezstab.questions.points import Meant, meant_in_seconds
+from bezstab.questions.points import meant_in_seconds
 from bezstab.stability import choose
-from bezstab.units import check_step
 
 RANDOM_POINTS = 20
 
@@ -28,7 +27,7 @@ class VerifyQuestion:
 
     The scene moves `speed` times as fast as given there. Without a `point` (alpha_hat, beta_hat) so many random
     `points` are taken, RANDOM_POINTS unless told. With `floquet` the exact prediction for a moving mechanism is asked
-    about as well. InputError for a step that is not positive.
+    about as well.
     """
 
     scene: str | Scene
@@ -39,25 +38,15 @@ class VerifyQuestion:
     points: int | None = None
     floquet: bool = False
 
-    def __post_init__(self) -> None:
-        check_step(self.h)
-
     @property
-    def meant_in_seconds(self) -> Meant | None:
+    def meant_in_seconds(self) -> bool:
         """Whether the point looks like alpha and beta in 1/s."""
-        return meant_in_seconds(self.methods, self.point, self.h)
+        return meant_in_seconds(self.methods, self.point)
 
     @cached_property
     def mechanism(self) -> Mechanism:
         """The mechanism that runs; errors as `load_scene`."""
         return compiled_mechanism(scene_at_speed(self.scene, self.speed))
-
-    @property
-    def no_period(self) -> str:
-        """Why the drivers of the mechanism do not begin anew, in words; nothing where they do."""
-        if not any(isinstance(joint, Driver) for joint in self.mechanism.scene.joints):
-            return "nothing drives it"
-        return "its drivers have no common period" if revolution_period(self.mechanism) is None else ""
 
     def measurements(self, method: Method, bar: Callable[[Iterable[int]], Iterable[int]] = iter) -> list[Measurement]:
         """Return predicted and measured poles at the point, else at the random ones; `bar` shows the progress."""

@@ -257,19 +257,15 @@ def _pole_text(z: complex) -> str:
     return f"{z.real:+.6f} ± {z.imag:.6f}i" if z.imag else f"{z.real:+.6f}"
 
 
-def exact_rate_words(measurement: Measurement, no_period: str) -> str:
-    """Return along which motion the exact rates of a method are; why there are none, where the motion ends.
-
-    `no_period` is why its drivers do not begin anew, in words.
-    """
+def exact_rate_words(measurement: Measurement) -> str:
+    """Return along which motion the exact rates of a method are; why there are none, where the motion ends."""
     name = measurement.method.name
     if measurement.periodic:
         return (
             f"Exact rates of {name}: along the method's own motion, where there is none along the mechanism's motion."
         )
-    why = no_period and f", as {no_period}"
     shown = "What is shown is how errors grow over the run."
-    return f"No rate of {name} is exact: the motion does not begin anew{why}. {shown}"
+    return f"No rate of {name} is exact: the motion does not begin anew. {shown}"
 
 
 def likeness_sentence(like: Sequence[Likeness], point: Point) -> str:

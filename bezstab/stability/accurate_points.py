@@ -7,9 +7,10 @@ import numpy as np
 
 from bezstab.errors import InputError, NumericalError
 from bezstab.methods import Method
+from bezstab.stability.answer_checks import Modulus
 from bezstab.stability.arrays import BoolArray, Extent, FloatArray
 from bezstab.stability.forced_errors import combined_error
-from bezstab.stability.searches import zoom_on_minimum
+from bezstab.stability.searches import grid_of, zoom_from_grid
 
 Decays = Callable[[FloatArray, FloatArray], BoolArray]
 """Whether errors decay as fast as is asked for, over rows of alpha_hat and beta_hat."""
@@ -33,18 +34,17 @@ BETTER = 1e-3
 def accurate_point(
     method: Method,
     extent: Extent,
-    decays: Decays,
+    error: Modulus,
     *,
     omega_h: Fraction,
-    spread: float = 0.1,
-    equal: bool = False,
+    spread: float,
+    equal: bool,
 ) -> tuple[float, float]:
-    """Return alpha_hat and beta_hat where the forced error is least, at worst over the spread.
+    """Return alpha_hat and beta_hat where an error is least: that of `worst_error` with all but its last two arguments.
 
-    Looked at is feedback within the extent that `decays` as fast as is asked for with alpha and beta off by the spread;
-    `equal` keeps alpha = beta. The error is that of `worst_error`. InputError if nothing decays so fast; NumericalError
-    if another grid has a better point. The test equation is that of methods/steady_errors.py; the goal is this
-    package's.
+    Looked at is feedback within the extent; `equal` keeps alpha = beta. InputError if nothing decays as fast as is
+    asked for; NumericalError if another grid has a better point. The test equation is that of
+    methods/steady_errors.py; the goal is this package's.
     """
     largest = np.array([extent[0][1] / 2, np.sqrt(extent[1][1])])  # alpha h and beta h
     weakest = min(float(omega_h) * DECAY / RATIOS[1], float(largest.min()))
@@ -58,23 +58,16 @@ def accurate_point(
         alpha_h, beta_h = np.exp(points[:, 0]), np.exp(points[:, -1])
         values = np.full(len(points), np.inf)
         usable = (alpha_h >= RATIOS[0] * beta_h) & (alpha_h <= RATIOS[1] * beta_h)
-        values[usable] = worst_error(
-            method, 2 * alpha_h[usable], beta_h[usable] ** 2, decays, omega_h=omega_h, spread=spread
-        )
+        values[usable] = error(2 * alpha_h[usable], beta_h[usable] ** 2)
         return values
 
-    best, least = zoom_on_minimum(
-        errors,
-        (low + high) / 2,
-        (high - low) / 2,
-        first_points=FIRST_GRID,
-        turned=not equal,
-        fold=lambda points: np.clip(points, low, high),
+    best, least = zoom_from_grid(
+        errors, (low + high) / 2, (high - low) / 2, FIRST_GRID, fold=lambda points: np.clip(points, low, high)
     )
     if np.isinf(least):
         raise InputError(f"{method.name}: no feedback settles so fast if α and β are off by a share of {spread:g}")
-    axes = np.meshgrid(*(np.linspace(first, last, SAMPLES) for first, last in zip(low, high, strict=True)))
-    sampled = errors(np.stack([axis.ravel() for axis in axes], axis=-1)).min()
+    axes = [np.linspace(first, last, SAMPLES) for first, last in zip(low, high, strict=True)]
+    sampled = errors(grid_of(axes).reshape(-1, len(axes))).min()
     if sampled < least * (1 - BETTER):
         raise NumericalError(f"{method.name}: the point chosen forces {float(least):.9g}, another {sampled:.9g}")
     return 2 * float(np.exp(best[0])), float(np.exp(best[-1])) ** 2
@@ -87,9 +80,9 @@ def default_rate(method: Method, omega_h: Fraction) -> float:
 
 def worst_error(
     method: Method,
+    decays: Decays,
     alpha_hat: FloatArray,
     beta_hat: FloatArray,
-    decays: Decays,
     *,
     omega_h: Fraction,
     spread: float,
@@ -100,7 +93,7 @@ def worst_error(
     left = np.arange(alpha_hat.size)
     for some in (slice(0, 1), slice(1, None)):  # the centre first: it leaves out the most
         alpha, beta = by_alpha[some] * alpha_hat[left], by_beta[some] ** 2 * beta_hat[left]
-        left = left[decays(alpha.ravel(), beta.ravel()).reshape(alpha.shape).all(axis=0)]
+        left = left[decays(alpha, beta).all(axis=0)]
     error = combined_error(method, by_alpha * alpha_hat[left], by_beta**2 * beta_hat[left], omega_h)
     worst[left] = error.max(axis=0)
     return worst

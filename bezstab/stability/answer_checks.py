@@ -27,9 +27,7 @@ from bezstab.stability.pencils import Pencil
 from bezstab.stability.searches import bisected
 
 Modulus = Callable[[FloatArray, FloatArray], FloatArray]
-"""|z_p|, or what takes its place, over arrays of alpha_hat and beta_hat."""
-Objective = Callable[[FloatArray, FloatArray, float], FloatArray]
-"""What is to be least, over rows of alpha_hat and beta_hat; above the last argument it may say any larger value."""
+"""|z_p|, or what takes its place and is to be least, over arrays of alpha_hat and beta_hat of one shape."""
 
 SAMPLES = 400  # over the region's box: a few thousandths of what the search itself looks at
 NEIGHBOURS = 32  # on each ring
@@ -79,7 +77,7 @@ def check_best_point(
 
 def check_least(
     method: Method,
-    objective: Objective,
+    objective: Modulus,
     alpha_hat: float,
     beta_hat: float,
     extent: Extent,
@@ -99,8 +97,8 @@ def check_least(
     kept = (alpha_hats > 0) & (beta_hats > 0)
     if cut:
         kept &= (alpha_hats <= extent[0][1]) & (beta_hats <= extent[1][1])
-    values = objective(alpha_hats[kept], beta_hats[kept], np.inf)
-    here = float(objective(np.array([alpha_hat]), np.array([beta_hat]), np.inf)[0])
+    values = objective(alpha_hats[kept], beta_hats[kept])
+    here = float(objective(np.array([alpha_hat]), np.array([beta_hat]))[0])
     least = int(np.argmin(values))
     if values[least] < here * (1 - DOUBLE) - SAME:
         place = f"({alpha_hats[kept][least]:.6g}, {beta_hats[kept][least]:.6g})"

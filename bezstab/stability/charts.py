@@ -16,30 +16,32 @@ from functools import partial
 from itertools import product
 
 import numpy as np
-from numpy.polynomial.polynomial import polyval2d
+from numpy.polynomial.polynomial import polyval, polyval2d
+from numpy.typing import NDArray
 
 from bezstab.stability.arrays import SAME, ComplexArray, Extent, FloatArray
 from bezstab.stability.mu_pencils import MuPencil, all_inside, largest_root_in_z, roots_in_mu
 from bezstab.stability.plane_pencils import PlanePencil, largest_plane_root
-from bezstab.stability.searches import zoom_on_minimum
+from bezstab.stability.searches import least_between
 
 Place = tuple[float, float]
 """Both parameters of a chart."""
+Points = NDArray[np.inexact]
+"""Real or complex."""
 
 SPACINGS = 120  # of a grid along either axis: every valley is seen
 FAR = (1e4, 1e2)  # alpha_hat, sqrt(beta_hat) where a region goes on: a damping of infinity by 1e-4 moves least values
 NEAR = (8.0, 64.0)  # alpha_hat, beta_hat: corners of a region may lie a thousandfold further out, least values do not
 ARC_SAMPLES = 513  # of theta, where a curve of equal |z_p| is looked for, a tenth of them at least
 ARC_SHARE = 1 / 10  # of the samples lie on such a curve, if there is one; a kink shows at isolated theta only
-ARC_ZOOM_POINTS, ARC_ZOOMS = 65, 7  # each by 1/32: the curve's end, to rounding
 
 
 @dataclass(frozen=True)
 class Chart:
     """What a search needs to know of a method.
 
-    `coefficients` returns, from both parameters, the polynomial's coefficients in z, ascending, and their slopes by
-    either parameter; shape (3, degree + 1). `modulus` returns the largest |z| over points of shape (..., 2), `fold`
+    `coefficients` returns the polynomial's coefficients in z, ascending, at points (..., 2), real or complex; shape
+    (degree + 1, ...). `modulus` returns the largest |z| over points of shape (..., 2), `fold`
     such points moved to where least values are looked for, `user_point` alpha_hat and beta_hat of a place. `edges` are
     the numbers, 0 or 1, of the parameters that may be zero at a least value. `real`: whether the coefficients are, so
     that poles come in conjugate pairs; else they are on the edge where the second parameter is zero. `anywhere`:
@@ -48,7 +50,7 @@ class Chart:
     """
 
     name: str
-    coefficients: Callable[[float, float], ComplexArray]
+    coefficients: Callable[[Points], Points]
     modulus: Callable[[FloatArray], FloatArray]
     fold: Callable[[FloatArray], FloatArray]
     user_point: Callable[[Place], tuple[float, float]]
@@ -70,10 +72,8 @@ def mu_chart(pencil: MuPencil, view: Extent, curves: Sequence[FloatArray], finer
     rightmost = 0.0 if pencil.implicit else reach / 4
     points = finer * SPACINGS + 1
 
-    def coefficients(x: float, y: float) -> ComplexArray:
-        powers = complex(x, y) ** np.arange(pencil.table.shape[1])
-        slope = pencil.table_by_mu @ powers[:-1]
-        return np.stack([pencil.table @ powers, slope, 1j * slope])
+    def coefficients(points: Points) -> Points:
+        return np.asarray(polyval(points[..., 0] + 1j * points[..., 1], pencil.table.T))
 
     def modulus(points: FloatArray) -> FloatArray:
         mu = points[..., 0] + 1j * points[..., 1]
@@ -107,10 +107,9 @@ def plane_chart(pencil: PlanePencil, view: Extent, curves: Sequence[FloatArray],
     if not curves:
         high = np.maximum(high, FAR)
     points = finer * SPACINGS + 1
-    tables = [np.moveaxis(each, 0, -1) for each in (pencil.table, *pencil.slopes[1:])]
 
-    def coefficients(x: float, y: float) -> ComplexArray:
-        return np.array([polyval2d(x, y, each) for each in tables], complex)
+    def coefficients(points: Points) -> Points:
+        return np.asarray(polyval2d(points[..., 0], points[..., 1], np.moveaxis(pencil.table, 0, -1)))
 
     def modulus(points: FloatArray) -> FloatArray:
         alpha_hat, beta_hat = points.reshape(-1, 2).T
@@ -161,15 +160,8 @@ def _other_end(pencil: MuPencil, z_abs: float, place: Place) -> Place | None:
     _, sampled = distances(theta)
     if (sampled >= 0).sum() < ARC_SHARE * theta.size:
         return None
-    furthest = theta[np.argmax(sampled.max(axis=0))]
-    end, _ = zoom_on_minimum(
-        lambda points: -distances(points[:, 0])[1].max(axis=0),
-        np.array([furthest]),
-        np.array([theta[1] - theta[0]]),
-        points=ARC_ZOOM_POINTS,
-        shrink=2 / (ARC_ZOOM_POINTS - 1),
-        rounds=ARC_ZOOMS,
-    )
-    locus, distance = distances(end)
+    furthest, spacing = theta[np.argmax(sampled.max(axis=0))], theta[1] - theta[0]
+    end, _ = least_between(lambda theta: -distances(theta)[1].max(axis=0), furthest - spacing, furthest + spacing)
+    locus, distance = distances(end[np.newaxis])
     far = complex(locus[np.argmax(distance[:, 0]), 0])
     return far.real, far.imag

@@ -1,7 +1,6 @@
 """Which feedback to choose: by goal, with proven stability and the margins that are left to the boundary."""
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
@@ -13,15 +12,14 @@ from bezstab.errors import InputError, NumericalError
 from bezstab.goals import SETTLING, UP_TO_LONGEST, Goal
 from bezstab.methods import Method, Verdict, steps
 from bezstab.rationals import exact
-from bezstab.stability.accurate_points import Decays, accurate_point, default_rate, worst_error
+from bezstab.stability.accurate_points import accurate_point, default_rate, worst_error
 from bezstab.stability.answer_checks import (
     Modulus,
-    Objective,
     check_critical,
     check_gentle,
     check_least,
 )
-from bezstab.stability.arrays import DOUBLE, SLOW, BoolArray, Extent, FloatArray
+from bezstab.stability.arrays import DOUBLE, SLOW, Extent, FloatArray
 from bezstab.stability.best_points import best_point
 from bezstab.stability.closed_loop import largest_modulus, largest_pole, verdict
 from bezstab.stability.critical_points import critical_place
@@ -30,12 +28,8 @@ from bezstab.stability.forced_errors import OMEGA_H
 from bezstab.stability.margins import Margins, stability_margins
 from bezstab.stability.pencils import Pencil, pencil_of
 from bezstab.stability.regions import Region, chart_of, pole_place, region
-from bezstab.stability.root_finding import TOLD
-from bezstab.stability.searches import checked, first_where, zoom_on_minimum
+from bezstab.stability.searches import checked, first_where, zoom_from_grid
 from bezstab.units import check_step
-
-Within = Callable[[FloatArray, FloatArray, FloatArray], BoolArray]
-"""Whether |z_p| is below a bound, over arrays of alpha_hat, beta_hat and bounds."""
 
 THOUSANDFOLD = 1e-3  # what "settled" means for the constraint error
 SAMPLES = 4000  # along a line: |z_p| has no features as narrow as that
@@ -43,7 +37,6 @@ FIRST_GRID = 52  # points per axis of the first grid over the region's box: ever
 GRID = 49  # points per axis of a zoom: few fine grids take less time than many coarse ones, and lose no valley
 ZOOM = 0.32  # from one grid to the next: eight spacings to either side of its best point
 ZOOMS = 23  # 0.32^22 = 1e-11 of the region at least, where the objective is flat to rounding
-SCOUTS = 16  # of a row one point in so many is looked at first, for a value that the others must be below
 SHARES = 8  # of the largest step, and of the spread, among which the worst is looked for: in practice it is an end
 AT_DEADBEAT = 0.01  # of alpha_hat, beta_hat: a double pole that is so near to zero may be followed no further
 SEARCHED = 4.0  # alpha h and beta h: there e^-4, a fiftieth, is left after a step, and nobody asks for faster decay
@@ -130,30 +123,32 @@ def choose(
     pencil = pencil_of(method, free=True)  # a pole that no parameters move must not hide the others
     at_rest = modulus is None
     modulus = modulus or partial(largest_modulus, pencil)
-    within = pencil.all_within if at_rest else partial(_below, modulus)
-    if along:
-        point, cut = _along_curve(method, along, goal, modulus, spread, rate, omega_h), False
-    elif goal == "accurate":
-        point = _accurate(method, box, modulus, within, omega_h=omega_h, rate=rate, spread=spread, equal=equal)
+    if goal == "accurate":
+        point = _accurate(method, box, modulus, omega_h, rate, spread, equal, along)
+        cut = cut and not along
     elif goal == "gentle":
-        of_all = partial(largest_modulus, pencil_of(method)) if at_rest else modulus
+        of_all = partial(largest_modulus, pencil_of(method)) if at_rest and not along else modulus
         rate = 0.0 if rate is None else rate
-        point, cut = _gentle(method, of_all, box, rate), False
-        check_gentle(method, of_all, point[0], rate)
+        point = mildest_along(along, of_all, rate, method.name) if along else _gentle(method, of_all, box, rate)
+        cut = False
     elif goal == "critical":
+        if along:
+            raise InputError(
+                "the goal critical needs a double pole, and this engine can express only a curve of points"
+            )
         point = _critical_point(method, box)
         check_critical(pencil, point[0], point[1], box, cut)
         if equal and not math.isclose(point[1], point[0] ** 2 / 4):
             raise InputError(
                 f"--goal critical --keep alpha=beta: the double pole of {method.name} is not at alpha = beta"
             )
-    elif goal == "robust":
-        point = _checked_least(pencil, box, _slowest(method, modulus, within, spread), equal, cut)
-    elif goal == "fastest":
-        if not equal and at_rest and (best := best_point(method)):
-            point, cut = (best.alpha_hat, best.beta_hat), False
-        else:  # on a line, or where |z_p| falls on as the feedback grows, or for a mechanism that moves
-            point = _checked_least(pencil, box, _throughout(modulus), equal, cut)
+    elif goal == "fastest" and at_rest and not (along or equal) and (best := best_point(method)):
+        point, cut = (best.alpha_hat, best.beta_hat), False
+    elif goal == "robust" or goal == "fastest":  # noqa: PLR1714 (what the type checker follows)
+        objective = _slowest(method, modulus, spread) if goal == "robust" else modulus
+        # without a curve of the fastest where |z_p| falls on as the feedback grows, or for a mechanism that moves
+        point = least_along(along, objective) if along else _checked_least(pencil, box, objective, equal, cut)
+        cut = cut and not along
     else:
         assert_never(goal)
     choice = describe_point(method, goal, exact(point[0]), exact(point[1]), spread, margins)
@@ -166,79 +161,36 @@ def _accurate(
     method: Method,
     box: Extent,
     modulus: Modulus,
-    within: Within,
-    *,
     omega_h: Fraction,
     rate: float | None,
     spread: float,
     equal: bool,
+    along: Curve | None,
 ) -> tuple[float, float]:
-    """Return the point of the goal accurate; where nothing decays as fast as it does by default, at half of robust."""
+    """Return the point of the goal accurate; where nothing decays as fast as it does by default, at half of robust.
+
+    InputError where nothing does at a rate that is given, or along a curve.
+    """
 
     def found(rate: float) -> tuple[float, float]:
-        decays = _decays(within, rate)
-        return accurate_point(method, box, decays, omega_h=omega_h, spread=spread, equal=equal)
-
-    if rate is not None:
-        return found(rate)
-    try:
-        return found(default_rate(method, omega_h))
-    except InputError:
-        fast = choose(method, "robust", spread, equal=equal, modulus=modulus, margins=False)
-        return found(fast.worst**0.5)
-
-
-def _below(modulus: Modulus, alpha_hat: FloatArray, beta_hat: FloatArray, bound: FloatArray) -> BoolArray:
-    return np.asarray(modulus(alpha_hat, beta_hat) < bound)
-
-
-def _decays(within: Within, rate: float) -> Decays:
-    """Return whether |z_p| is below a rate, as a function."""
-    return lambda alpha_hat, beta_hat: within(alpha_hat, beta_hat, np.full(alpha_hat.shape, rate))
-
-
-def _along_curve(
-    method: Method,
-    curve: Curve,
-    goal: Goal,
-    modulus: Modulus,
-    spread: float,
-    rate: float | None,
-    omega_h: Fraction,
-) -> tuple[float, float]:
-    """Return the point of a curve that a goal asks for; InputError where none meets it."""
-    if goal == "accurate":
-        rate = default_rate(method, omega_h) if rate is None else rate
-        objective = _accuracy(method, _decays(partial(_below, modulus), rate), omega_h, spread)
-        point = least_along(curve, objective)
-        if np.isinf(objective(np.array([point[0]]), np.array([point[1]]), np.inf)).any():
+        error = partial(worst_error, method, lambda a, b: modulus(a, b) <= rate, omega_h=omega_h, spread=spread)
+        if along is None:
+            return accurate_point(method, box, error, omega_h=omega_h, spread=spread, equal=equal)
+        point = least_along(along, error)
+        if np.isinf(error(*(np.array([each]) for each in point))).any():
             raise InputError(
                 f"{method.name}: no setting of the engine has |z_p| <= {rate:.6g} if α and β are off by a share of "
                 f"{spread:g}"
             )
         return point
-    rate = 0.0 if rate is None else rate
-    if goal == "critical":
-        raise InputError("the goal critical needs a double pole, and this engine can express only a curve of points")
-    if goal == "gentle":
-        found = mildest_along(curve, modulus, rate)
-        if found is None:
-            raise InputError(f"--settle: no setting of the engine has |z_p| <= {rate:.6g} with {method.name}")
-        return found
-    if goal == "robust":
-        return least_along(curve, _slowest(method, modulus, partial(_below, modulus), spread))
-    if goal == "fastest":
-        return least_along(curve, _throughout(modulus))
-    assert_never(goal)
 
-
-def _accuracy(method: Method, decays: Decays, omega_h: Fraction, spread: float) -> Objective:
-    """Return the objective of `accurate`, as `accurate_point` has it."""
-
-    def objective(alpha_hat: FloatArray, beta_hat: FloatArray, reached: float) -> FloatArray:
-        return worst_error(method, alpha_hat, beta_hat, decays, omega_h=omega_h, spread=spread)
-
-    return objective
+    try:
+        return found(default_rate(method, omega_h) if rate is None else rate)
+    except InputError:
+        if rate is not None or along:
+            raise
+        fast = choose(method, "robust", spread, equal=equal, modulus=modulus, margins=False)
+        return found(fast.worst**0.5)
 
 
 def _check_spread(spread: float) -> None:
@@ -348,60 +300,28 @@ def describe_point(
     )
 
 
-# `robust` asks for the least of a largest value among SHARES * 5 + 5. Most of them need not be looked at: a point at
-# which one is above what another point has at all cannot be the least, and whether a value is below a line needs no
-# pole: Schur's recursion tells whether all are within a circle.
-#
-#     largest          x
-#        |  x       x     x    - - - - - - - - reached: the largest of all, at the point that is best so far
-#        |       x             poles are asked for at the points below that line alone
-#        +--------------------
-
-
-def _slowest(method: Method, modulus: Modulus, within: Within, spread: float) -> Objective:
+def _slowest(method: Method, modulus: Modulus, spread: float) -> Modulus:
     """Return the objective of `robust`: the largest decay factor per largest step, over smaller steps and the spread.
 
     A step of share s of the largest turns (alpha_hat, beta_hat) into (s alpha_hat, s^2 beta_hat) and takes 1/s steps;
     in the limit of small steps what remains is exp(Re mu), the continuous decay. Of the spread the corners and the
-    centre are taken. Of a row of points the least value is exact, and so is every one that is as small; of the others
-    no more is said than that they are larger. `within` tells whether |z_p| is below a bound, faster than `modulus`.
+    centre are taken.
     """
     of_alpha, of_beta = np.array([(-1, -1), (-1, 1), (0, 0), (1, -1), (1, 1)]).T[:, :, np.newaxis] * spread + 1
-    all_shares = np.linspace(1, 0, SHARES + 1)[:-1]
+    share = np.linspace(1, 0, SHARES + 1)[:-1, np.newaxis, np.newaxis]
     multiple = float(method.step_multiple)
 
-    def scaled(shares: FloatArray, alpha_hat: FloatArray, beta_hat: FloatArray) -> tuple[FloatArray, ...]:
-        """Return the shares, and alpha_hat and beta_hat at them with every spread; shape (shares, 5, points)."""
-        share = shares[:, np.newaxis, np.newaxis]
-        return np.broadcast_arrays(share, share * of_alpha * alpha_hat, share**2 * (of_beta**2 * beta_hat))
-
-    def objective(alpha_hat: FloatArray, beta_hat: FloatArray, reached: float) -> FloatArray:
-        half, square = of_alpha * alpha_hat / 2, of_beta**2 * beta_hat
-        slower_mu = -half + np.sqrt(np.maximum(0, half**2 - square))
-        worst: FloatArray = np.exp(multiple * slower_mu).max(axis=0)
-        if np.isinf(reached) and worst.size > SCOUTS:
-            reached = float(objective(alpha_hat[::SCOUTS], beta_hat[::SCOUTS], reached).min())
-        left = kept = np.flatnonzero(worst <= reached)
-        if np.isfinite(reached):
-            for shares in (all_shares[:1], all_shares[1:]):  # most points fail at the largest
-                share, alphas, betas = scaled(shares, alpha_hat[kept], beta_hat[kept])
-                kept = kept[within(alphas, betas, (reached * (1 + TOLD)) ** share).all(axis=(0, 1))]
-            if kept.size:  # next to a double pole even the point that was reached may seem larger
-                worst[np.setdiff1d(left, kept)] = np.inf
-                left = kept
-        share, alphas, betas = scaled(all_shares, alpha_hat[left], beta_hat[left])
-        worst[left] = np.maximum(worst[left], (modulus(alphas, betas) ** (1 / share)).max(axis=(0, 1)))
-        return worst
+    def objective(alpha_hat: FloatArray, beta_hat: FloatArray) -> FloatArray:
+        a, b = of_alpha * alpha_hat.ravel(), of_beta**2 * beta_hat.ravel()  # (spreads, points)
+        slower_mu = -a / 2 + np.sqrt(np.maximum(0, a**2 / 4 - b))
+        decay = modulus(share * a, share**2 * b) ** (1 / share)
+        worst = np.maximum(np.exp(multiple * slower_mu).max(axis=0), decay.max(axis=(0, 1)))
+        return np.asarray(worst.reshape(alpha_hat.shape))
 
     return objective
 
 
-def _throughout(modulus: Modulus) -> Objective:
-    """Return |z_p| as an objective: exact at every point, whatever has been reached."""
-    return lambda alpha_hat, beta_hat, _: modulus(alpha_hat, beta_hat)
-
-
-def _checked_least(pencil: Pencil, extent: Extent, objective: Objective, equal: bool, cut: bool) -> tuple[float, float]:
+def _checked_least(pencil: Pencil, extent: Extent, objective: Modulus, equal: bool, cut: bool) -> tuple[float, float]:
     """Return where the objective is least; NumericalError if after a finer search, too, a sampled point is better."""
 
     def found(finer: int) -> tuple[float, float]:
@@ -412,40 +332,34 @@ def _checked_least(pencil: Pencil, extent: Extent, objective: Objective, equal: 
     return checked(found)
 
 
-def _least(extent: Extent, objective: Objective, equal: bool, cut: bool, finer: int) -> tuple[float, float]:
+def _least(extent: Extent, objective: Modulus, equal: bool, cut: bool, finer: int) -> tuple[float, float]:
     """Return where the objective is least over the region's box; with `equal` on the line alpha = beta.
 
     `finer`: so many times the points along an axis of the first grid, and so many times the zooms, each by a lesser
-    factor. Its valleys are narrow, curved and have kinks for beds, so the grids are turned, and wait where the valley
-    leads on; out of a box that cuts off the region they are not led.
+    factor. Its valleys are narrow, curved and have kinks for beds: the grids wait where a valley leads on, but out of a
+    box that cuts off the region they are not led (`cut`).
     """
     largest = np.array([extent[0][1] / 2, math.sqrt(extent[1][1])])  # alpha h and beta h
-    centre = largest / 2
     if equal:
-        centre = np.array([centre.min()])
-
-    reached = math.inf
+        largest = largest.min(keepdims=True)
 
     def over_positive_points(points: FloatArray) -> FloatArray:
-        nonlocal reached
-        alpha, beta = points[:, 0], points[:, -1]  # times h; with `equal` the same
-        values = np.full(len(points), np.inf)
+        values = np.full(points.shape[:-1], np.inf)
         positive = (points > 0).all(axis=-1)
-        values[positive] = objective(2 * alpha[positive], beta[positive] ** 2, reached)
-        reached = min(reached, float(values.min()))  # the next grid has this point as its centre
+        alpha, beta = points[positive].T[[0, -1]]  # times h; with `equal` the same
+        values[positive] = objective(2 * alpha, beta**2)
         return values
 
-    best, _ = zoom_on_minimum(
+    best, _ = zoom_from_grid(
         over_positive_points,
-        centre,
-        reach=centre,
-        first_points=finer * (SAMPLES if equal else FIRST_GRID),
+        largest / 2,
+        largest / 2,
+        finer * (SAMPLES if equal else FIRST_GRID),
         points=GRID,
         shrink=ZOOM ** (1 / finer),
         rounds=finer * ZOOMS,
-        turned=not equal,
         patient=True,
-        fold=(lambda points: np.minimum(points, 2 * centre)) if cut else None,
+        fold=(lambda points: np.minimum(points, largest)) if cut else None,
     )
     return 2 * float(best[0]), float(best[-1]) ** 2
 
@@ -464,10 +378,11 @@ def _critical_point(method: Method, box: Extent) -> tuple[float, float]:
 
 
 def _gentle(method: Method, modulus: Modulus, extent: Extent, rate: float) -> tuple[float, float]:
-    """Return the smallest alpha = beta with |z_p| <= rate."""
+    """Return the smallest alpha = beta with |z_p| <= rate; InputError without one, NumericalError if it is not that."""
     alpha = np.linspace(0, extent[0][1] / 2, SAMPLES)  # times h, as beta
     found = first_where(lambda alpha: modulus(2 * alpha, alpha**2) <= rate, alpha)
     if found is None:
         name, best = method.name, modulus(2 * alpha, alpha**2).min()
         raise InputError(f"--settle: with alpha = beta {name} has at best |z_p| = {best:.6g}, needed {rate:.6g}")
+    check_gentle(method, modulus, 2 * found[1], rate)
     return 2 * found[1], found[1] ** 2

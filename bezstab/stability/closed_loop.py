@@ -2,6 +2,7 @@
 
 from fractions import Fraction
 from functools import lru_cache
+from itertools import product
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -89,25 +90,17 @@ def largest_pole(pencil: Pencil, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> C
     """Return what dominant_pole does, from a pencil; infinite where an implicit step has no solution."""
     alpha_hat, beta_hat = np.broadcast_arrays(real_array(alpha_hat, "alpha_hat"), real_array(beta_hat, "beta_hat"))
     alphas, betas = (each if each.ndim == 2 else each.reshape(1, -1) for each in (alpha_hat, beta_hat))
-    dominant = np.empty(alpha_hat.size, complex)
-    columns = max(1, alphas.shape[1])  # of no points, too
+    dominant = np.empty(alphas.shape, complex)
     most = BLOCK * POLES // max(POLES, pencil.degree)
-    whole_rows = most // columns // SIDE * SIDE * columns
-    block = whole_rows or most
-    for start in range(0, alpha_hat.size, block):
-        stop = min(start + block, alpha_hat.size)
-        shape = ((stop - start) // columns, columns) if whole_rows else (1, stop - start)
-        points = _points(alphas, start, stop), _points(betas, start, stop)
-        pencil.write_largest_poles(*points, shape, dominant[start:stop])
+    columns = max(1, min(most, alphas.shape[1]))
+    rows = max(1, most // columns // SIDE * SIDE)
+    for i, j in product(range(0, alphas.shape[0], rows), range(0, alphas.shape[1], columns)):
+        tile = np.s_[i : i + rows, j : j + columns]
+        height, width = alphas[tile].shape
+        found = np.empty(height * width, complex)
+        pencil.write_largest_poles(alphas[tile].ravel(), betas[tile].ravel(), (height, width), found)
+        dominant[tile] = found.reshape(height, width)
     return _without_rounding(dominant).reshape(alpha_hat.shape)
-
-
-def _points(grid: FloatArray, start: int, stop: int) -> FloatArray:
-    """Return points `start` to `stop` of a grid in a row; only the rows that they lie in are copied."""
-    columns = grid.shape[1]
-    first = start // columns
-    rows = grid[first : -(-stop // columns)].reshape(-1)
-    return rows[start - first * columns : stop - first * columns]
 
 
 def largest_modulus(pencil: Pencil, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> FloatArray:

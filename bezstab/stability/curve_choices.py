@@ -11,9 +11,9 @@ from typing import Any
 
 import numpy as np
 
-from bezstab.errors import NumericalError
-from bezstab.stability.answer_checks import Modulus, Objective
-from bezstab.stability.arrays import DOUBLE, ROUNDING, SAME, BoolArray, FloatArray, even_points
+from bezstab.errors import InputError, NumericalError
+from bezstab.stability.answer_checks import Modulus
+from bezstab.stability.arrays import DOUBLE, SAME, FloatArray, even_points
 from bezstab.stability.root_finding import TOLD
 from bezstab.stability.searches import first_where, least_between
 
@@ -23,14 +23,14 @@ Curve = Callable[[Any], tuple[Any, Any]]
 SAMPLES = 1000  # |z_p| has no features as narrow as that, and what is narrower the zoom finds
 
 
-def least_along(curve: Curve, objective: Objective) -> tuple[float, float]:
+def least_along(curve: Curve, objective: Modulus) -> tuple[float, float]:
     """Return the mildest point (alpha_hat, beta_hat) of a curve at which an objective is least.
 
     NumericalError if it is smaller at a point that the search has not looked at.
     """
 
-    def values(shares: FloatArray, reached: float = np.inf) -> FloatArray:
-        return objective(*_points(curve, shares), reached)
+    def values(shares: FloatArray) -> FloatArray:
+        return objective(*_points(curve, shares))
 
     samples = np.linspace(0, 1, SAMPLES + 1)[1:]
     sampled = values(samples)
@@ -39,11 +39,9 @@ def least_along(curve: Curve, objective: Objective) -> tuple[float, float]:
         values, np.maximum(nearest - 2 / SAMPLES, samples[0]), np.minimum(nearest + 2 / SAMPLES, 1)
     )
     as_small = min(float(least), float(sampled.min())) * (1 + TOLD)
-    shares = np.sort(np.append(samples, zoomed))
-    found = first_where(lambda some: values(some, as_small) <= as_small, shares)
-    best = float(zoomed) if found is None else found[1]
-    if abs(best - nearest) < ROUNDING:  # the sample may be an exact point, as beta_hat = 1 is
-        best = float(nearest)
+    best = float(zoomed) if least < sampled.min() else float(nearest)  # a sample may be an exact point, as beta_hat = 1
+    if np.count_nonzero(sampled <= as_small) > 1 and (level := first_where(lambda s: values(s) <= as_small, samples)):
+        best = level[1]
     here = float(values(np.array([best]))[0])
     between, _ = even_points(SAMPLES)
     if values(between).min() < here * (1 - DOUBLE) - SAME:
@@ -51,14 +49,13 @@ def least_along(curve: Curve, objective: Objective) -> tuple[float, float]:
     return _point(curve, best)
 
 
-def mildest_along(curve: Curve, modulus: Modulus, rate: float) -> tuple[float, float] | None:
-    """Return the mildest point (alpha_hat, beta_hat) of a curve with |z_p| <= rate, None without one."""
-
-    def fast_enough(shares: FloatArray) -> BoolArray:
-        return np.asarray(modulus(*_points(curve, shares)) <= rate)
-
-    found = first_where(fast_enough, np.linspace(0, 1, SAMPLES + 1)[1:])
-    return None if found is None else _point(curve, found[1])
+def mildest_along(curve: Curve, modulus: Modulus, rate: float, name: str) -> tuple[float, float]:
+    """Return the mildest point (alpha_hat, beta_hat) of a curve with |z_p| <= rate; InputError without one."""
+    samples = np.linspace(0, 1, SAMPLES + 1)[1:]
+    found = first_where(lambda shares: modulus(*_points(curve, shares)) <= rate, samples)
+    if found is None:
+        raise InputError(f"--settle: no setting of the engine has |z_p| <= {rate:.6g} with {name}")
+    return _point(curve, found[1])
 
 
 def _points(curve: Curve, shares: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -25,7 +25,7 @@ from bezstab.stability.closed_loop import largest_modulus
 from bezstab.stability.forced_errors import OMEGA_H, combined_error, forced_error
 from bezstab.stability.pencils import pencil_of
 from bezstab.stability.regions import region
-from bezstab.stability.searches import ROUNDS, SHRINK, checked, zoom_on_minimum
+from bezstab.stability.searches import checked, grid_of, lowest_minima
 
 RATES = (0.999, 0.998, 0.995, 0.99, 0.98, 0.95, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3, 0.2, 0.1)
 """|z_p|: what was there has fallen a thousandfold after 6900 steps, ..., 3."""
@@ -34,20 +34,14 @@ WEAKEST = 0.25
 """Times -ln r of the slowest r: alpha h and beta h. No pole e^mu decays by more than either of them a step; a quarter
 leaves room for what methods make of that."""
 
-FIRST_GRID = 201
-"""Points per axis of the first grid, over some four decades: errors change by a twentieth from one to the next."""
+FIRST_GRID = 301
+"""Points per axis of the first grid, over some four decades: errors change by a thirtieth from one to the next."""
 
 STARTS = 6
-"""Of its minima, for each rate: the best are followed, since there may be islands and valleys in which N vanishes."""
+"""Of its minima, for each rate: there may be islands and valleys in which N vanishes."""
 
-SPACINGS = 2.0
-"""Of the first grid: so far around a minimum the search goes on."""
-
-GRID = 21
-"""Points per axis of a zoom: thirteen would stall in narrow corners."""
-
-FIRST_ROUNDS = 4
-"""So often all starts are zoomed in on, before the best of them is."""
+GRID, ROUNDS = 21, 22
+"""Points per axis of a zoom, and how many: thirteen would stall in narrow corners."""
 
 CHECKED = 230
 """Points per axis of another grid, which no point may have a lesser error on, by more than BETTER."""
@@ -96,8 +90,7 @@ def error_front(method: Method, rates: Sequence[float] = RATES, omega_h: Fractio
     if reached:
         high = np.log([alpha_hat_max / 2, np.sqrt(beta_hat_max)])
         low = np.minimum(np.log(-WEAKEST * np.log(reached[0])), high - 1)
-        front = partial(_front, method, _logarithms(method, omega_h), low, high, np.array(reached), best)
-        found = checked(front)
+        found = checked(partial(_front, method, _logarithms(method, omega_h), low, high, reached, best))
         alpha_hat, beta_hat = _plane(found)
         points = list(zip(reached, alpha_hat.tolist(), beta_hat.tolist(), strict=False))
     if best:
@@ -138,73 +131,50 @@ def _logarithms(method: Method, omega_h: Fraction) -> Logarithms:
     return looked_at
 
 
-def _within(error: FloatArray, z_abs: FloatArray, rates: FloatArray) -> FloatArray:
-    """Return the logarithm of the error where it decays so fast, what stands in for it elsewhere; shapes broadcast."""
-    return np.where(z_abs <= rates, error, TOO_SLOW + np.minimum(z_abs, SLOWEST))
-
-
 def _front(
     method: Method,
     looked_at: Logarithms,
     low: FloatArray,
     high: FloatArray,
-    rates: FloatArray,
+    rates: Sequence[float],
     fastest: BestPoint | None,
     finer: int,
 ) -> FloatArray:
     """Return the best point for each of the rates, which descend, in a box of logarithms, shape (rates, 2).
 
-    That of least |z_p| decays fast enough for each of them, where there is one, and competes. The last rates have none
-    where nothing there decays so fast. NumericalError where the check finds a better point.
+    That of least |z_p| decays fast enough for each of them, where there is one, and competes, as does what is best at a
+    faster rate. The last rates have none where nothing there decays so fast. NumericalError where the check finds a
+    better point.
     """
 
-    def objective(points: FloatArray) -> FloatArray:
-        """Return what is to be least, at points of shape (rates, ..., 2)."""
-        return _within(*looked_at(points), rates.reshape(-1, *[1] * (points.ndim - 2)))
+    def objective(points: FloatArray, rate: float) -> FloatArray:
+        """Return the logarithm of the error where it decays so fast, elsewhere what stands in for it."""
+        error, z_abs = looked_at(points)
+        return np.where(z_abs <= rate, error, TOO_SLOW + np.minimum(z_abs, SLOWEST))
 
-    def zoomed(starts: FloatArray, reach: FloatArray, rounds: int = ROUNDS) -> tuple[FloatArray, FloatArray]:
-        return zoom_on_minimum(
-            objective,
-            starts,
-            np.broadcast_to(reach, starts.shape),
-            points=GRID,
-            rounds=rounds,
-            turned=True,
-            patient=True,
-            fold=lambda points: np.clip(points, low, high),
-        )
+    def axes(count: int) -> list[FloatArray]:
+        return [np.linspace(first, last, count) for first, last in zip(low, high, strict=True)]
 
-    starts = _starts(looked_at, low, high, rates, finer)
+    best = np.empty((0, 2))
     if fastest:
         there = np.log(np.maximum([fastest.alpha_hat / 2, np.sqrt(fastest.beta_hat)], np.exp(low)))  # not zero
-        starts = np.concatenate([starts, np.broadcast_to(there, (len(rates), 1, 2))], axis=1)
-    reach = SPACINGS * (high - low) / (finer * FIRST_GRID)
-    points, values = zoomed(starts, reach, FIRST_ROUNDS)
-    best = values.argmin(axis=1)[:, np.newaxis, np.newaxis]
-    points, values = zoomed(np.take_along_axis(points, best, axis=1)[:, 0], reach * SHRINK**FIRST_ROUNDS)
-    for place in reversed(range(len(rates) - 1)):  # what decays faster competes, too
-        if values[place + 1] < values[place]:
-            points[place], values[place] = points[place + 1], values[place + 1]
-    sampled = _within(*looked_at(_grid(low, high, CHECKED).reshape(-1, 2)), rates[:, np.newaxis]).min(axis=1)
-    if better := np.flatnonzero(sampled < values + np.log1p(-BETTER)).tolist():
-        raise NumericalError(
-            f"{method.name}: on the front with |z_p| of {rates[better[0]]:g} at most another point is better"
+        best = there[np.newaxis]
+    front = []
+    for rate in reversed(rates):
+        at_rate = partial(objective, rate=rate)
+        found, _ = lowest_minima(
+            at_rate,
+            axes(finer * FIRST_GRID),
+            STARTS,
+            points=GRID,
+            rounds=ROUNDS,
+            fold=lambda points: np.clip(points, low, high),
         )
-    return points[values < TOO_SLOW]
-
-
-def _starts(looked_at: Logarithms, low: FloatArray, high: FloatArray, rates: FloatArray, finer: int) -> FloatArray:
-    """Return the best local minima of a grid for each rate, shape (rates, starts, 2)."""
-    grid = _grid(low, high, finer * FIRST_GRID)
-    values = _within(*looked_at(grid), rates[:, np.newaxis, np.newaxis])
-    around = np.pad(values, ((0, 0), (1, 1), (1, 1)), constant_values=np.inf)
-    rows, columns = values.shape[1:]
-    neighbours = [around[:, i : i + rows, j : j + columns] for i in range(3) for j in range(3)]
-    minima = np.where(values <= np.min(neighbours, axis=0), values, np.inf).reshape(len(rates), -1)
-    return grid.reshape(-1, 2)[np.argsort(minima, axis=1)[:, : finer * STARTS]]
-
-
-def _grid(low: FloatArray, high: FloatArray, points: int) -> FloatArray:
-    """Return the points of a grid over a box, so many per axis: shape (points, points, 2)."""
-    axes = (np.linspace(first, last, points) for first, last in zip(low, high, strict=True))
-    return np.stack(np.meshgrid(*axes), axis=-1)
+        points = np.concatenate([found, best])
+        values = at_rate(points)
+        best = points[np.argmin(values)][np.newaxis]
+        if at_rate(grid_of(axes(CHECKED))).min() < values.min() + np.log1p(-BETTER):
+            raise NumericalError(f"{method.name}: on the front with |z_p| of {rate:g} at most another point is better")
+        if values.min() < TOO_SLOW:
+            front.append(best[0])
+    return np.array(front[::-1])

@@ -18,14 +18,13 @@ side all of P's coefficients vanish at once, lower terms would decide: that is l
 """
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import product
 
 import numpy as np
 from numpy.polynomial.polynomial import polyroots, polyval
 
-from bezstab.stability.arrays import DOUBLE, SAME, BoolArray, FloatArray
+from bezstab.stability.arrays import DOUBLE, SAME, FloatArray
 from bezstab.stability.mu_pencils import MuPencil
 from bezstab.stability.plane_pencils import PlanePencil
 from bezstab.stability.root_finding import companion_roots
@@ -34,7 +33,6 @@ from bezstab.stability.searches import least_between
 Direction = tuple[int, int]
 """(p, q) of alpha_hat = x t^p, beta_hat = y t^q, without a common factor."""
 
-PREFERRED: tuple[Direction, ...] = ((0, 1), (1, 0), (1, 1), (1, 2))  # of the directions of a corner, the first it has
 RATIO, RATIOS = 1e6, 2001  # of alpha_hat^q to beta_hat^p, either way: beyond, the corners decide
 
 
@@ -72,60 +70,33 @@ def far_limit_through_mu(pencil: MuPencil) -> FarLimit:
 
 def least_far_limit(pencil: PlanePencil) -> FarLimit:
     """Return the least of all values that |z_p| tends to as alpha_hat >= 0 or beta_hat >= 0 grow; perhaps infinite."""
-    sides = _directions_of_sides([(i, j) for i, j in np.argwhere(pencil.table.any(axis=0)).tolist()])
-    # the directions of a corner lie between those of two neighbouring sides, or before neither parameter grows
-    fan = pairwise([(0, -1), *sides, (-1, 0)])
-    on_corner = min((_on_corner(pencil, *between) for between in fan), key=lambda limit: limit.z_abs)
-    on_side = min((_on_side(pencil, side) for side in sides), key=lambda limit: limit.z_abs, default=on_corner)
-    return on_side if on_side.z_abs < on_corner.z_abs * (1 - DOUBLE) else on_corner  # of poles that may be double
+    limits = [_limit(pencil, direction) for direction in _directions(sum(pencil.table.shape[1:]))]
+    least = min(limit.z_abs for limit in limits)
+    # of poles that may be double; a corner before a side, where the ratio must be kept
+    alike = [limit for limit in limits if limit.z_abs <= least / (1 - DOUBLE)]
+    return min(alike, key=lambda limit: limit.ratio is not None)
 
 
-def _angle(direction: Direction) -> float:
-    return math.atan2(direction[1], direction[0])
+def _directions(most: int) -> list[Direction]:
+    """Return all directions of so small numbers along which a parameter grows, the plainest first."""
+    sizes = range(-most, most + 1)
+    found = [(p, q) for p, q in product(sizes, sizes) if max(p, q) > 0 and math.gcd(p, q) == 1]
+    return sorted(found, key=lambda direction: (min(direction) < 0, sum(direction), direction[0]))
 
 
-def _directions_of_sides(exponents: Sequence[Direction]) -> list[Direction]:
-    """Return the outward normals of the polygon's sides along which a parameter grows, turning from alpha to beta."""
-    normals: set[Direction] = set()
-    for i, j in exponents:
-        for k, m in exponents:
-            divisor = math.gcd(i - k, j - m)
-            normal = ((j - m) // divisor, (k - i) // divisor) if divisor else (0, 0)
-            if max(normal) > 0 and all(normal[0] * (i - a) + normal[1] * (j - b) >= 0 for a, b in exponents):
-                normals.add(normal)
-    return sorted(normals, key=_angle)
-
-
-def _deciding(pencil: PlanePencil, direction: Direction) -> BoolArray:
-    """Return which terms of P decide as parameters grow along a direction: shape of a table by both powers."""
-    i, j = np.indices(pencil.table.shape[1:])
-    powers_of_t = np.where(pencil.table.any(axis=0), direction[0] * i + direction[1] * j, -np.inf)
-    return np.asarray(powers_of_t == powers_of_t.max())
-
-
-def _on_corner(pencil: PlanePencil, first: Direction, last: Direction) -> FarLimit:
-    """Return the limit in all directions strictly between two."""
-    inside = [each for each in PREFERRED if _angle(first) < _angle(each) < _angle(last)]
-    direction = inside[0] if inside else _primitive(first[0] + last[0], first[1] + last[1])
-    coefficients = pencil.table[:, _deciding(pencil, direction)]
-    return FarLimit(float(_largest_moduli(coefficients)[0]), direction)
-
-
-def _primitive(p: int, q: int) -> Direction:
-    divisor = math.gcd(p, q)
-    return p // divisor, q // divisor
-
-
-def _on_side(pencil: PlanePencil, direction: Direction) -> FarLimit:
-    """Return the least limit along a side's direction, over all ratios alpha_hat^q / beta_hat^p."""
+def _limit(pencil: PlanePencil, direction: Direction) -> FarLimit:
+    """Return the limit in a direction; along a side's the least over all ratios alpha_hat^q / beta_hat^p."""
     p, q = direction
-    deciding = _deciding(pencil, direction)
-    i, j = np.nonzero(deciding)
+    i, j = np.nonzero(pencil.table.any(axis=0))
+    decides = p * i + q * j == (p * i + q * j).max()
+    i, j = i[decides], j[decides]
+    if len(i) == 1:
+        return FarLimit(float(_largest_moduli(pencil.table[:, i, j])[0]), direction)
     # all (i, j) on the side are one of them plus a multiple of (q, -p), and that multiple is the power of the ratio
     power = i // q if q else -j // p
     power -= power.min()
     table = np.zeros((len(pencil.table), power.max() + 1))
-    table[:, power] = pencil.table[:, deciding]
+    table[:, power] = pencil.table[:, i, j]
 
     def modulus(log_ratios: FloatArray) -> FloatArray:
         return _largest_moduli(np.asarray(polyval(np.exp(log_ratios), table.T)))

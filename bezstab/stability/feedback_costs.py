@@ -51,18 +51,18 @@ def feedback_cost(
     the goal accurate is this package's.
     """
     order, _ = accuracy(method)
-    shares = _shares(method, alpha_hat, beta_hat, omega_h)
+    position, total, velocity = _shares(method, alpha_hat, beta_hat, omega_h)
     least_at = _least_at(method, omega_h)
-    least = _NONE if least_at is None else _shares(method, *least_at, omega_h)
+    _, least_total, least_velocity = _shares(method, *least_at, omega_h) if least_at else (None, None, None)
     return FeedbackCost(
         omega_h=float(omega_h),
-        forced_error=shares.position,
-        total_error=shares.total,
-        velocity_error=shares.velocity,
+        forced_error=position,
+        total_error=total,
+        velocity_error=velocity,
         order_left=order_left(method),
         order=order,
-        times_least=_times(shares.total, least.total),
-        times_least_velocity=_times(shares.velocity, least.velocity),
+        times_least=_times(total, least_total),
+        times_least_velocity=_times(velocity, least_velocity),
         least_at=least_at,
     )
 
@@ -73,27 +73,19 @@ def order_left(method: Method) -> int:
     return min(order, leading_error(method).order_left)
 
 
-@dataclass(frozen=True)
-class _Shares:
-    """Forced errors at one point; None in place of what is not finite, or not decaying."""
-
-    position: float | None = None
-    total: float | None = None
-    velocity: float | None = None
+Shares = tuple[float | None, float | None, float | None]
+"""Errors at a point: of the position, in total, of the velocity; None for what is not finite, or not decaying."""
 
 
-_NONE = _Shares()
-
-
-def _shares(method: Method, alpha_hat: float | Fraction, beta_hat: float | Fraction, omega_h: Fraction) -> _Shares:
+def _shares(method: Method, alpha_hat: float | Fraction, beta_hat: float | Fraction, omega_h: Fraction) -> Shares:
     """Return the errors at a point."""
     check_omega_h(omega_h)
     a, b = (each if isinstance(each, Fraction) else exact(each) for each in (alpha_hat, beta_hat))
     if not converges(method, a, b):
-        return _NONE
+        return None, None, None
     with np.errstate(over="ignore", invalid="ignore"):  # found below
         errors = forced_error(method, float(a), float(b), omega_h)
-    return _Shares(*(_finite(error) for error in (errors.position, errors.total, errors.velocity)))
+    return _finite(errors.position), _finite(errors.total), _finite(errors.velocity)
 
 
 def _finite(error: FloatArray) -> float | None:

@@ -13,7 +13,6 @@ import numpy as np
 
 from bezstab.methods import StepMatrix, characteristic, recursion_verdict
 from bezstab.rationals import exact
-from bezstab.stability.arrays import FloatArray
 
 LENGTHS = 40  # tried for either kind of step, evenly spaced
 SHORT_LENGTHS = 20  # besides, in equal ratios
@@ -40,24 +39,11 @@ def growing_words(matrix: StepMatrix, shortest: Fraction) -> Iterator[list[Fract
         powers[count] = powers[count - 1] @ matrices
     words = [(few, many) for few in COUNTS for many in COUNTS if few <= many and few + many <= MOST_STEPS]
     for few, many in sorted(words, key=sum):
-        radii = _radii(powers[many][:, np.newaxis] @ powers[few][np.newaxis])
+        products = powers[many][:, np.newaxis] @ powers[few]
+        radii = np.abs(np.linalg.eigvals(products)).max(axis=-1)
         first, second = np.unravel_index(radii.argmax(), radii.shape)
         if radii[first, second] > 1 + CLEARLY:
             yield [lengths[second]] * few + [lengths[first]] * many
-
-
-def _radii(products: FloatArray) -> FloatArray:
-    """Return the spectral radii of stacked matrices; of two rows from trace and determinant, which is faster."""
-    if products.shape[-1] != 2:
-        largest: FloatArray = np.abs(np.linalg.eigvals(products)).max(axis=-1)
-        return largest
-    half = (products[..., 0, 0] + products[..., 1, 1]) / 2
-    determinant = products[..., 0, 0] * products[..., 1, 1] - products[..., 0, 1] * products[..., 1, 0]
-    square = half * half - determinant
-    # a real pair |half| +- root, or a complex one whose product is the determinant
-    radii = np.asarray(np.abs(half) + np.sqrt(np.maximum(square, 0)), np.float64)
-    radii[square < 0] = np.sqrt(determinant[square < 0])
-    return radii
 
 
 def grows(matrix: StepMatrix, word: Sequence[Fraction]) -> bool:

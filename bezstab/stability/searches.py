@@ -7,8 +7,8 @@ package for a few short functions. Bisecting until the ends are neighbours keeps
 """
 
 import math
-from collections.abc import Callable
-from typing import TypeVar
+from collections.abc import Callable, Sequence
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -91,49 +91,86 @@ def first_where(holds: Callable[[FloatArray], BoolArray], samples: FloatArray) -
 #     |   |  +-+-+|   |         A diagonal valley narrower than the grid's spacing can hold the centre fast at a point
 #     +---+---+---+---+         that is best along both axes but not in between: turning the grids finds the way on.
 
+Points = Callable[[FloatArray], FloatArray]
+"""A function of points of shape (..., dimensions)."""
+
 
 def zoom_on_minimum(
-    objective: Callable[[FloatArray], FloatArray],
+    objective: Points,
     centre: FloatArray,
     reach: FloatArray,
     *,
     points: int = ZOOM_POINTS,
     shrink: float = SHRINK,
     rounds: int = ROUNDS,
-    first_points: int | None = None,
-    turned: bool = False,
     patient: bool = False,
-    fold: Callable[[FloatArray], FloatArray] | None = None,
+    fold: Points | None = None,
 ) -> tuple[FloatArray, FloatArray]:
     """Return the best point of the last of `rounds` grids that zoom in on the least value, and the value there.
 
     centre and reach: shape (..., dimensions), one or two of them; leading axes are searches side by side.
     objective: takes points of shape (..., grid points, dimensions) and returns their values, without the last axis.
-    points, first_points: along each axis of a grid, and of the first. shrink: the factor on the reach from grid to
-    grid. turned: each grid is rotated by the golden angle (two dimensions). patient: a grid whose best point is near
-    its edge is followed by one as large. fold: takes points to where they are allowed. The search ends after `rounds`
-    grids, with a reach of shrink^(rounds - 1) of the first; what the least value is worth is for the caller to judge.
+    points: along each axis of a grid. shrink: the factor on the reach from grid to grid. patient: a grid whose best
+    point is near its edge is followed by one as large. fold: takes points to where they are allowed. In two dimensions
+    each grid is turned by the golden angle. The search ends after `rounds` grids, with a reach of shrink^(rounds - 1)
+    of the first; what the least value is worth is for the caller to judge.
     """
-    dimensions = centre.shape[-1]
-    for k in range(rounds):
-        count = first_points if first_points and k == 0 else points
-        offsets = _grid(dimensions, count)
-        if turned and k:
-            offsets = _rotation(GOLDEN_ANGLE * k) @ offsets
-        candidates = centre[..., np.newaxis, :] + reach[..., np.newaxis, :] * offsets.T
+    offsets = grid_of([np.linspace(-1, 1, points)] * centre.shape[-1]).reshape(-1, centre.shape[-1])
+    turn = _rotation(GOLDEN_ANGLE) if centre.shape[-1] == 2 else np.eye(1)
+    for _ in range(rounds):
+        offsets = offsets @ turn.T
+        candidates = centre[..., np.newaxis, :] + reach[..., np.newaxis, :] * offsets
         if fold:
             candidates = fold(candidates)
         values = objective(candidates)
         least = np.asarray(np.argmin(values, axis=-1))
         best = np.take_along_axis(candidates, least[..., np.newaxis, np.newaxis], axis=-2)[..., 0, :]
         value = np.take_along_axis(values, least[..., np.newaxis], axis=-1)[..., 0]
-        if patient:
-            well_inside = np.all(np.abs(best - centre) < WELL_INSIDE * reach, axis=-1, keepdims=True)
-            reach = np.where(well_inside, shrink * reach, reach)
-        else:
-            reach = shrink * reach
+        well_inside = np.all(np.abs(best - centre) < WELL_INSIDE * reach, axis=-1, keepdims=True)
+        reach = np.where(well_inside | (not patient), shrink * reach, reach)
         centre = best
     return centre, np.asarray(value)
+
+
+def zoom_from_grid(
+    objective: Points,
+    centre: FloatArray,
+    reach: FloatArray,
+    first_points: int,
+    *,
+    shrink: float = SHRINK,
+    rounds: int = ROUNDS,
+    **zoom: Any,
+) -> tuple[FloatArray, FloatArray]:
+    """Return what `zoom_on_minimum` finds around the best point of a grid, which counts as the first of its rounds.
+
+    first_points: along each axis of that grid. zoom: further arguments of `zoom_on_minimum`.
+    """
+    offsets = grid_of([np.linspace(-1, 1, first_points)] * centre.size).reshape(-1, centre.size)
+    grid = centre + reach * offsets
+    best = grid[np.argmin(objective(grid))]
+    return zoom_on_minimum(objective, best, shrink * reach, shrink=shrink, rounds=rounds - 1, **zoom)
+
+
+def lowest_minima(
+    objective: Points, axes: Sequence[FloatArray], starts: int, **zoom: Any
+) -> tuple[FloatArray, FloatArray]:
+    """Return the lowest local minima on a grid, `starts` of them, each narrowed by a zoom: places and values there.
+
+    axes: the grid's points along one or two of them, rising. zoom: further arguments of `zoom_on_minimum`.
+    """
+    grid = grid_of(axes)
+    sampled = objective(grid)
+    neighbours = np.lib.stride_tricks.sliding_window_view(np.pad(sampled, 1, mode="edge"), [3] * len(axes))
+    minima = np.flatnonzero(sampled <= neighbours.min(axis=tuple(range(-len(axes), 0))))
+    lowest = minima[np.argsort(sampled.ravel()[minima], kind="stable")[:starts]]
+    reach = grid_of([_spacings(axis) for axis in axes]).reshape(-1, len(axes))[lowest]
+    return zoom_on_minimum(objective, grid.reshape(-1, len(axes))[lowest], reach, patient=True, **zoom)
+
+
+def grid_of(axes: Sequence[FloatArray]) -> FloatArray:
+    """Return all points of a grid, the first coordinate running fastest; shape (..., second axis, first axis, axes)."""
+    return np.stack(np.meshgrid(*axes), axis=-1)
 
 
 def least_between(
@@ -156,10 +193,10 @@ def least_between(
     return found[..., 0], least
 
 
-def _grid(dimensions: int, count: int) -> FloatArray:
-    """Return the points of a grid over [-1, 1] in each dimension, the first running fastest; shape (dimensions, n)."""
-    axes = [np.linspace(-1, 1, count)] * dimensions
-    return np.stack([coordinate.ravel() for coordinate in np.meshgrid(*axes)])
+def _spacings(axis: FloatArray) -> FloatArray:
+    """Return the larger distance of each of an axis' points from its neighbours."""
+    between = np.pad(np.diff(axis), 1, mode="edge")
+    return np.maximum(between[:-1], between[1:])
 
 
 def _rotation(angle: float) -> FloatArray:

@@ -1,11 +1,9 @@
 """What the shell offers after a press of the tab key."""
 
 import pytest
-from click.shell_completion import CompletionItem, ShellComplete
-from click.testing import CliRunner
+from click.shell_completion import ShellComplete
 
 from bezstab.cli import main
-from bezstab.cli.completion import QuotingBash
 from bezstab.engines import ENGINES
 from bezstab.mechanism import shipped_scenes
 from bezstab.methods import REGISTRY, lookup
@@ -22,7 +20,7 @@ def completions(words: str, kind: str = "plain") -> list[str]:
     ("words", "expected"),
     [
         ("methods rk", [name for name in REGISTRY if name.lower().startswith("rk")]),
-        ("simulate --method gen", ["generalized-alpha", "generalized-alpha(4/5)"]),
+        ("simulate --method gen", ["generalized-alpha"]),
         ("simulate --scene ", list(shipped_scenes())),
         ("choose --engine ", list(ENGINES)),
         ("check --engine muj", ["mujoco="]),
@@ -40,9 +38,3 @@ def test_every_method_is_offered_and_is_one_and_files_where_no_name_fits() -> No
     assert set(REGISTRY) <= set(completions("methods "))
     assert all(lookup(name) for name in completions("methods "))
     assert (completions("methods own/meth"), completions("methods own/meth", "file")) == ([], ["own/meth"])
-
-
-def test_bash_is_offered_what_it_can_read() -> None:
-    assert QuotingBash(main, {}, "bezstab", "x").format_completion(CompletionItem("hht(-1/20)")) == "plain,'hht(-1/20)'"
-    asked = {"_BEZSTAB_COMPLETE": "bash_complete", "COMP_WORDS": "bezstab methods newm", "COMP_CWORD": "2"}
-    assert CliRunner().invoke(main, prog_name="bezstab", env=asked).stdout.split() == ["plain,'newmark(1/4,1/2)'"]

@@ -38,7 +38,6 @@ def test_steps_that_are_refuted_together_may_be_typed_or_stand_in_a_file() -> No
         f"{EXAMPLE} {STEPS}",
         "--method SYM --alpha 0.4 --beta 1 --h 2 --h-min 0.2 --hold",
         "--method RK4 --alpha 6 --beta 2 --h 1e-4 --h-min 5e-5",  # 1e-4 s alone grows
-        f"{EXAMPLE} {STEPS} --scene slider_crank --speed 1/2",
         "--method verlet-old --alpha 0.2 --beta 1 --h 0.01 --h-min 0.002 --hold",
         "--method newmark(1/4,1/2) --alpha 0.1 --beta 1 --h 0.01 --h-min 0.002 --hold",
         "--method generalized-alpha --alpha 0.02 --beta 40 --h 0.01 --h-min 0.0005",

@@ -12,7 +12,7 @@ H = Fraction(2, 1000)
 
 
 def test_rules_of_thumb_are_where_they_are_known_to_be() -> None:
-    marks = {label: point(H) for engine in ENGINES.values() for label, point in engine.marks}
+    marks = {label: point for engine in ENGINES.values() for label, point in engine.marked(H).items()}
     assert marks["MuJoCo: timeconst = 2h"] == (Fraction(1), Fraction(1, 4))
     assert marks["MuJoCo: solref = 0.02 1"] == (Fraction(1, 5), Fraction(1, 100))
     assert marks["bullet: ERP = 0.2"] == marks["ode: ERP = 0.2"] == (Fraction(1), Fraction(1, 5))

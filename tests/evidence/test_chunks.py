@@ -43,7 +43,7 @@ def arrived(jobs: list[Job], workers: WorkerPool, folder: Path) -> dict[int, Arr
     """Return what all chunks of a job in this folder give, those that are there already included."""
     with chunk_store(folder / "job", "squares", resume=True) as store:
         found = list(completed_chunks(square, jobs, workers, store))
-        assert all(store.has(number) for number in range(len(jobs)))
+        assert all(store.load(number) for number in range(len(jobs)))
     assert sorted(number for number, _ in found) == list(range(len(jobs)))  # each done once
     return dict(found)
 
@@ -68,7 +68,7 @@ def test_a_lost_worker_costs_no_chunk_and_one_that_kills_every_worker_is_reporte
     with worker_pool(1) as workers, chunk_store(tmp_path / "other", "squares", resume=False) as store:
         with pytest.raises(NumericalError, match="workers were lost 3 times: 1 of 2 chunks"):
             list(completed_chunks(square, [Job(0), Job(1, deaths)], workers, store))
-        assert store.has(0)
+        assert store.load(0)
 
 
 def test_what_a_worker_raises_is_raised_here(tmp_path: Path) -> None:

@@ -11,9 +11,9 @@ from bezstab.mechanism import compiled_mechanism, load_scene, motion, simulate
 from bezstab.methods import RungeKutta, lookup
 from bezstab.stability import choose
 from bezstab.units import feedback_gains
+from tests.evidence.gain_grids import METHODS
 from tests.evidence.samples import of_campaign
 
-METHODS = ("RK4", "dopri5", "bs3", "B4", "AB2", "AB4", "ABM4", "SYM", "verlet-half", "bdf2", "hht", "gauss4")
 SCENES = {
     "driven_four_bar": (0.003, 1.0, 0.05),
     "slider_crank_light": (0.002, 2.0, 0.25),

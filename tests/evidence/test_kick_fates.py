@@ -1,18 +1,12 @@
-"""What becomes of the error that a kick has made: told from made-up responses, and from mechanisms at coarse steps."""
+"""What becomes of the error that a kick has made: told from made-up responses."""
 
 from collections.abc import Iterator
 
 import numpy as np
 import pytest
 
-from bezstab.evidence import map_rows, simulated_verdicts, verdict_map
 from bezstab.evidence.kick_fates import fates, follow
-from bezstab.mechanism import load_scene
-from bezstab.methods import lookup
 from bezstab.stability import FloatArray
-from tests.evidence.driven_four_bar import four_bar
-from tests.evidence.exact_rates import floquet_rates
-from tests.evidence.samples import of_campaign
 
 KICK, RUN = 1e-8, 2000
 STEPS: FloatArray = np.arange(RUN + 1.0)
@@ -72,38 +66,3 @@ def test_a_mechanism_that_breaks_down_gives_no_verdict_unless_feedback_throws_it
     assert fate(geometric(0.999), STILL, size=2e-3) == "none"
     assert fate(geometric(0.999), STILL, size=2.0) == "diverges"
     assert fate(geometric(0.999), STILL, size=2.0, calm=False) == "none"
-
-
-@pytest.mark.promise("Maps of simulated verdicts")
-@pytest.mark.parametrize("name", of_campaign(["AB4", "B4"], ["AB4"]))
-@pytest.mark.slow
-def test_where_the_motion_turns_a_verdict_it_is_that_of_the_exact_rate(name: str) -> None:
-    h = 1e-2
-    method = lookup(name)
-    chunks = map_rows(load_scene("driven_four_bar"), method, h, 12)
-    verdicts = verdict_map(chunks, [simulated_verdicts(rows) for rows in chunks])
-    alpha_hat, beta_hat = np.meshgrid(verdicts.alpha_hat, verdicts.beta_hat)
-    exact = floquet_rates(four_bar(), method, h, alpha_hat.ravel(), beta_hat.ravel(), 1.0).reshape(alpha_hat.shape)
-    assert verdicts.judged > 0.9 * exact.size
-    assert verdicts.disagrees.any()  # with the map, which is of a mechanism at rest
-    assert not ((verdicts.diverges != (exact > 1)) & ~verdicts.undecided).any()
-
-
-@pytest.mark.promise("Maps of simulated verdicts")
-@pytest.mark.parametrize(
-    ("scene", "name", "h", "judged"),
-    [
-        ("four_bar", "B4", 5e-3, 0.8),
-        *of_campaign([("four_bar", "RK4", 5e-3, 0.9), ("four_bar", "rk45", 5e-3, 0.9)], []),
-        *of_campaign([("slider_crank_light", "RK4", 1e-3, 0.99)], []),
-        ("slider_crank_300rpm", "RK4", 5e-3, 0.6),  # forced by millimetres at once
-    ],
-)
-@pytest.mark.slow
-def test_free_mechanisms_at_coarse_steps_give_no_wrong_verdict(scene: str, name: str, h: float, judged: float) -> None:
-    chunks = map_rows(load_scene(scene), lookup(name), h, of_campaign(9, 7))
-    verdicts = verdict_map(chunks, [simulated_verdicts(rows) for rows in chunks])
-    assert verdicts.disagreements_beyond_band == 0
-    assert verdicts.judged >= judged * verdicts.undecided.size
-    assert (verdicts.diverges & ~verdicts.undecided).any()
-    assert (~verdicts.diverges & ~verdicts.undecided & ~verdicts.too_close).any()

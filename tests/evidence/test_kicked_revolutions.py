@@ -18,7 +18,7 @@ def rates(name: str, count: int, points: tuple[FloatArray, FloatArray]) -> tuple
     """Return |z| per step as it is measured and as it is predicted, of so many steps a revolution."""
     method = lookup(name)
     motions = find_own_motions(four_bar(), method, 1 / count, *points, 1.0)
-    return rates_of_kicked_revolutions(four_bar(), method, motions), motions.rates
+    return rates_of_kicked_revolutions(motions), motions.rates
 
 
 @pytest.mark.promise("Rates over the method's own motion")

@@ -1,7 +1,6 @@
 """Measured poles against predicted ones: medians as promised, and no answer that is wrong and not flagged."""
 
 from dataclasses import replace
-from fractions import Fraction
 
 import numpy as np
 import pytest
@@ -9,7 +8,7 @@ import pytest
 from bezstab.evidence import LINEAR, SPREAD, Measurement, measure_poles, random_points
 from bezstab.evidence.measured_poles import KICKS, _measured_verdict
 from bezstab.mechanism import Mechanism, compiled_mechanism, load_scene
-from bezstab.methods import LinearMultistep, Method, PredictorCorrector, SecondOrder, implicit, lookup
+from bezstab.methods import LinearMultistep, PredictorCorrector, SecondOrder, implicit, lookup
 from tests.evidence.samples import of_campaign
 from tests.mechanism.test_scenes import small
 from tests.methods.kinds import EXPLICIT, FEW, IMPLICIT, SECOND_ORDER
@@ -125,18 +124,6 @@ def test_what_is_left_on_a_moving_mechanism_shrinks_with_its_speed_times_the_ste
     ]
     assert medians[0] < 3e-5
     assert medians[0] / np.array(medians[1:]) == pytest.approx(2, rel=0.25)
-
-
-@pytest.mark.parametrize("sigma", ["0 2 0", "1/3 4/3 1/3"])  # leapfrog, Milne and Simpson
-@pytest.mark.slow_except("0 2 0")
-def test_weakly_stable_methods_run_and_have_the_predicted_pole(sigma: str) -> None:
-    """No feedback is stable with them, but they are zero-stable."""
-    scheme = LinearMultistep((Fraction(1), Fraction(0), Fraction(-1)), tuple(map(Fraction, sigma.split())))
-    method, points = Method("weakly stable", scheme, ""), (np.array([0.3, 0.5]), np.array([0.2, 0.1]))
-    mechanism = compiled_mechanism(load_scene("pendulum"))
-    found = measure_poles(mechanism, method, H, *points)
-    assert np.max(errors(found)) < 1e-5
-    assert [one.measured_verdict for one in found] == ["diverges", "diverges"]
 
 
 @pytest.mark.slow

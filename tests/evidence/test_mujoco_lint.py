@@ -1,7 +1,7 @@
 """What lint says of each kind of row is what MuJoCo does: a little inside and a little outside of every limit."""
 
 from dataclasses import dataclass, replace
-from itertools import product
+from itertools import cycle, product
 from pathlib import Path
 from typing import Any
 
@@ -129,19 +129,8 @@ CASES = {
     "tendon spring": Case("tendon spring", TWO, TENDON.format('stiffness="3000" damping="100"')),
 }
 INTEGRATORS = ("Euler", "RK4", "implicit", "implicitfast")
-QUICK = {("joint", "Euler"), ("weld", "implicit"), ("joint limit", "implicitfast"), ("position", "implicitfast")}
-QUICK |= {
-    ("rope", "Euler"),
-    ("geared", "Euler"),
-    ("tendon limit", "Euler"),
-    ("joint friction", "Euler"),
-    ("split", "Euler"),
-    ("tendon", "RK4"),
-    ("explicit", "Euler"),
-}
-ALL = list(product(CASES, INTEGRATORS))
-EACH_TIME = of_campaign({*ALL}, {*ALL[::3], *QUICK})
-"""Of each kind one integrator or two, by turns."""
+IN_TURN = list(zip(CASES, cycle(INTEGRATORS), strict=False))
+"""Of each kind one integrator."""
 
 
 @pytest.mark.promise(
@@ -154,7 +143,13 @@ EACH_TIME = of_campaign({*ALL}, {*ALL[::3], *QUICK})
 )
 @pytest.mark.parametrize(
     ("name", "integrator"),
-    [pytest.param(*pair, marks=[] if pair in QUICK else pytest.mark.slow) for pair in ALL if pair in EACH_TIME],
+    [
+        *IN_TURN[::2],
+        *(
+            pytest.param(*pair, marks=pytest.mark.slow)
+            for pair in of_campaign(list(product(CASES, INTEGRATORS)), IN_TURN[1::2])
+        ),
+    ],
 )
 def test_every_kind_of_row_is_what_mujoco_does(name: str, integrator: str) -> None:
     """Equal |z| to 1e-5, the error of differences, at 0.97 and 1.03 of the limit; runs settle and grow there."""
@@ -198,14 +193,10 @@ def test_a_contact_is_judged_by_the_most_that_contacts_share(integrator: str) ->
         assert modulus(sphere, integrator, h) < 1
 
 
-def test_solimp_and_implicit_damping_scale_the_point() -> None:
-    """By r = 0.9 / 0.95 where nobody says otherwise, and by 1 + h d / m: with 1 + 1 the limit 4 - 2a is 8 - 2a."""
+def test_solimp_scales_the_point() -> None:
+    """By r = 0.9 / 0.95 where nobody says otherwise."""
     (row,) = lint(held("0.04 1", flags=""))
     assert [row.alpha_hat, row.beta_hat] == pytest.approx([0.2 * 0.9 / 0.95, 0.01 * (0.9 / 0.95) ** 2])
-    for b, verdict in ((5.8, "converges"), (6.2, "diverges")):
-        row = lint(held(direct(1.0, b), FLAT, joint=f'damping="{2 / H!r}"'))[0]
-        assert [row.alpha_hat, row.beta_hat] == pytest.approx([1 / 2, b / 2])
-        assert row.verdict == verdict
 
 
 def test_where_r_is_one_a_large_error_grows_though_a_small_one_settles() -> None:
@@ -222,24 +213,6 @@ def test_where_r_is_one_a_large_error_grows_though_a_small_one_settles() -> None
     *_, together = lint(replace(case, world=TWO.replace("1 0 .5", "1 0 0"), more=case.more + beside))
     assert (together.kind, together.verdict) == ("together", "diverges")
     assert together.z_abs == pytest.approx(row.z_abs, rel=1e-6)
-
-
-@pytest.mark.promise("`lint`: every kind of row of a MuJoCo model, flexes too, under each of its four integrators")
-@pytest.mark.parametrize("integrator", ["Euler", "implicitfast", "RK4"])
-def test_what_is_safe_alone_may_be_unsafe_together(integrator: str) -> None:
-    """Two drives along a chain: each sees the other joint free, both together see less inertia."""
-    drives = "".join(f'<position joint="{joint}" kp="3000" kv="10"/>' for joint in "xy")
-    case = replace(drive(drives), world=TWO)
-    together = lint(case, integrator)[-1]
-    assert together.kind == "together"
-    assert together.h_factor is not None
-    for times, verdict in ((0.97, "converges"), (1.03, "diverges")):
-        h = H * times * together.h_factor
-        *alone, found = lint(case, integrator, h)
-        assert found.verdict == verdict
-        assert found.z_abs == pytest.approx(modulus(case, integrator, h), abs=1e-5)
-    assert all(row.verdict == "converges" for row in alone)
-    assert "timestep" in found.advice
 
 
 FOUR_BAR = f"""<body><joint name="crank" axis="0 1 0"/>
@@ -378,17 +351,24 @@ def random_arm(rng: np.random.Generator) -> Case:
 
 
 @pytest.mark.promise("`lint`: every kind of row of a MuJoCo model, flexes too, under each of its four integrators")
-@pytest.mark.slow
-@pytest.mark.parametrize("integrator", of_campaign(INTEGRATORS, ("RK4", "implicitfast")))
-def test_all_together_is_mujocos_own_step_on_random_arms(integrator: str) -> None:
-    """Verdicts agree, and |z| to 1e-4: differences are as exact as that where steps are ill-conditioned."""
+@pytest.mark.parametrize(
+    ("integrator", "count"),
+    [("Euler", 5), *(pytest.param(each, of_campaign(25, 15), marks=pytest.mark.slow) for each in INTEGRATORS)],
+)
+def test_all_together_is_mujocos_own_step_on_random_arms(integrator: str, count: int) -> None:
+    """Verdicts agree, and |z| to 1e-4: differences are as exact as that where steps are ill-conditioned.
+
+    What is safe alone may be unsafe together: each sees the other joints free, all together see less inertia.
+    """
     rng = np.random.default_rng(16)
-    verdicts = set()
-    for _ in range(of_campaign(25, 15)):
+    seen = set()  # verdicts together, and whether all are safe alone
+    for _ in range(count):
         arm = random_arm(rng)
-        together, found = lint(arm, integrator)[-1], modulus(arm, integrator)
+        *alone, together = lint(arm, integrator)
+        found = modulus(arm, integrator)
         assert together.z_abs == pytest.approx(found, rel=1e-4)
         if abs(found - 1) > 1e-4:
             assert together.verdict == ("diverges" if found > 1 else "converges")
-            verdicts.add(together.verdict)
-    assert verdicts == {"converges", "diverges"}
+            seen.add((together.verdict, all(row.verdict == "converges" for row in alone)))
+    assert {verdict for verdict, _ in seen} == {"converges", "diverges"}
+    assert integrator != "Euler" or ("diverges", True) in seen

@@ -41,6 +41,10 @@ ROBOT = """<mujoco><compiler angle="radian"/>
 </mujoco>"""
 
 
+MARBLES = "".join(f'<body pos="{number} 0 0"><freejoint/><geom size=".1"/></body>' for number in range(20))
+"""Two hundred pairs of them can touch."""
+
+
 @pytest.fixture(scope="module")
 def robot() -> ModelData:
     return model_data(mujoco, mujoco.MjModel.from_xml_string(ROBOT))
@@ -113,6 +117,7 @@ def test_options_hold_for_all_that_is_read() -> None:
             ROBOT.replace("0.05 2", "0.05 inf"),
             "'slide': solref = 0.05 inf: expected 0, or sizes from 1e-15 to 1e",
         ),
+        ("small.xml", f'<mujoco><size memory="60K"/><worldbody>{MARBLES}</worldbody></mujoco>', "memory"),
         ("includes.xml", '<mujoco><include file="nowhere.xml"/></mujoco>', "nowhere.xml"),
     ],
 )

@@ -5,8 +5,6 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from bezstab.errors import InputError
 from bezstab.evidence import (
@@ -16,7 +14,6 @@ from bezstab.evidence import (
     likenesses,
     points_like,
     probed_pole,
-    steps_between_rows,
 )
 from bezstab.evidence.probed_poles import FEWEST
 from bezstab.methods import REGISTRY, lookup
@@ -41,18 +38,6 @@ def told(c: FloatArray, minus: FloatArray | None = None) -> ProbedPole:
     found = probed_pole(c, minus)
     assert found.pole is not None, found.reason
     return found
-
-
-@settings(max_examples=15, deadline=None)  # each fits some thirty windows
-@given(st.floats(0.6, 0.98), st.floats(0.2, 2.9), st.floats(0.3, 0.8), st.integers(0, 5))
-def test_the_pole_is_the_one_that_was_put_in_to_the_stated_error(
-    modulus: float, angle: float, ratio: float, seed: int
-) -> None:
-    z = np.array([modulus * np.exp(1j * angle), modulus * np.exp(-1j * angle), ratio * modulus])
-    c = np.array([float(f"{value:.9g}") for value in of_poles(z, 400, seed)])
-    found = probed_pole(c, np.zeros_like(c))
-    if found.pole is not None and found.uncertainty is not None:
-        assert abs(found.pole - z[0]) <= found.uncertainty + 1e-7  # which is what nine digits leave
 
 
 def test_methods_with_the_same_polynomial_are_named_together() -> None:
@@ -82,20 +67,6 @@ def test_rows_several_steps_apart_have_powers_of_the_poles() -> None:
     assert "SYM" in (like[0].method.name, like[0].same_as)
     (point,) = points_like(found, lookup("SYM"), 3)
     assert (point.alpha_hat, point.beta_hat) == pytest.approx((0.05, 0.01), abs=1e-6)
-
-
-def test_a_method_whose_steps_are_longer_than_the_rows_has_none_between_them() -> None:
-    long, b4 = lookup("RK4@5"), lookup("B4")
-    assert [steps_between_rows(long, 1e-3, row) for row in (1e-3, 1e-2)] == [None, 2]
-    assert [steps_between_rows(b4, 1e-3, row) for row in (2.001e-3, 2.5e-3)] == [2, None]
-    assert steps_between_rows(b4, None, 2.5e-3, every=4) == 4
-
-
-def test_a_method_whose_step_has_no_solution_there_is_left_out() -> None:
-    """Average acceleration divides by 1 + alpha_hat / 2 + beta_hat / 4, which is zero at (-3, 2)."""
-    own_steps = {lookup("average-acceleration"): 1, lookup("RK2"): 1}
-    like = likenesses(of_method("B4"), own_steps, Fraction(-3), Fraction(2))
-    assert [one.method.name for one in like] == ["RK2"]
 
 
 def with_pole(z: complex, error: float = 1e-9, others: tuple[complex, ...] = ()) -> ProbedPole:

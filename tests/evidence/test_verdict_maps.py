@@ -9,6 +9,8 @@ from bezstab.evidence import VerdictMap, map_rows, simulated_verdicts, verdict_m
 from bezstab.mechanism import load_scene
 from bezstab.methods import lookup
 from bezstab.stability import region
+from tests.evidence.driven_four_bar import four_bar
+from tests.evidence.exact_rates import floquet_rates
 from tests.evidence.samples import of_campaign
 
 H = 1e-3  # s
@@ -47,6 +49,40 @@ def test_simulated_verdicts_agree_outside_the_band(name: str, scene: str, count:
     cell = (verdicts.alpha_hat[1] - verdicts.alpha_hat[0]) * (verdicts.beta_hat[1] - verdicts.beta_hat[0])
     crossed = 4 * count * cell  # by the boundary, at most
     assert cell * (~verdicts.diverges).sum() == pytest.approx(region(lookup(name)).area, abs=crossed)
+
+
+@pytest.mark.promise("Maps of simulated verdicts")
+@pytest.mark.parametrize("name", of_campaign(["AB4", "B4"], ["AB4"]))
+@pytest.mark.slow
+def test_where_the_motion_turns_a_verdict_it_is_that_of_the_exact_rate(name: str) -> None:
+    h = 1e-2
+    verdicts = whole_map("driven_four_bar", name, h, 12)
+    alpha_hat, beta_hat = np.meshgrid(verdicts.alpha_hat, verdicts.beta_hat)
+    exact = floquet_rates(four_bar(), lookup(name), h, alpha_hat.ravel(), beta_hat.ravel(), 1.0).reshape(
+        alpha_hat.shape
+    )
+    assert verdicts.judged > 0.9 * exact.size
+    assert verdicts.disagrees.any()  # with the map, which is of a mechanism at rest
+    assert not ((verdicts.diverges != (exact > 1)) & ~verdicts.undecided).any()
+
+
+@pytest.mark.promise("Maps of simulated verdicts")
+@pytest.mark.parametrize(
+    ("scene", "name", "h", "judged"),
+    [
+        ("four_bar", "B4", 5e-3, 0.8),
+        *of_campaign([("four_bar", "RK4", 5e-3, 0.9), ("four_bar", "rk45", 5e-3, 0.9)], []),
+        *of_campaign([("slider_crank_light", "RK4", 1e-3, 0.99)], []),
+        ("slider_crank_300rpm", "RK4", 5e-3, 0.6),  # forced by millimetres at once
+    ],
+)
+@pytest.mark.slow
+def test_free_mechanisms_at_coarse_steps_give_no_wrong_verdict(scene: str, name: str, h: float, judged: float) -> None:
+    verdicts = whole_map(scene, name, h, of_campaign(9, 7))
+    assert verdicts.disagreements_beyond_band == 0
+    assert verdicts.judged >= judged * verdicts.undecided.size
+    assert (verdicts.diverges & ~verdicts.undecided).any()
+    assert (~verdicts.diverges & ~verdicts.undecided & ~verdicts.too_close).any()
 
 
 @pytest.mark.promise(

@@ -24,7 +24,7 @@ MECHANISM = compiled_mechanism(load_scene("driven_four_bar"))
 
 @pytest.mark.promise(
     "Rates where drivers turn and oscillate",
-    measured="exact over their common period: the runner's own, to 1e-4; without one nothing is called exact",
+    measured="exact over their common period: the runner's own, to 1e-9; without one nothing is called exact",
 )
 @pytest.mark.parametrize(
     ("rate", "frequency", "period"),

@@ -9,21 +9,20 @@ import pytest
 from bezstab.errors import InputError
 from bezstab.mechanism import (
     Mechanism,
-    check_after_step,
     compiled_mechanism,
     constraint_jacobian,
     initial_state,
     load_scene,
     observe,
     simulate,
-    simulated_with_steps,
+    simulated,
     state_function,
 )
 from bezstab.methods import Method, evaluations, implicit, lookup, steps
 from bezstab.stabilising import after_step
 from tests.evidence.samples import of_campaign
 from tests.mechanism.test_runner import measured_order
-from tests.mechanism.test_second_order_memory import LEAPFROG, STOERMER
+from tests.mechanism.test_second_order_memory import LEAPFROG
 from tests.mechanism.test_stepping import KINDS, assert_alike, step_for
 from tests.reference.one_coordinate_motion import shown_order
 from tests.reference.plain_projection import saddle_solution
@@ -154,7 +153,7 @@ def test_more_iterations_come_closer() -> None:
 
 
 def test_steps_of_different_lengths_are_projected_too() -> None:
-    run = simulated_with_steps(
+    run = simulated(
         scene("driven_four_bar"),
         lookup("hht"),
         sequence=(1e-3, 3e-3),
@@ -197,5 +196,3 @@ def test_a_position_from_which_newtons_method_finds_none_ends_a_run() -> None:
 def test_bad_input_is_refused() -> None:
     with pytest.raises(InputError, match="iterations 0: expected at least 1"):
         after_step("projection", 0)
-    with pytest.raises(InputError, match="stoermer has its position a step ahead of its velocity"):
-        check_after_step(Method("stoermer", STOERMER, source=""), PROJECTED)

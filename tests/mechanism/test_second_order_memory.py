@@ -4,6 +4,7 @@ from fractions import Fraction
 
 import pytest
 
+from bezstab.errors import InputError
 from bezstab.mechanism.second_order_memory import memory
 from bezstab.methods import Quantity, lookup, recipe, second_order_form
 
@@ -11,7 +12,7 @@ LEAPFROG = recipe({"w": "w[0] + a0", "x1": "x0 + w", "a1": "acceleration(x1, w)"
 """The velocity half a step back is what it carries."""
 
 STOERMER = recipe({"x2": "2 x1 - x0 + a1", "v1": "1/2 x2 - 1/2 x0", "a1": "acceleration(x1, v1)"})
-"""Central differences: the position is one step ahead of the velocity."""
+"""Central differences: the position is one step ahead of the velocity, so that no run can take it."""
 
 
 @pytest.mark.parametrize(
@@ -30,3 +31,8 @@ def test_a_helper_starts_with_what_belongs_to_the_state() -> None:
     ahead = recipe({"y": "y[0] + v1", "x1": "y - 1/2 v1", "v1": "v0 + a0", "a1": "acceleration(x1, v1)"})
     starts = dict(zip(memory(ahead).carried, memory(ahead).shares, strict=True))
     assert starts[Quantity("y", 0)][:2] == (Fraction(1), Fraction(1, 2))
+
+
+def test_a_scheme_whose_step_ends_with_no_state_is_refused() -> None:
+    with pytest.raises(InputError, match="x2: a step that a run can take ends with x1 and v1, none later"):
+        memory(STOERMER)

@@ -1,13 +1,20 @@
-"""The loop that takes steps, by numpy and as machine code: against plain steps, and how runs end."""
+"""The loop that takes steps, by numpy and as machine code, alone and in batches: against plain steps; how runs end."""
+
+from collections.abc import Iterable
 
 import numpy as np
 import pytest
 
 from bezstab.mechanism import (
+    Block,
+    How,
     Mechanism,
     Trajectory,
     compiled_mechanism,
+    initial_state,
     load_scene,
+    march,
+    resume,
     runner,
     shipped_scenes,
     simulate,
@@ -18,7 +25,7 @@ from bezstab.methods import REGISTRY, implicit, lookup
 from bezstab.units import feedback_gains
 from tests.evidence.samples import of_campaign
 from tests.methods.kinds import EXPLICIT
-from tests.reference.plain_runs import plain_run
+from tests.reference.plain_runs import FloatArray, plain_run
 
 H = 1e-3  # s
 EPS = np.finfo(float).eps
@@ -132,3 +139,44 @@ def test_a_singular_configuration_ends_a_run(compiled: bool) -> None:
     state = (np.array([1e-160, 0.0]), np.array([0.0, 0.0]))  # the square of its length is no normal number
     run = simulate(mechanism, lookup("AB3"), H, 0.1, (0.0, 0.0), state, "euler", compiled=compiled)
     assert run.failure
+
+
+@pytest.mark.promise("Compiled runs (`--compiled`)")
+@pytest.mark.parametrize("name", ["SYM", "gauss4"])
+@pytest.mark.slow
+def test_kicked_runs_are_the_same_in_a_batch_compiled_and_alone(name: str) -> None:
+    """With SYM on a scene that is driven: where the time matters. Some diverge, and are no numbers alike."""
+    scene = "driven_slider_crank" if name == "SYM" else "slider_crank"
+    mechanism, method, points = compiled_mechanism(load_scene(scene)), lookup(name), 70
+    gains = feedback_gains(np.linspace(0.05, 3.0, points), np.linspace(0.01, 2.0, points), H)
+    start = np.concatenate(initial_state(mechanism))
+    blocks = march(mechanism, method, H, gains, start[:, np.newaxis], "rk4", states_needed(method))
+    history = [np.repeat(start[:, np.newaxis], points, axis=1), *(state for block in blocks for state in block.states)]
+    undisturbed = history[-1]
+    history[-1] = undisturbed[:, np.newaxis] + np.array([[1e-6], [-1e-6]])
+    count = 300
+    together = states_of(resume(mechanism, method, H, gains, history, count, undisturbed=undisturbed))
+    assert together.shape == (count, 2 * mechanism.size, 2, points)
+    compiled = states_of(resume(mechanism, method, H, gains, history, count, How(compiled=True), undisturbed))
+    with np.errstate(invalid="ignore"):  # of what is infinite
+        calm = (np.abs(together[:, :, 0] - together[:, :, 1]) < 1e-2).all(axis=(0, 1))
+    assert calm.any()
+    assert compiled[..., calm] == pytest.approx(together[..., calm], abs=1e-9)
+    for point in np.flatnonzero(calm)[:2]:
+        alone = states_of(
+            resume(
+                mechanism,
+                method,
+                H,
+                (float(gains[0][point]), float(gains[1][point])),
+                [*(state[:, point] for state in history[:-1]), history[-1][:, 0, point]],
+                count,
+                undisturbed=undisturbed[:, point],
+            )
+        )
+        assert alone == pytest.approx(together[:, :, 0, point], abs=1e-9)
+
+
+def states_of(blocks: Iterable[Block]) -> FloatArray:
+    """Return all states of blocks."""
+    return np.concatenate([block.states for block in blocks])

@@ -14,7 +14,6 @@ from bezstab.mechanism import (
     load_scene,
     observe,
     simulated,
-    simulated_with_steps,
 )
 from bezstab.methods import lookup, step_matrix
 from bezstab.stability import FloatArray
@@ -41,7 +40,7 @@ def run_with(
     mechanism: Mechanism = MECHANISM,
 ) -> Simulation:
     """Return the run that starts a thousandth of a millimetre off."""
-    return simulated_with_steps(
+    return simulated(
         mechanism,
         lookup(method),
         sequence=sequence,
@@ -104,7 +103,7 @@ class Round:
     def errors(self, rounds: int) -> FloatArray:
         """Return the first constraint's error before and after each round, of a mechanism all but at rest."""
         method, h = lookup(self.method), 0.01
-        run = simulated_with_steps(
+        run = simulated(
             AT_REST,
             method,
             sequence=[float(step) * h for step in self.steps],
@@ -167,7 +166,7 @@ def compiled_and_not(name: str, monkeypatch: pytest.MonkeyPatch, **point: Any) -
     pendulum, runs = compiled_mechanism(load_scene("pendulum")), []
     for choice in ("no", "yes"):
         monkeypatch.setenv(COMPILED_CHOICE, choice)
-        runs.append(simulated_with_steps(pendulum, lookup(name), perturb=1e-6, **point))
+        runs.append(simulated(pendulum, lookup(name), perturb=1e-6, **point))
     assert_alike(runs[0].trajectory, runs[1].trajectory)
     return runs[1]
 

@@ -19,8 +19,8 @@ from bezstab.paper.comparison import (
     what_semi_implicit_euler_is,
 )
 from bezstab.paper.experiments import Experiment, experiment
-from bezstab.paper.findings import Finding
 from bezstab.paper.printed import COMPARED, TABLE_5, PrintedCase
+from bezstab.paper.reports import Finding
 from bezstab.stability import dominant_pole, spectral_radius
 
 

@@ -3,9 +3,9 @@ from typing import get_args
 import pytest
 
 from bezstab.paper import lost, methods, regions, slider_crank
-from bezstab.paper.findings import Agreement, Finding
 from bezstab.paper.ledger import SUBJECTS, finding_rows, ledger_text
 from bezstab.paper.printed import PARTS
+from bezstab.paper.reports import Agreement, Finding
 
 
 def test_every_part_is_made_by_one_subject() -> None:

@@ -1,7 +1,7 @@
 import pytest
 
 from bezstab.paper import methods
-from bezstab.paper.findings import Agreement
+from bezstab.paper.reports import Agreement
 
 FOUND = methods.findings()
 

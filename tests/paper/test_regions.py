@@ -3,7 +3,7 @@ import pytest
 
 from bezstab.methods import lookup
 from bezstab.paper import regions
-from bezstab.paper.findings import Agreement, Finding
+from bezstab.paper.reports import Agreement, Finding
 from bezstab.stability import region, spectral_radius
 
 

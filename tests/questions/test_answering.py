@@ -5,7 +5,6 @@ from fractions import Fraction
 import pytest
 
 from bezstab.engines import ENGINES, Drive
-from bezstab.errors import InputError
 from bezstab.methods import lookup
 from bezstab.questions import Answer, LargestStep, Question, answers
 from bezstab.stability import choose, describe_point, feedback_cost
@@ -61,11 +60,6 @@ def test_an_engine_answers_for_every_point_that_it_takes() -> None:
     assert (small.verdict, large.verdict) == ("converges", "diverges")
     assert small.setting is None
     assert "solref" in str(small.instead.setting)
-
-
-def test_a_choice_that_an_engine_cannot_express_says_what_to_ask() -> None:
-    with pytest.raises(InputError, match="ask `check --engine box2d=hertz,dampingRatio` about values of yours"):
-        first(Question(engine=ENGINES["box2d"], goal="critical", h=H))
 
 
 def test_of_a_drive_kp_and_kd_are_told() -> None:

@@ -4,11 +4,10 @@ from itertools import pairwise
 
 import pytest
 
-from bezstab.engines import ENGINES, hard_velocity_step
-from bezstab.errors import InputError
+from bezstab.engines import ENGINES
 from bezstab.mechanism import Scene, parse_scene
 from bezstab.questions import Question, answers
-from bezstab.questions.chains import constraints_of, constraints_of_chain
+from bezstab.questions.chains import SweptConstraints, constraints_of, constraints_of_chain
 from bezstab.stability import chain, swept_growth
 
 CHIPMUNK = ENGINES["chipmunk"]
@@ -114,19 +113,15 @@ def test_pins_are_swept_at_once_or_in_rows_as_the_engine_does() -> None:
     """Chipmunk solves the two constraints of a pin together, Bullet one after the other."""
     pins = constraints_of("four_bar", Fraction(1))
     assert pins.joints == (0, 0, 1, 1)
-    step = hard_velocity_step(0.5, 1, kept=1.0)
-    for name, joints in (("chipmunk", pins.joints), ("bullet", None)):
-        assert pins.growth(ENGINES[name], step) == swept_growth(pins.inverse_masses, step, joints)
+    for name, values, joints in (("chipmunk", DEFAULT, pins.joints), ("bullet", (Fraction("0.2"),), None)):
+        engine = ENGINES[name]
+        assert engine.sweeping
+        step = engine.sweeping.step(3, H, *values)
+        found = SweptConstraints(engine, H, pins, 3).growth(values)
+        assert found == swept_growth(pins.inverse_masses, step, joints)
 
 
 def test_one_constraint_of_a_scene_is_one_alone() -> None:
     (answer,) = answers(Question(engine=CHIPMUNK, values=DEFAULT, h=Fraction(1, 240), scene="pendulum"))
     assert answer.swept is None
     assert answer.swept_over == "one constraint alone"
-
-
-def test_a_chain_needs_an_engine_that_sweeps() -> None:
-    with pytest.raises(InputError, match="--chain needs --engine"):
-        Question(point=(Fraction(1), Fraction(1)), chain=2, methods=())
-    with pytest.raises(InputError, match="mujoco solves all constraints together"):
-        Question(engine=ENGINES["mujoco"], values=(Fraction("0.02"), Fraction(1)), h=Fraction(1, 60), chain=2)

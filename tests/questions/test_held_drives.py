@@ -96,12 +96,3 @@ def test_what_cannot_be_reached_is_refused_with_what_can() -> None:
         gains(timing, bandwidth=Fraction(reach) * Fraction("1.02"))
     with pytest.raises(InputError, match=r"--settle 0\.01 s: not safe .* from \S+ s on is"):
         gains(timing, settle=Fraction("0.01"))
-
-
-def test_bad_input_is_refused_in_a_line() -> None:
-    with pytest.raises(InputError, match="--method RK4: expected a way of applying a drive"):
-        HeldQuestion(drive=Drive(Fraction(1), Fraction(1), INERTIA), h=H, methods=(lookup("RK4"),))
-    with pytest.raises(InputError, match="give --bandwidth or --settle"):
-        gains(Timing())
-    with pytest.raises(InputError, match="--bandwidth 0 Hz: expected a positive number"):
-        gains(Timing(), bandwidth=Fraction(0))

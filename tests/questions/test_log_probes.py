@@ -5,7 +5,6 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from bezstab.errors import InputError
 from bezstab.evidence import Log
 from bezstab.methods import lookup
 from bezstab.questions import LogQuestion, log_answers
@@ -32,10 +31,3 @@ def test_without_a_point_it_is_found() -> None:
     (answer,) = log_answers(LogQuestion(log=decay(every=2), h=0.01, methods=(SYM,)))
     places = [(point.alpha_hat, point.beta_hat) for point in answer.points]
     assert any(place == pytest.approx((0.5, 0.25), rel=1e-6) for place in places)
-
-
-def test_times_that_are_no_multiple_of_the_step_are_refused() -> None:
-    with pytest.raises(InputError, match="expected a multiple of the step"):
-        LogQuestion(log=decay(), h=0.03, point=POINT, methods=(SYM,))
-    with pytest.raises(InputError, match="--every 3: the log"):
-        LogQuestion(log=decay(every=2), h=0.01, every=3, point=POINT, methods=(SYM,))

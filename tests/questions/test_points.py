@@ -34,17 +34,9 @@ def test_an_engine_holds_alpha_hat_and_beta_hat_or_alpha_and_beta_or_is_refused(
 
 
 @pytest.mark.parametrize(
-    ("alpha", "beta", "h", "meant"),
-    [
-        ("50", "50.5", "0.002", "at this step"),
-        ("14217", "16544", None, "at another step"),
-        ("1.5", "0.9", "1/240", None),  # stable as typed
-        ("4", "3", None, None),  # too strong for SYM, but no number of 1/s
-        ("4", "3", "2", None),  # too strong in either unit
-    ],
+    ("alpha", "beta", "meant"),
+    [("50", "50.5", True), ("1.5", "0.9", False), ("4", "3", False)],  # 4, 3: unstable, but no numbers of 1/s
 )
-def test_numbers_that_would_be_stable_in_one_over_seconds_only_are_meant_so(
-    alpha: str, beta: str, h: str | None, meant: str | None
-) -> None:
-    point = Fraction(alpha), Fraction(beta)
-    assert meant_in_seconds([lookup("SYM")], point, None if h is None else Fraction(h)) == meant
+def test_large_numbers_that_are_not_stable_are_meant_in_one_over_seconds(alpha: str, beta: str, meant: bool) -> None:
+    assert meant_in_seconds([lookup("SYM")], (Fraction(alpha), Fraction(beta))) == meant
+    assert not meant_in_seconds([lookup("implicit-euler")], (Fraction(alpha), Fraction(beta)))  # stable as typed

@@ -1,4 +1,4 @@
-"""A question is whole, or it is none: what does not go together is refused where the question is made."""
+"""A question is whole, or it is none; tests/cli/mistakes.txt has what does not go together."""
 
 from fractions import Fraction
 from typing import Any
@@ -13,7 +13,6 @@ from bezstab.questions import Question, usual_goal
 SYM = (lookup("SYM"),)
 POINT = (Fraction(1), Fraction(1, 2))
 H = Fraction(1, 240)
-MUJOCO = {"engine": ENGINES["mujoco"], "values": (Fraction(1, 50), Fraction(1))}
 DRIVE = Drive(Fraction(1000), Fraction(80), Fraction("0.1"))
 
 
@@ -21,32 +20,11 @@ DRIVE = Drive(Fraction(1000), Fraction(80), Fraction("0.1"))
     ("asked", "message"),
     [
         ({"methods": SYM}, "a point is needed: --alpha with --beta, --engine, or --pd"),
-        ({"point": POINT}, "which integrator?"),
         ({"methods": SYM, "point": POINT, "drive": DRIVE, "h": H}, "--pd takes the place of --alpha"),
-        (MUJOCO, "need --h"),
-        ({**MUJOCO, "drive": DRIVE, "h": H}, "--engine and --pd each give a point"),
-        ({"methods": SYM, "point": POINT, "as_typed": True}, "--as-typed needs --engine"),
-        ({"methods": SYM, "point": POINT, "h": H, "h_max": H}, "--h-max needs --h-min"),
-        ({"methods": SYM, "point": POINT, "h": H, "hold": True}, "--hold needs --h-min"),
-        ({"methods": SYM, "point": POINT, "h": H, "h_min": 2 * H}, "expected at most the longest step"),
-        ({"methods": SYM, "point": POINT, "h_min": H}, "--h-min needs --h-max or --h"),
-        ({"methods": (lookup("B4"),), "point": POINT, "h": H, "h_min": H / 2}, "B4 uses values of several steps"),
-        ({"methods": SYM, "point": POINT, "speed": Fraction(2)}, "--speed needs --scene"),
         ({"methods": SYM, "point": POINT, "h": Fraction(0)}, "h = 0 s: expected"),
-        ({"methods": SYM, "goal": "quick"}, "goal 'quick': expected accurate, robust, fastest, critical, gentle"),
-        ({"methods": SYM, "goal": "gentle", "h": H}, "--goal gentle needs --settle"),
-        ({"methods": SYM, "goal": "fastest", "h": H, "settle": H}, "--settle goes with --goal gentle or accurate"),
-        ({"methods": SYM, "goal": "robust", "spread": 1.0}, "--spread 1: expected a share"),
-        ({"methods": SYM, "goal": "fastest", "h": H, "h_max": 2 * H}, "only for --goal accurate, robust or --h-min"),
-        ({"goal": "robust", "engine": ENGINES["bullet"], "h": H, "h_max": 2 * H}, "told by `check --engine`"),
-        ({"goal": "robust", "engine": ENGINES["pinocchio"], "h": H}, "has no integrator of its own"),
-        (
-            {"methods": (lookup("RK4"),), "goal": "robust", "engine": ENGINES["bullet"], "h": H},
-            "only with --method SYM",
-        ),
     ],
 )
-def test_what_does_not_go_together_is_refused(asked: dict[str, Any], message: str) -> None:
+def test_what_only_python_can_ask_is_refused_as_well(asked: dict[str, Any], message: str) -> None:
     with pytest.raises(InputError, match=message):
         Question(**asked)
 

@@ -29,11 +29,7 @@ def test_projection_and_nothing_hold_the_constraints_without_a_point() -> None:
     assert run_answer(replace(QUESTION, point=None, stabilise="none")).stabilise == "none"
 
 
-def test_what_does_not_go_together_is_refused() -> None:
+def test_feedback_alone_has_a_point() -> None:
     for changed in ({"stabilise": "projection"}, {"stabilise": "none"}, {"point": None}):
         with pytest.raises(InputError, match="--stabilise baumgarte"):
             replace(QUESTION, **changed)
-    with pytest.raises(InputError, match="--iterations needs --stabilise projection"):
-        replace(QUESTION, point=None, stabilise="none", iterations=2)
-    with pytest.raises(InputError, match="several steps"):
-        replace(QUESTION, method=lookup("B4"), sequence=(Fraction("0.01"),))

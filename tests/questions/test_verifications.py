@@ -2,7 +2,6 @@ from fractions import Fraction
 
 import pytest
 
-from bezstab.errors import InputError
 from bezstab.methods import lookup
 from bezstab.questions import VerifyQuestion
 
@@ -20,8 +19,3 @@ def test_errors_are_compared_at_the_robust_choice_unless_a_point_is_given() -> N
     question = VerifyQuestion(scene="driven_four_bar", methods=(SYM,), h=Fraction("0.004"))
     share = next(iter(question.forced_errors(SYM)))
     assert share.holds
-
-
-def test_a_step_is_positive() -> None:
-    with pytest.raises(InputError, match="h = 0 s"):
-        VerifyQuestion(scene="pendulum", methods=(SYM,), h=Fraction(0))

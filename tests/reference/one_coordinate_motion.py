@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 FloatArray = NDArray[np.float64]
 
-DIGITS = 30  # of the references: eighth-order errors of 1e-17 and less are to be told from rounding
+DIGITS = 30  # of the references: more than float64 has, so that they are exact beside runs
 SHARED = 10  # times, evenly spread over a run, at which it is compared with the reference
 NEWTON_STEPS = 50  # quadratic: a handful
 ANGLE, RATE = sp.symbols("theta omega")
@@ -116,15 +116,6 @@ def distance(angles: Sequence[Any], reference: Sequence[Any]) -> float:
 def shown_order(errors: Sequence[float]) -> float:
     """Return the order that two errors show when the second is that of half the step."""
     return math.log2(errors[0] / errors[1])
-
-
-def slider_crank_states(rate: float, times: Sequence[Any]) -> list[list[Any]]:
-    """Return q and qdot of the paper's slider-crank at each time (s), to DIGITS; it starts at 45 degrees."""
-    passages = motion(slider_crank_energies("45"), np.pi / 4, rate, times)
-    q = slider_crank_coordinates()
-    with mp.workdps(DIGITS):
-        whole_state = sp.lambdify((ANGLE, RATE), (*q, *(q.diff(ANGLE) * RATE)), "mpmath", cse=True)
-        return [list(whole_state(passages[time].angle, passages[time].rate)) for time in times]
 
 
 @dataclass(frozen=True)

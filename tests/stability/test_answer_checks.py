@@ -95,13 +95,13 @@ BESIDE: list[tuple[str, str, Goal, float, str]] = [
     *(("_critical_point", "RK4", "critical", off, "critical point") for off in (0.99, 1.01)),
     *(("_critical_point", "B4", "critical", off, "critical point") for off in (0.99, 1.01)),
     ("_critical_point", "generalized-alpha", "critical", 1 - 1e-4, "critical point"),  # on a slope, not flat
-    *(("_gentle", name, "gentle", off, "gentle") for name in ("B4", "RK4", "bdf2") for off in (1 - 1e-5, 1 + 1e-4)),
+    *(("first_where", name, "gentle", off, "gentle") for name in ("B4", "RK4", "bdf2") for off in (1 - 1e-5, 1 + 1e-4)),
 ]
 
 
 @pytest.mark.promise("Every region, best point, choice and margin")
 @pytest.mark.parametrize(("search", "name", "goal", "off", "said"), BESIDE)
-@pytest.mark.slow_except("_least-RK4", "_critical_point-RK4", "_gentle")
+@pytest.mark.slow_except("_least-RK4", "_critical_point-RK4", "first_where")
 def test_a_choice_beside_its_place_is_no_answer(
     search: str, name: str, goal: Goal, off: float, said: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:

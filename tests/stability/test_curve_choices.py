@@ -21,24 +21,25 @@ def modulus(alpha_hat: FloatArray, beta_hat: FloatArray) -> FloatArray:
 
 
 def test_the_least_is_found() -> None:
-    alpha_hat, beta_hat = least_along(one_step, lambda a, b, _: modulus(a, b))
+    alpha_hat, beta_hat = least_along(one_step, modulus)
     assert (alpha_hat, beta_hat) == pytest.approx((1, 1), abs=1e-9)
 
 
 def test_of_equal_points_the_mildest_is_taken() -> None:
-    point = least_along(one_step, lambda a, b, _: np.maximum(modulus(a, b), 0.5))
+    point = least_along(one_step, lambda a, b: np.maximum(modulus(a, b), 0.5))
     assert point == pytest.approx((1, 0.5), abs=1e-9)  # up to 1.5 all are as good
 
 
 def test_a_hole_between_the_samples_is_noticed() -> None:
     place = 1.5 * ((0.5 + 7 / 1.32471795724474602596) % 1)  # at which the check looks, and the search does not
     with pytest.raises(NumericalError, match="another has less"):
-        least_along(one_step, lambda a, b, _: np.where(np.abs(b - place) < 1e-6, 0.0, 1 + b))
+        least_along(one_step, lambda a, b: np.where(np.abs(b - place) < 1e-6, 0.0, 1 + b))
 
 
 def test_the_mildest_that_is_fast_enough() -> None:
-    assert mildest_along(one_step, modulus, 0.8) == pytest.approx((1, 0.2), abs=1e-9)
-    assert mildest_along(lambda share: (1.0, 0.1 * share), modulus, 0.8) is None
+    assert mildest_along(one_step, modulus, 0.8, "SYM") == pytest.approx((1, 0.2), abs=1e-9)
+    with pytest.raises(InputError, match=r"no setting of the engine has \|z_p\| <= 0.8 with SYM"):
+        mildest_along(lambda share: (1.0, 0.1 * share), modulus, 0.8, "SYM")
 
 
 def test_choose_keeps_to_the_curve() -> None:

@@ -1,6 +1,6 @@
 import pytest
 
-from bezstab.paper.findings import Agreement, Finding
+from bezstab.paper.reports import Agreement, Finding
 
 
 @pytest.mark.parametrize(
