@@ -64,9 +64,6 @@ STANDARD_ERRORS = 3.0
 TIMES_FARTHEST = 2.0
 """Times the farthest pole of the better half of the fits, that is stated: windows overlap, and err alike."""
 
-ROUNDING = 1e-12
-"""In the plane: what float64 leaves open where all windows agree; of eight poles up to 3e-14 was seen."""
-
 SPREAD = 1e-3
 """Of |z|, and rad: fits that differ by more have not found one and the same pole."""
 
@@ -77,8 +74,8 @@ class Fit:
 
     `poles` carry amplitude in a window of the response and lie in the closed upper half plane, for conjugates are poles
     too; by modulus. `residual` is the relative error of the window's recursion, `start` its first sample and `samples`
-    its length. `uncertainty` bounds the error of the dominant pole in the plane, as far as samples can tell: by how
-    much other windows are off it. It is 0 for one window alone.
+    its length. `uncertainty` bounds the error of the dominant pole in the plane, as far as samples can tell: what the
+    recursion leaves open, or by how much other windows are off it where that is more.
     """
 
     poles: tuple[complex, ...]
@@ -143,7 +140,8 @@ def fit_dominant_pole(
             differing = f"{spread:.1g} in {quantity}"
             return Refusal(f"fits differ by {differing}: poles of nearly equal modulus, or too much forced error")
     median = better_half[int(np.argsort(moduli)[len(moduli) // 2])]
-    return replace(median, uncertainty=TIMES_FARTHEST * float(np.abs(z - median.pole).max()) + ROUNDING)
+    farthest = TIMES_FARTHEST * float(np.abs(z - median.pole).max())
+    return replace(median, uncertainty=max(farthest, median.uncertainty))
 
 
 def response_windows(
@@ -193,8 +191,24 @@ def fit_window(samples: FloatArray, order: int, start: int = 0) -> Fit | None:
         residual = float(np.linalg.norm(before @ coefficients - after) / np.linalg.norm(after))
         if residual < RESIDUAL:
             z = np.roots([1.0, *-coefficients[::-1]])
-            return Fit(_poles_with_amplitude(samples, z), residual, start, len(samples), 0.0)
+            poles = _poles_with_amplitude(samples, z)
+            error = _formal_error(before, before @ coefficients - after, coefficients, poles[0])
+            return Fit(poles, residual, start, len(samples), STANDARD_ERRORS * error)
     return None
+
+
+def _formal_error(before: FloatArray, left_over: FloatArray, coefficients: FloatArray, pole: complex) -> float:
+    """Return the standard error of a root of z^p - c_(p-1) z^(p-1) - ... - c_0 if what least squares left is noise.
+
+    A change dc of the coefficients moves a root by sum_j dc_j z^j / p'(z); infinite at a double root.
+    """
+    terms = len(coefficients)
+    slope = np.polyval(np.polyder(np.array([1.0, *-coefficients[::-1]])), pole)
+    if slope == 0:
+        return float("inf")
+    deviation = np.linalg.norm(left_over) / np.sqrt(len(left_over) - terms)
+    response = (pole ** np.arange(terms) / slope) @ np.linalg.pinv(before)
+    return float(deviation * np.linalg.norm(response))
 
 
 def _poles_with_amplitude(samples: FloatArray, z: InexactArray) -> tuple[complex, ...]:
