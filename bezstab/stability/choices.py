@@ -7,6 +7,7 @@ from functools import partial
 from typing import assert_never, get_args
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bezstab.errors import InputError, NumericalError
 from bezstab.goals import SETTLING, UP_TO_LONGEST, Goal
@@ -305,17 +306,26 @@ def _slowest(method: Method, modulus: Modulus, spread: float) -> Modulus:
 
     A step of share s of the largest turns (alpha_hat, beta_hat) into (s alpha_hat, s^2 beta_hat) and takes 1/s steps;
     in the limit of small steps what remains is exp(Re mu), the continuous decay. Of the spread the corners and the
-    centre are taken.
+    centre are taken. Of several points the least value is exact, and so is every one that is as small; of the others
+    no more is said than that they are larger.
     """
     of_alpha, of_beta = np.array([(-1, -1), (-1, 1), (0, 0), (1, -1), (1, 1)]).T[:, :, np.newaxis] * spread + 1
-    share = np.linspace(1, 0, SHARES + 1)[:-1, np.newaxis, np.newaxis]
+    shares = np.linspace(1, 0, SHARES + 1)[:-1, np.newaxis, np.newaxis]
     multiple = float(method.step_multiple)
 
     def objective(alpha_hat: FloatArray, beta_hat: FloatArray) -> FloatArray:
         a, b = of_alpha * alpha_hat.ravel(), of_beta**2 * beta_hat.ravel()  # (spreads, points)
+
+        def decay(share: FloatArray, points: NDArray[np.intp]) -> FloatArray:
+            return (modulus(share * a[:, points], share**2 * b[:, points]) ** (1 / share)).max(axis=(0, 1))
+
         slower_mu = -a / 2 + np.sqrt(np.maximum(0, a**2 / 4 - b))
-        decay = modulus(share * a, share**2 * b) ** (1 / share)
-        worst = np.maximum(np.exp(multiple * slower_mu).max(axis=0), decay.max(axis=(0, 1)))
+        whole_steps = decay(shares[:1], np.arange(alpha_hat.size))
+        worst = np.maximum(np.exp(multiple * slower_mu).max(axis=0), whole_steps)
+        # a point that is worse by whole steps alone than another by all of them cannot be the least
+        lowest = np.argmin(worst, keepdims=True)
+        left = np.flatnonzero(worst <= max(worst[lowest], decay(shares, lowest)))
+        worst[left] = np.maximum(worst[left], decay(shares, left))
         return np.asarray(worst.reshape(alpha_hat.shape))
 
     return objective
