@@ -1,6 +1,7 @@
 """Which feedback to choose: by goal, with proven stability and the margins that are left to the boundary."""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
@@ -19,7 +20,7 @@ from bezstab.stability.answer_checks import (
     check_gentle,
     check_least,
 )
-from bezstab.stability.arrays import DOUBLE, SLOW, Extent, FloatArray
+from bezstab.stability.arrays import DOUBLE, SLOW, BoolArray, Extent, FloatArray
 from bezstab.stability.best_points import best_point
 from bezstab.stability.closed_loop import largest_modulus, largest_pole, verdict
 from bezstab.stability.critical_points import critical_place
@@ -28,10 +29,15 @@ from bezstab.stability.forced_errors import OMEGA_H
 from bezstab.stability.margins import Margins, stability_margins
 from bezstab.stability.pencils import Pencil, pencil_of
 from bezstab.stability.regions import Region, chart_of, pole_place, region
+from bezstab.stability.root_finding import TOLD
 from bezstab.stability.searches import checked, first_where, zoom_from_grid
 from bezstab.units import check_step
 
 THOUSANDFOLD = 1e-3  # what "settled" means for the constraint error
+Within = Callable[[FloatArray, FloatArray, FloatArray], BoolArray]
+"""Whether |z_p| is below a bound, over arrays of alpha_hat, beta_hat and bounds."""
+
+SCOUTS = 16  # of the points one in so many is looked at first, for a value that the others must be below
 SAMPLES = 4000  # along a line: |z_p| has no features as narrow as that
 FIRST_GRID = 52  # points per axis of the first grid over the region's box: every valley is seen
 GRID = 49  # points per axis of a zoom: few fine grids take less time than many coarse ones, and lose no valley
@@ -123,6 +129,7 @@ def choose(
     pencil = pencil_of(method, free=True)  # a pole that no parameters move must not hide the others
     at_rest = modulus is None
     modulus = modulus or partial(largest_modulus, pencil)
+    within = pencil.all_within if at_rest else partial(_below, modulus)
     if goal == "accurate":
         point = _accurate(method, box, modulus, omega_h, rate, spread, equal, along)
         cut = cut and not along
@@ -145,7 +152,7 @@ def choose(
     elif goal == "fastest" and at_rest and not (along or equal) and (best := best_point(method)):
         point, cut = (best.alpha_hat, best.beta_hat), False
     elif goal == "robust" or goal == "fastest":  # noqa: PLR1714 (what the type checker follows)
-        objective = _slowest(method, modulus, spread) if goal == "robust" else modulus
+        objective = _slowest(method, modulus, within, spread) if goal == "robust" else modulus
         # without a curve of the fastest where |z_p| falls on as the feedback grows, or for a mechanism that moves
         point = least_along(along, objective) if along else _checked_least(pencil, box, objective, equal, cut)
         cut = cut and not along
@@ -300,25 +307,48 @@ def describe_point(
     )
 
 
-def _slowest(method: Method, modulus: Modulus, spread: float) -> Modulus:
+def _slowest(method: Method, modulus: Modulus, within: Within, spread: float) -> Modulus:
     """Return the objective of `robust`: the largest decay factor per largest step, over smaller steps and the spread.
 
     A step of share s of the largest turns (alpha_hat, beta_hat) into (s alpha_hat, s^2 beta_hat) and takes 1/s steps;
     in the limit of small steps what remains is exp(Re mu), the continuous decay. Of the spread the corners and the
-    centre are taken.
+    centre are taken. The least of all values is exact; of a point that some other is below, which `within` tells faster
+    than poles do, it may say infinite.
     """
     of_alpha, of_beta = np.array([(-1, -1), (-1, 1), (0, 0), (1, -1), (1, 1)]).T[:, :, np.newaxis] * spread + 1
     share = np.linspace(1, 0, SHARES + 1)[:-1, np.newaxis, np.newaxis]
     multiple = float(method.step_multiple)
 
-    def objective(alpha_hat: FloatArray, beta_hat: FloatArray) -> FloatArray:
-        a, b = of_alpha * alpha_hat.ravel(), of_beta**2 * beta_hat.ravel()  # (spreads, points)
+    def spread_out(alpha_hat: FloatArray, beta_hat: FloatArray) -> tuple[FloatArray, FloatArray]:
+        return share * of_alpha * alpha_hat, share**2 * (of_beta**2 * beta_hat)  # (shares, spreads, points)
+
+    def exactly(alpha_hat: FloatArray, beta_hat: FloatArray) -> FloatArray:
+        a, b = of_alpha * alpha_hat, of_beta**2 * beta_hat
         slower_mu = -a / 2 + np.sqrt(np.maximum(0, a**2 / 4 - b))
-        decay = modulus(share * a, share**2 * b) ** (1 / share)
-        worst = np.maximum(np.exp(multiple * slower_mu).max(axis=0), decay.max(axis=(0, 1)))
-        return np.asarray(worst.reshape(alpha_hat.shape))
+        decay = modulus(*spread_out(alpha_hat, beta_hat)) ** (1 / share)
+        return np.asarray(np.maximum(np.exp(multiple * slower_mu).max(axis=0), decay.max(axis=(0, 1))))
+
+    reached = math.inf  # by any point so far
+
+    def objective(alpha_hat: FloatArray, beta_hat: FloatArray) -> FloatArray:
+        nonlocal reached
+        if math.isinf(reached):
+            reached = float(exactly(alpha_hat[::SCOUTS], beta_hat[::SCOUTS]).min())
+        alphas, betas = spread_out(alpha_hat, beta_hat)
+        bounds = np.broadcast_to((reached * (1 + TOLD)) ** share, alphas.shape)
+        kept = np.asarray(within(alphas, betas, bounds).all(axis=(0, 1)))
+        if not kept.any():  # next to a double pole even the point that was reached may seem larger
+            kept[:] = True
+        worst = np.full(alpha_hat.shape, np.inf)
+        worst[kept] = exactly(alpha_hat[kept], beta_hat[kept])
+        reached = min(reached, float(worst.min()))
+        return worst
 
     return objective
+
+
+def _below(modulus: Modulus, alpha_hat: FloatArray, beta_hat: FloatArray, bound: FloatArray) -> BoolArray:
+    return np.asarray(modulus(alpha_hat, beta_hat) < bound)
 
 
 def _checked_least(pencil: Pencil, extent: Extent, objective: Modulus, equal: bool, cut: bool) -> tuple[float, float]:
