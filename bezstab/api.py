@@ -658,7 +658,8 @@ def _plane_point(point: Mapping[str, Any], read: Callable[[Any, str], Any] = _ex
     if given.keys() == {"alpha_hat", "beta_hat"}:
         return read(given["alpha_hat"], "alpha_hat"), read(given["beta_hat"], "beta_hat")
     if given.keys() != {"alpha", "beta"}:
-        raise InputError("a point is given as alpha_hat= and beta_hat=, or as alpha= and beta= in 1/s with h= in s")
+        expected = "alpha_hat= and beta_hat=, or as alpha= and beta= in 1/s with h= in s"
+        raise InputError(f"a point is given as {expected}, not as {', '.join(given) or 'nothing'}")
     if h is None:
         raise InputError("alpha and beta in 1/s need the step h in s")
     return to_dimensionless(read(given["alpha"], "alpha"), read(given["beta"], "beta"), _exact(h, "h"))

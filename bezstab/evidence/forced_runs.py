@@ -142,14 +142,14 @@ def halved_steps(
     share of the point is not stable, and of a mechanism at rest; else errors as `forced_motions`.
     """
     points = [(share * point[0], share**2 * point[1]) for share in SHARES]
-    for share, at in zip(SHARES, points, strict=True):
-        if spectral_radius(method, *at) >= 1:
+    z_abs = [float(spectral_radius(method, *at)) for at in points]
+    for share, decay in zip(SHARES, z_abs, strict=True):
+        if decay >= 1:
             raise InputError(
                 f"{method.name} is not stable at {share:g} times the gains of α̂ = {point[0]:g}, β̂ = {point[1]:g}"
             )
     constraint_motion(mechanism, FOLLOWED * duration)  # one at rest forces nothing, and is refused
-    slowest = max(float(spectral_radius(method, *at)) for at in points)
-    steps = math.log(DIED_AWAY) / math.log(slowest) / COMPARED
+    steps = math.log(DIED_AWAY) / math.log(max(z_abs)) / COMPARED
     duration = max(duration, steps * h * float(method.step_multiple))
     whole = forced_motions(mechanism, method, h, points, duration)
     half = forced_motions(mechanism, method, h / 2, points, duration)

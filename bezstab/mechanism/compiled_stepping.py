@@ -10,6 +10,7 @@ import sys
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
+from types import FunctionType
 from typing import Any
 
 import numpy as np
@@ -83,9 +84,11 @@ def machine_steps(mechanism: Mechanism, solving: bool, projecting: bool, stride:
         Code from disk is linked by its names: two scenes must not share any.
         """
         inline = "never" if function.__name__ in CALLED_OFTEN else "always"
-        function.__name__ = function.__qualname__ = f"{function.__name__}_{file.parent.name}"
+        name = f"{function.__name__}_{file.parent.name}"
+        named = FunctionType(function.__code__, function.__globals__, name, None, function.__closure__)
+        named.__qualname__ = name
         # where nothing allocates, nothing need count references to arrays: that takes longer than most operations
-        return numba.njit(error_model="numpy", _nrt=False, inline=inline, **INNER)(function)
+        return numba.njit(error_model="numpy", _nrt=False, inline=inline, **INNER)(named)
 
     places: dict[str | float, int] = {}
     for name, code in codes.items():

@@ -45,7 +45,8 @@ from bezstab.rationals import ONE, ZERO
 A, B = sp.symbols("alpha_hat beta_hat")
 RING = sp.QQ[A, B]
 
-HIGH, LONG = 8, 10 * BITS  # degree in alpha_hat and bits of a coefficient: such a curve's discriminant takes minutes
+LONG = 10 * BITS  # of a coefficient: factors are looked for modulo primes of a multiple of that
+HIGH = 8  # degree in alpha_hat: with coefficients so long, discriminants of such curves take minutes
 
 CurveTable = tuple[tuple[Fraction, ...], ...]
 """A polynomial in alpha_hat and beta_hat: table[i][j] belongs to alpha_hat^i beta_hat^j."""
@@ -166,11 +167,13 @@ def crossing_polynomials(coefficients: Sequence[PolyElement], ring: Any, pairs: 
 def _factors(polynomials: Iterable[sp.Poly]) -> list[sp.Poly]:
     """Return polynomials without multiple or common factors whose product has the same zeros, with whole coefficients.
 
-    Irreducible ones would do as well, but take long to find where numbers stand for irrational ones.
+    Irreducible ones but where coefficients are so long, of rationals in place of irrational numbers, that to find them
+    takes longer than all the rest.
     """
+    long = any(_length(polynomial) > LONG for polynomial in polynomials)
     found: list[sp.Poly] = []
     for polynomial in polynomials:
-        for part in _parts(polynomial):
+        for part in _parts(polynomial, long):
             new = part
             for other in list(found):
                 shared = sp.gcd(new, other)
@@ -182,12 +185,17 @@ def _factors(polynomials: Iterable[sp.Poly]) -> list[sp.Poly]:
     return [_primitive(each) for each in found if not each.is_ground]
 
 
-def _parts(polynomial: sp.Poly) -> list[sp.Poly]:
-    """Return the factors of each multiplicity; apart what beta_hat alone moves."""
+def _parts(polynomial: sp.Poly, long: bool) -> list[sp.Poly]:
+    """Return irreducible factors; of long polynomials those of one multiplicity; apart what beta_hat alone moves."""
+    if not long:
+        return [factor for factor, _ in polynomial.factor_list()[1]]
     parts = []
     for part, _ in polynomial.sqf_list()[1]:
-        content = reduce(sp.gcd, [sp.Poly(c, A, B, domain=sp.QQ) for c in sp.Poly(part.as_expr(), A).all_coeffs()])
-        parts += [content, part.exquo(content)]
+        in_alpha = [sp.Poly(c, A, B, domain=sp.QQ) for c in sp.Poly(part.as_expr(), A).all_coeffs()]
+        content = in_alpha[0]
+        for c in in_alpha[1:]:
+            content = sp.gcd(content, c)
+        parts += [each for each in (content, part.exquo(content)) if not each.is_ground]
     return parts
 
 

@@ -5,15 +5,22 @@
 `cli` and `api` make questions and hand on answers; neither computes.
 """
 
-from bezstab.questions.answering import Answer, CheckedRole, Gain, LargestStep, answers
-from bezstab.questions.chains import ChainMap, chain_map
-from bezstab.questions.growing_runs import growing_run
-from bezstab.questions.held_drives import HeldAnswer, HeldQuestion, UsedUp, held_answers, held_gains
-from bezstab.questions.log_probes import LogQuestion, PoleQuestion, Probe, check_told, log_answers
-from bezstab.questions.motions import ReferenceMotion, check_speed, motion_of
-from bezstab.questions.points import PlanePoint
-from bezstab.questions.question import Question, methods_for, usual_goal
-from bezstab.questions.regions import MapAnswer, MapQuestion, RegionAnswer, region_answer
-from bezstab.questions.runs import RunQuestion, run_answer
-from bezstab.questions.trades import FrontQuestion, TradeQuestion
-from bezstab.questions.verifications import VerifyQuestion
+from typing import TYPE_CHECKING
+
+from bezstab.lazy import lazy_names
+
+if TYPE_CHECKING:
+    from bezstab.questions.answering import Answer, CheckedRole, Gain, LargestStep, answers
+    from bezstab.questions.chains import ChainMap, chain_map
+    from bezstab.questions.growing_runs import growing_run
+    from bezstab.questions.held_drives import HeldAnswer, HeldQuestion, UsedUp, held_answers, held_gains
+    from bezstab.questions.log_probes import LogQuestion, PoleQuestion, Probe, check_told, log_answers
+    from bezstab.questions.motions import ReferenceMotion, check_speed, motion_of
+    from bezstab.questions.points import PlanePoint
+    from bezstab.questions.question import Question, methods_for, usual_goal
+    from bezstab.questions.regions import MapAnswer, MapQuestion, RegionAnswer, region_answer
+    from bezstab.questions.runs import RunQuestion, run_answer
+    from bezstab.questions.trades import FrontQuestion, TradeQuestion
+    from bezstab.questions.verifications import VerifyQuestion
+
+__getattr__ = lazy_names(__name__)

@@ -1238,7 +1238,7 @@ CLAIMS = RowKind(
             "agreement",
             "Whether the claim is confirmed",
             "agreement",
-            values_of="paper.findings.Agreement",
+            values_of="paper.reports.Agreement",
         ),
     ),
 )

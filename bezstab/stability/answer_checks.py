@@ -36,7 +36,7 @@ CLOSE_RINGS: FloatArray = RINGS[1:]  # as shares of a point's own coordinates
 PARTED = 4.0  # times what rounding of a point does to |z_p|: it is found from poles of the same rounding
 ROOT_OF_ROUNDING = 1e-7  # a double pole at zero, as far as float64 tells it
 FURTHEST = (1e-8, 1e8)  # factors on the way to which the verdict is asked where there is no end
-WAYPOINTS = 18  # factors from one to an end
+WAYPOINTS = 8  # factors from one to an end: each verdict takes up to a millisecond
 
 
 def sampled_points(extent: Extent, alpha_hat: float, beta_hat: float) -> tuple[FloatArray, FloatArray]:

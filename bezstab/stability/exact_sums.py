@@ -45,7 +45,8 @@ def feedback_roots(alpha_hat: FloatArray, beta_hat: FloatArray) -> tuple[Complex
 
 def feedback_discriminant(alpha_hat: FloatArray, beta_hat: FloatArray) -> FloatArray:
     """Return alpha_hat^2 / 4 - beta_hat, exact until rounded; for points of ordinary size."""
-    square, square_low = two_square(0.5 * alpha_hat)
+    half = 0.5 * alpha_hat
+    square, square_low = two_product(half, half)
     high, low = two_sum(square, -beta_hat)
     return high + (low + square_low)
 
@@ -97,14 +98,6 @@ def two_product(x: FloatArray | float, y: FloatArray) -> tuple[FloatArray, Float
     x_high, x_low = _halves(x)
     y_high, y_low = _halves(y)
     return product, x_low * y_low - (((product - x_high * y_high) - x_low * y_high) - x_high * y_low)
-
-
-def two_square(x: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return two_product(x, x), which is split once."""
-    square = x * x
-    high, low = _halves(x)
-    across = high * low
-    return square, low * low - (((square - high * high) - across) - across)
 
 
 def _halves(x: FloatArray | float) -> tuple[FloatArray | float, FloatArray | float]:

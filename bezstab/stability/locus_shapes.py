@@ -28,7 +28,7 @@ import numpy as np
 from numpy.polynomial.polynomial import polyder, polyval
 
 from bezstab.errors import NumericalError
-from bezstab.stability.arrays import DOUBLE, EPS, ROUNDING, Extent, FloatArray
+from bezstab.stability.arrays import DOUBLE, EPS, ROUNDING, SAME, Extent, FloatArray
 from bezstab.stability.boundary_locus import AT_INFINITY, RIM, Bounds, bounds_of
 from bezstab.stability.mu_pencils import MuPencil, deadbeat_mu, roots_in_mu
 from bezstab.stability.shapes import USUAL_SIZE, Shape, joined
@@ -36,6 +36,7 @@ from bezstab.stability.shapes import USUAL_SIZE, Shape, joined
 MEETING = 1e-4  # of the curves' size: where branches meet on the circle an arc ends the root of SHORTEST from it
 GROWN = RIM ** (1 / 5)  # times the range, from a rim to one RIM further out: with the fourth root it would grow by more
 NO_DIGITS = 0.05  # of mu, lost on the locus: nothing else would find that out, or after minutes
+WELL_WIDE = 1e-11  # of |mu|: about a zero of R that narrow a part of S_r is a hundredfold above rounding of its ends
 NOISE_ANGLES: FloatArray = np.linspace(0.1, 3.1, 16)  # at which the rounding of crossings is estimated
 
 
@@ -49,6 +50,7 @@ def locus_shape(pencil: MuPencil, level: float) -> Shape | None:
             f"{pencil.method.name}: float64 keeps no digits of where |z_p| = {level:g}: too many stages"
         )
     far = bounds_of(pencil, level)
+    _check_zeros(pencil, level, far)
     near = far if far.bounded else far.within(far.radius / RIM)
     extent = _extent(pencil, far)
     if extent is None:
@@ -80,6 +82,22 @@ def _edge_noise(pencil: MuPencil, level: float) -> float:
         rate = np.abs(mu * (polyval(mu, polyder(numerator)) / n - polyval(mu, polyder(denominator)) / d))
         noise = EPS * (size / np.abs(d)) ** 2 / rate
     return float(noise[np.isfinite(noise)].max(initial=0))
+
+
+def _check_zeros(pencil: MuPencil, level: float, bounds: Bounds) -> None:
+    """Raise NumericalError unless each real zero of a one-step method's R lies in an interval.
+
+    Each part of S_r has a zero of R, by the maximum principle. Parts too narrow for float64, of a size of about
+    level / |R'|, are left out.
+    """
+    zeros = deadbeat_mu(pencil)
+    with np.errstate(all="ignore"):
+        size = level * np.abs(polyval(zeros, pencil.table[-1]) / polyval(zeros, polyder(pencil.table[0])))
+    wide = size > WELL_WIDE * np.abs(zeros)
+    real = np.abs(zeros.imag) <= SAME * np.abs(zeros)
+    for zero in zeros[wide & real].real.tolist():
+        if not any(start < zero < end for start, end in bounds.intervals):
+            raise NumericalError(f"{pencil.method.name}: |z_p| < {level:g} around mu = {zero:.6g} was not found")
 
 
 def straight_edges(pencil: MuPencil, bounds: Bounds) -> list[FloatArray]:

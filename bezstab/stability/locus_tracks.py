@@ -111,8 +111,9 @@ def tracks(pencil: MuPencil, level: float) -> Iterator[Arc]:
     theta: FloatArray = np.concatenate([[0], towards_ends, even, np.pi - towards_ends[::-1], [np.pi]])
     mu = roots_in_mu(pencil, level * np.exp(1j * theta))
     while True:
-        moves = np.abs(mu[:, np.newaxis, :-1] - mu[np.newaxis, :, 1:])  # (branch, next branch, step)
-        unsafe = ~(APART * moves.min(axis=1) < _distance_of_nearest(mu)[:, :-1]).all(axis=0)
+        with np.errstate(invalid="ignore"):  # next to an infinite mu no step is safe
+            moves = np.abs(mu[:, np.newaxis, :-1] - mu[np.newaxis, :, 1:])  # (branch, next branch, step)
+            unsafe = ~(APART * moves.min(axis=1) < _distance_of_nearest(mu)[:, :-1]).all(axis=0)
         split = unsafe & (np.diff(theta) > SHORTEST)
         if not split.any():
             break

@@ -26,7 +26,7 @@ from bezstab.rationals import exact
 from bezstab.stability.arrays import DOUBLE, ROUNDING, SAME, ComplexArray, Extent, FloatArray
 from bezstab.stability.exact_sums import double_polynomial, split
 from bezstab.stability.quadratures import integrals
-from bezstab.stability.root_finding import STEPS, companion_roots, horner_with_slope
+from bezstab.stability.root_finding import STEPS, companion_roots
 from bezstab.stability.searches import least_between
 from bezstab.stability.shapes import USUAL_SIZE, Approached, Shape, joined
 
@@ -72,14 +72,32 @@ class Edges:
         self._slopes = [np.polynomial.polynomial.polyder(table, axis=0) for table in self.tables]
 
     def places(self, crossing: Crossing, cell: Cell, beta_hat: FloatArray) -> FloatArray:
-        """Return alpha_hat of one crossing with lines in a cell's strip; the shape of beta_hat.
+        """Return alpha_hat of one crossing with lines in a cell's strip, to rounding; the shape of beta_hat.
 
-        On a level at which a crossing of the same curve is lost, it is taken just beside, in the strip.
+        On a level at which a crossing of the same curve is lost, it is taken just beside, in the strip. An eigenvalue
+        is made exact by Newton's method with the curve's exact value, unless two roots meet.
         """
         number, k = crossing
         levels = np.clip(beta_hat, *self._known_span(cell, number))
-        coefficients = np.stack([np.polynomial.polynomial.polyval(levels, row) for row in self.tables[number]])
-        return np.asarray(_real_roots(coefficients, sum(curve == number for curve, _ in cell.strip.crossings))[k])
+        place = _real_roots(
+            self._coefficients(number, levels), sum(curve == number for curve, _ in cell.strip.crossings)
+        )[k]
+        for _ in range(STEPS):
+            with np.errstate(all="ignore"):
+                high, rest = double_polynomial(self._split[number], place, levels)
+                step = (high + rest) / np.polynomial.polynomial.polyval2d(place, levels, self._slopes[number])
+            place = place - np.where(np.abs(step) < DOUBLE * np.abs(place), step, 0)
+        return np.asarray(place)
+
+    def corner(self, crossing: Crossing, cell: Cell, level: float) -> float:
+        """Return alpha_hat at an end of the strip: where two meet, which float64 parts, the middle of both."""
+        place = float(self.places(crossing, cell, np.array([level]))[0])
+        roots = companion_roots(self._coefficients(crossing[0], np.array([level])))
+        meeting = roots[np.abs(roots - place) <= DOUBLE * abs(place)].real
+        return float(meeting.mean()) if len(meeting) > 1 else place
+
+    def _coefficients(self, number: int, levels: FloatArray) -> FloatArray:
+        return np.stack([np.polynomial.polynomial.polyval(levels, row) for row in self.tables[number]])
 
     def _known_span(self, cell: Cell, number: int) -> tuple[float, float]:
         """Return the strip's ends, less what is so near to a lost crossing that it may show at the wrong infinity."""
@@ -95,16 +113,6 @@ class Edges:
         """Return whether a crossing has one alpha_hat on all lines."""
         return len(self.tables[crossing[0]][0]) == 1
 
-    def exact_places(self, crossing: Crossing, cell: Cell, beta_hat: FloatArray) -> FloatArray:
-        """Return what `places` does, to rounding: one more step of Newton's method with the curve's exact value."""
-        number, _ = crossing
-        place = self.places(crossing, cell, beta_hat)
-        high, rest = double_polynomial(self._split[number], place, beta_hat)
-        slope = np.polynomial.polynomial.polyval2d(place, beta_hat, self._slopes[number])
-        with np.errstate(all="ignore"):
-            step = (high + rest) / slope
-        return place - np.where(np.abs(step) < DOUBLE * np.abs(place), step, 0)  # unless two roots meet
-
 
 def _split(curve: CurveTable) -> list[list[tuple[float, float]]]:
     """Return a curve's coefficients as sums of two float64, the largest one: they may have hundreds of digits."""
@@ -113,29 +121,14 @@ def _split(curve: CurveTable) -> list[list[tuple[float, float]]]:
 
 
 def _real_roots(coefficients: FloatArray, count: int) -> FloatArray:
-    """Return so many real roots of each polynomial, ascending; coefficients ascending, shape (n + 1, lines)."""
+    """Return so many real roots of each polynomial, ascending, infinite where one is; coefficients ascending.
+
+    Shape (n + 1, lines) of the coefficients, (count, lines) of the roots, which are eigenvalues.
+    """
     with np.errstate(all="ignore"):
-        if len(coefficients) == 2:
-            return np.asarray(-coefficients[:1] / coefficients[1])
-        if len(coefficients) == 3:
-            return _quadratic_places(*coefficients)
         lost = ~np.isfinite(coefficients[:-1] / coefficients[-1]).all(axis=0)
-        roots = companion_roots(coefficients).T
-        x = np.sort(_most_real(roots, count), axis=1).T
-        # a larger step than what eigenvalues may be off by does not polish but leads away
-        allowed = np.maximum(DOUBLE * np.abs(x), ROUNDING * np.abs(roots).max(axis=1))
-        for _ in range(STEPS):
-            value, slope = horner_with_slope(coefficients, x)
-            step = value / slope
-            x = x - np.where(np.abs(step) < allowed, step, 0)
-        return np.where(lost, np.inf, x)
-
-
-def _quadratic_places(constant: FloatArray, linear: FloatArray, square: FloatArray) -> FloatArray:
-    """Return both real roots, ascending: touching where rounding makes the discriminant negative."""
-    further = -(linear / 2 + np.copysign(np.sqrt(np.maximum(0, linear**2 / 4 - square * constant)), linear))
-    roots = np.stack([further / square, np.where(further == 0, 0, constant / further)])
-    return np.where(np.isfinite(roots).all(axis=0), np.sort(roots, axis=0), np.inf)
+    x = np.sort(_most_real(companion_roots(coefficients).T, count), axis=1).T
+    return np.where(lost, np.inf, x)
 
 
 def _most_real(roots: ComplexArray, count: int) -> FloatArray:
@@ -216,7 +209,8 @@ def _turns(edges: Edges, cells: tuple[Cell, ...]) -> FloatArray:
             if crossing is None:
                 continue
             place = edges.places(crossing, cell, levels)
-            points.append([(place[end], levels[end]) for end in (0, -1) if limits[end] is None])
+            ends = [levels[end] for end in (0, -1) if limits[end] is None]
+            points.append([(edges.corner(crossing, cell, end), end) for end in ends])
             if edges.is_vertical(crossing):
                 points.append([(place[0], levels[0])])
             rounding = 0 if finite_ends.all() else SAME * np.abs(place[1:-1])  # near a limit it turns by no more
@@ -235,7 +229,7 @@ def _furthest(edges: Edges, crossing: Crossing, cell: Cell, low: float, high: fl
     level, _ = least_between(
         lambda levels: -sign * edges.places(crossing, cell, levels), np.asarray(low), np.asarray(high)
     )
-    return float(edges.exact_places(crossing, cell, level[np.newaxis])[0]), float(level)
+    return float(edges.places(crossing, cell, level[np.newaxis])[0]), float(level)
 
 
 def _extent(cells: tuple[Cell, ...], corners: FloatArray) -> tuple[Extent, Approached]:
@@ -295,7 +289,7 @@ def _widths(edges: Edges, cell: Cell, beta_hat: FloatArray) -> FloatArray:
     """Return a cell's widths at some beta_hat; shape (1, *that of beta_hat)."""
     assert cell.left is not None
     assert cell.right is not None
-    left, right = (edges.exact_places(wall, cell, beta_hat.ravel()) for wall in (cell.left, cell.right))
+    left, right = (edges.places(wall, cell, beta_hat.ravel()) for wall in (cell.left, cell.right))
     return (right - left).reshape(1, *beta_hat.shape)
 
 

@@ -113,6 +113,8 @@ def _check_edge(name: str, shape: Shape, curve: FloatArray, inside: Verdicts, pr
     length = np.hypot(*along.T)
     kept = (length > SAME) & (_seen(shape, points[1:-1]) | (shape.area is not None))
     points, along = points[1:-1][kept], along[kept] / length[kept, np.newaxis]
+    if len(points) <= CORNER:
+        return
     # just to either side, as far as verdicts tell; of a small curve that is far away points are known to less
     offset = np.maximum(TOLD * size, ROUNDING * away) * np.stack([-along[:, 1], along[:, 0]], axis=1)
 
@@ -317,7 +319,7 @@ def _crossings(shape: Shape, lines: FloatArray, axis: int = 0) -> list[FloatArra
     order = np.argsort(lines)
     found: list[list[FloatArray]] = [[np.zeros(0)] for _ in lines]
     for curve in shape.curves:
-        row, step = _crossed(lines[order], curve[:, axis])
+        row, step = crossed_levels(lines[order], curve[:, axis])
         start, end = curve[step], curve[step + 1]
         across = (lines[order][row] - start[:, axis]) / (end[:, axis] - start[:, axis])
         place = start[:, 1 - axis] + across * (end[:, 1 - axis] - start[:, 1 - axis])
@@ -326,7 +328,7 @@ def _crossings(shape: Shape, lines: FloatArray, axis: int = 0) -> list[FloatArra
     return [np.sort(np.concatenate(places)) for places in found]
 
 
-def _crossed(levels: FloatArray, values: FloatArray) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+def crossed_levels(levels: FloatArray, values: FloatArray) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
     """Return every (i, k) such that the step from values[k] to values[k + 1] crosses levels[i], which ascend."""
     below = np.searchsorted(levels, values)  # how many levels lie below each value
     number = np.abs(np.diff(below))

@@ -51,6 +51,7 @@ def own_feedback_root(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike,
 
 
 def _broadcast(alpha_hat: ArrayLike, beta_hat: ArrayLike, z: ArrayLike) -> tuple[FloatArray, FloatArray, ComplexArray]:
-    arrays = np.asarray(alpha_hat, float), np.asarray(beta_hat, float), np.asarray(z, complex)
-    shape = np.broadcast_shapes(*(each.shape for each in arrays))
-    return np.broadcast_to(arrays[0], shape), np.broadcast_to(arrays[1], shape), np.broadcast_to(arrays[2], shape)
+    first, second, poles = np.broadcast_arrays(
+        np.asarray(alpha_hat, float), np.asarray(beta_hat, float), np.asarray(z, complex)
+    )
+    return first, second, poles

@@ -9,6 +9,7 @@ from bezstab.stability.arrays import EPS
 from bezstab.stability.boundary_locus import Arc, bounds_of
 from bezstab.stability.locus_shapes import straight_edges
 from bezstab.stability.mu_pencils import mu_pencil_of
+from bezstab.stability.region_checks import crossed_levels
 
 BoolArray = NDArray[np.bool_]
 IntArray = NDArray[np.int_]
@@ -62,15 +63,6 @@ def _edges(method: Method, level: float) -> list[list[list[float]]]:
     """Return the two ends (alpha_hat, beta_hat) of each straight edge."""
     pencil = mu_pencil_of(method)
     return [edge.tolist() for edge in straight_edges(pencil, bounds_of(pencil, level))]
-
-
-def crossed_levels(levels: FloatArray, values: FloatArray) -> tuple[IntArray, IntArray]:
-    """Return every (i, k) such that the step from values[k] to values[k + 1] crosses levels[i]."""
-    below = np.searchsorted(levels, values)  # how many levels lie below each value
-    number = np.abs(np.diff(below))
-    step = np.repeat(np.arange(len(number)), number)
-    first = np.repeat(np.minimum(below[:-1], below[1:]) - np.cumsum(number) + number, number)
-    return first + np.arange(number.sum()), step
 
 
 def arc_crossings(arc: Arc, beta_hat: FloatArray) -> tuple[IntArray, FloatArray]:

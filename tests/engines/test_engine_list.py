@@ -193,3 +193,9 @@ def test_every_point_has_a_setting_or_is_refused(name: str, a: float, b: float, 
         return
     assert min(a, b) >= 0
     assert all(abs(float(value)) < math.inf for value in values(setting))
+
+
+def test_who_solves_all_constraints_together_below_acceleration_level() -> None:
+    below = {name for name, engine in ENGINES.items() if engine.level != "acceleration"}
+    assert {name for name in below if not ENGINES[name].sweeps} == {"dart", "kamino", "drake-sap"}
+    assert not any(engine.sweeps for engine in ENGINES.values() if engine.level == "acceleration")

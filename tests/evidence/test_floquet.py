@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from bezstab.evidence.floquet import course_of_steps
 from bezstab.mechanism import compiled_mechanism, load_scene
 from bezstab.methods import lookup
 from bezstab.stability import spectral_radius
@@ -28,3 +29,11 @@ def test_a_run_without_a_driver_has_the_rate_of_its_constraint_errors() -> None:
     rates = floquet_rates(mechanism, lookup("B4"), 1e-3, np.array([0.1, 0.5]), np.array([0.1, 0.1]), 0.2)
     at_rest = spectral_radius(lookup("B4"), np.array([0.1, 0.5]), np.array([0.1, 0.1]))
     assert rates == pytest.approx(at_rest, rel=2e-2)  # a conjugate pair is seen at several phases
+
+
+def test_a_step_before_the_revolution_is_its_last_but_for_a_turn() -> None:
+    """The crank has turned by 2 pi, nothing else has moved; the motion is known to 1e-11 of a turn."""
+    course = course_of_steps(four_bar(), lookup("bdf2"), 0.01, 1.0)
+    older, newest = course.positions[-2:]
+    moved = course.starts()[-1, newest] - course.starts()[0, older]
+    assert moved == pytest.approx([2 * np.pi, *np.zeros(len(moved) - 1)], abs=1e-10)

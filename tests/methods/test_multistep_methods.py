@@ -4,7 +4,7 @@ from fractions import Fraction
 
 import pytest
 
-from bezstab.methods import LinearMultistep, PredictorCorrector, lookup
+from bezstab.methods import REGISTRY, LinearMultistep, PredictorCorrector, is_bezier, lookup
 from tests.reference.bezier_curves import de_casteljau_weights
 
 
@@ -52,3 +52,8 @@ def test_abm_predicts_by_ab_and_corrects_by_am(n: int) -> None:
     corrector = multistep(f"am{n}")
     assert scheme.predictor == multistep(f"AB{n}")
     assert scheme.corrector == LinearMultistep((*corrector.rho, Fraction(0)), (*corrector.sigma, Fraction(0)))
+
+
+def test_bezier_schemes_are_known_by_their_coefficients() -> None:
+    known = [name for name in REGISTRY if is_bezier(lookup(name).scheme)]
+    assert known == [f"B{n}" for n in range(3, 13)]  # B1 and B2 are Adams and Bashforth's

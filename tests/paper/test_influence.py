@@ -41,6 +41,7 @@ def test_the_points_of_table_4_lie_where_the_paper_puts_them() -> None:
             seen = row.c.crossings / (400 if row.failure is None and row.c.rate > 0.9 else row.c.crossings / turns)
             assert seen == pytest.approx(turns, rel=0.05)
         assert row.cdot.rate == pytest.approx(row.c.rate, abs=0.06)
+        assert row.cdot != row.c
     corrected = [finding.claim for finding in findings(rows) if finding.agreement != "confirmed"]
     assert corrected == ["the smaller |z_p|, the faster"]  # not so of double poles
     assert all(row.c.fallen > np.log(0.01) / np.log(abs(row.pole)) for row in (rows[1], rows[3]))

@@ -1,12 +1,9 @@
 """Regions and best points of many random methods against independent ones: `make campaign`, or a sample by slow tests.
 
-Areas are held against integrals; extents, of regions without end too, against proven verdicts on lines near and far
-out (tests/reference/extents); the least |z_p| against samples of the quadrant up to 1e9 (tests/reference/lower_points).
-
-Explicit multistep and Runge-Kutta methods are held against slices of constant q (slice_integral); PECE, implicit
-multistep methods and second-order recipes against slices of constant alpha_hat (sliced_areas), in a box three times as
-wide as what was found. Prints every difference above 1e-6 of the area, every other contradiction and
-every refusal; the exit status is 1 if one was silent.
+Areas are held against integrals over lines of constant alpha_hat (tests/reference/sliced_areas), in a box three times
+as wide as what was found; extents, of regions without end too, against proven verdicts on lines near and far out
+(extents); the least |z_p| against samples of the quadrant up to 1e9 (lower_points). Prints every difference above 1e-6
+of the area, every other contradiction and every refusal; the exit status is 1 if one was silent.
 """
 
 import sys
@@ -23,20 +20,18 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).parent.parent.parent))  # run as a script, the tests are no package yet
 
 from bezstab.errors import NumericalError
-from bezstab.methods import LinearMultistep, Method, RungeKutta, implicit
+from bezstab.methods import Method
 from bezstab.stability import best_point, best_points, falls_towards, region
 from bezstab.stability.boundary_locus import bounds_of
 from tests.reference.companion_poles import closed_loop_tables
 from tests.reference.extents import contradictions as extent_contradictions
 from tests.reference.lower_points import contradictions as best_point_contradictions
 from tests.reference.random_methods import other_random_method, random_method
-from tests.reference.slice_integral import slice_area
 from tests.reference.sliced_areas import Integral, proven_sliced_integral, sliced_integral, stable
 
 METHODS = 5_000  # of either half
 LEVELS = (1.0, 0.93, 0.75, 0.5)
 DIFFERENT = 1e-6  # of the area
-FINER_PANELS = 1000  # of the integral, in place of 96, before a difference counts
 WIDENED, LESS_WIDENED = 3.0, 1.5  # times the window of what was found, in which the second integral looks
 PANELS = 48  # of that integral, over that box: a third of them over what was found
 OTHER_PANELS = 1000  # before a difference counts
@@ -80,8 +75,7 @@ def compared(method: Method, level: float) -> Case:
     contradictions = _contradictions(method, level)
     if area is None:
         return Case(method.name, level, None, "", integral=0.0, admitted=0.0, contradictions=contradictions)
-    explicit = isinstance(method.scheme, LinearMultistep | RungeKutta) and not implicit(method)
-    integral = (_of_constant_q if explicit else _of_constant_alpha_hat)(method, level, area)
+    integral = _integral(method, level, area)
     return Case(method.name, level, area, "", integral.value, integral.error, contradictions)
 
 
@@ -100,14 +94,7 @@ def _agree(area: float, integral: Integral) -> bool:
     return abs(area - integral.value) <= DIFFERENT * max(abs(area), abs(integral.value))
 
 
-def _of_constant_q(method: Method, level: float, area: float) -> Integral:
-    """Return the integral over lines of constant q, as fine as it takes to tell a difference from this area."""
-    integral = slice_area(method, level)
-    # a part may have lain between its lines
-    return integral if _agree(area, integral) else slice_area(method, level, panels_at_first=FINER_PANELS)
-
-
-def _of_constant_alpha_hat(method: Method, level: float, area: float) -> Integral:
+def _integral(method: Method, level: float, area: float) -> Integral:
     """Return the integral over lines of constant alpha_hat, as exact as it takes to tell a difference."""
     if not area:
         rng = np.random.default_rng(0)

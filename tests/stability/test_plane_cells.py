@@ -6,6 +6,7 @@ import pytest
 from bezstab.methods import lookup
 from bezstab.stability import region
 from bezstab.stability.plane_cells import _split, strips_shape
+from tests.reference.random_methods import other_random_method
 from tests.reference.second_order_methods import as_second_order, newmark, second_order
 
 OF_MU = ("SYM", "RK2", "B2", "AB2", "SIE", "B3")
@@ -48,6 +49,13 @@ def test_newmarks_limits_hold_for_any_damping(shares: tuple[str, str]) -> None:
     stable = region(newmark(*shares))
     assert (stable.bounded, stable.area) == (False, None)
     assert stable.extent == ((0, np.inf), (0, LIMITS[shares]))
+
+
+def test_where_two_crossings_meet_the_extent_keeps_its_digits() -> None:
+    """At its furthest alpha_hat a double root lies on a level: float64 alone knows it to 5e-8."""
+    extent = region(other_random_method(3)).extent
+    assert extent
+    assert extent[0][0] == pytest.approx(-22 / 15, rel=1e-13)
 
 
 @pytest.mark.parametrize("size", [Fraction(10) ** 400, Fraction(1, 10**400)])
