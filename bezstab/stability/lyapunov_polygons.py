@@ -69,9 +69,11 @@ def invariant_polygon(
             continue
         ball = back @ (circle * np.exp(-growth))
         for count in CORNERS:
-            corners = _rational(ball[:, np.arange(count) * RAYS // count])
-            if proves_decay(corners, matrix, shortest):
-                return corners
+            chosen = ball[:, np.arange(count) * RAYS // count]
+            if _seems_invariant(chosen, matrices):
+                corners = _rational(chosen)
+                if proves_decay(corners, matrix, shortest):
+                    return corners
     return None
 
 
@@ -120,7 +122,7 @@ def _decays(steps: FloatArray, matrices: FloatArray) -> FloatArray:
 
 def _growth_to_come(matrices: FloatArray, flow: FloatArray | None, circle: FloatArray) -> FloatArray | None:
     """Return V on the rays, by sweeps; None where it does not settle."""
-    images = matrices @ circle
+    images = np.concatenate([matrices, *_powers(matrices[0])]) @ circle
     gain = np.log(np.maximum(np.hypot(images[:, 0], images[:, 1]), np.finfo(np.float64).tiny))
     place = np.arctan2(images[:, 1], images[:, 0]) % np.pi * (RAYS / np.pi)
     below = np.floor(place).astype(int)
@@ -164,6 +166,25 @@ def _flow_to_next_ray(flow: FloatArray) -> tuple[FloatArray, IntArray, IntArray]
         gains.append(rate * np.pi / RAYS)
         targets.append((numbers + direction) % RAYS)
     return np.array(gains), np.array(targets), np.array(targets)
+
+
+def _powers(matrix: FloatArray) -> list[FloatArray]:
+    """Return 2, 4, 8, ... steps of the shortest length at once, so that V settles in fewer sweeps."""
+    powers = []
+    for _ in range(6):  # 64 steps
+        matrix = matrix @ matrix
+        powers.append(matrix[np.newaxis])
+    return powers
+
+
+def _seems_invariant(corners: FloatArray, matrices: FloatArray) -> bool:
+    """Return whether the polygon is invariant under a sample of the steps, in float64: before it is proven."""
+    ends = np.concatenate([corners[:, 1:], -corners[:, :1]], axis=1)
+    span = corners[0] * ends[1] - corners[1] * ends[0]
+    edge = ends - corners
+    images = matrices @ corners  # (steps, 2, corners)
+    beside = edge[0, :, np.newaxis] * images[:, 1, np.newaxis] - edge[1, :, np.newaxis] * images[:, 0, np.newaxis]
+    return bool((span > 0).all() and (np.abs(beside) < span[:, np.newaxis]).all())
 
 
 def _rational(corners: FloatArray) -> list[Corner]:
