@@ -1,13 +1,13 @@
 """Which feedback to choose: by goal, with proven stability and the margins that are left to the boundary."""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
 from typing import assert_never, get_args
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bezstab.errors import InputError, NumericalError
 from bezstab.goals import SETTLING, UP_TO_LONGEST, Goal
@@ -20,7 +20,7 @@ from bezstab.stability.answer_checks import (
     check_gentle,
     check_least,
 )
-from bezstab.stability.arrays import DOUBLE, SLOW, Extent, FloatArray
+from bezstab.stability.arrays import DOUBLE, SLOW, BoolArray, Extent, FloatArray
 from bezstab.stability.best_points import best_point
 from bezstab.stability.closed_loop import largest_modulus, largest_pole, verdict
 from bezstab.stability.critical_points import critical_place
@@ -29,10 +29,15 @@ from bezstab.stability.forced_errors import OMEGA_H
 from bezstab.stability.margins import Margins, stability_margins
 from bezstab.stability.pencils import Pencil, pencil_of
 from bezstab.stability.regions import Region, chart_of, pole_place, region
+from bezstab.stability.root_finding import TOLD
 from bezstab.stability.searches import checked, first_where, zoom_from_grid
 from bezstab.units import check_step
 
 THOUSANDFOLD = 1e-3  # what "settled" means for the constraint error
+Within = Callable[[FloatArray, FloatArray, FloatArray], BoolArray]
+"""Whether |z_p| is below a bound, over arrays of alpha_hat, beta_hat and bounds."""
+
+SCOUTS = 16  # of the points one in so many is looked at first, for a value that the others must be below
 SAMPLES = 4000  # along a line: |z_p| has no features as narrow as that
 FIRST_GRID = 52  # points per axis of the first grid over the region's box: every valley is seen
 GRID = 49  # points per axis of a zoom: few fine grids take less time than many coarse ones, and lose no valley
@@ -124,6 +129,7 @@ def choose(
     pencil = pencil_of(method, free=True)  # a pole that no parameters move must not hide the others
     at_rest = modulus is None
     modulus = modulus or partial(largest_modulus, pencil)
+    within = pencil.all_within if at_rest else partial(_below, modulus)
     if goal == "accurate":
         point = _accurate(method, box, modulus, omega_h, rate, spread, equal, along)
         cut = cut and not along
@@ -146,7 +152,7 @@ def choose(
     elif goal == "fastest" and at_rest and not (along or equal) and (best := best_point(method)):
         point, cut = (best.alpha_hat, best.beta_hat), False
     elif goal == "robust" or goal == "fastest":  # noqa: PLR1714 (what the type checker follows)
-        objective = _slowest(method, modulus, spread) if goal == "robust" else modulus
+        objective = _slowest(method, modulus, within, spread) if goal == "robust" else modulus
         # without a curve of the fastest where |z_p| falls on as the feedback grows, or for a mechanism that moves
         point = least_along(along, objective) if along else _checked_least(pencil, box, objective, equal, cut)
         cut = cut and not along
@@ -301,34 +307,53 @@ def describe_point(
     )
 
 
-def _slowest(method: Method, modulus: Modulus, spread: float) -> Modulus:
+def _slowest(method: Method, modulus: Modulus, within: Within, spread: float) -> Modulus:
     """Return the objective of `robust`: the largest decay factor per largest step, over smaller steps and the spread.
 
     A step of share s of the largest turns (alpha_hat, beta_hat) into (s alpha_hat, s^2 beta_hat) and takes 1/s steps;
     in the limit of small steps what remains is exp(Re mu), the continuous decay. Of the spread the corners and the
-    centre are taken. Of several points the least value is exact, and so is every one that is as small; of the others
-    no more is said than that they are larger.
+    centre are taken. The least of all values is exact; of a point that some other is below, which `within` tells faster
+    than poles do, it may say infinite.
     """
     of_alpha, of_beta = np.array([(-1, -1), (-1, 1), (0, 0), (1, -1), (1, 1)]).T[:, :, np.newaxis] * spread + 1
     shares = np.linspace(1, 0, SHARES + 1)[:-1, np.newaxis, np.newaxis]
     multiple = float(method.step_multiple)
 
-    def objective(alpha_hat: FloatArray, beta_hat: FloatArray) -> FloatArray:
-        a, b = of_alpha * alpha_hat.ravel(), of_beta**2 * beta_hat.ravel()  # (spreads, points)
+    def steps_at(some: FloatArray, alpha_hat: FloatArray, beta_hat: FloatArray) -> tuple[FloatArray, ...]:
+        """Return some shares, and alpha_hat and beta_hat at them with every spread; shape (shares, spreads, points)."""
+        return np.broadcast_arrays(some, some * of_alpha * alpha_hat, some**2 * (of_beta**2 * beta_hat))
 
-        def decay(share: FloatArray, points: NDArray[np.intp]) -> FloatArray:
-            return (modulus(share * a[:, points], share**2 * b[:, points]) ** (1 / share)).max(axis=(0, 1))
-
+    def of_small_steps(alpha_hat: FloatArray, beta_hat: FloatArray) -> FloatArray:
+        a, b = of_alpha * alpha_hat, of_beta**2 * beta_hat
         slower_mu = -a / 2 + np.sqrt(np.maximum(0, a**2 / 4 - b))
-        whole_steps = decay(shares[:1], np.arange(alpha_hat.size))
-        worst = np.maximum(np.exp(multiple * slower_mu).max(axis=0), whole_steps)
-        # a point that is worse by whole steps alone than another by all of them cannot be the least
-        lowest = np.argmin(worst, keepdims=True)
-        left = np.flatnonzero(worst <= max(worst[lowest], decay(shares, lowest)))
-        worst[left] = np.maximum(worst[left], decay(shares, left))
-        return np.asarray(worst.reshape(alpha_hat.shape))
+        return np.asarray(np.exp(multiple * slower_mu).max(axis=0))
+
+    def of_all_steps(alpha_hat: FloatArray, beta_hat: FloatArray) -> FloatArray:
+        share, alphas, betas = steps_at(shares, alpha_hat, beta_hat)
+        decay = (modulus(alphas, betas) ** (1 / share)).max(axis=(0, 1))
+        return np.maximum(of_small_steps(alpha_hat, beta_hat), decay)
+
+    reached = math.inf  # by any point so far
+
+    def objective(alpha_hat: FloatArray, beta_hat: FloatArray) -> FloatArray:
+        nonlocal reached
+        if math.isinf(reached):
+            reached = float(of_all_steps(alpha_hat[::SCOUTS], beta_hat[::SCOUTS]).min())
+        left = kept = np.flatnonzero(of_small_steps(alpha_hat, beta_hat) <= reached)
+        for some in (shares[:1], shares[1:]):  # most points fail with whole steps
+            share, alphas, betas = steps_at(some, alpha_hat[kept], beta_hat[kept])
+            kept = kept[within(alphas, betas, (reached * (1 + TOLD)) ** share).all(axis=(0, 1))]
+        left = kept if kept.size else left  # next to a double pole even the point that was reached may seem larger
+        worst = np.full(alpha_hat.shape, np.inf)
+        worst[left] = of_all_steps(alpha_hat[left], beta_hat[left])
+        reached = min(reached, float(worst.min()))
+        return worst
 
     return objective
+
+
+def _below(modulus: Modulus, alpha_hat: FloatArray, beta_hat: FloatArray, bound: FloatArray) -> BoolArray:
+    return np.asarray(modulus(alpha_hat, beta_hat) < bound)
 
 
 def _checked_least(pencil: Pencil, extent: Extent, objective: Modulus, equal: bool, cut: bool) -> tuple[float, float]:

@@ -8,7 +8,8 @@
                       before it finds them settled, and leaves what is left beside the factor
 
 That no other root is larger is not taken on trust: what is left, divided by the factor, has all its roots within the
-larger of the factor's, which Schur's recursion tells in few operations.
+larger of the factor's, which Schur's recursion tells in few operations. From one middle in STRIDE, where all roots are
+solved for, the others get their factors the same way.
 
 Where the largest root is not found so, the largest real root at c is followed alone, by Newton's method: it may have no
 other real one beside it, and far out a polynomial is so much steeper than at the other root of the factor that
@@ -23,6 +24,7 @@ from bezstab.stability.arrays import SAME, BoolArray, ComplexArray, FloatArray
 from bezstab.stability.low_degrees import largest_quadratic_root
 from bezstab.stability.root_finding import CHUNK, STEPS, roots_of_rows
 
+STRIDE = 16  # of a row of middles one in so many has all its roots solved for, the others start from its factor
 MORE_STEPS = 8  # of Newton's method, at most, from a neighbour's factor
 STILL = 1e-11  # relative: a last change of p and q so small leaves but rounding, and what is left is far within SAME
 
@@ -39,8 +41,7 @@ def largest_of_blocks(coefficients_at: Coefficients, alpha_hat: FloatArray, beta
     Not finite where it is infinite.
     """
     found = np.empty(alpha_hat.shape, complex)
-    of_middles = _roots(_rows(coefficients_at, alpha_hat[:, 0], beta_hat[:, 0]))
-    p, q = _factors_with_largest(of_middles)
+    p, q = _factors_of_middles(_rows(coefficients_at, alpha_hat[:, 0], beta_hat[:, 0]))
     planes = _touching_planes(coefficients_at, alpha_hat, beta_hat, p, q)
     blocks_at_a_time = max(1, CHUNK // alpha_hat.shape[1])
     for start in range(0, len(found), blocks_at_a_time):
@@ -48,8 +49,10 @@ def largest_of_blocks(coefficients_at: Coefficients, alpha_hat: FloatArray, beta
         found[some] = _followed(coefficients_at, alpha_hat[some], beta_hat[some], planes[..., some, np.newaxis])
     blocks, places = np.nonzero(np.isnan(found))
     if blocks.size:
+        kinked, of_kinked = np.unique(blocks, return_inverse=True)
+        leads = _real_leads(_roots(_rows(coefficients_at, alpha_hat[kinked, 0], beta_hat[kinked, 0])))
         rows = _rows(coefficients_at, alpha_hat[blocks, places], beta_hat[blocks, places])
-        z = _followed_alone(rows, _real_leads(of_middles[:, blocks]))
+        z = _followed_alone(rows, leads[of_kinked])
         left = np.flatnonzero(np.isnan(z))
         z[left] = largest_in_upper_half(_roots([row[left] for row in rows]))
         found[blocks, places] = z
@@ -73,7 +76,17 @@ def _roots(rows: Rows) -> ComplexArray:
     return roots_of_rows(np.stack(rows).astype(complex))
 
 
-def _factors_with_largest(z: ComplexArray) -> tuple[FloatArray, FloatArray]:
+def _factors_of_middles(rows: Rows) -> tuple[FloatArray, FloatArray]:
+    """Return p and q of the factors with the largest root, of blocks' middles."""
+    solved = _first_factors(_roots([row[::STRIDE] for row in rows]))
+    starts = (np.repeat(each, STRIDE)[: rows[0].size] for each in solved)
+    p, q, z = _followed_factors(rows, *starts)
+    left = np.flatnonzero(np.isnan(z))
+    p[left], q[left] = _first_factors(_roots([row[left] for row in rows]))
+    return p, q
+
+
+def _first_factors(z: ComplexArray) -> tuple[FloatArray, FloatArray]:
     """Return p and q of the factors with the largest of all roots z, shape (roots, points).
 
     nan where it is real and has no other real one beside it.
@@ -118,13 +131,7 @@ def _followed(
     The planes, shape (2, 3, ...), broadcast to the points.
     """
     p, q = ((constant + by_a * alpha_hat + by_b * beta_hat).ravel() for constant, by_a, by_b in planes)
-    rows = _rows(coefficients_at, alpha_hat, beta_hat)
-    z = np.empty(p.size, complex)
-    left = np.arange(p.size)
-    for steps in (STEPS, MORE_STEPS):
-        p, q, rest, settled = _settled([row[left] for row in rows], p, q, steps)
-        z[left] = _larger_if_largest(p, q, rest, settled)
-        left, p, q = left[~settled], p[~settled], q[~settled]
+    *_, z = _followed_factors(_rows(coefficients_at, alpha_hat, beta_hat), p, q)
     return z.reshape(alpha_hat.shape)
 
 
@@ -155,6 +162,20 @@ def _divided_by_root(descending: Rows, root: FloatArray) -> list[FloatArray]:
     for coefficient in descending[1:]:
         quotient.append(coefficient + root * quotient[-1])
     return quotient
+
+
+def _followed_factors(rows: Rows, p: FloatArray, q: FloatArray) -> tuple[FloatArray, FloatArray, ComplexArray]:
+    """Return the factors that Bairstow's method reaches, and of each the larger root z, Im >= 0.
+
+    z is nan where the factor is not settled, or where z is not proven to be the largest of all roots.
+    """
+    p, q, rest, settled = _settled(rows, p, q, STEPS)
+    z = _larger_if_largest(p, q, rest, settled)
+    late = np.flatnonzero(~settled)
+    if late.size:
+        p[late], q[late], rest, settled = _settled([row[late] for row in rows], p[late], q[late], MORE_STEPS)
+        z[late] = _larger_if_largest(p[late], q[late], rest, settled)
+    return p, q, z
 
 
 def _larger_if_largest(p: FloatArray, q: FloatArray, rest: Rows, settled: BoolArray) -> ComplexArray:
