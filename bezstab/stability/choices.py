@@ -131,7 +131,7 @@ def choose(
     modulus = modulus or partial(largest_modulus, pencil)
     within = pencil.all_within if at_rest else partial(_below, modulus)
     if goal == "accurate":
-        point = _accurate(method, box, modulus, omega_h, rate, spread, equal, along)
+        point = _accurate(method, box, modulus, within, omega_h, rate, spread, equal, along)
         cut = cut and not along
     elif goal == "gentle":
         of_all = partial(largest_modulus, pencil_of(method)) if at_rest and not along else modulus
@@ -168,6 +168,7 @@ def _accurate(
     method: Method,
     box: Extent,
     modulus: Modulus,
+    within: Within,
     omega_h: Fraction,
     rate: float | None,
     spread: float,
@@ -180,7 +181,8 @@ def _accurate(
     """
 
     def found(rate: float) -> tuple[float, float]:
-        error = partial(worst_error, method, lambda a, b: modulus(a, b) <= rate, omega_h=omega_h, spread=spread)
+        decays = partial(_decays, within, rate)
+        error = partial(worst_error, method, decays, omega_h=omega_h, spread=spread)
         if along is None:
             return accurate_point(method, box, error, omega_h=omega_h, spread=spread, equal=equal)
         point = least_along(along, error)
@@ -331,7 +333,7 @@ def _slowest(method: Method, modulus: Modulus, within: Within, spread: float) ->
     def of_all_steps(alpha_hat: FloatArray, beta_hat: FloatArray) -> FloatArray:
         share, alphas, betas = steps_at(shares, alpha_hat, beta_hat)
         decay = (modulus(alphas, betas) ** (1 / share)).max(axis=(0, 1))
-        return np.maximum(of_small_steps(alpha_hat, beta_hat), decay)
+        return np.asarray(np.maximum(of_small_steps(alpha_hat, beta_hat), decay))
 
     reached = math.inf  # by any point so far
 
@@ -350,6 +352,10 @@ def _slowest(method: Method, modulus: Modulus, within: Within, spread: float) ->
         return worst
 
     return objective
+
+
+def _decays(within: Within, rate: float, alpha_hat: FloatArray, beta_hat: FloatArray) -> BoolArray:
+    return within(alpha_hat, beta_hat, np.full(alpha_hat.shape, rate))
 
 
 def _below(modulus: Modulus, alpha_hat: FloatArray, beta_hat: FloatArray, bound: FloatArray) -> BoolArray:
