@@ -15,6 +15,7 @@ from bezstab.methods import StepMatrix, characteristic, recursion_verdict
 from bezstab.rationals import exact
 
 LENGTHS = 40  # tried for either kind of step, evenly spaced
+DECIMALS = 9  # of a spectral radius: steps in another order have the same but for rounding: the long one comes last
 SHORT_LENGTHS = 20  # besides, in equal ratios
 SMALLEST_SHARE = 200  # of the longest step: shorter ones are but a finer division of the same time
 COUNTS = (*range(1, 13), 14, 16, 18, 20, 24, 28, 32, 40, 48, 64, 80, 96, 128, 160, 192, 256)  # of steps of one length
@@ -40,8 +41,8 @@ def growing_words(matrix: StepMatrix, shortest: Fraction) -> Iterator[list[Fract
     words = [(few, many) for few in COUNTS for many in COUNTS if few <= many and few + many <= MOST_STEPS]
     for few, many in sorted(words, key=sum):
         products = powers[many][:, np.newaxis] @ powers[few]
-        radii = np.abs(np.linalg.eigvals(products)).max(axis=-1)
-        first, second = np.unravel_index(radii.argmax(), radii.shape)
+        radii = np.abs(np.linalg.eigvals(products)).max(axis=-1).round(DECIMALS)
+        first, second = np.argwhere(radii == radii.max())[-1]
         if radii[first, second] > 1 + CLEARLY:
             yield [lengths[second]] * few + [lengths[first]] * many
 
