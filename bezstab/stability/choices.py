@@ -309,6 +309,16 @@ def describe_point(
     )
 
 
+# `robust` asks for the least of a largest value among SHARES * 5 + 5. Most of them need not be looked at: a point at
+# which one is above what another point has at all cannot be the least, and whether a value is below a line needs no
+# pole: Schur's recursion tells whether all are within a circle.
+#
+#     largest          x
+#        |  x       x     x    - - - - - - - - reached: the largest of all, at the point that is best so far
+#        |       x             poles are asked for at the points below that line alone
+#        +--------------------
+
+
 def _slowest(method: Method, modulus: Modulus, within: Within, spread: float) -> Modulus:
     """Return the objective of `robust`: the largest decay factor per largest step, over smaller steps and the spread.
 

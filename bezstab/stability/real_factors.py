@@ -22,10 +22,8 @@ import numpy as np
 
 from bezstab.stability.arrays import SAME, BoolArray, ComplexArray, FloatArray
 from bezstab.stability.low_degrees import largest_quadratic_root
-from bezstab.stability.root_finding import CHUNK, STEPS, roots_of_rows
+from bezstab.stability.root_finding import CHUNK, MORE_STEPS, STEPS, STRIDE, roots_of_rows
 
-STRIDE = 16  # of a row of middles one in so many has all its roots solved for, the others start from its factor
-MORE_STEPS = 8  # of Newton's method, at most, from a neighbour's factor
 STILL = 1e-11  # relative: a last change of p and q so small leaves but rounding, and what is left is far within SAME
 
 Coefficients = Callable[[FloatArray, FloatArray], list[FloatArray]]
