@@ -22,7 +22,7 @@ from sympy.polys.rings import PolyElement
 from bezstab.methods.derivation import rho_and_sigma
 from bezstab.methods.determinants import as_fraction, in_field
 from bezstab.methods.plane_edges import crossing_polynomials
-from bezstab.methods.root_isolation import BITS, positive_roots, whole_coefficients
+from bezstab.methods.root_isolation import BITS, real_roots, whole_coefficients
 from bezstab.methods.schemes import Method
 from bezstab.methods.shared_factors import reduced_table, without_shared_factor
 from bezstab.rationals import ZERO
@@ -74,7 +74,7 @@ def _positive_roots(polynomial: PolyElement) -> list[Fraction]:
     if not polynomial or polynomial.is_ground:
         return []
     free = sp.Poly.from_dict(dict(polynomial), VARIABLE, domain=sp.QQ).sqf_part()
-    return list(positive_roots(whole_coefficients(free)))
+    return [root for root in real_roots(whole_coefficients(free)) if root > 0]
 
 
 def _value(polynomial: PolyElement, x: Fraction) -> Fraction:

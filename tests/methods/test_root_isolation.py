@@ -4,7 +4,7 @@ import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from bezstab.methods.root_isolation import positive_roots, real_roots, whole_coefficients
+from bezstab.methods.root_isolation import real_roots, whole_coefficients
 from tests.reference.rationals import rationals
 
 
@@ -15,4 +15,3 @@ def test_rational_roots_are_found_exactly(roots: set[Fraction]) -> None:
     polynomial = sp.Poly(sp.prod(root.denominator * x - root.numerator for root in roots) * (x**2 + 1), x)
     whole = whole_coefficients(polynomial)
     assert real_roots(whole) == tuple(sorted(roots))
-    assert positive_roots(whole) == tuple(sorted(root for root in roots if root > 0))
