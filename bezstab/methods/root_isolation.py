@@ -10,13 +10,12 @@ from collections.abc import Sequence
 from fractions import Fraction
 from functools import cache
 from itertools import pairwise
-from math import ceil, floor, gcd
+from math import ceil, floor
 from typing import TypeVar
 
 import sympy as sp
 
-from bezstab.methods.determinants import as_fraction
-from bezstab.rationals import ZERO, bisected_integers, whole_multiples
+from bezstab.rationals import ZERO, bisected_integers
 
 BITS = 70  # of a root, relative: float64 has 53
 SHORT = 2**24  # denominators up to it are tried for a root that is known to 70 bits: one that fits is no chance
@@ -27,16 +26,22 @@ WholePolynomial = tuple[int, ...]
 """Whole coefficients without a common factor, ascending powers, the last positive."""
 
 
-def whole_coefficients(polynomial: sp.Poly) -> WholePolynomial:
-    """Return the coefficients of a polynomial in one variable, as whole numbers; it is not zero."""
-    whole, _ = whole_multiples([as_fraction(c) for c in reversed(polynomial.set_domain(sp.QQ).rep.to_list())])
-    shared = gcd(*whole) * (1 if whole[-1] > 0 else -1)
-    return tuple(c // shared for c in whole)
+def primitive(polynomial: sp.Poly) -> sp.Poly:
+    """Return a multiple with whole coefficients that share no factor, the first positive; of a polynomial not zero."""
+    _, whole = polynomial.clear_denoms(convert=True)
+    _, multiple = whole.primitive()
+    return multiple if multiple.LC() > 0 else -multiple
+
+
+def real_roots(polynomial: sp.Poly) -> tuple[Fraction, ...]:
+    """Return the real roots of a polynomial in one variable that has no multiple ones, ascending."""
+    return _real_roots(tuple(int(c) for c in reversed(primitive(polynomial).rep.to_list())))
 
 
 @cache
-def real_roots(whole: WholePolynomial) -> tuple[Fraction, ...]:
-    """Return the real roots of a polynomial that has no multiple ones, ascending."""
+def _real_roots(whole: WholePolynomial) -> tuple[Fraction, ...]:
+    if len(whole) == 1:
+        return ()
     if len(whole) == 2:
         return (Fraction(-whole[0], whole[1]),)
     bound = Fraction(2) ** _octaves_above(whole)

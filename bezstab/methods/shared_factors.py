@@ -10,7 +10,6 @@ from functools import cache
 import sympy as sp
 
 from bezstab.methods.derivation import Z, closed_loop_table
-from bezstab.methods.determinants import in_field
 from bezstab.methods.polynomials import PlaneTable, polynomial_gcd, quotient_and_remainder, trimmed
 from bezstab.methods.schemes import LinearMultistep, Method
 
@@ -58,7 +57,7 @@ def fixed_poles(method: Method) -> tuple[complex, ...]:
     They are the roots of the factor that rho and sigma share, each at least a double pole, or that all coefficients of
     a second-order scheme's P share; dimensionless. None for an ordinary method.
     """
-    factor = sp.Poly([in_field(c) for c in reversed(shared_factor(method))], Z, domain=sp.QQ)
+    factor = sp.Poly(shared_factor(method)[::-1], Z, domain=sp.QQ)
     poles: list[complex] = []
     if factor.degree() > 0:
         for part, _ in factor.sqf_list()[1]:  # without its multiple roots, which float64 would split

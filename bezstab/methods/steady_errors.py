@@ -41,7 +41,7 @@ from math import ceil, factorial, lcm
 from types import MappingProxyType
 from typing import Literal
 
-from bezstab.methods.determinants import RING, as_fraction, coefficient_rows, determinant, in_field
+from bezstab.methods.determinants import RING, as_fraction, coefficient_rows, determinant
 from bezstab.methods.scheme_motions import evaluation_errors, evaluation_times
 from bezstab.methods.schemes import Method
 from bezstab.methods.second_order import SecondOrder
@@ -154,7 +154,7 @@ def _determinant(
         for row, equation in zip(rows, step.equations, strict=True):
             earlier = int((latest - times.get(equation.result, ZERO)) * parts)
             added = forced.get(equation.result, {})
-            row[column] = RING.from_dict({(earlier, i, j): in_field(c) for (i, j), c in added.items()})
+            row[column] = RING.from_dict({(earlier, i, j): c for (i, j), c in added.items()})
         steps[name] = latest
     found: ExponentialSum = {}
     for (k, i, j), c in determinant(rows).terms():

@@ -26,7 +26,6 @@ from bezstab.methods.determinants import (
     as_fraction,
     coefficient_rows,
     determinant,
-    in_field,
 )
 from bezstab.methods.polynomials import horner
 from bezstab.methods.schemes import STATE, Method, check_one_step
@@ -73,8 +72,8 @@ def step_matrix(method: Method, alpha_hat: Fraction, beta_hat: Fraction, hold: b
     entries, denominator = _plane_matrix(method, hold)
     along_s = RING.one if hold else LENGTH
     by_length = [
-        (RING_ALPHA, in_field(alpha_hat * multiple) * along_s),
-        (RING_BETA, in_field(beta_hat * multiple**2) * along_s**2),
+        (RING_ALPHA, along_s * (alpha_hat * multiple)),
+        (RING_BETA, along_s**2 * (beta_hat * multiple**2)),
     ]
     below = denominator.compose(by_length)
     if not below:
@@ -139,5 +138,5 @@ def _ends_with_its_acceleration(scheme: SecondOrder) -> bool:
 
 def polynomial_determinant(rows: list[list[StepPolynomial]]) -> StepPolynomial:
     """Return the determinant of a matrix of polynomials in s, exact, coefficients ascending."""
-    in_ring = [[RING.from_dict({(k, 0, 0): in_field(c) for k, c in enumerate(entry)}) for entry in row] for row in rows]
+    in_ring = [[RING.from_dict({(k, 0, 0): c for k, c in enumerate(entry)}) for entry in row] for row in rows]
     return _ascending(determinant(in_ring))
