@@ -6,7 +6,7 @@ import click
 
 from bezstab.cli.options import OF_A_CONTROLLER, refuse_beside, typed_options
 from bezstab.cli.output import show_rows, show_text
-from bezstab.show import HELD, LATE_COMMANDS, held_row, timing_words
+from bezstab.show import HELD, LATE_COMMANDS, timing_words
 
 if TYPE_CHECKING:
     from bezstab.questions import HeldAnswer, HeldQuestion
@@ -41,6 +41,6 @@ def show_held(question: "HeldQuestion") -> "list[HeldAnswer]":
 
     found = list(held_answers(question))
     heading = timing_words(question.timing, float(question.h))
-    show_rows(HELD, map(held_row, found), heading=heading)
+    show_rows(HELD, map(HELD.row, found), heading=heading)
     show_text(f"\n{LATE_COMMANDS}")
     return found

@@ -111,12 +111,10 @@ def _write_boundaries(question: "MapQuestion", files: Files) -> list[Row]:
     """Write the boundaries of all methods into one table and one figure; return a row for each."""
     from bezstab import show
 
-    regions = [answer.region for answer in question.compared]
-    shown = (question.alpha_range, question.beta_range, question.seconds, question.alpha_beta)
     path = files.path("compare", *(method.name for method in question.methods))
     files.write(
         path,
-        lambda: show.comparison_figure(regions, *shown),
-        lambda: show.boundary_arrays(regions, question.seconds),
+        lambda: show.comparison_figure(question),
+        lambda: show.boundary_arrays([answer.region for answer in question.compared], question.seconds),
     )
     return [region_row(answer) for answer in question.compared]

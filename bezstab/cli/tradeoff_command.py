@@ -8,7 +8,7 @@ import click
 from bezstab.cli.asking import say_if_units_were_mistaken
 from bezstab.cli.options import POSITIVE, SECONDS, Rule, TypedPoint, changed, command, flag, option, typed_options
 from bezstab.cli.output import Files, Work, progress, results_of_chunks, show_rows, show_text, worked_out
-from bezstab.show import FRONTS, SWEPT, combined_words, front_row
+from bezstab.show import FRONTS, SWEPT, combined_words, row_in_seconds
 
 if TYPE_CHECKING:
     from bezstab.questions import FrontQuestion
@@ -109,7 +109,7 @@ def _show_fronts(question: "FrontQuestion", files: Files) -> None:
     files.check_output()
     fronts = list(progress(question.fronts(), "fronts", len(question.methods)))
     h = None if question.h is None else float(question.h)
-    rows = [front_row(point, h) for front in fronts for point in front]
+    rows = [row_in_seconds(FRONTS.fields, point, h) for front in fronts for point in front]
     files.write(
         files.path("tradeoff", "predicted"),
         lambda: show.error_front_figure([front for front in fronts if front]),

@@ -19,11 +19,11 @@ from bezstab.show import (
     Row,
     column,
     column_figure,
-    legend_below,
     line_at,
     pole_cells,
     pole_text,
     styled,
+    with_legend,
 )
 from bezstab.stability import dominant_pole, feedback_cost, verdict
 
@@ -402,8 +402,7 @@ def panels_figure(runs: Sequence[Experiment]) -> Figure:
             axes.set_xlabel("t (s)")
         figure.supylabel("$c_1$ (m)", fontsize=8)
         lines = [line for axes in figure.axes[:2] for line in axes.lines]
-        legend_below(figure, handles=lines)
-        return figure
+        return with_legend(figure, handles=lines)
 
 
 def _draw_histories(axes: Axes, letter: str, runs: Sequence[Experiment], names: Sequence[str]) -> None:

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from operator import attrgetter
 from typing import TYPE_CHECKING, Any, Literal, SupportsFloat
 
 import numpy as np
@@ -26,6 +25,7 @@ from numpy.typing import ArrayLike
 from bezstab.errors import check_kind
 from bezstab.methods import Method
 from bezstab.show.style import (
+    ABOVE_LINES,
     ACCENT,
     CONVERGES,
     DASHES,
@@ -47,23 +47,19 @@ if TYPE_CHECKING:  # so that a picture of the plane does not load what runs mech
     from bezstab.mechanism import Scene, Simulation
 
 Range = tuple[SupportsFloat, SupportsFloat]
-Quantity = Literal["area", "least |z_p|", "error constant", "order of accuracy"]
+Quantity = Literal["area", "z_abs", "error_constant", "order"]
 Point = tuple[float, float]
 Coordinates = tuple[ArrayLike, ArrayLike]
 
 __all__ = [
-    "best_point",
-    "choice",
     "critical_damping",
-    "disagreements",
     "family",
     "history",
-    "largest_error",
-    "marks",
     "mechanism",
     "modulus_map",
     "moving_region",
     "open_edges",
+    "point",
     "region",
     "spectral_radius",
     "verdicts",
@@ -79,7 +75,6 @@ ALONG_AN_EDGE, ARROWS = 121, 5
 """Points along an edge of the axes, and how many of them are arrows."""
 PARABOLA = 400  # points of a smooth curve: more than its pixels tell apart
 NAME_OFF = 4.0  # points from a body up to its name
-MARK_SHAPES = "Ds^vP"
 FINE = 0.6  # points: lines of histories, so that fast oscillations are told apart
 ERROR_LABELS: Mapping[ErrorOf, str] = {
     "trajectory": "trajectory error (m, rad)",
@@ -92,14 +87,6 @@ COST_LABELS: Mapping[Cost, str] = {
     "projection": r"factorizations of $C_q M^{-1} C_q^T$",
 }
 """Of a run's errors and costs, for axes."""
-
-QUANTITIES: Mapping[Quantity, str] = {
-    "area": "region.area",
-    "least |z_p|": "z_abs",
-    "error constant": "error_constant",
-    "order of accuracy": "order",
-}
-"""Where a member of a family has them."""
 
 
 def region(region: Region, axes: Axes | None = None, h: float | None = None, **line: Any) -> Line2D:
@@ -143,9 +130,25 @@ def moving_region(
     if hatched and moving.outside_the_law.any():
         axes.contourf(x, y, moving.outside_the_law, levels=[0.5, 1.5], colors="none", hatches=["....."])
         axes.add_patch(Rectangle((0, 0), 0, 0, fill=False, hatch=".....", label="law does not hold"))  # a key
-    axes.plot([], [], color="black", linestyle=dashes, label=label)  # a contour has no label of its own
-    edge: QuadContourSet = axes.contour(x, y, moving.growth, levels=[0.0], colors="black", linestyles=[dashes])
-    return edge
+    return level_line(axes, x, y, moving.growth, 0.0, label=label, linestyle=dashes)
+
+
+def level_line(
+    axes: Axes,
+    x: FloatArray,
+    y: FloatArray,
+    values: FloatArray,
+    level: float,
+    label: str,
+    linestyle: Any = "-",
+    linewidth: float = 1.2,
+) -> QuadContourSet:
+    """Draw in black where values of shape (y.size, x.size) have a level, with a label, and return it."""
+    axes.plot([], [], color="black", linestyle=linestyle, linewidth=linewidth, label=label)  # a contour has no label
+    drawn: QuadContourSet = axes.contour(
+        x, y, values, levels=[level], colors="black", linestyles=[linestyle], linewidths=linewidth
+    )
+    return drawn
 
 
 def spectral_radius(
@@ -167,20 +170,15 @@ def spectral_radius(
 
 
 def modulus_map(
-    alpha_hat: FloatArray,
-    beta_hat: FloatArray,
-    z_abs: FloatArray,
-    level: float = 1.0,
-    axes: Axes | None = None,
-    h: float | None = None,
+    alpha_hat: FloatArray, beta_hat: FloatArray, z_abs: FloatArray, axes: Axes | None = None, h: float | None = None
 ) -> AxesImage:
-    """Draw |z_p|, computed before on an even grid, and return the image; where it is at least `level` it is blank.
+    """Draw |z_p|, computed before on an even grid, and return the image; where it is at least one it is blank.
 
     z_abs has shape (beta_hat.size, alpha_hat.size).
     """
-    inside = np.ma.masked_greater_equal(z_abs, level)
+    stable = np.ma.masked_greater_equal(z_abs, 1.0)
     axes = _plane(axes, "$|z_p|$", h)
-    return cells(axes, *plane_coordinates(alpha_hat, beta_hat, h), inside, cmap="cividis", vmax=level)
+    return cells(axes, *plane_coordinates(alpha_hat, beta_hat, h), stable, cmap="cividis", vmax=1.0)
 
 
 def critical_damping(alpha_range: Range, axes: Axes | None = None, h: float | None = None, **line: Any) -> Line2D:
@@ -200,38 +198,25 @@ def critical_damping(alpha_range: Range, axes: Axes | None = None, h: float | No
     )
 
 
-def best_point(best: BestPoint, axes: Axes | None = None, h: float | None = None, **line: Any) -> Line2D:
-    """Draw a star at the point of least |z_p|, labelled with it, and return the line of one point."""
-    check_kind(best, BestPoint, "bezstab.best_point")
-    label = "deadbeat: $|z_p| = 0$" if best.z_abs == 0 else f"least $|z_p|$: {best.z_abs:.4f}"
-    axes = _plane(axes, best.method.name, h)
-    return _one_point(best.alpha_hat, best.beta_hat, axes, h, line, marker="*", markersize=8, label=label)
+def point(at: BestPoint | Choice | Point, axes: Axes | None = None, h: float | None = None, **line: Any) -> Line2D:
+    """Draw a white marker at a point (alpha_hat, beta_hat), and return the line of one point.
 
-
-def choice(choice: Choice, axes: Axes | None = None, h: float | None = None, **line: Any) -> Line2D:
-    """Draw a circle at the point that was chosen, labelled with its goal and |z_p|; return the line of one point."""
-    check_kind(choice, Choice, "bezstab.choose")
-    label = f"choose {choice.goal}: {f'{abs(choice.pole):.4f}' if choice.pole else 'deadbeat'}"
-    axes = _plane(axes, choice.method.name, h)
-    return _one_point(choice.alpha_hat, choice.beta_hat, axes, h, line, marker="o", markersize=5, label=label)
-
-
-def marks(points: Mapping[str, Point], axes: Axes | None = None, h: float | None = None, **line: Any) -> list[Line2D]:
-    """Draw points (alpha_hat, beta_hat) by their labels, each with a shape of its own, and return a line for each.
-
-    There are five shapes; further points begin again.
+    A best point is a star, labelled with its |z_p|; a choice a circle, labelled with its goal and |z_p|.
     """
+    usual: dict[str, Any] = {"marker": "D", "markersize": 5}
+    match at:
+        case BestPoint():
+            alpha_hat, beta_hat = at.alpha_hat, at.beta_hat
+            label = "deadbeat: $|z_p| = 0$" if at.z_abs == 0 else f"least $|z_p|$: {at.z_abs:.4f}"
+            usual = {"marker": "*", "markersize": 8, "label": label}
+        case Choice():
+            alpha_hat, beta_hat = at.alpha_hat, at.beta_hat
+            label = f"choose {at.goal}: {f'{abs(at.pole):.4f}' if at.pole else 'deadbeat'}"
+            usual = {"marker": "o", "markersize": 5, "label": label}
+        case _:
+            check_kind(at, tuple, "bezstab.best_point or bezstab.choose")
+            alpha_hat, beta_hat = at
     axes = _plane(axes, r"$(\hat\alpha, \hat\beta)$", h)
-    return [
-        _one_point(*point, axes, h, line, marker=MARK_SHAPES[number % len(MARK_SHAPES)], markersize=5, label=label)
-        for number, (label, point) in enumerate(points.items())
-    ]
-
-
-def _one_point(
-    alpha_hat: float, beta_hat: float, axes: Axes, h: float | None, line: Mapping[str, Any], **usual: Any
-) -> Line2D:
-    """Draw a white marker with a black edge, and return the line of one point."""
     white = {"linestyle": "none", "color": "white", "markeredgecolor": "black"}
     return _line(axes, plane_coordinates(alpha_hat, beta_hat, h), line, **white, **usual)
 
@@ -272,9 +257,12 @@ def verdicts(verdict_map: VerdictMap, axes: Axes | None = None) -> AxesImage:
     """Draw simulated verdicts as cells over alpha_hat and beta_hat and return the image.
 
     Values of shape (beta_hat.size, alpha_hat.size): 0 converges, 1 diverges, blank where the run gave none. What the
-    colours mean is labelled.
+    colours mean is labelled. Cells whose verdict contradicts |z_p| < 1 are crossed.
     """
-    axes = _verdict_axes(verdict_map, axes)
+    from bezstab.evidence import VerdictMap
+
+    check_kind(verdict_map, VerdictMap, "bezstab.evidence.verdict_map")
+    axes = _plane(axes, title_lines(verdict_map.scene.name, verdict_map.method.name), None)
     values = np.ma.masked_array(verdict_map.diverges, verdict_map.undecided)
     colours = ListedColormap([CONVERGES, DIVERGES])
     image = cells(axes, verdict_map.alpha_hat, verdict_map.beta_hat, values, cmap=colours, vmin=0, vmax=1)
@@ -284,25 +272,11 @@ def verdicts(verdict_map: VerdictMap, axes: Axes | None = None) -> AxesImage:
         meanings["no verdict"] = "white"
     for meaning, colour in meanings.items():
         axes.plot([], [], "s", color=colour, markeredgecolor="0.5", label=meaning)
+    if verdict_map.disagrees.any():
+        rows, columns = np.nonzero(verdict_map.disagrees)
+        crosses = verdict_map.alpha_hat[columns], verdict_map.beta_hat[rows]
+        axes.plot(*crosses, "x", color=ACCENT, markersize=3, label="disagree", zorder=ABOVE_LINES)
     return image
-
-
-def disagreements(verdict_map: VerdictMap, axes: Axes | None = None) -> Line2D | None:
-    """Cross the cells whose simulated verdict contradicts |z_p| < 1; return the line, None if there are none."""
-    axes = _verdict_axes(verdict_map, axes)
-    rows, columns = np.nonzero(verdict_map.disagrees)
-    if not rows.size:
-        return None
-    alpha_hat, beta_hat = verdict_map.alpha_hat[columns], verdict_map.beta_hat[rows]
-    (drawn,) = axes.plot(alpha_hat, beta_hat, "x", color=ACCENT, markersize=3, label="disagree")
-    return drawn
-
-
-def _verdict_axes(verdict_map: VerdictMap, axes: Axes | None) -> Axes:
-    from bezstab.evidence import VerdictMap
-
-    check_kind(verdict_map, VerdictMap, "bezstab.evidence.verdict_map")
-    return _plane(axes, title_lines(verdict_map.scene.name, verdict_map.method.name), None)
 
 
 def family(members: Sequence[Member], quantity: Quantity = "area", axes: Axes | None = None, **line: Any) -> Line2D:
@@ -311,44 +285,36 @@ def family(members: Sequence[Member], quantity: Quantity = "area", axes: Axes | 
     Area of the region (dimensionless; a gap where it is unbounded), least |z_p| (a gap where the region is empty),
     order of accuracy or error constant, which says something between members of one order alone.
     """
-    axes = _axes(axes, "", "steps $n$", quantity)
-    values = np.array([attrgetter(QUANTITIES[quantity])(member) for member in members], float)  # nan for None
+    axes = _axes(axes, "", "steps $n$", quantity.replace("_", " "))
+    values = np.array([getattr(member, quantity) for member in members], float)  # nan for None
     return _line(axes, ([member.n for member in members], values), line, marker=".")
 
 
 def history(
     simulation: Simulation,
-    constraint: int = 1,
+    constraint: int | None = 1,
     derivative: bool = False,
     axes: Axes | None = None,
     **line: Any,
 ) -> Line2D:
     """Draw the error of one constraint of a run, or its time derivative, against t (s) and return the line; SI units.
 
-    Constraints count from 1.
+    Constraints count from 1. With None it is the largest |c| over all of them, on a logarithmic axis, with a gap where
+    all constraints hold to the last bit.
     """
-    name = rf"$\dot c_{constraint}$ (SI)" if derivative else rf"$c_{constraint}$ (SI)"
-    axes = _run_axes(simulation, axes, name)
-    errors = simulation.cdot if derivative else simulation.c
-    return _line(axes, (simulation.t, errors[:, constraint - 1]), line, linewidth=FINE)
-
-
-def largest_error(simulation: Simulation, axes: Axes | None = None, **line: Any) -> Line2D:
-    """Draw the largest |c| over all constraints of a run against t (s) on a logarithmic axis and return the line; SI.
-
-    A gap where all constraints hold to the last bit.
-    """
-    axes = _run_axes(simulation, axes, "largest $|c|$ (SI)")
-    axes.set_yscale("log", nonpositive="mask")
-    return _line(axes, (simulation.t, simulation.observation.largest_c), line, linewidth=FINE)
-
-
-def _run_axes(simulation: Simulation, axes: Axes | None, name: str) -> Axes:
     from bezstab.mechanism import Simulation
 
     check_kind(simulation, Simulation, "bezstab.simulate")
+    if constraint is None:
+        name, errors = "largest $|c|$ (SI)", simulation.observation.largest_c
+    else:
+        name = rf"$\dot c_{constraint}$ (SI)" if derivative else rf"$c_{constraint}$ (SI)"
+        errors = (simulation.cdot if derivative else simulation.c)[:, constraint - 1]
     trajectory = simulation.trajectory
-    return _axes(axes, title_lines(trajectory.mechanism.scene.name, trajectory.method.name), "t (s)", name)
+    axes = _axes(axes, title_lines(trajectory.mechanism.scene.name, trajectory.method.name), "t (s)", name)
+    if constraint is None:
+        axes.set_yscale("log", nonpositive="mask")
+    return _line(axes, (simulation.t, errors), line, linewidth=FINE)
 
 
 def mechanism(scene: Scene, q: FloatArray, axes: Axes | None = None) -> list[Line2D]:

@@ -6,7 +6,6 @@ from itertools import product
 from typing import Any
 
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 from bezstab.evidence import ErrorOf, SweptRuns
@@ -14,12 +13,12 @@ from bezstab.mechanism import Simulation
 from bezstab.show import plot
 from bezstab.show.style import (
     column_figure,
-    legend_below,
     line_at,
     marked_line_at,
     new_axes,
     styled,
     title_lines,
+    with_legend,
 )
 
 TREATMENTS: dict[tuple[str, bool], tuple[str, dict[str, Any]]] = {
@@ -53,7 +52,7 @@ def history_figure(simulation: Simulation) -> Figure:
         upper, middle, lower = figure.subplots(3, 1, sharex=True)
         plot.history(simulation, axes=upper)
         plot.history(simulation, derivative=True, axes=middle)
-        plot.largest_error(simulation, axes=lower)
+        plot.history(simulation, None, axes=lower)
         figure.suptitle("\n".join(title))
         for axes in (upper, middle):
             axes.label_outer()
@@ -82,8 +81,7 @@ def work_precision_figure(swept: SweptRuns, scene: str, error: ErrorOf) -> Figur
             plot.work_precision(of_front, error, floor, axes, swept.against, label="front", **discs)
         if any(run.failure for run in runs):
             axes.plot([], [], "x", color="0.4", label="diverged")
-        legend_below(figure)
-        return figure
+        return with_legend(figure)
 
 
 def projection_figure(swept: SweptRuns, scene: str) -> Figure:
@@ -94,26 +92,19 @@ def projection_figure(swept: SweptRuns, scene: str) -> Figure:
     given one, and filled with projection. Runs that failed are left out.
     """
     methods = list(dict.fromkeys(run.method for run in swept.runs))
-    used = [key for key in TREATMENTS if any((run.stabilise, run.advised) == key for run in swept.runs)]
     with styled():
         figure = column_figure(1.9)
         panels = figure.subplots(3, 1, sharex=True)
         for axes, error in zip(panels, plot.ERROR_LABELS, strict=True):
             floor = swept.reference_error if error == "trajectory" else 0.0
-            for (place, method), key in product(enumerate(methods), used):
-                own = [run for run in swept.runs if (run.method, run.stabilise, run.advised) == (method, *key)]
+            for (place, method), (held, (name, marker)) in product(enumerate(methods), TREATMENTS.items()):
+                own = [run for run in swept.runs if (run.method, run.stabilise, run.advised) == (method, *held)]
                 if own:
-                    line = {**MARKER, **line_at(place), **TREATMENTS[key][1]}
+                    line = {"label": f"{method.name}, {name}", **MARKER, **line_at(place), **marker}
                     plot.work_precision(own, error, floor, axes, "projection", **line)
             axes.label_outer()
         figure.suptitle(title_lines(scene))
-        of_methods = [Line2D([], [], label=method.name, **line_at(place)) for place, method in enumerate(methods)]
-        of_treatments = [
-            Line2D([], [], color="0.3", linestyle="none", label=name, **{**MARKER, **marker})
-            for name, marker in map(TREATMENTS.__getitem__, used)
-        ]
-        legend_below(figure, [*of_methods, *of_treatments])
-        return figure
+        return with_legend(figure, panels[0].lines)
 
 
 def trade_figures(swept: SweptRuns, scene: str) -> dict[str, Callable[[], Figure]]:

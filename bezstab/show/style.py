@@ -11,7 +11,6 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
-from matplotlib.legend import Legend
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FixedLocator, MaxNLocator
 from numpy.typing import ArrayLike, NDArray
@@ -58,6 +57,7 @@ LARGEST_MARKER, MARKER_STEP, MARKER_SIZES = 7.0, 0.5, 10
 
 ACCENT = "#d55e00"  # for what must be seen first: a limit, a disagreement
 ABOVE_THE_AXES = 3  # their lines and ticks are drawn at 2.5
+ABOVE_LINES = 2.1  # matplotlib draws them at 2
 CONVERGES, DIVERGES = "#9ecae1", "0.45"
 LEGEND_WIDTH = 0.97  # of the figure's, at most: a little room for letters that are wider in the file than here
 LEGEND_HEIGHT = 0.8  # inches: what a legend takes beyond that makes the figure taller, not its axes smaller
@@ -159,10 +159,10 @@ def marked_line_at(place: int) -> dict[str, Any]:
     }
 
 
-def legend_below(figure: Figure, handles: Sequence[Line2D] | None = None, **box: Any) -> Legend:
-    """Put a legend of all that has a label, or of some lines, below the axes, in as many columns as its width allows.
+def with_legend(figure: Figure, handles: Sequence[Line2D] | None = None, **box: Any) -> Figure:
+    """Return the figure with a legend of all that has a label, or of some lines, below its axes.
 
-    A label that is too long even for one column is broken into lines.
+    It has as many columns as its width allows. A label that is too long even for one column is broken into lines.
     """
     named = {} if handles is None else {"handles": handles}
     for columns in (4, 3, 2, 1):
@@ -177,4 +177,4 @@ def legend_below(figure: Figure, handles: Sequence[Line2D] | None = None, **box:
                 text.set_text(fill(text.get_text(), LABEL_WIDTH))
     height = legend.get_window_extent().height / figure.dpi
     figure.set_figheight(figure.get_figheight() + max(0.0, height - LEGEND_HEIGHT))
-    return legend
+    return figure
