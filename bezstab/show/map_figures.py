@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.colors import FuncNorm, Normalize
+from matplotlib.colors import FuncNorm, ListedColormap, Normalize
 from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
 from matplotlib.path import Path
 from matplotlib.patheffects import AbstractPathEffect, withStroke
 from matplotlib.ticker import FixedLocator, MaxNLocator
@@ -22,7 +23,9 @@ from bezstab.show.result_sentences import timing_words
 from bezstab.show.style import (
     ABOVE_THE_AXES,
     ACCENT,
+    CONVERGES,
     DASHES,
+    DIVERGES,
     cells,
     column_figure,
     line_at,
@@ -41,6 +44,8 @@ THINNEST, STEP_OF_WIDTH, WIDEST = 0.9, 0.15, 1.8
 """Points: lines grow thinner from the first to the last, so that of those that coincide all show."""
 
 EDGE_LINES = 0.015  # of the axes' sides: so far apart are the arrows of regions that go on beyond the same edge
+ALONG_AN_EDGE, ARROWS = 121, 5
+"""Points along an edge of the axes, and how many of them are arrows."""
 
 TICKS = (0.1, 0.5, 0.9, 0.99, 0.999, 0.9999)
 """Of |z_p|, where it is drawn evenly in how fast errors fall."""
@@ -107,9 +112,13 @@ def region_figure(answer: MapAnswer, z: ComplexArray) -> Figure:
             plot.region(inner, axes, h, color="white", linestyle=DASHES[number % 4], label=label)
         for number, (speed, of_speed) in enumerate(moving.items()):
             label = "its own speed" if speed == 1 else f"{speed:g} times its own speed"
-            plot.moving_region(of_speed, axes, h, label=label, dashes=DASHES[(number + 1) % 4], hatched=number == 0)
+            x, y = plane_coordinates(of_speed.alpha_hat, of_speed.beta_hat, h)
+            _level_line(axes, x, y, of_speed.growth, 0.0, label, DASHES[(number + 1) % 4])
+            if number == 0 and of_speed.outside_the_law.any():
+                axes.contourf(x, y, of_speed.outside_the_law, levels=[0.5, 1.5], colors="none", hatches=["....."])
+                axes.add_patch(Rectangle((0, 0), 0, 0, fill=False, hatch=".....", label="law does not hold"))  # a key
         _draw_points(answer, axes)
-        plot.open_edges(region, axes, h, color="white", markeredgecolor="black")
+        _draw_open_edges(region, axes, h, color="white", markeredgecolor="black")
         if question.alpha_beta:
             mark_in_alpha_and_beta(axes)
         return with_legend(figure, facecolor="0.75")
@@ -130,6 +139,37 @@ def _draw_points(answer: MapAnswer, axes: Axes) -> None:
     for marker in drawn:
         if not axes.viewLim.contains(*np.asarray(marker.get_xydata())[0]):
             marker.remove()
+
+
+def _level_line(
+    axes: Axes, x: FloatArray, y: FloatArray, values: FloatArray, level: float, label: str, dashes: Any = "-"
+) -> None:
+    """Draw in black, with a label, where values of shape (y.size, x.size) have a level."""
+    axes.plot([], [], color="black", linestyle=dashes, label=label)  # a contour has no label of its own
+    axes.contour(x, y, values, levels=[level], colors="black", linestyles=[dashes], linewidths=1.2)
+
+
+def _draw_open_edges(region: Region, axes: Axes, h: float | None, inset: float = EDGE_LINES, **line: Any) -> None:
+    """Draw arrows along those edges of the axes, whose limits are final, beyond which a region goes on without end.
+
+    They are `inset` (a share of the axes' sides) inside the axes, where the region is.
+    """
+    if region.extent is None:
+        return
+    along = np.linspace(inset, 1 - inset, ALONG_AN_EDGE)
+    for axis, end in np.argwhere(np.isinf(region.extent)):
+        edge = np.full((ALONG_AN_EDGE, 2), float(end))  # in shares of the axes
+        edge[:, 1 - axis] = along
+        points = axes.transLimits.inverted().transform(edge) / plane_coordinates(1.0, 1.0, h)
+        inside = region.contains(*points.T)
+        if inside.any():
+            x, y = np.where(inside, np.clip(edge, inset, 1 - inset).T, np.nan)
+            arrows: dict[str, Any] = {
+                "marker": ("<>", "v^")[axis][end],
+                "markersize": 3,
+                "markevery": ALONG_AN_EDGE // ARROWS,
+            }
+            axes.plot(x, y, transform=axes.transAxes, **{**line, **arrows, "linestyle": "-", "linewidth": 0.6})
 
 
 def decay_scale(z_abs: FloatArray) -> FloatArray:
@@ -170,7 +210,7 @@ def accuracy_map_figure(answer: MapAnswer, z: ComplexArray) -> Figure:
         boundary.set_data(np.transpose(Path(boundary.get_xydata()).interpolated(PARTS).vertices))
         for number, level in enumerate(answer.drawn_levels, start=1):
             label, dashes = f"$|z_p| = {level:.4g}$", DASHES[number % 4]
-            plot.level_line(axes, x, y, z_abs, level, label, linestyle=dashes, linewidth=0.8)
+            _level_line(axes, x, y, z_abs, level, label, dashes)
         _draw_points(answer, axes)
         for text in axes.clabel(contours, fmt="$10^{%d}$", fontsize=6, colors="black", inline=False):
             box = {"boxstyle": "round,pad=0.1", "facecolor": "white", "edgecolor": "none"}
@@ -198,21 +238,32 @@ def comparison_figure(question: MapQuestion) -> Figure:
         if question.beta_range:
             axes.set_ylim(*y)
         for place, region in enumerate(regions):
-            plot.open_edges(region, axes, h, inset=EDGE_LINES * (place + 1), **line_at(place))
+            _draw_open_edges(region, axes, h, inset=EDGE_LINES * (place + 1), **line_at(place))
         if question.alpha_beta:
             mark_in_alpha_and_beta(axes)
         return with_legend(figure)
 
 
 def verdict_figure(verdicts: VerdictMap, region: Region) -> Figure:
-    """Return the simulated verdicts as cells under the exact boundary; cells that disagree are crossed."""
+    """Return the simulated verdicts as cells under the exact boundary; cells that disagree with it are crossed."""
+    run = (verdicts.scene.name, verdicts.method.name, f"h = {verdicts.h:g} s", f"{verdicts.run} steps")
+    given = f"{verdicts.judged} of {verdicts.undecided.size} runs gave a verdict"
+    agreeing = f"{given}, {verdicts.agreeing} of them agree" if verdicts.judged else "no run gave a verdict"
+    meanings = {"run converges": CONVERGES, "run diverges": DIVERGES}
+    if verdicts.undecided.any():
+        meanings["no verdict"] = "white"
     with styled():
-        run = (verdicts.scene.name, verdicts.method.name, f"h = {verdicts.h:g} s", f"{verdicts.run} steps")
-        given = f"{verdicts.judged} of {verdicts.undecided.size} runs gave a verdict"
-        agreeing = f"{given}, {verdicts.agreeing} of them agree" if verdicts.judged else "no run gave a verdict"
         figure, axes = plane_axes(f"{title_lines(*run)}\n{title_lines(agreeing)}", None)
-        plot.verdicts(verdicts, axes)
+        diverges = np.ma.masked_array(verdicts.diverges, verdicts.undecided)
+        colours = ListedColormap([CONVERGES, DIVERGES])
+        cells(axes, verdicts.alpha_hat, verdicts.beta_hat, diverges, cmap=colours, vmin=0, vmax=1)
+        for meaning, colour in meanings.items():
+            axes.plot([], [], "s", color=colour, markeredgecolor="0.5", label=meaning)
         plot.region(region, axes, color="black", linestyle="-", label=r"$|z_p| = 1$")
+        if verdicts.disagrees.any():
+            rows, columns = np.nonzero(verdicts.disagrees)
+            crosses = verdicts.alpha_hat[columns], verdicts.beta_hat[rows]
+            axes.plot(*crosses, "x", color=ACCENT, markersize=3, label="disagree")
         return with_legend(figure)
 
 
@@ -233,7 +284,7 @@ def held_figure(answer: HeldAnswer, points: int) -> Figure:
         image = plot.modulus_map(kd, kp, found.z_abs, axes=axes)
         figure.colorbar(image, label="$|z_p|$ a step", location="bottom", shrink=0.8)
         if found.has_edge:
-            plot.level_line(axes, kd, kp, found.z_abs, 1.0, "$|z_p| = 1$")
+            _level_line(axes, kd, kp, found.z_abs, 1.0, "$|z_p| = 1$")
         if found.law is not None:
             law: dict[str, Any] = {"color": "white", "linestyle": (0, (4, 4)), "linewidth": 1.0}
             axes.plot(kd, kp_of_one * found.law, label="closed form", **law)
@@ -258,15 +309,16 @@ def family_figure(families: Mapping[str, Sequence[Member]], shown: str, limit: L
     members = families[shown]
     own = line_at(list(families).index(shown))
     orders = {member.order for member in members}
-    quantity: plot.Quantity = "error_constant" if len(orders) == 1 else "order"
     with styled():
         figure = column_figure(1.3)
         (area, fastest), (accuracy, regions) = figure.subplots(2, 2)
         for place, (name, of_family) in enumerate(families.items()):
-            line = {"label": STEP_FAMILIES[name].title, **line_at(place)}
-            plot.family(of_family, "area", area, **line)
-            plot.family(of_family, "z_abs", fastest, **line)
-        plot.family(members, quantity, accuracy, **own)
+            line = {"label": STEP_FAMILIES[name].title, "marker": ".", **line_at(place)}
+            n = [member.n for member in of_family]
+            area.plot(n, np.array([member.region.area for member in of_family], float), **line)  # nan for None
+            fastest.plot(n, np.array([member.z_abs for member in of_family], float), **line)
+        errors = [member.error_constant if len(orders) == 1 else member.order for member in members]
+        accuracy.plot([member.n for member in members], np.array(errors, float), marker=".", **own)
         for member, dashes in zip(members[:: max(1, len(members) // 3)], DASHES, strict=False):
             plot.region(member.region, regions, color=own["color"], linestyle=dashes)
         if limit is not None:
@@ -283,6 +335,7 @@ def family_figure(families: Mapping[str, Sequence[Member]], shown: str, limit: L
         regions.set_ylim(top=1.4 * regions.get_ylim()[1])  # room above the curves
         regions.legend(fontsize=6, loc="upper center", ncols=2, handlelength=1.5, columnspacing=1)
         for axes in (area, fastest, accuracy):
+            axes.set_xlabel("steps $n$")
             axes.xaxis.set_major_locator(MaxNLocator(5, integer=True))
         return with_legend(figure, handles=area.lines)
 

@@ -1,4 +1,4 @@
-"""Plots for a notebook or a script: each function draws one result and returns what it drew.
+"""Plots for a notebook or a script: each function draws a result of `import bezstab` and returns what it drew.
 
 Without `axes` each makes a new Figure of its own, as the attribute `figure` of what it returns; pyplot is not involved:
 `plot.region(region(method("B4"))).figure.savefig("b4.png")`. With `axes` it draws there, and several results come into
@@ -9,61 +9,46 @@ Further keyword arguments are matplotlib's, for the line that is drawn.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, Literal, SupportsFloat
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, SupportsFloat
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.colors import ListedColormap
-from matplotlib.contour import QuadContourSet
 from matplotlib.image import AxesImage
 from matplotlib.lines import Line2D
-from matplotlib.patches import Rectangle
 from matplotlib.patheffects import withStroke
 from numpy.typing import ArrayLike
 
 from bezstab.errors import check_kind
 from bezstab.methods import Method
 from bezstab.show.style import (
-    ABOVE_LINES,
-    ACCENT,
-    CONVERGES,
     DASHES,
-    DIVERGES,
     cells,
     line_at,
-    marked_line_at,
     new_axes,
     plane_coordinates,
     plane_words,
     styled,
     title_lines,
 )
-from bezstab.stability import BestPoint, Choice, FloatArray, Member, Region, useful_window
+from bezstab.stability import BestPoint, Choice, FloatArray, Region, useful_window
 from bezstab.stability import spectral_radius as spectral_radius_at
 
 if TYPE_CHECKING:  # so that a picture of the plane does not load what runs mechanisms
-    from bezstab.evidence import Cost, ErrorOf, MovingRegion, Run, VerdictMap
     from bezstab.mechanism import Scene, Simulation
 
 Range = tuple[SupportsFloat, SupportsFloat]
-Quantity = Literal["area", "z_abs", "error_constant", "order"]
 Point = tuple[float, float]
 Coordinates = tuple[ArrayLike, ArrayLike]
 
 __all__ = [
     "critical_damping",
-    "family",
     "history",
     "mechanism",
     "modulus_map",
-    "moving_region",
-    "open_edges",
     "point",
     "region",
     "spectral_radius",
-    "verdicts",
-    "work_precision",
 ]
 
 
@@ -71,22 +56,9 @@ def __dir__() -> list[str]:
     return sorted(__all__)
 
 
-ALONG_AN_EDGE, ARROWS = 121, 5
-"""Points along an edge of the axes, and how many of them are arrows."""
 PARABOLA = 400  # points of a smooth curve: more than its pixels tell apart
 NAME_OFF = 4.0  # points from a body up to its name
 FINE = 0.6  # points: lines of histories, so that fast oscillations are told apart
-ERROR_LABELS: Mapping[ErrorOf, str] = {
-    "trajectory": "trajectory error (m, rad)",
-    "constraint": "largest $|c|$ (SI)",
-    "energy": "energy drift (J)",
-}
-COST_LABELS: Mapping[Cost, str] = {
-    "evaluations": "evaluations of f",
-    "time": "processor time (s)",
-    "projection": r"factorizations of $C_q M^{-1} C_q^T$",
-}
-"""Of a run's errors and costs, for axes."""
 
 
 def region(region: Region, axes: Axes | None = None, h: float | None = None, **line: Any) -> Line2D:
@@ -106,48 +78,6 @@ def region(region: Region, axes: Axes | None = None, h: float | None = None, **l
     alpha_range, beta_range = np.array(useful_window(region))
     axes.update_datalim(np.transpose(plane_coordinates(alpha_range, beta_range, h)))
     axes.autoscale_view()
-    return drawn
-
-
-def moving_region(
-    moving: MovingRegion,
-    axes: Axes | None = None,
-    h: float | None = None,
-    *,
-    label: str = "as it moves",
-    dashes: Any = DASHES[1],
-    hatched: bool = True,
-) -> QuadContourSet:
-    """Draw the boundary of the region of a mechanism that moves, and return it; hatched where the law does not hold.
-
-    With h (s) the axes are 2 alpha (1/s) and beta^2 (1/s^2).
-    """
-    from bezstab.evidence import MovingRegion
-
-    check_kind(moving, MovingRegion, "bezstab.evidence.moving_region")
-    axes = _plane(axes, moving.method.name, h)
-    x, y = plane_coordinates(moving.alpha_hat, moving.beta_hat, h)
-    if hatched and moving.outside_the_law.any():
-        axes.contourf(x, y, moving.outside_the_law, levels=[0.5, 1.5], colors="none", hatches=["....."])
-        axes.add_patch(Rectangle((0, 0), 0, 0, fill=False, hatch=".....", label="law does not hold"))  # a key
-    return level_line(axes, x, y, moving.growth, 0.0, label=label, linestyle=dashes)
-
-
-def level_line(
-    axes: Axes,
-    x: FloatArray,
-    y: FloatArray,
-    values: FloatArray,
-    level: float,
-    label: str,
-    linestyle: Any = "-",
-    linewidth: float = 1.2,
-) -> QuadContourSet:
-    """Draw in black where values of shape (y.size, x.size) have a level, with a label, and return it."""
-    axes.plot([], [], color="black", linestyle=linestyle, linewidth=linewidth, label=label)  # a contour has no label
-    drawn: QuadContourSet = axes.contour(
-        x, y, values, levels=[level], colors="black", linestyles=[linestyle], linewidths=linewidth
-    )
     return drawn
 
 
@@ -230,66 +160,6 @@ def _line(axes: Axes, points: Coordinates, line: Mapping[str, Any], **usual: Any
     return drawn
 
 
-def open_edges(region: Region, axes: Axes, h: float | None = None, inset: float = 0.015, **line: Any) -> list[Line2D]:
-    """Draw arrows along those edges of the axes, whose limits are final, beyond which a region goes on without end.
-
-    Each edge gives a line with arrows on it, `inset` (a share of the axes' sides) inside the axes, where the region
-    is. Returned are these lines; none for a bounded region.
-    """
-    if region.extent is None:
-        return []
-    along = np.linspace(inset, 1 - inset, ALONG_AN_EDGE)
-    drawn: list[Line2D] = []
-    for axis, end in np.argwhere(np.isinf(region.extent)):
-        edge = np.full((ALONG_AN_EDGE, 2), float(end))  # in shares of the axes
-        edge[:, 1 - axis] = along
-        points = axes.transLimits.inverted().transform(edge) / plane_coordinates(1.0, 1.0, h)
-        inside = region.contains(*points.T)
-        if inside.any():
-            x, y = np.where(inside, np.clip(edge, inset, 1 - inset).T, np.nan)
-            arrows: dict[str, Any] = {"markersize": 3, "markevery": ALONG_AN_EDGE // ARROWS, "linewidth": 0.6}
-            arrows |= {"marker": ("<>", "v^")[axis][end], "label": "_nolegend_", "transform": axes.transAxes}
-            drawn.append(_line(axes, (x, y), line, linestyle="-", **arrows))
-    return drawn
-
-
-def verdicts(verdict_map: VerdictMap, axes: Axes | None = None) -> AxesImage:
-    """Draw simulated verdicts as cells over alpha_hat and beta_hat and return the image.
-
-    Values of shape (beta_hat.size, alpha_hat.size): 0 converges, 1 diverges, blank where the run gave none. What the
-    colours mean is labelled. Cells whose verdict contradicts |z_p| < 1 are crossed.
-    """
-    from bezstab.evidence import VerdictMap
-
-    check_kind(verdict_map, VerdictMap, "bezstab.evidence.verdict_map")
-    axes = _plane(axes, title_lines(verdict_map.scene.name, verdict_map.method.name), None)
-    values = np.ma.masked_array(verdict_map.diverges, verdict_map.undecided)
-    colours = ListedColormap([CONVERGES, DIVERGES])
-    image = cells(axes, verdict_map.alpha_hat, verdict_map.beta_hat, values, cmap=colours, vmin=0, vmax=1)
-    axes.set_facecolor("white")
-    meanings = {"run converges": CONVERGES, "run diverges": DIVERGES}
-    if verdict_map.undecided.any():
-        meanings["no verdict"] = "white"
-    for meaning, colour in meanings.items():
-        axes.plot([], [], "s", color=colour, markeredgecolor="0.5", label=meaning)
-    if verdict_map.disagrees.any():
-        rows, columns = np.nonzero(verdict_map.disagrees)
-        crosses = verdict_map.alpha_hat[columns], verdict_map.beta_hat[rows]
-        axes.plot(*crosses, "x", color=ACCENT, markersize=3, label="disagree", zorder=ABOVE_LINES)
-    return image
-
-
-def family(members: Sequence[Member], quantity: Quantity = "area", axes: Axes | None = None, **line: Any) -> Line2D:
-    """Draw one quantity of a family's members (at least one) against their number of steps n and return the line.
-
-    Area of the region (dimensionless; a gap where it is unbounded), least |z_p| (a gap where the region is empty),
-    order of accuracy or error constant, which says something between members of one order alone.
-    """
-    axes = _axes(axes, "", "steps $n$", quantity.replace("_", " "))
-    values = np.array([getattr(member, quantity) for member in members], float)  # nan for None
-    return _line(axes, ([member.n for member in members], values), line, marker=".")
-
-
 def history(
     simulation: Simulation,
     constraint: int | None = 1,
@@ -355,25 +225,6 @@ def mechanism(scene: Scene, q: FloatArray, axes: Axes | None = None) -> list[Lin
             path_effects=[withStroke(linewidth=1.6, foreground="white")],  # lines run below
         )
     return lines
-
-
-def work_precision(
-    runs: Sequence[Run],
-    error: ErrorOf = "trajectory",
-    floor: float = 0.0,
-    axes: Axes | None = None,
-    against: Cost = "evaluations",
-    **line: Any,
-) -> Line2D:
-    """Draw an error (SI) of one method's runs (at least one) against their cost, both logarithmic, and return the line.
-
-    Left out are runs that failed and errors up to `floor`, that of the reference.
-    """
-    axes = _axes(axes, "", COST_LABELS[against], ERROR_LABELS[error])
-    axes.set(xscale="log", yscale="log")
-    shown = [(run.cost(against), known) for run in runs if (known := run.error(error)) is not None and known > floor]
-    costs, errors = np.reshape(shown, (-1, 2)).T
-    return _line(axes, (costs, errors), line, label=runs[0].method.name, **marked_line_at(len(axes.lines)))
 
 
 def _plane(axes: Axes | None, title: str, h: float | None) -> Axes:

@@ -57,7 +57,6 @@ LARGEST_MARKER, MARKER_STEP, MARKER_SIZES = 7.0, 0.5, 10
 
 ACCENT = "#d55e00"  # for what must be seen first: a limit, a disagreement
 ABOVE_THE_AXES = 3  # their lines and ticks are drawn at 2.5
-ABOVE_LINES = 2.1  # matplotlib draws them at 2
 CONVERGES, DIVERGES = "#9ecae1", "0.45"
 LEGEND_WIDTH = 0.97  # of the figure's, at most: a little room for letters that are wider in the file than here
 LEGEND_HEIGHT = 0.8  # inches: what a legend takes beyond that makes the figure taller, not its axes smaller

@@ -28,11 +28,6 @@ class Member:
     order: int
     error_constant: Fraction
 
-    @property
-    def area(self) -> float | None:
-        """The area of the region; None where it is unbounded."""
-        return self.region.area
-
 
 @dataclass(frozen=True)
 class Limit(ReadOnlyArrays):
