@@ -169,7 +169,7 @@ def _draw_open_edges(region: Region, axes: Axes, h: float | None, inset: float =
                 "markersize": 3,
                 "markevery": ALONG_AN_EDGE // ARROWS,
             }
-            axes.plot(x, y, transform=axes.transAxes, **{**line, **arrows, "linestyle": "-", "linewidth": 0.6})
+            axes.plot(x, y, transform=axes.transAxes, **{"linestyle": "-", "linewidth": 0.6, **arrows, **line})
 
 
 def decay_scale(z_abs: FloatArray) -> FloatArray:
