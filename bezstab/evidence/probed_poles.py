@@ -282,7 +282,7 @@ def _explains_the_start(fit: Fit, samples: FloatArray) -> bool:
     sizes = np.nanmax(np.abs(samples), axis=1)
     before, within = sizes[: fit.start], sizes[fit.start : fit.start + fit.samples]
     with np.errstate(over="ignore"):
-        traced_back = within.max() * abs(fit.pole) ** -fit.start if abs(fit.pole) < 1 else within.max()
+        traced_back = within.max() * np.minimum(abs(fit.pole), 1.0) ** -fit.start  # what grows was no larger
     return bool(before.max(initial=0.0) <= GROWN * traced_back)
 
 
