@@ -22,7 +22,7 @@ if TYPE_CHECKING:
         swept_runs,
     )
     from bezstab.evidence.chunk_stores import Arrays, chunk_store
-    from bezstab.evidence.chunks import ATTEMPTS, completed_chunks
+    from bezstab.evidence.chunks import completed_chunks, worker_pool
     from bezstab.evidence.extremes import Check, extreme_checks
     from bezstab.evidence.forced_runs import SHARES, HalvedStep, forced_sentence, halved_steps
     from bezstab.evidence.linear_prediction import SPREAD, Fit, Refusal, fit_dominant_pole
@@ -63,6 +63,5 @@ if TYPE_CHECKING:
     from bezstab.evidence.reference_motions import ReferenceMotion, reference_motion
     from bezstab.evidence.sweep_summaries import Held, summary, sweep_sentences
     from bezstab.evidence.verdict_maps import MapRows, VerdictMap, map_rows, simulated_verdicts, verdict_map
-    from bezstab.evidence.worker_pools import worker_pool
 
 __getattr__ = lazy_names(__name__)
