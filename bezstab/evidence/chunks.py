@@ -1,4 +1,4 @@
-"""Independent chunks of a long computation: processes or a Dask cluster work on them, and a store keeps what is done."""
+"""Independent chunks of a long computation: processes or a Dask cluster compute them, a store keeps what is done."""
 
 import multiprocessing
 import os

@@ -7,8 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bezstab.errors import InputError, NumericalError
-from bezstab.evidence.kick_fates import fates, follow
-from bezstab.evidence.measured_poles import kicked_motions, nothing_happens_without_feedback
+from bezstab.evidence.kicks import fates, follow, kicked_motions, nothing_happens_without_feedback
 from bezstab.evidence.mixing_poles import nearest_poles
 from bezstab.mechanism import Scene, compiled_mechanism, runs_compiled, turning_normals
 from bezstab.methods import Method, evaluations
@@ -135,7 +134,7 @@ def simulated_verdicts(rows: MapRows) -> dict[str, BoolArray]:
     """Return where runs diverge, and where they give no verdict; shape (beta_hat.size, alpha_hat.size).
 
     A run diverges if the constraint error that the kick made grows, and converges if that error dies, whichever comes
-    first (`kick_fates`). InputError for a scene that cannot start, and where rows are to be compiled without numba.
+    first (`kicks`). InputError for a scene that cannot start, and where rows are to be compiled without numba.
     """
     alpha_grid, beta_grid = np.meshgrid(rows.alpha_hat, rows.beta_hat)
     alpha_hat, beta_hat = alpha_grid.ravel(), beta_grid.ravel()

@@ -65,7 +65,7 @@ def test_a_resumed_job_does_only_what_is_missing_or_damaged(tmp_path: Path) -> N
 def test_a_lost_worker_is_one_line_and_what_is_done_is_kept(tmp_path: Path) -> None:
     jobs = [Job(0), Job(1, (tmp_path / "death",))]
     with (
-        pytest.raises(NumericalError, match="a worker was lost, .* --resume goes on"),
+        pytest.raises(NumericalError, match=r"a worker was lost, .* --resume goes on"),
         worker_pool(1) as workers,
     ):
         arrived(jobs, workers, tmp_path)
