@@ -14,10 +14,13 @@ if TYPE_CHECKING:
         STEPS,
         Cost,
         ErrorOf,
+        ReferenceMotion,
         Run,
         Sweep,
         SweptRuns,
         measured_runs,
+        pareto_front,
+        reference_motion,
         sweep_compiled,
         swept_runs,
     )
@@ -47,7 +50,6 @@ if TYPE_CHECKING:
     from bezstab.evidence.mujoco_lint import Linted, linted_model
     from bezstab.evidence.mujoco_models import ModelData, model_data, mujoco_module, read_mujoco_model
     from bezstab.evidence.mujoco_witness import TIMES, Outcome, Witnessed, model_xml, mujoco_witnesses, witness_count
-    from bezstab.evidence.pareto import pareto_front
     from bezstab.evidence.probed_poles import (
         Likeness,
         LikePoint,
@@ -59,7 +61,6 @@ if TYPE_CHECKING:
         steps_between_rows,
     )
     from bezstab.evidence.projection_costs import projection_sentences
-    from bezstab.evidence.reference_motions import ReferenceMotion, reference_motion
     from bezstab.evidence.sweep_summaries import Held, summary, sweep_sentences
     from bezstab.evidence.verdict_maps import MapRows, VerdictMap, map_rows, simulated_verdicts, verdict_map
 
