@@ -8,7 +8,7 @@ from bezstab.stability import FloatArray, region
 from bezstab.stability.arrays import EPS
 from bezstab.stability.boundary_locus import Arc, bounds_of
 from bezstab.stability.locus_shapes import straight_edges
-from bezstab.stability.mu_pencils import mu_pencil_of
+from bezstab.stability.mu_pencils import MuPencil
 from bezstab.stability.region_checks import crossed_levels
 
 BoolArray = NDArray[np.bool_]
@@ -45,7 +45,7 @@ def scan(method: Method, beta_hat: FloatArray, level: float = 1.0) -> tuple[IntA
 
     Lines outside the open region's extent cross nothing, though the first may touch it all along.
     """
-    pencil = mu_pencil_of(method)
+    pencil = MuPencil(method)
     _, (low, high) = region(method, level).extent or ((0, 0), (0, 0))
     start, end = np.searchsorted(beta_hat, low, "right"), np.searchsorted(beta_hat, high)
     lines = beta_hat[start:end]
@@ -61,7 +61,7 @@ def scan(method: Method, beta_hat: FloatArray, level: float = 1.0) -> tuple[IntA
 
 def _edges(method: Method, level: float) -> list[list[list[float]]]:
     """Return the two ends (alpha_hat, beta_hat) of each straight edge."""
-    pencil = mu_pencil_of(method)
+    pencil = MuPencil(method)
     return [edge.tolist() for edge in straight_edges(pencil, bounds_of(pencil, level))]
 
 
