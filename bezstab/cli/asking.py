@@ -12,9 +12,10 @@ from bezstab.methods import Method
 from bezstab.show import Row, motion_words, varying_words
 
 if TYPE_CHECKING:
-    from bezstab.questions import Answer, Question
+    from bezstab.questions import Answer, MapQuestion, Question
 
 Asked = TypeVar("Asked")
+OfScene = TypeVar("OfScene", "Question", "MapQuestion")
 
 
 def asked(kind: Callable[..., Asked], **typed: Any) -> Asked:
@@ -36,11 +37,9 @@ def asked(kind: Callable[..., Asked], **typed: Any) -> Asked:
     return question
 
 
-def asked_of_feedback(**typed: Any) -> "Question":
-    """Return the question about feedback that was typed, once it is known how its scene moves."""
-    from bezstab.questions import Question
-
-    question = asked(Question, **typed)
+def asked_of_scene(kind: "type[OfScene]", **typed: Any) -> "OfScene":
+    """Return the same, once it is known how its scene moves: a note says so if that is too far in a step."""
+    question = asked(kind, **typed)
     say_each(worked_out(lambda: question.warnings, typed["scene"]))
     return question
 

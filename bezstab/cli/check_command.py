@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator
 from itertools import groupby
 from typing import TYPE_CHECKING, Any
 
-from bezstab.cli.asking import asked_of_feedback, say_varying, show_below, show_sentences
+from bezstab.cli.asking import asked_of_scene, say_varying, show_below, show_sentences
 from bezstab.cli.held_drives import held_asked, show_held
 from bezstab.cli.options import TypedPoint, changed, command, typed_options
 from bezstab.cli.output import for_reading, say, show_rows, show_text
@@ -61,14 +61,14 @@ def check(**typed: Any) -> bool:
 
     Example: bezstab check --method RK2 --h 0.002 --alpha 50 --beta 50 --physical
     """
-    from bezstab.questions import answers, check_speed
+    from bezstab.questions import Question, answers, check_speed
 
     if held := held_asked(typed, "--every, --late and --filter"):
         return all(answer.safe for answer in show_held(held))
     if typed["point"].physical and typed_options().keys() <= OF_EVERY_STEP:
         check_speed(None, typed["speed"])
         return _check_without_step(typed["methods"], typed["point"])
-    question = asked_of_feedback(**typed)
+    question = asked_of_scene(Question, **typed)
     found = list(_with_instead(answers(question)))
     given = [answer for answer in found if answer.role == "given"]
     if for_reading():

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from bezstab.cli.asking import asked_of_feedback, say_varying, show_below, show_sentences
+from bezstab.cli.asking import asked_of_scene, say_varying, show_below, show_sentences
 from bezstab.cli.held_drives import held_asked, show_held
 from bezstab.cli.options import INERTIA, NUMBER, SECONDS, SHARE, changed, command, option, typed_options
 from bezstab.cli.output import for_reading, progress, show_rows, show_text
@@ -82,7 +82,7 @@ def choose(goal: Goal | None, equal: str | None, bandwidth: Fraction | None, **t
 
     Example: bezstab choose --method B4 --h 0.001
     """
-    from bezstab.questions import answers, usual_goal
+    from bezstab.questions import Question, answers, usual_goal
 
     drive, settle = typed["drive"], typed["settle"]
     settling = drive is not None and settle is not None and goal is None
@@ -90,7 +90,7 @@ def choose(goal: Goal | None, equal: str | None, bandwidth: Fraction | None, **t
     if held := held_asked(typed, asked_by, "--bandwidth", "--settle", always=settling):
         return _choose_held(held, bandwidth, settle)
     goal = goal or usual_goal(typed["engine"], drive)
-    question = asked_of_feedback(goal=goal, equal=equal is not None, **typed)
+    question = asked_of_scene(Question, goal=goal, equal=equal is not None, **typed)
     chosen = list(progress(answers(question), goal, len(question.methods)))
     show_rows(CHOICES, map(answer_row, chosen), left_out(question))
     if for_reading():

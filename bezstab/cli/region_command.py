@@ -4,13 +4,12 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import click
-import numpy as np
 
-from bezstab.cli.asking import asked, of_each, say_each
+from bezstab.cli.asking import asked_of_scene, of_each, say_each
 from bezstab.cli.command_group import NUMERICAL_TROUBLE
 from bezstab.cli.held_drives import held_asked, show_held
 from bezstab.cli.options import NUMBER, POSITIVE, SPEED, Rule, changed, command, flag, option
-from bezstab.cli.output import Files, progress, show_rows, show_text, worked_out
+from bezstab.cli.output import Files, progress, show_rows, show_text
 from bezstab.show import REGIONS, Row, combined_words, region_row
 
 if TYPE_CHECKING:
@@ -77,12 +76,10 @@ def region(quality: str, grid: int | None, files: Files, **typed: Any) -> int:
     if held := held_asked(typed, "--pd", *drawn, always=typed["drive"] is not None):
         files.check_output()
         for of_drive in show_held(held):
-            path = files.path("region", of_drive.method.name, "held")
-            files.write(path, partial(show.held_figure, of_drive, points))
+            files.write(files.path("region", of_drive.method.name, "held"), partial(show.held_figure, of_drive, points))
         return 0
     del typed["drive"]
-    question = asked(MapQuestion, points=points, **typed)
-    say_each(worked_out(lambda: question.warnings, typed["scene"]))
+    question = asked_of_scene(MapQuestion, points=points, **typed)
     files.check_output()
     if question.compare:
         rows, status = _write_boundaries(question, files), 0
@@ -100,7 +97,7 @@ def _write_map(answer: "MapAnswer", files: Files) -> list[Row]:
 
     say_each([answer.choice_reason] if answer.question.motion else [])
     if files.wanted:
-        z = np.array(list(progress(answer.dominant_poles(), answer.method.name, len(answer.axes[1]))))
+        z = answer.dominant_poles(partial(progress, label=answer.method.name, length=len(answer.axes[1])))
         of_what = "accuracy" if answer.question.motion else answer.question.scene
         path = files.path("region", answer.method.name, of_what)
         files.write(path, lambda: show.map_figure(answer, z), lambda: show.map_arrays(answer, z))
