@@ -50,7 +50,7 @@ from bezstab.methods import (
 from bezstab.show.explorer import Explorer
 from bezstab.stability import FloatArray, Region, region, spectral_radius, window
 from bezstab.stability.boundary_locus import bounds_of
-from bezstab.stability.mu_pencils import MuPencil, mu_pencil_of, roots_in_z
+from bezstab.stability.mu_pencils import MuPencil, roots_in_z
 from bezstab.stability.pencils import pencil_of
 from bezstab.stability.region_checks import check_region
 from tests.evidence.exact_rates import own_motion_rates
@@ -120,7 +120,7 @@ def away_from_multiple_roots(method: Method, alpha_hat: FloatArray, beta_hat: Fl
     """Return where no two poles of P lie within MULTIPLE of each other; boolean."""
     discriminant = np.emath.sqrt(alpha_hat**2 / 4 - beta_hat)
     mus = (-alpha_hat / 2 + discriminant, -alpha_hat / 2 - discriminant)
-    z = np.concatenate([roots_in_z(mu_pencil_of(method), mu.ravel().astype(complex)) for mu in mus])
+    z = np.concatenate([roots_in_z(MuPencil(method), mu.ravel().astype(complex)) for mu in mus])
     gaps = [np.abs(z[i] - z[j]) for i in range(len(z)) for j in range(i)]
     return np.asarray(np.min(gaps, axis=0) > MULTIPLE).reshape(alpha_hat.shape)
 
@@ -263,7 +263,7 @@ def moving_mechanisms() -> Iterator[Line]:
 def self_checks() -> Iterator[Line]:
     """Yield how many times as long as its check against poles the rest of a region takes: 0.4 at least."""
     for name in ("B4", "AB4", "RK4", "ABM3"):
-        pencil = mu_pencil_of(lookup(name))
+        pencil = MuPencil(lookup(name))
 
         def found(pencil: MuPencil = pencil) -> Region:
             for remembered in (region, bounds_of):
