@@ -106,7 +106,7 @@ def _write_map(question: "questions.VerifyQuestion", method: Method, across: int
     scene, h = question.mechanism.scene, float(question.h)
     path = files.path("verify", str(question.scene), method.name)
     chunks = evidence.map_rows(scene, method, h, across)
-    job = f"--map {across} --h {h} {method} {scene}"
+    job = f"verify --map {across} --h {h} {method} {scene}"
     with results_of_chunks(evidence.simulated_verdicts, chunks, path, job, work) as results:
         verdicts = evidence.verdict_map(chunks, results)
         files.write(path, lambda: show.verdict_figure(verdicts, region(method)), lambda: show.verdict_arrays(verdicts))
