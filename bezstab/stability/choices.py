@@ -17,11 +17,12 @@ from bezstab.stability.accurate_points import accurate_point, default_rate, wors
 from bezstab.stability.answer_checks import Modulus, check_critical, check_least
 from bezstab.stability.arrays import DOUBLE, SLOW, BoolArray, Extent, FloatArray
 from bezstab.stability.best_points import best_point
-from bezstab.stability.closed_loop import largest_modulus, largest_pole, verdict
+from bezstab.stability.closed_loop import converges, largest_modulus, largest_pole, verdict
 from bezstab.stability.critical_points import critical_place
 from bezstab.stability.curve_choices import Curve, least_along, mildest_along, of_equal
 from bezstab.stability.forced_errors import OMEGA_H
 from bezstab.stability.margins import Margins, stability_margins
+from bezstab.stability.path_crossings import ONE
 from bezstab.stability.pencils import Pencil, pencil_of
 from bezstab.stability.regions import Region, chart_of, pole_place, region
 from bezstab.stability.root_finding import TOLD
@@ -100,6 +101,7 @@ def choose(
     margins: bool = True,
     along: Curve | None = None,
     omega_h: Fraction = OMEGA_H,
+    share: Fraction = ONE,
 ) -> Choice:
     """Return the point that a goal asks for, dimensionless and proven stable; without `margins` in less time.
 
@@ -111,7 +113,8 @@ def choose(
     by the spread, where fast means decay per second. gentle: the smallest alpha = beta with |z_p| <= rate. `equal`
     keeps alpha = beta. `along` is a curve of points that alone are looked at; of several that are best, the mildest is
     taken, and gentle is the mildest with |z_p| <= rate.
-    `modulus` takes the place of |z_p| at rest, for a mechanism that moves; critical asks for poles at rest.
+    `modulus` takes the place of |z_p| at rest, for a mechanism that moves; critical asks for poles at rest. What is
+    described is the same alpha and beta at a step of so large a `share` of that which they are chosen for.
     InputError if nothing stable meets the goal, for another goal and for a spread outside 0 to 1; NumericalError if a
     second route contradicts the answer (answer_checks). The poles are those of paper Eq. 17; the goals are this
     package's.
@@ -151,9 +154,10 @@ def choose(
         point = least_along(curve, objective) if curve else _checked_least(pencil, box, objective, cut)
     else:
         assert_never(goal)
-    choice = describe_point(method, goal, exact(point[0]), exact(point[1]), spread, margins)
-    if choice.verdict != "converges":
+    alpha_hat, beta_hat = (exact(each) for each in point)
+    if not converges(method, alpha_hat, beta_hat):
         raise NumericalError(f"{method.name}: the point {point} found for {goal} is not stable")
+    choice = describe_point(method, goal, alpha_hat * share, beta_hat * share**2, spread, margins)
     return replace(choice, searched=SEARCHED) if cut and not along else choice
 
 
@@ -253,12 +257,7 @@ def choose_at_step(
     rate = None
     if settle is not None:
         rate = THOUSANDFOLD ** float((h_max or h) * method.step_multiple / settle)
-    choice = choose(method, goal, spread, rate, equal, modulus, margins, along, omega_h)
-    if h_max is None or h_max == h:
-        return choice
-    share = h / h_max
-    alpha_hat, beta_hat = exact(choice.alpha_hat) * share, exact(choice.beta_hat) * share**2
-    return replace(describe_point(method, goal, alpha_hat, beta_hat, spread, margins), searched=choice.searched)
+    return choose(method, goal, spread, rate, equal, modulus, margins, along, omega_h, share=h / (h_max or h))
 
 
 def describe_point(
