@@ -17,18 +17,17 @@ Proven in exact arithmetic: corner p, edge from e to f, M = N(s) / d(s). The ima
 if and only if (e x f) d(s) + (f - e) x N(s) p > 0, a polynomial in the length s of the step.
 """
 
-import math
 from collections.abc import Iterator
 from fractions import Fraction
 from itertools import pairwise
-from math import lcm
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bezstab.methods import StepMatrix
+from bezstab.rationals import whole_multiples
 from bezstab.stability.arrays import SAME, FloatArray
-from bezstab.stability.lyapunov_quadratics import DIGITS
+from bezstab.stability.lyapunov_quadratics import coefficients_of, powers_of_two, rounded
 from bezstab.stability.positive_polynomials import ExactArray, positivity
 
 Corner = tuple[Fraction, Fraction]
@@ -46,15 +45,16 @@ def invariant_polygon(
     steps: FloatArray,
     matrices: FloatArray,
     flow: FloatArray | None,
-    frame: FloatArray,
+    form: FloatArray,
     shortest: Fraction,
 ) -> list[Corner] | None:
     """Return corners of half a polygon that every step from `shortest` to 1 maps inside; None if none was found.
 
     The other half is their negatives. `matrices` (steps, 2, 2) belong to the lengths `steps`, a sample of the range,
-    `flow` (2, 2) is the G of shorter ones where the range has them, and `frame` (2, 2) maps the state to where its
-    motion is round. Proven for all of the range.
+    `flow` (2, 2) is the G of shorter ones where the range has them, and the root of a quadratic `form` (2, 2) maps the
+    state to where its motion is round. Proven for all of the range.
     """
+    frame = np.linalg.cholesky(form).T
     directions = np.arange(RAYS) * np.pi / RAYS
     circle = np.stack([np.cos(directions), np.sin(directions)])
     back = np.linalg.inv(frame)
@@ -91,20 +91,15 @@ def proves_decay(corners: list[Corner], matrix: StepMatrix, shortest: Fraction) 
 
 def _polynomials(ring: list[Corner], matrix: StepMatrix) -> Iterator[ExactArray]:
     """Yield the denominator, then edge by edge (e x f) d +- (f - e) x N p for all corners, as rows of whole numbers."""
-    parts = [*(entry for row in matrix.entries for entry in row), matrix.denominator]
-    length = max(len(part) for part in parts)
-    scale = lcm(*(coefficient.denominator for part in parts for coefficient in part))
-    filled = [[int(c * scale) for c in part] + [0] * (length - len(part)) for part in parts]
-    upper_left, upper_right, lower_left, lower_right, denominator = (np.array(part, dtype=object) for part in filled)
+    numerators, denominator = coefficients_of(matrix)
     yield denominator[np.newaxis]
-    common = lcm(*(coordinate.denominator for corner in ring for coordinate in corner))
-    whole = np.array([[int(coordinate * common) for coordinate in corner] for corner in ring], dtype=object)
-    points = whole[:-1]
-    image_x = points[:, :1] * upper_left + points[:, 1:] * upper_right  # (corners, powers of s)
-    image_y = points[:, :1] * lower_left + points[:, 1:] * lower_right
-    for start, end in pairwise(whole):
-        beside = (end[0] - start[0]) * image_y - (end[1] - start[1]) * image_x
-        room = (start[0] * end[1] - start[1] * end[0]) * denominator
+    whole, _ = whole_multiples([coordinate for corner in ring for coordinate in corner])
+    points = np.array(whole, object).reshape(-1, 2)
+    images = np.moveaxis(points[:-1] @ np.swapaxes(numerators, 1, 2), 0, -1)  # (corners, 2, powers of s)
+    for start, end in pairwise(points):
+        (x, y), edge = start, end - start
+        beside = edge[0] * images[:, 1] - edge[1] * images[:, 0]
+        room = (x * end[1] - y * end[0]) * denominator
         yield np.concatenate([room + beside, room - beside])
 
 
@@ -188,9 +183,7 @@ def _seems_invariant(corners: FloatArray, matrices: FloatArray) -> bool:
 
 
 def _rational(corners: FloatArray) -> list[Corner]:
-    """Return the corners rounded to rationals, each coordinate by its largest size, a power of two."""
-    largest = np.abs(corners).max(axis=1)
-    sizes = [Fraction(2) ** round(math.log2(size / largest[0])) for size in largest]
-    unit = np.array([float(size) for size in sizes]) * largest[0]
-    scaled = np.rint(corners / unit[:, np.newaxis] * DIGITS)
-    return [(Fraction(int(x), DIGITS) * sizes[0], Fraction(int(v), DIGITS) * sizes[1]) for x, v in scaled.T]
+    """Return the corners rounded to rationals, each coordinate by its largest size."""
+    relative = corners / np.abs(corners[0]).max()
+    units = powers_of_two(np.abs(relative).max(axis=1))
+    return [(x, v) for x, v in rounded(relative, units[:, np.newaxis]).T]
