@@ -66,8 +66,7 @@ def accurate_point(
     )
     if np.isinf(least):
         raise InputError(f"{method.name}: no feedback settles so fast if α and β are off by a share of {spread:g}")
-    axes = [np.linspace(first, last, SAMPLES) for first, last in zip(low, high, strict=True)]
-    sampled = errors(grid_of(axes).reshape(-1, len(axes))).min()
+    sampled = errors(grid_of(list(np.linspace(low, high, SAMPLES, axis=1))).reshape(-1, low.size)).min()
     if sampled < least * (1 - BETTER):
         raise NumericalError(f"{method.name}: the point chosen forces {float(least):.9g}, another {sampled:.9g}")
     return 2 * float(np.exp(best[0])), float(np.exp(best[-1])) ** 2

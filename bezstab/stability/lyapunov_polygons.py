@@ -22,7 +22,6 @@ from fractions import Fraction
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bezstab.methods import StepMatrix
 from bezstab.rationals import whole_multiples
@@ -31,9 +30,9 @@ from bezstab.stability.lyapunov_quadratics import coefficients_of, powers_of_two
 from bezstab.stability.positive_polynomials import ExactArray, positivity
 
 Corner = tuple[Fraction, Fraction]
-IntArray = NDArray[np.int_]
 
 RAYS = 720  # directions in the half plane: linear interpolation of V errs by 1e-6 there
+FORWARDS_AND_BACK = np.array([[1], [-1]])  # rows of the rays that the flow goes to next
 RESERVES = (0.5, 0.2, 0.1, 0.05, 0.025)  # shares of each step's decay; the first that leaves V finite is taken
 SWEEPS = 3000  # V grows by a fixed amount each turn if it grows for ever: some hundred turns
 MOST_GROWTH = 3.0  # of V: in the frame of the best ellipse the polygons that were found stay below one
@@ -69,11 +68,9 @@ def invariant_polygon(
             continue
         ball = back @ (circle * np.exp(-growth))
         for count in CORNERS:
-            chosen = ball[:, np.arange(count) * RAYS // count]
-            if _seems_invariant(chosen, matrices):
-                corners = _rational(chosen)
-                if proves_decay(corners, matrix, shortest):
-                    return corners
+            corners = _rational(ball[:, np.arange(count) * RAYS // count])
+            if proves_decay(corners, matrix, shortest):
+                return corners
     return None
 
 
@@ -117,18 +114,16 @@ def _decays(steps: FloatArray, matrices: FloatArray) -> FloatArray:
 
 def _growth_to_come(matrices: FloatArray, flow: FloatArray | None, circle: FloatArray) -> FloatArray | None:
     """Return V on the rays, by sweeps; None where it does not settle."""
-    images = np.concatenate([matrices, *_powers(matrices[0])]) @ circle
+    images = matrices @ circle
     gain = np.log(np.maximum(np.hypot(images[:, 0], images[:, 1]), np.finfo(np.float64).tiny))
     place = np.arctan2(images[:, 1], images[:, 0]) % np.pi * (RAYS / np.pi)
+    if flow is not None:
+        gain = np.concatenate([gain, _flow_to_next_ray(flow)])
+        place = np.concatenate([place, (np.arange(RAYS) + FORWARDS_AND_BACK) % RAYS])
     below = np.floor(place).astype(int)
     share = place - below
     below %= RAYS
     above = (below + 1) % RAYS
-    if flow is not None:
-        flow_gain, flow_below, flow_above = _flow_to_next_ray(flow)
-        gain = np.concatenate([gain, flow_gain])
-        below, above = np.concatenate([below, flow_below]), np.concatenate([above, flow_above])
-        share = np.concatenate([share, np.zeros_like(flow_gain)])
     growth: FloatArray = np.zeros(RAYS)
     for _ in range(SWEEPS):
         to_come = gain + (1 - share) * growth[below] + share * growth[above]
@@ -142,44 +137,18 @@ def _growth_to_come(matrices: FloatArray, flow: FloatArray | None, circle: Float
     return None
 
 
-def _flow_to_next_ray(flow: FloatArray) -> tuple[FloatArray, IntArray, IntArray]:
-    """Return the growth of the flow from each ray to the next one forwards or backwards, and the number of that ray.
+def _flow_to_next_ray(flow: FloatArray) -> FloatArray:
+    """Return the growth of the flow from each ray to the next one forwards, and to the next one backwards.
 
-    Each of shape (2, rays): forwards, backwards; a growth of -inf where the flow goes the other way. By the values half
-    way between the rays, which is of second order. Both numbers are the same: no interpolation.
+    Of shape (2, rays), -inf where the flow goes the other way. By the values half way between the rays, which is of
+    second order.
     """
-    numbers = np.arange(RAYS)
-    gains, targets = [], []
-    for direction in (1, -1):
-        middle = (numbers + direction / 2) * np.pi / RAYS
-        unit = np.stack([np.cos(middle), np.sin(middle)])
-        moved = flow @ unit
-        radial = (unit * moved).sum(axis=0)
-        turning = unit[0] * moved[1] - unit[1] * moved[0]
-        ways = direction * turning > 0
-        rate = np.divide(radial, np.abs(turning), out=np.full(RAYS, -np.inf), where=ways)
-        gains.append(rate * np.pi / RAYS)
-        targets.append((numbers + direction) % RAYS)
-    return np.array(gains), np.array(targets), np.array(targets)
-
-
-def _powers(matrix: FloatArray) -> list[FloatArray]:
-    """Return 2, 4, 8, ... steps of the shortest length at once, so that V settles in fewer sweeps."""
-    powers = []
-    for _ in range(6):  # 64 steps
-        matrix = matrix @ matrix
-        powers.append(matrix[np.newaxis])
-    return powers
-
-
-def _seems_invariant(corners: FloatArray, matrices: FloatArray) -> bool:
-    """Return whether the polygon is invariant under a sample of the steps, in float64: before it is proven."""
-    ends = np.concatenate([corners[:, 1:], -corners[:, :1]], axis=1)
-    span = corners[0] * ends[1] - corners[1] * ends[0]
-    edge = ends - corners
-    images = matrices @ corners  # (steps, 2, corners)
-    beside = edge[0, :, np.newaxis] * images[:, 1, np.newaxis] - edge[1, :, np.newaxis] * images[:, 0, np.newaxis]
-    return bool((span > 0).all() and (np.abs(beside) < span[:, np.newaxis]).all())
+    middle = (np.arange(RAYS) + FORWARDS_AND_BACK / 2) * np.pi / RAYS
+    x, v = np.cos(middle), np.sin(middle)
+    x_rate, v_rate = (row[0] * x + row[1] * v for row in flow)
+    radial = x * x_rate + v * v_rate
+    turning = FORWARDS_AND_BACK * (x * v_rate - v * x_rate)
+    return np.divide(radial, turning, out=np.full(turning.shape, -np.inf), where=turning > 0) * (np.pi / RAYS)
 
 
 def _rational(corners: FloatArray) -> list[Corner]:

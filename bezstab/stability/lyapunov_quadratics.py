@@ -88,7 +88,8 @@ def powers_of_two(sizes: FloatArray) -> ExactArray:
 def rounded(numbers: FloatArray, units: ExactArray) -> ExactArray:
     """Return numbers rounded to rationals, to DIGITS parts of their units; shape of both broadcast."""
     whole = np.rint(numbers / units.astype(float) * DIGITS)
-    return np.array([Fraction(int(each), DIGITS) for each in whole.flat]).reshape(whole.shape) * units
+    shares = np.array([Fraction(int(each), DIGITS) for each in whole.flat]).reshape(whole.shape)
+    return np.asarray(shares * units)
 
 
 def proves_decay(form: ExactArray, matrix: StepMatrix, shortest: Fraction) -> bool:
