@@ -148,7 +148,8 @@ def _flow_to_next_ray(flow: FloatArray) -> FloatArray:
     x_rate, v_rate = (row[0] * x + row[1] * v for row in flow)
     radial = x * x_rate + v * v_rate
     turning = FORWARDS_AND_BACK * (x * v_rate - v * x_rate)
-    return np.divide(radial, turning, out=np.full(turning.shape, -np.inf), where=turning > 0) * (np.pi / RAYS)
+    rate: FloatArray = np.divide(radial, turning, out=np.full(turning.shape, -np.inf), where=turning > 0)
+    return rate * (np.pi / RAYS)
 
 
 def _rational(corners: FloatArray) -> list[Corner]:
