@@ -3,7 +3,7 @@
 methods, levels, a window, an engine, a scene or a motion   →   MapQuestion   →   MapAnswer, by method
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -238,8 +238,8 @@ class MapAnswer:
 
     @property
     def choice_reason(self) -> str | None:
-        """Why there is no most accurate point on a motion; None where there is one."""
-        return self._choice_or_reason[1]
+        """Why there is no most accurate point on a motion; None where there is one, and without a motion."""
+        return self._choice_or_reason[1] if self.question.motion else None
 
     @property
     def best_error(self) -> float | None:
@@ -298,9 +298,12 @@ class MapAnswer:
         alpha_hat, beta_hat = (spaced(float(low), float(high), self.question.points) for low, high in ends)
         return alpha_hat, beta_hat
 
-    def dominant_poles(self) -> Iterator[ComplexArray]:
-        """Yield the dominant poles over both axes, a row (constant beta_hat) at a time; errors as `pole_map`."""
-        return chain.from_iterable(pole_map(self.method, *self.axes))
+    def dominant_poles(self, bar: Callable[[Iterable[ComplexArray]], Iterable[ComplexArray]] = iter) -> ComplexArray:
+        """Return the dominant poles over both axes, a row for each beta_hat; `bar` shows the progress.
+
+        Errors as `pole_map`.
+        """
+        return np.array(list(bar(chain.from_iterable(pole_map(self.method, *self.axes)))))
 
     def errors(self, z: ComplexArray) -> FloatArray:
         """Return the error that is forced over both axes, a share of the motion; nan where |z| is not below 1."""

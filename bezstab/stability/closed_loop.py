@@ -97,8 +97,7 @@ def largest_pole(pencil: Pencil, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> C
     for i, j in product(range(0, alphas.shape[0], rows), range(0, alphas.shape[1], columns)):
         tile = np.s_[i : i + rows, j : j + columns]
         height, width = alphas[tile].shape
-        found = np.empty(height * width, complex)
-        pencil.write_largest_poles(alphas[tile].ravel(), betas[tile].ravel(), (height, width), found)
+        found = pencil.largest_poles(alphas[tile].ravel(), betas[tile].ravel(), (height, width))
         dominant[tile] = found.reshape(height, width)
     return _without_rounding(dominant).reshape(alpha_hat.shape)
 

@@ -178,9 +178,8 @@ def _followed_factors(rows: Rows, p: FloatArray, q: FloatArray) -> tuple[FloatAr
 
 def _larger_if_largest(p: FloatArray, q: FloatArray, rest: Rows, settled: BoolArray) -> ComplexArray:
     """Return the larger root z of settled factors, Im >= 0; nan where the rest, descending, has a larger one."""
-    z = np.empty(p.size, complex)
     half = 0.5 * p
-    largest_quadratic_root(half, half * half - q, z)
+    z = largest_quadratic_root(half, half * half - q)
     size = np.sqrt(np.maximum(q, z.real * z.real))  # q of a pair, and z^2 of two real ones, is the larger
     z[~(settled & _all_within(rest, size))] = np.nan
     return z

@@ -11,10 +11,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from bezstab.methods import Method, lookup
-from bezstab.stability import QUALITY, FloatArray, pole_map, region, window
-from tests.bench.stable_mask import scan
+from bezstab.stability import QUALITY, FloatArray, pole_map, region, spectral_radius, window
 
 MAP_POINTS = (50, 100, 200, 500, 1000, 2000)  # per axis
+ON_THE_EDGE = 1e-9  # of |z_p|: a whole row where it is one, up to rounding, lies along the boundary
+HALVINGS = 40  # of the interval between two points of a row: to 1e-12 of it
 
 
 @dataclass(frozen=True)
@@ -66,16 +67,18 @@ def _map(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray) -> FloatAr
 
 
 def _boundary_errors(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray, z_abs: FloatArray) -> FloatArray:
-    """Return how far in alpha_hat the boundary interpolated along each row is from where it is."""
+    """Return how far in alpha_hat the boundary interpolated along each row is from where |z_p| is one, by bisection."""
     rows, k = np.nonzero((z_abs[:, 1:] < 1) != (z_abs[:, :-1] < 1))
+    crossed = np.maximum(abs(z_abs[rows, k] - 1), abs(z_abs[rows, k + 1] - 1)) > ON_THE_EDGE
+    rows, k = rows[crossed], k[crossed]
     before, after = z_abs[rows, k], z_abs[rows, k + 1]
-    read = alpha_hat[k] + (1 - before) / (after - before) * (alpha_hat[1] - alpha_hat[0])
-    true_rows, true = scan(method, beta_hat)
-    order = np.lexsort((true, true_rows))
-    read_in_row = np.bincount(rows, minlength=beta_hat.size)
-    true_in_row = np.bincount(true_rows, minlength=beta_hat.size)
-    alike = read_in_row == true_in_row  # else the grid has missed a crossing, or rounding on an edge has made one up
-    errors: FloatArray = np.abs(read[alike[rows]] - true[order][alike[true_rows[order]]])
+    low, high = alpha_hat[k], alpha_hat[k + 1]
+    read = low + (1 - before) / (after - before) * (high - low)
+    for _ in range(HALVINGS):
+        middle = (low + high) / 2
+        as_before = (spectral_radius(method, middle, beta_hat[rows]) < 1) == (before < 1)
+        low, high = np.where(as_before, middle, low), np.where(as_before, high, middle)
+    errors: FloatArray = np.abs(read - low)
     return errors
 
 

@@ -5,7 +5,19 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from bezstab.engines.velocity_engines import BOX2D, BULLET, CHIPMUNK, DRAKE_SAP, NEAR_RIGID, ODE, RAPIER
+from bezstab.engines.acceleration_engines import BRAX_SPRING
+from bezstab.engines.position_engines import XPBD
+from bezstab.engines.velocity_engines import (
+    BOX2D,
+    BULLET,
+    CHIPMUNK,
+    DRAKE_SAP,
+    JOLT_SPRING,
+    NEAR_RIGID,
+    ODE,
+    PHYSX_DRIVE,
+    RAPIER,
+)
 from bezstab.methods import lookup
 from bezstab.stability import poles
 
@@ -69,4 +81,24 @@ def test_sap_is_no_stiffer_than_near_rigid() -> None:
     assert (alpha_hat, beta_hat / alpha_hat) == (NEAR_RIGID / (1 + NEAR_RIGID), Fraction(1, 2))
     assert sorted(abs(poles(lookup("SYM"), float(alpha_hat), float(beta_hat)))) == pytest.approx(
         [0.0005, 0.49987], abs=1e-5
+    )
+
+
+def test_a_frequency_and_a_damping_ratio_are_a_stiffness_and_a_damping() -> None:
+    omega = 2 * math.pi * 3
+    by_frequency = JOLT_SPRING.point((Fraction(3), Fraction(1, 2)), Fraction(1, 100))
+    by_stiffness = PHYSX_DRIVE.point((Fraction(omega**2), Fraction(omega)), Fraction(1, 100))
+    assert tuple(map(float, by_frequency)) == pytest.approx(tuple(map(float, by_stiffness)), rel=1e-12)
+
+
+def test_a_compliance_is_the_inverse_of_a_stiffness() -> None:
+    assert XPBD.point((Fraction(1, 400), Fraction(3), Fraction(2)), Fraction(1, 100)) == PHYSX_DRIVE.point(
+        (Fraction(800), Fraction(6)), Fraction(1, 100)
+    )
+
+
+def test_brax_divides_by_the_mass() -> None:
+    stiff, damped = Fraction(2000), Fraction(30)
+    assert BRAX_SPRING.point((stiff, damped, Fraction(5)), Fraction(1, 100)) == BRAX_SPRING.point(
+        (stiff / 5, damped / 5), Fraction(1, 100)
     )
