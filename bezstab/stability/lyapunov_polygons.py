@@ -35,6 +35,7 @@ RAYS = 720  # directions in the half plane: linear interpolation of V errs by 1e
 FORWARDS_AND_BACK = np.array([[1], [-1]])  # rows of the rays that the flow goes to next
 RESERVES = (0.5, 0.2, 0.1, 0.05, 0.025)  # shares of each step's decay; the first that leaves V finite is taken
 SWEEPS = 3000  # V grows by a fixed amount each turn if it grows for ever: some hundred turns
+AT_ONCE = (2, 4, 8, 16, 32, 64)  # steps of the shortest length at once, so that V settles in fewer sweeps
 MOST_GROWTH = 3.0  # of V: in the frame of the best ellipse the polygons that were found stay below one
 CORNERS = (9, 18, 36, 72, 144, 360, 720)  # in the half plane, on rays: the fewest that do are the certificate
 
@@ -114,7 +115,8 @@ def _decays(steps: FloatArray, matrices: FloatArray) -> FloatArray:
 
 def _growth_to_come(matrices: FloatArray, flow: FloatArray | None, circle: FloatArray) -> FloatArray | None:
     """Return V on the rays, by sweeps; None where it does not settle."""
-    images = matrices @ circle
+    several = [np.linalg.matrix_power(matrices[0], count) for count in AT_ONCE]
+    images = np.concatenate([matrices, several]) @ circle
     gain = np.log(np.maximum(np.hypot(images[:, 0], images[:, 1]), np.finfo(np.float64).tiny))
     place = np.arctan2(images[:, 1], images[:, 0]) % np.pi * (RAYS / np.pi)
     if flow is not None:
