@@ -67,7 +67,7 @@ APPOINTED = {
     },
     "click": {path.relative_to(PACKAGE).as_posix() for path in (PACKAGE / "cli").glob("*.py")} | {"paper/command.py"},
     "mujoco": {"evidence/mujoco_models.py"},
-    "distributed": {"evidence/worker_pools.py"},
+    "distributed": {"evidence/chunks.py"},
     "numba": {"compiling.py"},
     "mpmath": {
         *("evidence/extremes.py", "evidence/root_digits.py"),

@@ -1,8 +1,9 @@
 """The question that was typed, and the sentences below its answers."""
 
 from collections.abc import Callable, Iterable, Sequence
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
+from bezstab import questions
 from bezstab.cli.command_group import NUMERICAL_TROUBLE
 from bezstab.cli.options import typed_options
 from bezstab.cli.output import for_reading, say, show_command, show_text, worked_out
@@ -11,11 +12,8 @@ from bezstab.errors import NumericalError
 from bezstab.methods import Method
 from bezstab.show import Row, motion_words, varying_words
 
-if TYPE_CHECKING:
-    from bezstab.questions import Answer, MapQuestion, Question
-
 Asked = TypeVar("Asked")
-OfScene = TypeVar("OfScene", "Question", "MapQuestion")
+OfScene = TypeVar("OfScene", "questions.Question", "questions.MapQuestion")
 
 
 def asked(kind: Callable[..., Asked], **typed: Any) -> Asked:
@@ -75,7 +73,7 @@ def show_sentences(sentences: Iterable[str | None]) -> None:
         show_text(f"\n{sentence}")
 
 
-def show_below(question: "Question", found: "Sequence[Answer]", *, motion: bool = True) -> None:
+def show_below(question: "questions.Question", found: "Sequence[questions.Answer]", *, motion: bool = True) -> None:
     """Print below the answers on which motion errors are told; say on standard error why they are not known.
 
     For people to read, it is also said what an engine did to its values, and what the conversion leaves out.
@@ -100,14 +98,12 @@ def say_what_is_left_out(engine: Engine, *, many: bool = False) -> None:
         say(f"{engine.name}: sweeps are its {engine.sweeping.word}; of them left out: {engine.sweeping.excludes}")
 
 
-def say_varying(answers: "Iterable[Answer]") -> None:
+def say_varying(answers: "Iterable[questions.Answer]") -> None:
     """Print a sentence about steps that vary, and the command of a run in which errors grow."""
-    from bezstab.questions import growing_run
-
     for answer in answers:
         if answer.varying:
             show_text("\n" + varying_words(answer.method.name, answer.varying))
-            if line := growing_run(answer):
+            if line := questions.growing_run(answer):
                 show_text("\nThis shows errors grow:\n")
                 show_command(line)
 

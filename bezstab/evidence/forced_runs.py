@@ -22,6 +22,7 @@ from bezstab.errors import InputError
 from bezstab.mechanism import (
     Mechanism,
     Motion,
+    Observation,
     along_normals,
     constraint_motion,
     motion,
@@ -166,9 +167,16 @@ def forced_motions(
     """
     found = []
     for point, predicted in zip(points, predicted_errors(mechanism, method, h, points, duration), strict=True):
-        measured, failure = _measured(mechanism, method, h, point, duration)
-        found.append(ForcedMotion(method, h, *point, predicted, measured, failure))
+        gains = feedback_gains(*point, h)
+        run = simulate(mechanism, method, h, duration, gains)
+        measured = math.nan if run.failure else settled_error(observe(mechanism, run.t, run.q, run.v, *gains), run.t)
+        found.append(ForcedMotion(method, h, *point, predicted, measured, run.failure))
     return found
+
+
+def settled_error(seen: Observation, t: FloatArray) -> float:
+    """Return the largest |c| (SI) in the later half of a run with these times (s), where the start has died away."""
+    return float(seen.largest_c[t >= COMPARED * t[-1]].max())
 
 
 def predicted_errors(
@@ -229,15 +237,3 @@ def _rising(x: FloatArray) -> FloatArray:
     """
     inside = np.clip(x, 0.002, 0.998)  # from there on it is 0 and 1 to rounding
     return 1 / (1 + np.exp(1 / inside - 1 / (1 - inside)))
-
-
-def _measured(
-    mechanism: Mechanism, method: Method, h: float, point: tuple[float, float], duration: float
-) -> tuple[float, str | None]:
-    """Return the largest |c| in the later half of a run, or nan and why it broke down."""
-    gains = feedback_gains(*point, h)
-    run = simulate(mechanism, method, h, duration, gains)
-    if run.failure:
-        return np.nan, run.failure
-    seen = observe(mechanism, run.t, run.q, run.v, *gains)
-    return float(seen.largest_c[run.t >= COMPARED * duration].max()), None

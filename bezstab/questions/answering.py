@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Literal, cast
+from typing import TYPE_CHECKING, Literal, cast
 
 from bezstab.engines import Curve, Engine, Point
 from bezstab.errors import InputError, NumericalError
@@ -26,7 +26,6 @@ from bezstab.stability import (
     FeedbackCost,
     Modulus,
     VaryingSteps,
-    choose,
     choose_at_step,
     describe_point,
     feedback_cost,
@@ -203,8 +202,8 @@ class Answer(Choice):
         """What the same goal chooses for one constraint alone; None if that is this choice."""
         if self.question.swept is None or self.role == "given":
             return None
-        found = _choice_alone(self.question, self.method, cast(Goal, self.goal), self.question.settle, margins=False)
-        alone = _answer(self.question, self.role, found)
+        goal, settle = cast(Goal, self.goal), self.question.settle
+        alone = _chosen_alone(self.question, self.role, self.method, goal, settle, margins=False)
         return None if alone.point == self.point else alone
 
     @cached_property
@@ -239,7 +238,7 @@ class Answer(Choice):
         InputError where nothing is stable or the engine cannot express it, NumericalError where it cannot be found.
         """
         goal = usual_goal(self.question.engine, self.question.drive)
-        found = _answer(self.question, "instead", _choice(self.question, self.method, goal))
+        found = _chosen(self.question, "instead", self.method, goal)
         _ = found.setting
         return found
 
@@ -278,10 +277,9 @@ class Answer(Choice):
     def _alternative(self, goal: Goal, settle: Fraction | None = None) -> "Answer | None":
         """Return another choice; None if there is none or it cannot be found: this answer does not need it."""
         try:
-            found = _choice(self.question, self.method, goal, settle, margins=False)
+            return _chosen(self.question, "chosen", self.method, goal, settle, margins=False)
         except (InputError, NumericalError):
             return None
-        return _answer(self.question, "chosen", found)
 
 
 def answers(question: Question, *, margins: bool = True) -> Iterator[Answer]:
@@ -292,8 +290,8 @@ def answers(question: Question, *, margins: bool = True) -> Iterator[Answer]:
     """
     for method in question.methods:
         if question.goal:
-            found = _choice(question, method, question.goal, question.settle, margins=margins)
-            yield _expressible(_answer(question, "chosen", found))
+            found = _chosen(question, "chosen", method, question.goal, question.settle, margins=margins)
+            yield _expressible(found)
             continue
         for label, point in (("as given", question.given.point), *question.given.also):
             yield _answer(question, "given", describe_point(method, label, *point, question.spread, margins), point)
@@ -316,11 +314,11 @@ def _answer(question: Question, role: Role, choice: Choice, point: Point | None 
     return Answer(question=question, role=role, point=exactly, **vars(choice))
 
 
-def _choice(
-    question: Question, method: Method, goal: Goal, settle: Fraction | None = None, *, margins: bool = True
-) -> Choice:
+def _chosen(
+    question: Question, role: Role, method: Method, goal: Goal, settle: Fraction | None = None, *, margins: bool = True
+) -> Answer:
     """Return the choice of a goal; if an engine sweeps over constraints, at most the strongest that they allow."""
-    found = _choice_alone(question, method, goal, settle, margins=margins)
+    found = _chosen_alone(question, role, method, goal, settle, margins=margins)
     swept = question.swept
     if swept is None or not (swept.engine.parameters and _curve(question, goal)):
         return found
@@ -330,33 +328,33 @@ def _choice(
         raise InputError(f"{swept.engine.name}: {words}")
     if found.beta_hat <= strongest[1]:
         return found
-    return describe_point(method, goal, *strongest, question.spread, margins)
+    return _answer(question, role, describe_point(method, goal, *strongest, question.spread, margins))
 
 
-def _choice_alone(
-    question: Question, method: Method, goal: Goal, settle: Fraction | None = None, *, margins: bool = True
-) -> Choice:
+def _chosen_alone(
+    question: Question, role: Role, method: Method, goal: Goal, settle: Fraction | None, *, margins: bool
+) -> Answer:
     """Return the choice of a goal for one constraint; if the question has a goal, for all steps up to h_max."""
-    motion = question.motion
-    along = _curve(question, goal)
     longest = question.h_max if question.goal else None
     modulus: Modulus | None = None
     if question.turning and question.h:
         from bezstab.evidence import moving_modulus
 
         modulus = moving_modulus(method, question.turning, float(longest or question.h))
-    of_both: dict[str, Any] = {
-        "spread": question.spread,
-        "equal": question.equal,
-        "modulus": modulus,
-        "along": along,
-        "omega_h": motion.omega_h_max,
-        "margins": margins,
-    }
-    if question.h is None:
-        return choose(method, goal, **of_both)
-    h_max = longest if goal in UP_TO_LONGEST else None
-    return choose_at_step(method, goal, h=question.h, h_max=h_max, settle=settle, **of_both)
+    choice = choose_at_step(
+        method,
+        goal,
+        h=question.h,
+        h_max=longest if goal in UP_TO_LONGEST else None,
+        settle=settle,
+        spread=question.spread,
+        equal=question.equal,
+        modulus=modulus,
+        along=_curve(question, goal),
+        omega_h=question.motion.omega_h_max,
+        margins=margins,
+    )
+    return _answer(question, role, choice)
 
 
 def _curve(question: Question, goal: Goal) -> Curve | None:

@@ -9,7 +9,7 @@ from functools import cached_property
 
 from bezstab.engines import DRIVE_METHODS, Applied, Drive, Engine, Point
 from bezstab.errors import InputError
-from bezstab.goals import GOALS, SETTLING, UP_TO_LONGEST, Goal
+from bezstab.goals import SETTLING, UP_TO_LONGEST, Goal
 from bezstab.mechanism import Scene, TurningNormals
 from bezstab.methods import Method, check_one_step, lookup
 from bezstab.questions.chains import SweptConstraints, check_sweeps, constraints_of, constraints_of_chain
@@ -107,11 +107,7 @@ class Question:
             object.__setattr__(self, "h", self.h_max)
 
     def _check_goal(self, goal: Goal) -> None:
-        """Raise InputError for arguments that do not go with the goal, and for a spread that is no share."""
-        if goal not in GOALS:
-            raise InputError(f"goal {goal!r}: expected {', '.join(GOALS)}")
-        if not 0 <= self.spread < 1:
-            raise InputError(f"--spread {self.spread:g}: expected a share from 0 to 1")
+        """Raise InputError for arguments that do not go with the goal."""
         if self.settle is None and goal == "gentle":
             raise InputError("--goal gentle needs --settle: the time in s in which c falls a thousandfold")
         if self.settle is not None and goal not in SETTLING:

@@ -238,8 +238,8 @@ class MapAnswer:
 
     @property
     def choice_reason(self) -> str | None:
-        """Why there is no most accurate point on a motion; None where there is one."""
-        return self._choice_or_reason[1]
+        """Why there is no most accurate point on a motion; None where there is one, and without a motion."""
+        return self._choice_or_reason[1] if self.question.motion else None
 
     @property
     def best_error(self) -> float | None:

@@ -927,12 +927,13 @@ MEASUREMENTS = RowKind(
             "Modulus predicted by the first-order law of the motion",
             "|z| by the law",
             ".6f",
-            path="law_abs",
+            path="moving.z_abs_moving",
         ),
         text(
             "law_verdict",
             "Verdict predicted by the first-order law of the motion",
             values_of="evidence.MovingVerdict",
+            path="moving.verdict",
         ),
         number(
             "floquet_z_abs",
