@@ -134,9 +134,3 @@ def _ends_with_its_acceleration(scheme: SecondOrder) -> bool:
     """Return whether the acceleration that is stored is the one at the state with which the step ends."""
     at_end = ((ONE, Quantity(POSITION, 1)),), ((ONE, Quantity(VELOCITY, 1)),)
     return Evaluation(Quantity(ACCELERATION, 1), *at_end) in scheme.equations
-
-
-def polynomial_determinant(rows: list[list[StepPolynomial]]) -> StepPolynomial:
-    """Return the determinant of a matrix of polynomials in s, exact, coefficients ascending."""
-    in_ring = [[RING.from_dict({(k, 0, 0): c for k, c in enumerate(entry)}) for entry in row] for row in rows]
-    return _ascending(determinant(in_ring))
