@@ -42,7 +42,7 @@ INTEGRATORS: tuple[Integrator, ...] = get_args(Integrator)
 """In the order of MuJoCo's own numbers."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Constraint:
     """One constraint's solref and solimp (d0, dmax, width in m or rad), defaults of classes and mixtures resolved.
 
