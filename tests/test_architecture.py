@@ -44,7 +44,7 @@ FOUNDATIONS = (
 STRANGERS = {
     "methods": {"engines"},
     "mechanism": {"engines", "stability"},
-    "paper": {"engines", "questions"},
+    "paper": {"engines"},
     "api": {"show", "cli", "paper"},
 }
 """The rooms before a room that it does not import from all the same."""

@@ -14,7 +14,7 @@ from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING, Literal, cast
 
-from bezstab.engines import Curve, Engine, Point
+from bezstab.engines import DRIVE_METHODS, Curve, Engine, Point
 from bezstab.errors import InputError, NumericalError
 from bezstab.goals import UP_TO_LONGEST, Goal
 from bezstab.methods import Method
@@ -56,8 +56,10 @@ class Gains:
 
     A limit is infinite where there is none, None where lowering that gain alone does not help. The largest kp goes with
     this kd, the largest kd with this kp. `used_up` is the gain at its limit, or nearest to it; None without limits.
+    `applied` is what the method is called as a way of applying a drive, None if it is none.
     """
 
+    applied: str | None
     kp: float
     kd: float
     kp_max: float | None
@@ -224,6 +226,7 @@ class Answer(Choice):
             kp, kd = float(drive.kp), float(drive.kd)
         kp_of_one, kd_of_one = drive.gains(1.0, 1.0, float(h))
         return Gains(
+            applied=DRIVE_METHODS.get(self.method.name),
             kp=kp,
             kd=kd,
             kp_max=None if limits.beta_hat is None else limits.beta_hat * kp_of_one,
