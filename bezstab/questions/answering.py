@@ -12,8 +12,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
-from typing import TYPE_CHECKING, Literal, cast
+from typing import Literal, cast
 
+from bezstab import evidence
 from bezstab.engines import Curve, Engine, Point
 from bezstab.errors import InputError, NumericalError
 from bezstab.goals import UP_TO_LONGEST, Goal
@@ -35,9 +36,6 @@ from bezstab.stability import (
     varying_steps,
 )
 from bezstab.units import alpha_and_beta
-
-if TYPE_CHECKING:
-    from bezstab.evidence import MovingPole
 
 CheckedRole = Literal["given", "instead"]
 Role = Literal[CheckedRole, "chosen"]
@@ -124,14 +122,12 @@ class Answer(Choice):
         return None if self.margins is None or self.h is None else self.margins.h * self.h
 
     @cached_property
-    def moving(self) -> "MovingPole | None":
+    def moving(self) -> "evidence.MovingPole | None":
         """How the motion of the scene changes the poles."""
-        if self.question.turning is None or self.question.h is None:
+        if self.question.turning is None or self.h is None:
             return None
-        from bezstab.evidence import moving_poles
-
-        turning, h = self.question.turning, float(self.question.h)
-        (pole,) = moving_poles(self.method, turning, h, self.alpha_hat, self.beta_hat)
+        turning = self.question.turning
+        (pole,) = evidence.moving_poles(self.method, turning, self.h, self.alpha_hat, self.beta_hat)
         return pole
 
     @cached_property
@@ -338,9 +334,7 @@ def _chosen_alone(
     longest = question.h_max if question.goal else None
     modulus: Modulus | None = None
     if question.turning and question.h:
-        from bezstab.evidence import moving_modulus
-
-        modulus = moving_modulus(method, question.turning, float(longest or question.h))
+        modulus = evidence.moving_modulus(method, question.turning, float(longest or question.h))
     choice = choose_at_step(
         method,
         goal,

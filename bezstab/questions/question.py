@@ -205,18 +205,17 @@ def methods_for(methods: tuple[Method, ...], engine: Engine | None, drive: Drive
 
     InputError where there are none, and for another method than its own with an engine whose steps are of one alone.
     """
-    if not methods and engine and engine.method is None:
+    if engine and not (methods or engine.method):
         raise InputError(f"{engine.name} has no integrator of its own: name yours with --method")
-    if not methods and engine and engine.method:
-        return (lookup(engine.method),)
-    if not methods and drive:
-        return tuple(map(lookup, DRIVE_METHODS))
+    own = engine.method if engine else None
+    if not methods:
+        names = [own] if own else DRIVE_METHODS if drive else []
+        methods = tuple(map(lookup, names))
     if not methods:
         raise InputError(WHICH_METHOD)
-    if engine and engine.level != "acceleration" and [method.name for method in methods] != [engine.method]:
+    if engine and engine.level != "acceleration" and [method.name for method in methods] != [own]:
         raise InputError(
-            f"{engine.name} works at {engine.level} level: its steps are those of {engine.method}, only with --method "
-            f"{engine.method}"
+            f"{engine.name} works at {engine.level} level: its steps are those of {own}, only with --method {own}"
         )
     return methods
 
