@@ -8,6 +8,7 @@ for, and then kept:
                             └── faster, slower       what faster decay costs, and slower decay gains
 """
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from fractions import Fraction
@@ -30,7 +31,7 @@ from bezstab.stability import (
     choose_at_step,
     describe_point,
     feedback_cost,
-    gain_limits,
+    gain_factors,
     largest_stable_step,
     stable_up_to,
     varying_steps,
@@ -214,17 +215,17 @@ class Answer(Choice):
         drive, h = self.question.drive, self.question.h
         if drive is None or h is None:
             return None
-        limits = gain_limits(self)
-        kp, kd = drive.gains(self.alpha_hat, self.beta_hat, float(h))
-        if self.role == "given":
-            kp, kd = float(drive.kp), float(drive.kd)
-        kp_of_one, kd_of_one = drive.gains(1.0, 1.0, float(h))
+        kp, kd = (drive.kp, drive.kd) if self.role == "given" else drive.gains(self.alpha_hat, self.beta_hat, float(h))
+        kd_factor, kp_factor = gain_factors(self)
+        factors: dict[Gain, float | None] = {"kd": kd_factor, "kp": kp_factor}
+        # the distance is the ratio of the gain and its limit, whichever is larger
+        ratios = {gain: max(each, 1 / each) for gain, each in factors.items() if each and math.isfinite(each)}
         return Gains(
-            kp=kp,
-            kd=kd,
-            kp_max=None if limits.beta_hat is None else limits.beta_hat * kp_of_one,
-            kd_max=None if limits.alpha_hat is None else limits.alpha_hat * kd_of_one,
-            used_up=None if limits.nearest is None else "kd" if limits.nearest == "alpha_hat" else "kp",
+            kp=float(kp),
+            kd=float(kd),
+            kp_max=None if kp_factor is None else kp_factor * float(kp),
+            kd_max=None if kd_factor is None else kd_factor * float(kd),
+            used_up=next(iter(sorted(ratios, key=lambda gain: ratios[gain])), None),
         )
 
     @cached_property

@@ -25,7 +25,7 @@ from bezstab.stability.forced_errors import (
     forced_response,
     turning_response,
 )
-from bezstab.stability.gain_margins import GainLimits, gain_limits
+from bezstab.stability.gain_margins import gain_factors
 from bezstab.stability.grid_maps import QUALITY, pole_map
 from bezstab.stability.kick_responses import kick_response
 from bezstab.stability.margins import Margins, largest_stable_step, stability_margins, stable_up_to
