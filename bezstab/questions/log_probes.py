@@ -24,15 +24,10 @@ from bezstab.evidence import (
     time_column,
 )
 from bezstab.methods import REGISTRY, Method, lookup
-from bezstab.questions.points import meant_in_seconds
 from bezstab.stability import FloatArray
 
 SAME_STEP = 1e-3
 """The times between rows of two runs may differ by this share, as times in logs are rounded."""
-
-
-USUAL = "SYM"
-"""The method of most engines."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -51,11 +46,6 @@ class PoleQuestion:
 
     def __post_init__(self) -> None:
         _ = self.turned
-
-    @property
-    def meant_in_seconds(self) -> bool:
-        """Whether the point looks like alpha and beta in 1/s: for the methods, without any for what engines have."""
-        return meant_in_seconds(self.methods or (lookup(USUAL),), self.point)
 
     @property
     def row_step(self) -> float | None:

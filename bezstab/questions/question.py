@@ -14,7 +14,7 @@ from bezstab.mechanism import Scene, TurningNormals
 from bezstab.methods import Method, check_one_step, lookup
 from bezstab.questions.chains import SweptConstraints, check_sweeps, constraints_of, constraints_of_chain
 from bezstab.questions.motions import ReferenceMotion, check_speed, motion_of, turn_too_far, turning_of
-from bezstab.questions.points import engine_holds, meant_in_seconds
+from bezstab.questions.points import engine_holds
 from bezstab.units import check_step
 
 WHICH_METHOD = (
@@ -141,11 +141,6 @@ class Question:
             return Applied(self.drive.point(self.h), None)
         assert self.point
         return Applied(self.point, None)
-
-    @property
-    def meant_in_seconds(self) -> bool:
-        """Whether the point looks like alpha and beta in 1/s."""
-        return meant_in_seconds(self.methods, self.point)
 
     @cached_property
     def steps(self) -> StepRange | None:
