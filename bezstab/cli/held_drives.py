@@ -44,6 +44,6 @@ def show_held(question: "questions.HeldQuestion") -> "list[questions.HeldAnswer]
     """Print and return the answer for each way of applying a held or late drive; print what is not judged."""
     found = list(questions.held_answers(question))
     heading = show.timing_words(question.timing, float(question.h))
-    show_rows(show.HELD, map(show.held_row, found), heading=heading)
+    show_rows(show.HELD, map(show.HELD.row, found), heading=heading)
     show_text(f"\n{show.LATE_COMMANDS}")
     return found

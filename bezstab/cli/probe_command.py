@@ -12,7 +12,7 @@ from bezstab.cli.asking import asked, show_sentences
 from bezstab.cli.options import NUMBER, changed, command, flag, option
 from bezstab.cli.output import for_reading, show_rows
 from bezstab.errors import InputError
-from bezstab.show import LIKENESS, PROBED, cells, like_point_row, likeness_sentence, nearest_rows
+from bezstab.show import LIKE_POINT, LIKENESS, PROBED, cells, likeness_sentence, nearest, row_in_seconds
 
 
 @command(
@@ -54,11 +54,18 @@ def probe(**typed: Any) -> None:
     """
     found = list(questions.log_answers(asked(_question, **typed)))
     fits = [PROBED.row(answer.found, column=answer.column) for answer in found]
-    likenesses = [{"column": answer.column, **cells(LIKENESS, one)} for answer in found for one in answer.likenesses]
-    points = [like_point_row(answer.column, one, answer.question.h) for answer in found for one in answer.points]
+    shown = nearest if for_reading() else list
+    likenesses = [
+        {"column": answer.column, **cells(LIKENESS, one)} for answer in found for one in shown(answer.likenesses)
+    ]
+    points = [
+        {"column": answer.column, **row_in_seconds(LIKE_POINT, one, answer.question.h)}
+        for answer in found
+        for one in answer.points
+    ]
     if for_reading():
         show_rows(PROBED, fits)
-        for rows in filter(None, (nearest_rows(likenesses), points)):
+        for rows in filter(None, (likenesses, points)):
             click.echo()
             show_rows(PROBED, rows, ("reason",))
         for answer in found:
@@ -70,10 +77,10 @@ def probe(**typed: Any) -> None:
     questions.check_told(found)
 
 
-def _question(log: Path, minus: Path | None, h: Fraction | None, **typed: Any) -> "questions.LogQuestion":
+def _question(log: Path, minus: Path | None, h: Fraction | None, **typed: Any) -> "questions.PoleQuestion":
     """Return the question about logs in files."""
     kicked, other = _read(log), None if minus is None else _read(minus)
-    return questions.LogQuestion(log=kicked, minus=other, h=None if h is None else float(h), **typed)
+    return questions.PoleQuestion(log=kicked, minus=other, h=None if h is None else float(h), **typed)
 
 
 def _read(path: Path) -> "evidence.Log":

@@ -98,11 +98,9 @@ def _write_map(question: "questions.MapQuestion", method: Method, files: Files) 
 
 def _write_boundaries(question: "questions.MapQuestion", files: Files) -> list[show.Row]:
     """Write the boundaries of all methods into one table and one figure; return a row for each."""
-    regions = [answer.region for answer in question.compared]
-    shown = (question.alpha_range, question.beta_range, question.seconds, question.alpha_beta)
     files.write(
         files.path("compare", *(method.name for method in question.methods)),
-        partial(show.comparison_figure, regions, *shown),
-        partial(show.boundary_arrays, regions, question.seconds),
+        partial(show.comparison_figure, question),
+        lambda: show.boundary_arrays([answer.region for answer in question.compared], question.seconds),
     )
     return [show.region_row(answer) for answer in question.compared]

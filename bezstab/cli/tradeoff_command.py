@@ -96,7 +96,7 @@ def _show_fronts(files: Files, levels: Sequence[Fraction], **typed: Any) -> None
     files.check_output()
     fronts = list(progress(question.fronts(), "fronts", len(question.methods)))
     h = None if question.h is None else float(question.h)
-    rows = [show.front_row(point, h) for front in fronts for point in front]
+    rows = [show.row_in_seconds(show.FRONTS.fields, point, h) for front in fronts for point in front]
     files.write(
         files.path("tradeoff", "predicted"),
         lambda: show.error_front_figure([front for front in fronts if front]),

@@ -129,11 +129,3 @@ def _ends_with_its_acceleration(scheme: SecondOrder) -> bool:
     """Return whether the acceleration that is stored is the one at the state with which the step ends."""
     at_end = ((ONE, Quantity(POSITION, 1)),), ((ONE, Quantity(VELOCITY, 1)),)
     return Evaluation(Quantity(ACCELERATION, 1), *at_end) in scheme.equations
-
-
-def polynomial_determinant(rows: list[list[StepPolynomial]]) -> StepPolynomial:
-    """Return the determinant of a matrix of polynomials in s, exact, coefficients ascending."""
-    in_ring = [
-        [RING.from_dict({(k, 0, 0): in_field(c) for k, c in enumerate(entry) if c}) for entry in row] for row in rows
-    ]
-    return _ascending({k: as_fraction(c) for (k, _, _), c in determinant(in_ring).terms()}, 0)

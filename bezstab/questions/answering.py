@@ -16,7 +16,7 @@ from functools import cached_property
 from typing import Literal, cast
 
 from bezstab import evidence
-from bezstab.engines import Curve, Engine, Point
+from bezstab.engines import DRIVE_METHODS, Curve, Engine, Point
 from bezstab.errors import InputError, NumericalError
 from bezstab.goals import UP_TO_LONGEST, Goal
 from bezstab.methods import Method
@@ -55,8 +55,10 @@ class Gains:
 
     A limit is infinite where there is none, None where lowering that gain alone does not help. The largest kp goes with
     this kd, the largest kd with this kp. `used_up` is the gain at its limit, or nearest to it; None without limits.
+    `applied` is what the method is called as a way of applying a drive, None if it is none.
     """
 
+    applied: str | None
     kp: float
     kd: float
     kp_max: float | None
@@ -222,6 +224,7 @@ class Answer(Choice):
         ratios = {gain: max(each, 1 / each) for gain, each in factors.items() if each and math.isfinite(each)}
         nearest_first = sorted(ratios, key=lambda gain: ratios[gain])
         return Gains(
+            applied=DRIVE_METHODS.get(self.method.name),
             kp=float(kp),
             kd=float(kd),
             kp_max=None if kp_factor is None else kp_factor * float(kp),

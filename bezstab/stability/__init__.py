@@ -23,7 +23,6 @@ from bezstab.stability.forced_errors import (
     combined_error,
     forced_error,
     forced_response,
-    turning_response,
 )
 from bezstab.stability.gain_margins import gain_factors
 from bezstab.stability.grid_maps import QUALITY, pole_map
