@@ -42,22 +42,20 @@ MOST_SWEPT = 10**6
 
 
 @dataclass(frozen=True, kw_only=True)
-class TradeQuestion:
+class TradeQuestion(motions.SceneQuestion):
     """What errors do methods make over a `duration` (s) at each of some `steps` (s), and what does that cost?
 
-    The scene moves `speed` times as fast as given there. The feedback is at `numbers` at every step, alpha_hat and
-    beta_hat, or alpha and beta in 1/s with `physical`. Without numbers each step has its own point: that of the goal
-    accurate, for a motion of rate `omega` (1/s), else for the scene's own. A projection of so many `iterations` at most
-    may `stabilise` runs in place of feedback. Costs are counted `against` evaluations or time; against projection each
-    run is made with feedback and with projection. Each is timed `repeats` times. InputError for what does not go
-    together, and for a method whose states cannot be projected.
+    The feedback is at `numbers` at every step, alpha_hat and beta_hat, or alpha and beta in 1/s with `physical`.
+    Without numbers each step has its own point: that of the goal accurate, for a motion of rate `omega` (1/s), else for
+    the scene's own. A projection of so many `iterations` at most may `stabilise` runs in place of feedback. Costs are
+    counted `against` evaluations or time; against projection each run is made with feedback and with projection. Each
+    is timed `repeats` times. InputError for what does not go together, and for a method whose states cannot be
+    projected.
     """
 
-    scene: str | Scene
     methods: Sequence[Method]
     steps: Sequence[Fraction] = ()
     duration: Fraction
-    speed: Fraction = Fraction(1)
     numbers: Point | None = None
     physical: bool = False
     omega: Fraction | None = None
@@ -105,11 +103,6 @@ class TradeQuestion:
         shortest, longest = exact(self.step_sizes[0]), exact(self.step_sizes[-1])
         motion = motions.motion_of(self.omega, self.scene, self.speed, shortest, longest, duration=self.duration)
         return motion.omega_h / shortest
-
-    @cached_property
-    def moving(self) -> Scene:
-        """The scene, as fast as it is asked about."""
-        return motions.scene_at_speed(self.scene, self.speed)
 
     @cached_property
     def reference(self) -> ReferenceMotion:
