@@ -25,12 +25,11 @@ from bezstab.evidence import (
     SweptRuns,
     projection_sentences,
     reference_motion,
-    sweep_compiled,
     sweep_sentences,
     swept_runs,
 )
-from bezstab.mechanism import Scene
-from bezstab.methods import Method
+from bezstab.mechanism import Scene, runs_compiled
+from bezstab.methods import Method, evaluations
 from bezstab.questions import motions
 from bezstab.questions.points import meant_in_seconds
 from bezstab.rationals import exact
@@ -109,12 +108,23 @@ class TradeQuestion(motions.SceneQuestion):
         """The motion that runs are compared with."""
         return reference_motion(self.moving, self.step_sizes[0], float(self.duration))
 
+    @property
+    def compiled(self) -> bool:
+        """Whether runs are compiled: all or none, so that their times can be compared.
+
+        By default none are where one method's runs together are not. InputError as `runs_compiled`.
+        """
+        user_steps = self.repeats * sum(float(self.duration) / h for h in self.step_sizes)
+        return all(
+            runs_compiled(round(user_steps / float(method.step_multiple)) * evaluations(method))
+            for method in self.methods
+        )
+
     @cached_property
     def sweeps(self) -> list[Sweep]:
         """The runs to make: of each method with each treatment."""
         rate, of_all = self.rate, (self.moving, self.step_sizes, float(self.duration))
-        reference = self.reference
-        compiled = sweep_compiled(self.methods, self.step_sizes, float(self.duration), self.repeats)
+        reference, compiled = self.reference, self.compiled
         return [
             Sweep(method, *of_all, point, self.physical, self.repeats, reference, rate, compiled, after)
             for method in dict.fromkeys(self.methods)
