@@ -113,10 +113,8 @@ def _critical_damping(strongest: float) -> Curve:
 
 def _apply_genesis(h: Fraction, time_constant: Fraction) -> Applied:
     least = LEAST_TIME_CONSTANT * h
-    if time_constant >= least:
-        return Applied(_read_time_constant(h, time_constant))
     note = f"constraint_timeconst {float(time_constant):g} s is raised to {LEAST_TIME_CONSTANT}h = {float(least):g} s"
-    return Applied(_read_time_constant(h, least), (note,))
+    return Applied(_read_time_constant(h, max(time_constant, least)), (note,) if time_constant < least else ())
 
 
 def _write_genesis(point: Point, h: Fraction) -> tuple[str, ...]:

@@ -163,11 +163,9 @@ def _read_box2d(h: Fraction, hertz: Fraction, damping_ratio: Fraction) -> Point:
 
 
 def _apply_box2d(h: Fraction, hertz: Fraction, damping_ratio: Fraction) -> Applied:
-    if hertz * h <= MOST_TURNS:
-        return Applied(_read_box2d(h, hertz, damping_ratio))
     fastest = MOST_TURNS / h
     note = f"hertz {float(hertz):g} is clamped to {float(MOST_TURNS):g}/h = {float(fastest):g}"
-    return Applied(_read_box2d(h, fastest, damping_ratio), (note,))
+    return Applied(_read_box2d(h, min(hertz, fastest), damping_ratio), (note,) if hertz > fastest else ())
 
 
 def _write_box2d(point: Point, h: Fraction) -> tuple[str, ...]:
@@ -321,22 +319,20 @@ def _sap_point(h: Fraction, q: Fraction, relaxation_time: Fraction) -> Point:
     return alpha_hat, alpha_hat * h / (h + relaxation_time)
 
 
-def _sap_q(h: Fraction, stiffness: Fraction, relaxation_time: Fraction, inverse_mass: Fraction) -> Fraction:
-    return inverse_mass * h * (h + relaxation_time) * stiffness
-
-
-def _read_sap(h: Fraction, *typed: Fraction) -> Point:
+def _sap_q_and_time(h: Fraction, *typed: Fraction) -> tuple[Fraction, Fraction]:
+    """Return q and tau (s) of k, tau and w as they are typed; near rigid without them."""
     if not typed:
-        return _sap_point(h, NEAR_RIGID, h)
+        return NEAR_RIGID, h
     if len(typed) < 3:
         raise InputError("--engine drake-sap: k, tau and w go together; none of them for a ball or a weld")
-    return _sap_point(h, _sap_q(h, *typed), typed[1])
+    stiffness, relaxation_time, inverse_mass = typed
+    return inverse_mass * h * (h + relaxation_time) * stiffness, relaxation_time
 
 
 def _apply_sap(h: Fraction, *typed: Fraction) -> Applied:
-    as_typed = _read_sap(h, *typed)
-    if not typed or _sap_q(h, *typed) <= NEAR_RIGID:
-        return Applied(as_typed)
+    q, relaxation_time = _sap_q_and_time(h, *typed)
+    if q <= NEAR_RIGID:
+        return Applied(_sap_point(h, q, relaxation_time))
     note = f"near rigid: k is lowered until w/R = {float(NEAR_RIGID):.0f}, and tau is h"
     return Applied(_sap_point(h, NEAR_RIGID, h), (note,))
 
@@ -359,7 +355,7 @@ DRAKE_SAP = Engine(
     above_zero=("k", "w"),
     from_zero=("tau",),
     units=("N/m", "s", "1/kg"),
-    read=_read_sap,
+    read=lambda h, *typed: _sap_point(h, *_sap_q_and_time(h, *typed)),
     write=_write_sap,
     reaches=f"0 < β̂ <= α̂ <= {float(NEAR_RIGID / (1 + NEAR_RIGID)):.6g}",
     paste="k = inf",

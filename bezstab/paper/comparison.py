@@ -14,7 +14,7 @@ from bezstab.paper.experiments import DURATION, STEP, experiment, largest, pole
 from bezstab.paper.printed import COMPARED, TABLE_5, PrintedPole
 from bezstab.paper.reports import Claims, Outcome, Progress, Report, captioned_table
 from bezstab.rationals import bisected_integers, exact
-from bezstab.show import Field, Row, column, column_figure, legend_below, line_at, pole_cells, pole_text, styled
+from bezstab.show import Field, Row, column, column_figure, line_at, pole_cells, pole_text, styled, with_legend
 from bezstab.stability import feedback_cost, verdict
 
 ROUNDED = 1e-13  # m: below, c_1 is rounding amplified by beta^2 h^2 / |1 - z|, and differs between machines
@@ -332,5 +332,4 @@ def panels_figure(runs: Runs) -> Figure:
         for axes in figure.axes[-2:]:
             axes.set_xlabel("t (s)")
         figure.supylabel("$c_1$ (m)", fontsize=8)
-        legend_below(figure, handles=[line for axes in figure.axes[:2] for line in axes.lines])
-        return figure
+        return with_legend(figure, handles=[line for axes in figure.axes[:2] for line in axes.lines])

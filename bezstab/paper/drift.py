@@ -13,7 +13,7 @@ from bezstab.mechanism import Simulation, Start
 from bezstab.paper.experiments import START_NAMES, experiment, largest
 from bezstab.paper.printed import TABLE_3
 from bezstab.paper.reports import Claims, Outcome, Progress, Report
-from bezstab.show import DASHES, column_figure, legend_below, line_at, styled
+from bezstab.show import DASHES, column_figure, line_at, styled, with_legend
 from bezstab.stability import FloatArray
 
 METHODS = ("B4", "AB4")
@@ -264,8 +264,7 @@ def drift_figure(runs: Runs) -> Figure:
         for start, axes in panels.items():
             axes.set(title=f"start: {START_NAMES[start]}", ylabel="largest $|c_1|$ so far (m)")
         axes.set_xlabel("t (s)")
-        legend_below(figure, handles=[line for line in axes.lines if line.get_marker() == "None"])
-        return figure
+        return with_legend(figure, handles=[line for line in axes.lines if line.get_marker() == "None"])
 
 
 def _draw_growth(axes: Axes, run: Simulation, label: str, line: Mapping[str, Any]) -> None:

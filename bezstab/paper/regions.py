@@ -10,9 +10,10 @@ from bezstab.methods import Method, evaluations, lookup
 from bezstab.paper.experiments import STEP
 from bezstab.paper.printed import COMPARED, FASTER_LEVEL, LEAST_Z_ABS, TABLE_5, PrintedCase
 from bezstab.paper.reports import Claims, Outcome, Progress, Report
+from bezstab.questions import MapAnswer, MapQuestion
 from bezstab.rationals import exact
-from bezstab.show import PlaneMap, comparison_figure, region_figure
-from bezstab.stability import QUALITY, best_point, dominant_pole, region, spectral_radius, verdict, window
+from bezstab.show import comparison_figure, map_figure
+from bezstab.stability import best_point, dominant_pole, region, spectral_radius, verdict, window
 
 GRID = 200  # points per axis, where one counterexample is looked for
 MODEST = 0.1  # of the area: a region that has lost less has shrunk "slightly"
@@ -37,17 +38,15 @@ def report(_progress: Progress) -> Report:
 
 def faster_region_figure(name: str) -> Figure:
     """Return a panel of Fig. 1: one method's map of |z_p|, its region S and the faster region H."""
-    stable, best = region(lookup(name)), best_point(lookup(name))
-    alpha_hat, beta_hat = (np.linspace(low, high, QUALITY["balanced"]) for low, high in window(stable))
-    z_abs = spectral_radius(stable.method, alpha_hat, beta_hat[:, np.newaxis])
-    faster = region(stable.method, FASTER_LEVEL[name])
-    shown = PlaneMap(region=stable, alpha_hat=alpha_hat, beta_hat=beta_hat, z_abs=z_abs, best=best)
-    return region_figure(shown, [faster])
+    question = MapQuestion(methods=(lookup(name),), levels=(exact(FASTER_LEVEL[name]),))
+    answer = MapAnswer(question, lookup(name))
+    return map_figure(answer, np.array(list(answer.dominant_poles())))
 
 
 def compared_regions_figure(names: Sequence[str], h: float | None = None) -> Figure:
     """Return Fig. 2 or, in 2 alpha and beta^2 for a step of h (s), Fig. 3: the boundaries of several methods."""
-    return comparison_figure([region(lookup(name)) for name in names], h=h)
+    methods = tuple(map(lookup, names))
+    return comparison_figure(MapQuestion(methods=methods, h=None if h is None else exact(h), compare=True))
 
 
 @claims.claim(

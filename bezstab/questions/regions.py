@@ -19,6 +19,7 @@ from bezstab.methods import Method
 from bezstab.questions.motions import ReferenceMotion, motion_of, turn_too_far, turning_of
 from bezstab.questions.question import methods_for
 from bezstab.stability import (
+    QUALITY,
     BestPoint,
     Choice,
     ComplexArray,
@@ -121,7 +122,7 @@ class MapQuestion:
     levels: tuple[Fraction, ...] = ()
     alpha_range: Window | None = None
     beta_range: Window | None = None
-    points: int
+    points: int = QUALITY["balanced"]
     h: Fraction | None = None
     engine: Engine | None = None
     scene: str | None = None
@@ -238,8 +239,8 @@ class MapAnswer:
 
     @property
     def choice_reason(self) -> str | None:
-        """Why there is no most accurate point on a motion; None where there is one."""
-        return self._choice_or_reason[1]
+        """Why there is no most accurate point on a motion; None where there is one, and without a motion."""
+        return self._choice_or_reason[1] if self.question.motion else None
 
     @property
     def best_error(self) -> float | None:

@@ -13,7 +13,6 @@ from bezstab.engines import Point
 from bezstab.evidence import HalvedStep, Measurement, halved_steps, measure_poles, random_points
 from bezstab.methods import Method
 from bezstab.questions.motions import SceneQuestion
-from bezstab.questions.points import meant_in_seconds
 from bezstab.stability import choose
 
 RANDOM_POINTS = 20
@@ -32,11 +31,6 @@ class VerifyQuestion(SceneQuestion):
     point: Point | None = None
     points: int | None = None
     floquet: bool = False
-
-    @property
-    def meant_in_seconds(self) -> bool:
-        """Whether the point looks like alpha and beta in 1/s."""
-        return meant_in_seconds(self.methods, self.point)
 
     def measurements(self, method: Method, bar: Callable[[Iterable[int]], Iterable[int]] = iter) -> list[Measurement]:
         """Return predicted and measured poles at the point, else at the random ones; `bar` shows the progress."""

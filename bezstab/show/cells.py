@@ -3,7 +3,6 @@
 from decimal import ROUND_FLOOR, Context
 
 from bezstab.show.fields import MISSING, Row, Text, formatted
-from bezstab.show.words import times_words
 
 MOST_FIXED = 1e6  # a modulus from here on is shown with an exponent
 
@@ -17,33 +16,34 @@ WITHOUT_LIMIT = {"critical_damping_limit": "unlimited", "unconditional_damping_r
 """What is said where all steps are stable, or only those that are small enough."""
 
 
-def pole_text(row: Row, digits: int = 6) -> str:
+def pole_text(row: Row) -> str:
     """Return a complex pole, from z_real and z_imag: 0.762694 ± 0.142074i; a dash where there is none."""
     real, imaginary = row["z_real"], row["z_imag"]
     if real is None:
         return MISSING
-    form = f".{digits}{'f' if max(abs(real), imaginary) < MOST_FIXED else 'e'}"
-    visible = round(imaginary / max(1, abs(real)), digits) != 0
+    form = ".6f" if max(abs(real), imaginary) < MOST_FIXED else ".6e"
+    visible = round(imaginary / max(1, abs(real)), 6) != 0
     return f"{real:{form}} ± {imaginary:{form}}i" if visible else f"{real:{form}}"
 
 
-def filled(template: str) -> Text:
-    """Return the text of a template such as "{z_abs:.4f} a step" with a row's values; a dash if it lacks one."""
-
-    def text(row: Row) -> str:
-        try:
-            return template.format_map(row)
-        except TypeError:  # None has no format
-            return MISSING
-
-    return text
-
-
-def modulus_text(row: Row) -> str:
+def modulus_words(modulus: float) -> str:
     """Return |z|: six decimals, or an exponent where it is huge."""
-    modulus = row["z_abs"]
-    huge = modulus is not None and modulus >= MOST_FIXED
-    return formatted(modulus, ".6e" if huge else ".6f")
+    return formatted(modulus, ".6e" if modulus >= MOST_FIXED else ".6f")
+
+
+def any_step(row: Row) -> str:
+    """Return what is said of the step where it has no largest factor: any where no end is, none where no step is."""
+    return {None: MISSING, "diverges": "none"}.get(row["verdict"], "any")
+
+
+def any_speed(row: Row) -> str:
+    """Return what is said of a mechanism's speed where it has no limit: any, where it does not turn."""
+    return "any" if row["moving_verdict"] == "converges" else MISSING
+
+
+def any_gain(row: Row) -> str:
+    """Return what is said of a gain that has no limit: any, or that none helps."""
+    return "any" if row["verdict"] == "converges" else "none helps"
 
 
 def range_text(gain: str) -> Text:
@@ -73,36 +73,6 @@ def step_text(row: Row) -> str:
     return formatted(limit, ".4g")
 
 
-def times_least_text(row: Row) -> str:
-    """Return how many times the least the error is that feedback forces on a constraint."""
-    times = row["times_least"]
-    return MISSING if times is None else times_words(times)
-
-
-def both_times_text(row: Row) -> str:
-    """Return the same of the constraint and of its velocity."""
-    velocity = row["times_least_velocity"]
-    return MISSING if velocity is None else f"{times_least_text(row)}; velocity: {times_words(velocity)}"
-
-
-def speed_text(row: Row) -> str:
-    """Return up to how many times its speed a mechanism may move: any, where it does not turn."""
-    speed = row["safe_speed"]
-    return "any" if speed is None and row["moving_verdict"] == "converges" else formatted(speed, ".3g")
-
-
-def gain_limit_text(gain: str) -> Text:
-    """Return the text of a gain's largest stable value: any, or that none helps."""
-
-    def text(row: Row) -> str:
-        limit = row[f"{gain}_max"]
-        if limit is None:
-            return "any" if row["verdict"] == "converges" else "none helps"
-        return formatted(limit, ".4g")
-
-    return text
-
-
 def used_up_text(row: Row) -> str:
     """Return which gain is nearest its limit, and how much of that it is."""
     gain = row["used_up"]
@@ -114,13 +84,6 @@ def used_up_text(row: Row) -> str:
     return f"{gain} {100 * value / limit:.0f} %"
 
 
-def times_text(row: Row) -> str:
-    """Return up to how many times the step is stable: any where there is no end, none where no step is."""
-    if row["h_factor"] is None and row["verdict"] is not None:
-        return "none" if row["verdict"] == "diverges" else "any"
-    return formatted(row["h_factor"], ".4g")
-
-
 def unbounded_text(key: str, form: str) -> Text:
     """Return the text of a region's area or of a limit: in words where there is none.
 
@@ -130,8 +93,8 @@ def unbounded_text(key: str, form: str) -> Text:
     def text(row: Row) -> str:
         value = row[key]
         if value is None:
-            return "unbounded" if key in ENDS and not row["bounded"] else WITHOUT_LIMIT.get(key, MISSING)
-        near = key in (row["approached"] or "").split(", ")
+            return "unbounded" if key in ENDS and not row.get("bounded", True) else WITHOUT_LIMIT.get(key, MISSING)
+        near = key in (row.get("approached") or "").split(", ")
         return f"{value:.8g} (approached)" if near else formatted(value, form)
 
     return text
@@ -152,18 +115,14 @@ def stable_steps_text(row: Row) -> str:
 
 def order_text(row: Row) -> str:
     """Return the order of accuracy, with that for forces of position alone in parentheses if it is another."""
-    order, without_velocity = row["order"], row["order_position_forces"]
+    order = row["order"]
+    without_velocity = row.get("order_position_forces", order)
     return str(order) if order == without_velocity else f"{order} ({without_velocity})"
 
 
 def constant_text(row: Row) -> str:
     """Return the error constant as a rational, or as a decimal where it is none."""
-    return row["error_constant_exact"] or formatted(row["error_constant"], ".10g")
-
-
-def diverged_text(row: Row) -> str:
-    """Return the error of a run's trajectory, or that it diverged."""
-    return "diverged" if row["failure"] else formatted(row["trajectory_error"], ".1e")
+    return row.get("error_constant_exact") or formatted(row["error_constant"], ".10g")
 
 
 def milliseconds_text(row: Row) -> str:

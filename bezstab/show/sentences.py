@@ -1,15 +1,8 @@
 """What rows say, in words: for each kind of row the sentence above its block of lines."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 from bezstab.show.cells import order_text, safe_step_text, step_limit
 from bezstab.show.fields import Row, formatted
 from bezstab.show.words import change_words, counted, growth_words, safety_words, seconds_words
-
-if TYPE_CHECKING:
-    pass
 
 
 def answer_sentence(row: Row) -> str:
