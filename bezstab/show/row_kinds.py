@@ -8,19 +8,15 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from bezstab.show.cells import (
-    any_gain,
+    any_or_none,
     any_speed,
-    any_step,
     constant_text,
-    milliseconds_text,
     modulus_words,
     order_text,
     pole_text,
-    range_text,
     safe_step_text,
-    stable_steps_text,
     step_text,
-    unbounded_text,
+    unbounded,
     used_up_text,
 )
 from bezstab.show.fields import Field, RowKind, integer, number, text, truth
@@ -132,7 +128,8 @@ AREA = number(
     "area",
     "Area of the region in alpha_hat and beta_hat",
     "area",
-    text=unbounded_text("area", ".10g"),
+    ".10g",
+    otherwise=unbounded,
     null="where it is infinite or empty",
     path="region.area",
 )
@@ -140,7 +137,8 @@ ALPHA_HAT_MAX = number(
     "alpha_hat_max",
     "Largest alpha_hat of the region",
     "α̂ to",
-    text=unbounded_text("alpha_hat_max", ".8g"),
+    ".8g",
+    otherwise=unbounded,
     null=UNBOUNDED,
     path="region.extent.0.1",
 )
@@ -148,7 +146,8 @@ BETA_HAT_MAX = number(
     "beta_hat_max",
     "Largest beta_hat of the region",
     "β̂ to",
-    text=unbounded_text("beta_hat_max", ".8g"),
+    ".8g",
+    otherwise=unbounded,
     null=UNBOUNDED,
     path="region.extent.1.1",
 )
@@ -224,7 +223,7 @@ H_FACTOR = number(
     "Factor on h up to which this alpha and beta are stable",
     "stable for h times",
     ".4g",
-    otherwise=any_step,
+    otherwise=any_or_none,
     null="where the point is not stable, or any step is",
     path="margins.h",
 )
@@ -439,7 +438,7 @@ DRIVE = (
         "Largest stable stiffness with this damping",
         "kp to",
         ".4g",
-        otherwise=any_gain,
+        otherwise=any_or_none,
         unit="N m/rad or N/m",
         null="without a limit",
         path="gains.kp_max",
@@ -451,7 +450,7 @@ DRIVE = (
         "Largest stable damping with this stiffness",
         "kd to",
         ".4g",
-        otherwise=any_gain,
+        otherwise=any_or_none,
         unit="N m s/rad or N s/m",
         null="without a limit",
         path="gains.kd_max",
@@ -574,7 +573,8 @@ REGIONS = RowKind(
             "alpha_hat_min",
             "Smallest alpha_hat of the region",
             "α̂ from",
-            text=unbounded_text("alpha_hat_min", ".6g"),
+            ".8g",
+            otherwise=unbounded,
             null=UNBOUNDED,
             path="region.extent.0.0",
         ),
@@ -583,7 +583,8 @@ REGIONS = RowKind(
             "beta_hat_min",
             "Smallest beta_hat of the region",
             "β̂ from",
-            text=unbounded_text("beta_hat_min", ".6g"),
+            ".8g",
+            otherwise=unbounded,
             null=UNBOUNDED,
             path="region.extent.1.0",
         ),
@@ -591,18 +592,21 @@ REGIONS = RowKind(
         text(
             "approached",
             "Those of the four limits that no edge attains: the region comes near them far out",
+            "approached",
             null="where edges attain all that there are",
         ),
         number(
             "critical_damping_limit",
             "Largest beta h on alpha = beta up to which all are stable",
             "βh to (α = β)",
-            text=stable_steps_text,
+            ".6g",
+            otherwise=lambda _: "unlimited",
             null="if all",
         ),
         text(
             "critical_damping_limit_exact",
             "The same as a rational number",
+            "exactly",
             null="if all are stable, or where it is not known to be rational",
         ),
         BEST_Z_ABS,
@@ -633,11 +637,15 @@ REGIONS = RowKind(
         text(
             "stable_for_all",
             "Whether all alpha_hat, beta_hat > 0 are stable",
+            "all α, β stable",
             values_of="stability.StableForAll",
         ),
         number(
             "unconditional_damping_ratio",
             "Damping ratio alpha / beta above which every step is stable",
+            "every h stable from α/β",
+            ".6g",
+            otherwise=lambda _: "none",
             null="if none is",
         ),
     ),
@@ -677,8 +685,11 @@ LISTED_METHODS = RowKind(
 NAMED_METHODS = RowKind(
     "a method that was named",
     fields=tuple(
-        field.shown(
-            field.key.replace("_", " "), text=unbounded_text(field.key, ".10g" if field.kind == "number" else "")
+        replace(
+            field,
+            heading=field.key.replace("_", " "),
+            form=".10g" if field.kind == "number" else "",
+            text=None,
         )
         for field in (
             *LISTED_METHODS.fields[:-1],
@@ -775,28 +786,34 @@ CHOICES = RowKind(
         number(
             "alpha_factor_min",
             "Least factor by which alpha alone may be scaled",
-            "α times",
-            text=range_text("alpha"),
+            "α times from",
+            ".3g",
             null=UNSTABLE,
             path="margins.alpha.0",
         ),
         number(
             "alpha_factor_max",
             "Largest factor by which alpha alone may be scaled",
+            "α times to",
+            ".3g",
+            otherwise=any_or_none,
             null="where the point is not stable, or any",
             path="margins.alpha.1",
         ),
         number(
             "beta_factor_min",
             "Least factor by which beta alone may be scaled",
-            "β times",
-            text=range_text("beta"),
+            "β times from",
+            ".3g",
             null=UNSTABLE,
             path="margins.beta.0",
         ),
         number(
             "beta_factor_max",
             "Largest factor by which beta alone may be scaled",
+            "β times to",
+            ".3g",
+            otherwise=any_or_none,
             null="where the point is not stable, or any",
             path="margins.beta.1",
         ),
@@ -1200,12 +1217,12 @@ SWEPT = RowKind(
         number(
             "seconds",
             "Processor time of the run, the median of the repeats",
-            "time (ms)",
-            text=milliseconds_text,
+            "time (s)",
+            ".3g",
             unit="s",
         ),
-        number("seconds_min", "Least processor time of the repeats", unit="s"),
-        number("seconds_max", "Largest processor time of the repeats", unit="s"),
+        number("seconds_min", "Least processor time of the repeats", "least time (s)", ".3g", unit="s"),
+        number("seconds_max", "Largest processor time of the repeats", "largest time (s)", ".3g", unit="s"),
         text(
             "front",
             "T if no run is both cheaper and nearer to the trajectory, c if none is to the constraints",
