@@ -19,7 +19,7 @@ from bezstab.show.cells import (
     unbounded,
     used_up_text,
 )
-from bezstab.show.fields import Field, RowKind, integer, number, text, truth
+from bezstab.show.fields import Field, RowKind, column, integer, number, text, truth
 from bezstab.show.sentences import (
     answer_sentence,
     chain_sentence,
@@ -1039,16 +1039,16 @@ SUMMARIES = RowKind(
     "how well the measured poles of a method agree with the predicted ones",
     fields=(
         METHOD,
-        integer("points", "Points that were tried", "points"),
-        integer("measured", "Points at which a pole could be measured", "measured points"),
-        number("median_error", "Median difference of the moduli", "median error of |z|", ".1e"),
-        number("largest_error", "Largest difference of the moduli", "largest error of |z|", ".1e"),
-        integer("called", "Points at which both verdicts are settled", "verdicts called"),
-        integer("wrong", "Points of these whose verdicts disagree", "wrong verdicts"),
-        integer("followed", "Points followed over a revolution", "followed over a revolution"),
-        number("map_error", "Median error of the rate at rest", "median error at rest", ".1e"),
-        number("law_error", "Median error of the law's rate", "median error of the law", ".1e"),
-        number("floquet_error", "Median error of the exact rate", "median error of the exact rate", ".1e"),
+        column("points", "points"),
+        column("measured points", "measured"),
+        column("median error of |z|", "median_error", ".1e"),
+        column("largest error of |z|", "largest_error", ".1e"),
+        column("verdicts called", "called"),
+        column("wrong verdicts", "wrong"),
+        column("followed over a revolution", "followed"),
+        column("median error at rest", "map_error", ".1e"),
+        column("median error of the law", "law_error", ".1e"),
+        column("median error of the exact rate", "floquet_error", ".1e"),
         text(
             "wrong_sides",
             "Of how many points each rate is on the wrong side of one",
