@@ -30,8 +30,8 @@ from bezstab.mechanism import (
     simulate,
     turned_across,
 )
-from bezstab.methods import Method, leading_error
-from bezstab.stability import LARGEST_OMEGA_H, FloatArray, forced_response, spectral_radius, turning_response
+from bezstab.methods import Method, leading_error, turning_error
+from bezstab.stability import LARGEST_OMEGA_H, FloatArray, forced_response, spectral_radius
 from bezstab.units import feedback_gains
 
 COMPARED = 0.5
@@ -201,16 +201,15 @@ def _errors_along(
     power = leading_error(method).power
     spectrum = np.fft.fft(along_normals(mechanism, along, _derivative(along, power, h)), axis=0)
     omega_h = 2 * np.pi * np.fft.fftfreq(len(spectrum), along.t[1]) * h
-    turning: FloatArray | None = None
+    turned = turning_error(method)
+    if turned:
+        derivative = _derivative(along, turned.power, h)
+        turning = turned_across(mechanism, along, derivative) * h ** (turned.power + 1)
     for alpha_hat, beta_hat in points:
         response = forced_response(method, alpha_hat, beta_hat, omega_h)[:, np.newaxis]
         error = np.fft.ifft(spectrum * response * h**power, axis=0).real
-        turned = turning_response(method, alpha_hat, beta_hat)
         if turned:
-            lower, factor = turned
-            if turning is None:
-                turning = turned_across(mechanism, along, _derivative(along, lower, h)) * h ** (lower + 1)
-            error = error + factor * turning
+            error = error + turned.at(alpha_hat, beta_hat) * turning
         yield error
 
 

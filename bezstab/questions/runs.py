@@ -20,7 +20,6 @@ from bezstab.mechanism import (
 )
 from bezstab.methods import Method, check_one_step
 from bezstab.questions.motions import scene_at_speed
-from bezstab.questions.points import meant_in_seconds
 from bezstab.stabilising import AfterStep, Stabilise, after_step
 
 
@@ -57,11 +56,6 @@ class RunQuestion:
             raise InputError("--hold needs --steps: it is about steps that vary")
         if (self.point is None) == (self.stabilise == "baumgarte"):
             raise InputError("--alpha and --beta are those of feedback: they go with --stabilise baumgarte")
-
-    @property
-    def meant_in_seconds(self) -> bool:
-        """Whether the point looks like alpha and beta in 1/s; not with a sequence, which may be to let errors grow."""
-        return not self.sequence and meant_in_seconds((self.method,), self.point)
 
     @cached_property
     def mechanism(self) -> Mechanism:

@@ -32,7 +32,6 @@ from bezstab.evidence import (
 from bezstab.mechanism import Scene
 from bezstab.methods import Method
 from bezstab.questions import motions
-from bezstab.questions.points import meant_in_seconds
 from bezstab.rationals import exact
 from bezstab.stabilising import NOTHING, AfterStep, Stabilise, after_step
 from bezstab.stability import RATES, FrontPoint, error_front
@@ -76,11 +75,6 @@ class TradeQuestion:
         if not longest <= self.duration <= most:
             expected = f"one step ({longest:g} s) to {MOST_SWEPT:g} ({most:g} s)"
             raise InputError(f"--time {float(self.duration):g}: expected {expected}")
-
-    @property
-    def meant_in_seconds(self) -> bool:
-        """Whether the numbers look like alpha and beta in 1/s, where they are not."""
-        return not self.physical and meant_in_seconds(self.methods, self.numbers)
 
     @cached_property
     def step_sizes(self) -> tuple[float, ...]:

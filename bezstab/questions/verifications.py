@@ -15,7 +15,6 @@ from bezstab.evidence import HalvedStep, Measurement, halved_steps, measure_pole
 from bezstab.mechanism import Mechanism, Scene, compiled_mechanism
 from bezstab.methods import Method
 from bezstab.questions.motions import scene_at_speed
-from bezstab.questions.points import meant_in_seconds
 from bezstab.stability import choose
 
 RANDOM_POINTS = 20
@@ -37,11 +36,6 @@ class VerifyQuestion:
     point: Point | None = None
     points: int | None = None
     floquet: bool = False
-
-    @property
-    def meant_in_seconds(self) -> bool:
-        """Whether the point looks like alpha and beta in 1/s."""
-        return meant_in_seconds(self.methods, self.point)
 
     @cached_property
     def mechanism(self) -> Mechanism:

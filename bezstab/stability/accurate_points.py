@@ -53,8 +53,7 @@ def accurate_point(method: Method, extent: Extent, error: Modulus, *, omega_h: F
     best, least = zoom_from_grid(
         errors, (low + high) / 2, (high - low) / 2, FIRST_GRID, fold=lambda points: np.clip(points, low, high)
     )
-    axes = [np.linspace(first, last, SAMPLES) for first, last in zip(low, high, strict=True)]
-    sampled = errors(grid_of(axes).reshape(-1, len(axes))).min()
+    sampled = errors(grid_of(list(np.linspace(low, high, SAMPLES, axis=1))).reshape(-1, 2)).min()
     if sampled < least * (1 - BETTER):
         raise NumericalError(f"{method.name}: the point chosen forces {float(least):.9g}, another {sampled:.9g}")
     return 2 * float(np.exp(best[0])), float(np.exp(best[1])) ** 2

@@ -28,11 +28,6 @@ def test_against_projection_each_method_runs_with_feedback_and_with_projection()
     assert QUESTION.rate is None  # no point is advised
 
 
-def test_numbers_look_like_one_over_seconds_only_where_they_are_not() -> None:
-    strong = replace(QUESTION, numbers=(Fraction(50), Fraction(60)))
-    assert (strong.meant_in_seconds, replace(strong, physical=True).meant_in_seconds) == (True, False)
-
-
 def test_smaller_steps_cost_more_and_err_less() -> None:
     swept = QUESTION.swept([measured_runs(sweep) for sweep in QUESTION.sweeps])
     larger, smaller = swept.runs
