@@ -20,10 +20,9 @@ from bezstab.mechanism import (
     energy_balance,
     motion_over,
     observe,
-    runs_compiled,
     simulate,
 )
-from bezstab.methods import Method, evaluations, steps
+from bezstab.methods import Method, steps
 from bezstab.rationals import exact
 from bezstab.stabilising import NOTHING, AfterStep, Stabilise, held_by
 from bezstab.stability import choose, spectral_radius
@@ -190,18 +189,6 @@ class SweptRuns:
         return [
             " ".join(letter for letter, front in fronts.items() if index in front) for index in range(len(self.runs))
         ]
-
-
-def sweep_compiled(methods: Sequence[Method], step_sizes: Sequence[float], duration: float, repeats: int) -> bool:
-    """Return whether the runs of a sweep are compiled: all or none, so that their times can be compared.
-
-    `runs_compiled` says so for each method's runs together, step sizes and duration in s. By default none are where one
-    is not. InputError as `runs_compiled`.
-    """
-    user_steps = repeats * sum(duration / h for h in step_sizes)
-    return all(
-        runs_compiled(round(user_steps / float(method.step_multiple)) * evaluations(method)) for method in methods
-    )
 
 
 def measured_runs(sweep: Sweep) -> dict[str, NDArray[np.generic]]:
