@@ -10,10 +10,10 @@ takes x, h v and the torques that are still to be applied over `every` steps; it
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import ceil, floor
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,11 +26,8 @@ from bezstab.stability.searches import first_where
 MOST_STEPS = 100
 """Of `every` and of `late`: the polynomial's degree is theirs, and nobody's controller is slower."""
 
-Number = TypeVar("Number", Fraction, FloatArray)
-"""Exact, or in float64: as many as there are points."""
-
 Numbers = NDArray[Any]
-"""The same at so many points: in float64 for |z_p|, or Fractions."""
+"""At so many points: in float64 for |z_p|, or Fractions."""
 
 
 @dataclass(frozen=True)
@@ -54,8 +51,6 @@ class Timing:
             raise InputError(f"--every {self.every}: expected a whole number of steps from 1 to {MOST_STEPS}")
         if not 0 <= self.late <= MOST_STEPS:
             raise InputError(f"--late {float(self.late):g}: expected from 0 to {MOST_STEPS} steps")
-        if self.filter_steps < 0:
-            raise InputError(f"--filter {float(self.filter_steps):g} steps: expected 0 or more")
 
     def applied(self, step: int) -> list[tuple[int, Fraction]]:
         """Return what acts in a step after the latest computation: how far back it was computed, and its share.
@@ -130,25 +125,27 @@ def held_moduli(way: str, alpha_hat: FloatArray, beta_hat: FloatArray, timing: T
     return moduli
 
 
-def law_bounds(way: str, alpha_hat: Number, timing: Timing) -> tuple[Number, ...]:
+def law_bounds(way: str, alpha_hat: Any, timing: Timing) -> tuple[Any, ...]:
     """Return what beta_hat must be below: with alpha_hat > 0 a drive converges if and only if 0 < beta_hat < each.
+
+    alpha_hat is a number or an array of them, and so is each bound.
 
     The closed forms, by Jury's conditions; an empty tuple where there is none. Held for N steps and not late, with
     A = N alpha_hat and B = N^2 beta_hat: 2 A + B / N < 4 and B (N - 1) / (2 N) < A. One step late, computed in every
     step: P = z (z - 1)^2 + b z + a (z - 1) has b < a (1 - a). Fresh, the limits of `bezstab.engines.drives`.
     """
     a, every = alpha_hat, timing.every
-    if timing.filter_steps:
-        return ()
-    if way == "SYM" and timing.late == 0:
-        fast = (4 - 2 * every * a) / every
-        return (fast, 2 * a / (every - 1)) if every > 1 else (fast,)
-    if every > 1:
-        return ()
-    if way == "SYM" and timing.late == 1:
-        return (a * (1 - a),)
-    fresh = {"imex-euler": (4 + 2 * a,), "stable-pd": ((4 + 2 * a) / 3,)}
-    return fresh.get(way, ()) if timing.late == 0 else ()
+    match way, every, timing.late, timing.filter_steps:
+        case "SYM", _, 0, 0:
+            fast = (4 - 2 * every * a) / every
+            return (fast, 2 * a / (every - 1)) if every > 1 else (fast,)
+        case "SYM", 1, 1, 0:
+            return (a * (1 - a),)
+        case "imex-euler", 1, 0, 0:
+            return (4 + 2 * a,)
+        case "stable-pd", 1, 0, 0:
+            return ((4 + 2 * a) / 3,)
+    return ()
 
 
 # The matrix of `every` steps
@@ -162,11 +159,10 @@ def _steps_matrix(seen: _Seen, alpha_hat: Numbers, beta_hat: Numbers, timing: Ti
     applied. h = 1, and torques are over the inertia. Each is linear in the state at the first step: its coefficients.
     """
     number: Callable[[Fraction | int], Any] = Fraction if alpha_hat.dtype == object else float
-    whole = floor(timing.late)
-    left = timing.late - whole  # of a step, which the torque before keeps
     gain = number(1 / (1 + timing.filter_steps / timing.every))
     filters = 1 if timing.filter_steps else 0
-    pending: int = ceil(Fraction(whole, timing.every)) + (1 if left else 0)
+    shares = [dict(timing.applied(step)) for step in range(timing.every)]
+    pending = max(back for of_step in shares for back in of_step)
     size = 2 + filters + pending
     state = np.zeros((size, size, alpha_hat.size), alpha_hat.dtype)
     state[range(size), range(size)] = 1
@@ -175,11 +171,11 @@ def _steps_matrix(seen: _Seen, alpha_hat: Numbers, beta_hat: Numbers, timing: Ti
 
     def applied(step: int) -> Numbers:
         """Return the torque applied in a step after the latest computation."""
-        return np.asarray(sum(number(share) * torques[back] for back, share in timing.applied(step)))
+        return np.asarray(sum(number(share) * torques[back] for back, share in shares[step].items()))
 
     # u = -b (x + x_by_velocity v + x_by_torque p) - a w,   w = filtered + gain (v + v_by_torque p - filtered),
     # p = share u + rest, the torque applied in the step that computes u
-    share = number(1 - left if whole == 0 else 0)
+    share = number(shares[0].get(0, 0))
     rest = applied(0)
     seen_x = x + seen.x_by_velocity * v + seen.x_by_torque * rest
     seen_v = v + seen.v_by_torque * rest
@@ -230,16 +226,15 @@ SMALL_GAINS = 1e-8 * np.geomspace(1, 1e9, 425)
 def held_limits(way: str, alpha_hat: Fraction, beta_hat: Fraction, timing: Timing) -> HeldLimits:
     """Return how far gains, rate and delay may go each: gains by |z_p| in float64, whole steps by proven verdicts."""
 
-    def stable(every: int, late: Fraction) -> bool:
-        changed = Timing(every, late, timing.filter_steps)
-        return held_verdict(way, alpha_hat, beta_hat, changed) == "converges"
+    def stable(**changed: Any) -> bool:
+        return held_verdict(way, alpha_hat, beta_hat, replace(timing, **changed)) == "converges"
 
     a, b = float(alpha_hat), float(beta_hat)
     return HeldLimits(
         kp=_stable_stretch(b, lambda gains: held_moduli(way, a + 0 * gains, gains, timing) < 1 - SLOW),
         kd=_stable_stretch(a, lambda gains: held_moduli(way, gains, b + 0 * gains, timing) < 1 - SLOW),
-        every=_last_stable(lambda every: stable(every, timing.late), least=1),
-        late=_last_stable(lambda late: stable(timing.every, Fraction(late)), least=0),
+        every=_last_stable(lambda every: stable(every=every), least=1),
+        late=_last_stable(lambda late: stable(late=Fraction(late)), least=0),
     )
 
 
