@@ -95,7 +95,7 @@ def proves_decay(corners: list[Corner], matrix: StepMatrix, shortest: Fraction) 
             beside, room = x * images[:, 1] - v * images[:, 0], span * denominator
             yield np.concatenate([room + beside, room - beside])
 
-    return all(positivity(rows, shortest, Fraction(1)).proven for rows in inside())
+    return all(positivity(rows, shortest, Fraction(1)) is True for rows in inside())
 
 
 def _cross(a: ExactArray, b: ExactArray) -> ExactArray:

@@ -137,8 +137,7 @@ def _single_step(matrix: StepMatrix, shortest: Fraction) -> Fraction | bool:
     of_roots = determinant(numerators)
     both = polyadd(square, of_roots)
     conditions = [polysub(both, trace), polyadd(both, trace), polysub(square, of_roots)]
-    found = positivity(whole_rows(conditions), shortest, Fraction(1))
-    return found.proven if found.exception is None else found.exception
+    return positivity(whole_rows(conditions), shortest, Fraction(1))
 
 
 def _samples(shortest: Fraction, down: bool) -> list[Fraction]:
