@@ -77,10 +77,10 @@ def probe(**typed: Any) -> None:
     questions.check_told(found)
 
 
-def _question(log: Path, minus: Path | None, h: Fraction | None, **typed: Any) -> "questions.LogQuestion":
+def _question(log: Path, minus: Path | None, h: Fraction | None, **typed: Any) -> "questions.PoleQuestion":
     """Return the question about logs in files."""
     kicked, other = _read(log), None if minus is None else _read(minus)
-    return questions.LogQuestion(log=kicked, minus=other, h=None if h is None else float(h), **typed)
+    return questions.PoleQuestion(log=kicked, minus=other, h=None if h is None else float(h), **typed)
 
 
 def _read(path: Path) -> "evidence.Log":

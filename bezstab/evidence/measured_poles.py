@@ -26,7 +26,7 @@ import numpy as np
 from bezstab.evidence.exact_rates import find_own_motions
 from bezstab.evidence.kicked_revolutions import rates_of_kicked_revolutions
 from bezstab.evidence.kicks import APART, AT_ONCE, GROWN, LINEAR, kicked_motions, nothing_happens_without_feedback
-from bezstab.evidence.linear_prediction import NEGLIGIBLE, SAMPLES, SPREAD, Refusal, fit_dominant_pole
+from bezstab.evidence.linear_prediction import NEGLIGIBLE, SAMPLES, SPREAD, fit_dominant_pole
 from bezstab.evidence.moving_mechanisms import MovingPole, moving_poles
 from bezstab.mechanism import Mechanism, runs_compiled, turning_normals
 from bezstab.methods import Method, Verdict, evaluations
@@ -274,9 +274,9 @@ def _measured_pole(
     # Over a window of SAMPLES steps the lesser of two such moduli does not even fall to 1/e of the other.
     if rival > (1 - 1 / SAMPLES) * abs(predicted):
         return None, f"another pole, of modulus {rival:.6g}, is too near to tell them apart"
-    fit = fit_dominant_pole(difference, order=len(all_poles), sizes=size, limits=LINEAR)
-    if isinstance(fit, Refusal):
-        return None, fit.reason
+    fit, reason = fit_dominant_pole(difference, order=len(all_poles), sizes=size, limits=LINEAR)
+    if fit is None:
+        return None, reason
     is_a_pole = np.abs(all_poles - fit.pole).min() < SPREAD
     if is_a_pole and abs(predicted - fit.pole) > SPREAD:
         return None, f"the kick hardly excites the dominant pole: what answers is one of modulus {abs(fit.pole):.6g}"

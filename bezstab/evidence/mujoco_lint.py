@@ -290,9 +290,15 @@ def _h_factor(unstable: Callable[[FloatArray], BoolArray]) -> float | None:
 class _Pull:
     """What a constraint does with one impedance if it gets all of its reference, and where it has that."""
 
+    constraint: Constraint
     impedance: float
     where: str
     point: Point
+
+    @property
+    def softening(self) -> FloatArray:
+        """MuJoCo's R of the rows, from its estimate of the diagonal of J M^-1 J'."""
+        return np.maximum(LEAST_SIZE, self.constraint.diagonal * (1 - self.impedance) / self.impedance)
 
 
 def _pulls(plant: _Plant, constraint: Constraint, factor: Fraction) -> list[_Pull]:
@@ -306,7 +312,7 @@ def _pulls(plant: _Plant, constraint: Constraint, factor: Fraction) -> list[_Pul
         impedances, beta_hat = impedances[:1], Fraction(0)
     share = 1 / exact(largest)
     return [
-        _Pull(impedance, where, (alpha_hat * share, beta_hat * exact(impedance) * share**2))
+        _Pull(constraint, impedance, where, (alpha_hat * share, beta_hat * exact(impedance) * share**2))
         for impedance, where in zip(impedances, ("at the constraint", "past solimp's width"), strict=False)
     ]
 
@@ -332,9 +338,9 @@ def _constraint_points(plant: _Plant, constraint: Constraint, factor: Fraction) 
     in_force, why = _in_force(plant.model, constraint.solref, plant.h)
     points = []
     for pull in _pulls(plant, constraint, factor):
-        for share in _shares(plant, constraint, pull.impedance, float(factor) * plant.model.h):
+        for share in _shares(plant, pull, float(factor) * plant.model.h):
             reason = f'solref="{_numbers(in_force)}"{why}, d = {pull.impedance:g} {pull.where}'
-            if share == 1 and not constraint.diagonal.size:
+            if share == 1 and not len(constraint.jacobian):
                 reason += ", all of it where several contacts share it"
             elif abs(share - pull.impedance) >= SEEN * pull.impedance:
                 reason += f", {share:.3g} by masses and damping"
@@ -343,24 +349,19 @@ def _constraint_points(plant: _Plant, constraint: Constraint, factor: Fraction) 
     return points
 
 
-def _shares(plant: _Plant, constraint: Constraint, impedance: float, h: float) -> tuple[float, float]:
+def _shares(plant: _Plant, pull: _Pull, h: float) -> tuple[float, float]:
     """Return the least and the largest share of the reference that directions get at a step of h seconds.
 
     They are the eigenvalues of A' (A + R)^-1 of what moves: the impedance, but for MuJoCo's estimate of masses and for
     implicit damping. Contacts, whose rows nobody knows, may share a reference out: then the largest is all of it.
     """
-    if not constraint.diagonal.size:
-        return impedance, 1.0
-    jacobian = constraint.jacobian
-    regularized = jacobian @ plant.inverse_mass(0.0) @ jacobian.T + np.diag(_softening(constraint.diagonal, impedance))
+    jacobian = pull.constraint.jacobian
+    if not len(jacobian):
+        return pull.impedance, 1.0
+    regularized = jacobian @ plant.inverse_mass(0.0) @ jacobian.T + np.diag(pull.softening)
     shares = np.linalg.eigvals(np.linalg.solve(regularized, jacobian @ plant.inverse_mass(h) @ jacobian.T)).real
     moving = shares[shares > ROUNDING]  # a direction that moves nothing has no error either
-    return (float(moving.min()), float(moving.max())) if moving.size else (impedance, impedance)
-
-
-def _softening(diagonal: FloatArray, impedance: float) -> FloatArray:
-    """Return MuJoCo's R of rows, from its estimate of the diagonal of J M^-1 J'."""
-    return np.maximum(LEAST_SIZE, diagonal * (1 - impedance) / impedance)
+    return (float(moving.min()), float(moving.max())) if moving.size else (pull.impedance,) * 2
 
 
 def _constraint_advice(plant: _Plant, constraint: Constraint, found: Linted) -> str:
@@ -537,8 +538,7 @@ def _linted_together(plant: _Plant, constraints: Sequence[Constraint], controlle
         """Return |z| with impedances at the constraints or past solimp's width, whichever is worse."""
         pulls = [_pulls(plant, each, exact(factor)) for each in constraints]
         ends = {tuple(of_each[end] for of_each in pulls) for end in (0, -1)}
-        held = (list(zip(constraints, of_all, strict=True)) for of_all in ends)
-        return max(_modulus(plant, each, controlled, factor) for each in held)
+        return max(_modulus(plant, held, controlled, factor) for held in ends)
 
     def unstable(factors: FloatArray) -> BoolArray:
         return np.array([modulus(factor) > 1 + ROUNDING for factor in factors.tolist()])
@@ -560,13 +560,8 @@ def _linted_together(plant: _Plant, constraints: Sequence[Constraint], controlle
     )
 
 
-def _modulus(
-    plant: _Plant, held: Sequence[tuple[Constraint, _Pull]], controlled: Sequence[Controlled], factor: float
-) -> float:
-    """Return the largest |z| of a step of all that holds, so many times the model's; 0 where nothing holds.
-
-    `held` are equalities, each with what it does with one impedance.
-    """
+def _modulus(plant: _Plant, held: Sequence[_Pull], controlled: Sequence[Controlled], factor: float) -> float:
+    """Return the largest |z| of a step of all that holds, so many times the model's; 0 where nothing holds."""
     step, forces = _step(plant, held, controlled, factor)
     every = 1
     if controlled:
@@ -578,7 +573,7 @@ def _modulus(
 
 
 def _step(
-    plant: _Plant, held: Sequence[tuple[Constraint, _Pull]], controlled: Sequence[Controlled], factor: float
+    plant: _Plant, held: Sequence[_Pull], controlled: Sequence[Controlled], factor: float
 ) -> tuple[FloatArray, FloatArray]:
     """Return the matrices of one step: of (x, h v), shape (2 dofs, 2 dofs), and of motors' forces."""
     model = plant.model
@@ -588,12 +583,11 @@ def _step(
     stiffness, damping = _springs_and_dampers(model, model.of(Feedback))
     acceleration = inverse @ np.hstack([-stiffness, -damping, arms.T])  # by positions, velocities and forces
     # What constraints ask of it, J a = -(alpha_hat / h) J v - (beta_hat / h^2) J x, softened by R.
-    jacobian = np.vstack([np.zeros((0, dofs)), *(constraint.jacobian for constraint, _ in held)])
-    softening = [_softening(constraint.diagonal, pull.impedance) for constraint, pull in held]
-    rows = [len(each) for each in softening]
-    alpha_hat, beta_hat = (np.repeat([float(pull.point[k]) for _, pull in held], rows)[:, np.newaxis] for k in (0, 1))
+    jacobian = np.vstack([np.zeros((0, dofs)), *(pull.constraint.jacobian for pull in held)])
+    points = [pull.point for pull in held for _ in pull.constraint.diagonal]  # of each row
+    alpha_hat, beta_hat = np.array(points, float).reshape(-1, 2, 1).swapaxes(0, 1)
     asked = np.hstack([-beta_hat / h**2 * jacobian, -alpha_hat / h * jacobian, np.zeros((len(jacobian), motors))])
-    regularized = jacobian @ inverse @ jacobian.T + np.diag(np.concatenate([np.zeros(0), *softening]))
+    regularized = jacobian @ inverse @ jacobian.T + np.diag(np.hstack([[], *(pull.softening for pull in held)]))
     acceleration += inverse @ jacobian.T @ np.linalg.solve(regularized, asked - jacobian @ acceleration)
     slower = plant.inverse_mass(h) @ model.mass  # what implicit damping leaves of it
     in_steps = np.repeat([h * h, h, h * h], [dofs, dofs, motors])  # velocities are in units of 1/h

@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from copy import copy
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Literal, TypeVar
+from typing import Any, Literal, TypeVar, get_args
 
 import numpy as np
 
@@ -38,11 +38,11 @@ ANY_DISTANCE = 1e6
 """m and rad: farther than anything is from a limit or a contact, and float64 still resolves what is near."""
 
 Integrator = Literal["Euler", "RK4", "implicit", "implicitfast"]
-INTEGRATORS: tuple[Integrator, ...] = ("Euler", "RK4", "implicit", "implicitfast")
+INTEGRATORS: tuple[Integrator, ...] = get_args(Integrator)
 """In the order of MuJoCo's own numbers."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Constraint:
     """One constraint's solref and solimp (d0, dmax, width in m or rad), defaults of classes and mixtures resolved.
 

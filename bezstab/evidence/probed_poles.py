@@ -27,7 +27,7 @@ from numpy.polynomial.polynomial import polyder, polyval2d, polyval3d
 from numpy.typing import ArrayLike
 
 from bezstab.errors import InputError, NumericalError
-from bezstab.evidence.linear_prediction import NEGLIGIBLE, SAMPLES, SPREAD, Fit, Refusal, fit_dominant_pole
+from bezstab.evidence.linear_prediction import NEGLIGIBLE, SAMPLES, SPREAD, Fit, fit_dominant_pole
 from bezstab.evidence.logs import UNEVEN, decimal_place
 from bezstab.evidence.measured_poles import CLOSE, GROWN
 from bezstab.evidence.noisy_prediction import ITERATIONS, RESOLVED, VISIBLE, NoisyFit, fit_in_noise
@@ -199,18 +199,18 @@ def _told(samples: FloatArray, rounding: float, of_two_runs: bool) -> Told:
     What a motion forces changes slowly from row to row: differences take it off, all but what poles answer themselves.
     Two runs have it in common; in one run a pole near 1 is believed only if differences show no other.
     """
-    fits: list[Fit | Refusal] = []
+    fits: list[Told] = []
     changes, floor = samples, rounding / 2
     for times in range(DIFFERENCES + 1):
-        fit = fit_dominant_pole(changes, ORDER, limits=_linear_limits(changes), floor=floor)
-        fits.append(fit)
-        if isinstance(fit, Fit) and not _on_the_circle(fit) and (of_two_runs or _is_not_forced(fit, changes)):
+        fit, reason = fit_dominant_pole(changes, ORDER, limits=_linear_limits(changes), floor=floor)
+        fits.append((fit, reason))
+        if fit and not _on_the_circle(fit) and (of_two_runs or _is_not_forced(fit, changes)):
             return fit, DIFFERENCED if times else ""
         changes, floor = np.diff(changes, axis=0), 2 * floor  # each of two roundings adds to that of a difference
-    as_given, of_changes = fits[0], fits[1]
-    if isinstance(as_given, Fit) and of_two_runs:  # or it had been claimed
+    (as_given, reason), (of_changes, _) = fits[:2]
+    if as_given and of_two_runs:  # or it had been claimed
         return as_given, ON_THE_CIRCLE
-    if isinstance(as_given, Fit) and isinstance(of_changes, Fit) and _is_slow_pole(as_given, of_changes, samples):
+    if as_given and of_changes and _is_slow_pole(as_given, of_changes, samples):
         # Only as far as differences, which are forced less, show the same pole, is it known to be none that is forced.
         uncertainty = max(as_given.uncertainty, abs(as_given.pole - of_changes.pole) + of_changes.uncertainty)
         return replace(as_given, uncertainty=uncertainty), SLOWLY
@@ -220,9 +220,9 @@ def _told(samples: FloatArray, rounding: float, of_two_runs: bool) -> Told:
         best = min(in_noise, key=lambda fit: fit.poles[0].uncertainty if fit.poles else np.inf, default=None)
         if best:
             return _told_in_noise(best, of_two_runs)
-    if isinstance(as_given, Refusal):
-        return None, as_given.reason
-    return None, ON_THE_CIRCLE if _on_the_circle(as_given) else FORCED
+    if as_given:
+        reason = ON_THE_CIRCLE if _on_the_circle(as_given) else FORCED
+    return None, reason
 
 
 def _too_little(samples: FloatArray, rounding: float) -> str:
@@ -355,12 +355,13 @@ def kicked_responses(
     responses = np.full((steps + 1, len(SHARES)), np.nan)
     with np.errstate(all="ignore"):  # what diverges runs into infinity, and is cut off there
         for place, share in enumerate(SHARES):
-            up, down = start + share * change, start - share * change
+            states = [start + share * change, start - share * change]
             for k in range(steps + 1):
-                responses[k, place] = (float(constraint(up)) - float(constraint(down))) / 2
+                up, down = (float(constraint(each)) for each in states)
+                responses[k, place] = (up - down) / 2
                 if not np.isfinite(responses[k, place]):
                     break
-                up, down = np.asarray(step(up.copy())), np.asarray(step(down.copy()))
+                states = [np.asarray(step(each.copy())) for each in states]
     return responses
 
 

@@ -51,7 +51,6 @@ from bezstab.methods.determinants import (
     as_fraction,
     coefficient_rows,
     determinant,
-    in_field,
 )
 from bezstab.methods.scheme_motions import evaluation_errors, evaluation_times
 from bezstab.methods.schemes import Method
@@ -199,11 +198,8 @@ def turning_error(method: Method) -> LeadingTerm | None:
         off = evaluation_errors(step, power)
         if max(max(map(abs, pair)) for pair in off.values()) <= errors.rounding:
             continue
-        normal = {
-            result: in_field(position) * RING_BETA + in_field(velocity) * RING_ALPHA
-            for result, (position, velocity) in off.items()
-        }
-        across = {result: in_field(position) * RING_ALPHA for result, (position, _) in off.items()}
+        normal = {result: RING_BETA * position + RING_ALPHA * velocity for result, (position, velocity) in off.items()}
+        across = {result: RING_ALPHA * position for result, (position, _) in off.items()}
         by_normal, by_across = (
             errors.coefficient(_exponential_sum(_determinant(step, POSITION, forced), step), by_theta)
             for forced, by_theta in ((normal, 1), (across, 0))  # at theta^0 those along the normal cancel

@@ -259,10 +259,6 @@ def deadbeat_mu(pencil: MuPencil) -> ComplexArray:
 
 def all_inside(pencil: MuPencil, mu: ComplexArray, level: float | FloatArray) -> BoolArray:
     """Return whether every root z of pi(., mu) has |z| < level, by Schur's recursion; shape of mu, and of levels."""
-    size = np.ones_like(mu.real)
-    p = np.empty((len(pencil.table), *mu.shape), complex)
     with np.errstate(over="ignore", invalid="ignore"):  # far out, where nothing is inside
-        for row, coefficients in zip(p, pencil.table, strict=True):
-            np.multiply(horner(coefficients, mu), size, out=row)
-            size = size * level
-    return inside_circle(p)
+        coefficients = [np.full(mu.shape, horner(row, mu)) for row in pencil.table]
+    return inside_circle(coefficients, level)

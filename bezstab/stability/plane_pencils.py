@@ -73,8 +73,7 @@ class PlanePencil:
 
         False where an implicit step has no solution.
         """
-        coefficients = self.coefficients_at(alpha_hat, beta_hat)
-        return inside_circle(np.stack([c * level**k for k, c in enumerate(coefficients)]))
+        return inside_circle(self.coefficients_at(alpha_hat, beta_hat), level)
 
     def largest_poles(self, alpha_hat: FloatArray, beta_hat: FloatArray, shape: tuple[int, int]) -> ComplexArray:
         """Return the pole of largest modulus, Im >= 0, at each point of a grid of a shape, row by row; in a row.
