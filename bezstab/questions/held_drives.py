@@ -173,8 +173,8 @@ def held_answers(question: HeldQuestion) -> Iterator[HeldAnswer]:
             question=question,
             method=method,
             verdict=held_verdict(method.name, *point, question.timing),
-            z_abs=held_spectral_radius(method.name, *point, question.timing),
-            fresh_z_abs=held_spectral_radius(method.name, *point, Timing()),
+            z_abs=float(held_spectral_radius(method.name, *point, question.timing)),
+            fresh_z_abs=float(held_spectral_radius(method.name, *point, Timing())),
         )
 
 
