@@ -494,7 +494,7 @@ def verify(
     InputError for a scene that cannot start, and unless the points are given in one of the two ways.
     Source: opposite kicks and linear prediction (Prony).
     """
-    alpha_hat, beta_hat = np.broadcast_arrays(*_plane_arrays({**point, "h": h}))
+    alpha_hat, beta_hat = _plane_arrays({**point, "h": h})
     step = _real(h, "h")
     check_step(step)
     kicked = mechanism.compiled_mechanism(_scene(scene))
@@ -670,13 +670,5 @@ def _point_if_given(point: Mapping[str, Any], *, needed: bool = False) -> tuple[
 
 
 def _plane_arrays(point: Mapping[str, Any]) -> tuple[FloatArray, FloatArray]:
-    """Return the same as float64 arrays; InputError if their shapes do not fit each other."""
-    first, second = _plane_point(point, stability.real_array)
-    shapes = np.shape(first), np.shape(second)
-    try:
-        np.broadcast_shapes(*shapes)
-    except ValueError:
-        raise InputError(
-            f"shapes {shapes[0]} and {shapes[1]}: alpha and beta, or their hats, must broadcast, as numpy calls it"
-        ) from None
-    return first, second
+    """Return the same as float64 arrays, broadcast; InputError if their shapes do not fit each other."""
+    return stability.plane_arrays(*_plane_point(point, stability.real_array))

@@ -5,11 +5,11 @@ from typing import Any, TypeVar
 
 from bezstab import questions
 from bezstab.cli.command_group import NUMERICAL_TROUBLE
-from bezstab.cli.options import typed_options
+from bezstab.cli.options import TypedPoint, typed_options
 from bezstab.cli.output import for_reading, say, show_command, show_text, worked_out
 from bezstab.engines import Engine
 from bezstab.errors import NumericalError
-from bezstab.methods import Method
+from bezstab.methods import Method, lookup
 from bezstab.show import Row, motion_words, varying_words
 
 Asked = TypeVar("Asked")
@@ -30,8 +30,8 @@ def asked(kind: Callable[..., Asked], **typed: Any) -> Asked:
     if point:
         typed["point"] = point.at(typed["h"] or (typed.get("h_max") if typed.get("h_min") else None))
     question = kind(**typed)
-    if point and not point.physical:
-        say_if_units_were_mistaken(question)
+    if point and not typed.get("sequence"):  # which may be to let errors grow
+        say_if_units_were_mistaken(typed["methods"] if "methods" in typed else (typed["method"],), point)
     return question
 
 
@@ -108,9 +108,12 @@ def say_varying(answers: "Iterable[questions.Answer]") -> None:
                 show_command(line)
 
 
-def say_if_units_were_mistaken(question: Any) -> None:
-    """Say on standard error if the point of a question looks like alpha and beta in 1/s, and how to say that it is."""
-    if question.meant_in_seconds:
+def say_if_units_were_mistaken(methods: Sequence[Method], point: TypedPoint) -> None:
+    """Say on standard error if a point looks like alpha and beta in 1/s, and how to say that it is.
+
+    It does where none of the methods is stable; without any, where the method of most engines is not.
+    """
+    if not point.physical and questions.meant_in_seconds(methods or (lookup("SYM"),), point.numbers):
         needed = "" if "--h" in typed_options() else " and your --h"
         note = "--alpha and --beta were taken as α̂ and β̂, without unit; if they are in 1/s, add --physical"
         say(f"note: {note}{needed}")

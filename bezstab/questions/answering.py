@@ -8,12 +8,14 @@ for, and then kept:
                             └── faster, slower       what faster decay costs, and slower decay gains
 """
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
-from typing import TYPE_CHECKING, Literal, cast
+from typing import Literal, cast
 
+from bezstab import evidence
 from bezstab.engines import DRIVE_METHODS, Curve, Engine, Point
 from bezstab.errors import InputError, NumericalError
 from bezstab.goals import UP_TO_LONGEST, Goal
@@ -29,15 +31,12 @@ from bezstab.stability import (
     choose_at_step,
     describe_point,
     feedback_cost,
-    gain_limits,
+    gain_factors,
     largest_stable_step,
     stable_up_to,
     varying_steps,
 )
 from bezstab.units import alpha_and_beta
-
-if TYPE_CHECKING:
-    from bezstab.evidence import MovingPole
 
 CheckedRole = Literal["given", "instead"]
 Role = Literal[CheckedRole, "chosen"]
@@ -126,14 +125,12 @@ class Answer(Choice):
         return None if self.margins is None or self.h is None else self.margins.h * self.h
 
     @cached_property
-    def moving(self) -> "MovingPole | None":
+    def moving(self) -> "evidence.MovingPole | None":
         """How the motion of the scene changes the poles."""
-        if self.question.turning is None or self.question.h is None:
+        if self.question.turning is None or self.h is None:
             return None
-        from bezstab.evidence import moving_poles
-
-        turning, h = self.question.turning, float(self.question.h)
-        (pole,) = moving_poles(self.method, turning, h, self.alpha_hat, self.beta_hat)
+        turning = self.question.turning
+        (pole,) = evidence.moving_poles(self.method, turning, self.h, self.alpha_hat, self.beta_hat)
         return pole
 
     @cached_property
@@ -220,18 +217,19 @@ class Answer(Choice):
         drive, h = self.question.drive, self.question.h
         if drive is None or h is None:
             return None
-        limits = gain_limits(self)
-        kp, kd = drive.gains(self.alpha_hat, self.beta_hat, float(h))
-        if self.role == "given":
-            kp, kd = float(drive.kp), float(drive.kd)
-        kp_of_one, kd_of_one = drive.gains(1.0, 1.0, float(h))
+        kp, kd = (drive.kp, drive.kd) if self.role == "given" else drive.gains(self.alpha_hat, self.beta_hat, float(h))
+        kd_factor, kp_factor = gain_factors(self)
+        factors: dict[Gain, float | None] = {"kd": kd_factor, "kp": kp_factor}
+        # the distance is the ratio of the gain and its limit, whichever is larger
+        ratios = {gain: max(each, 1 / each) for gain, each in factors.items() if each and math.isfinite(each)}
+        nearest_first = sorted(ratios, key=lambda gain: ratios[gain])
         return Gains(
             applied=DRIVE_METHODS.get(self.method.name),
-            kp=kp,
-            kd=kd,
-            kp_max=None if limits.beta_hat is None else limits.beta_hat * kp_of_one,
-            kd_max=None if limits.alpha_hat is None else limits.alpha_hat * kd_of_one,
-            used_up=None if limits.nearest is None else "kd" if limits.nearest == "alpha_hat" else "kp",
+            kp=float(kp),
+            kd=float(kd),
+            kp_max=None if kp_factor is None else kp_factor * float(kp),
+            kd_max=None if kd_factor is None else kd_factor * float(kd),
+            used_up=nearest_first[0] if nearest_first else None,
         )
 
     @cached_property
@@ -341,9 +339,7 @@ def _chosen_alone(
     longest = question.h_max if question.goal else None
     modulus: Modulus | None = None
     if question.turning and question.h:
-        from bezstab.evidence import moving_modulus
-
-        modulus = moving_modulus(method, question.turning, float(longest or question.h))
+        modulus = evidence.moving_modulus(method, question.turning, float(longest or question.h))
     choice = choose_at_step(
         method,
         goal,

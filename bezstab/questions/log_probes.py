@@ -24,15 +24,10 @@ from bezstab.evidence import (
     time_column,
 )
 from bezstab.methods import REGISTRY, Method, lookup
-from bezstab.questions.points import meant_in_seconds
 from bezstab.stability import FloatArray
 
 SAME_STEP = 1e-3
 """The times between rows of two runs may differ by this share, as times in logs are rounded."""
-
-
-USUAL = "SYM"
-"""The method of most engines."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -71,11 +66,6 @@ class PoleQuestion:
             raise InputError(f"{apart}: expected a multiple of the step, --h {self.h:g}")
         if self.every is not None and round(row / self.h) != self.every:
             raise InputError(f"--every {self.every}: {apart}, {row / self.h:.4g} times --h {self.h:g}")
-
-    @property
-    def meant_in_seconds(self) -> bool:
-        """Whether the point looks like alpha and beta in 1/s: for the methods, without any for what engines have."""
-        return meant_in_seconds(self.methods or (lookup(USUAL),), self.point)
 
     @cached_property
     def groups(self) -> list[list[int]]:

@@ -14,7 +14,7 @@ from bezstab.mechanism import Scene, TurningNormals
 from bezstab.methods import Method, check_one_step, lookup
 from bezstab.questions.chains import SweptConstraints, check_sweeps, constraints_of, constraints_of_chain
 from bezstab.questions.motions import ReferenceMotion, check_speed, motion_of, turn_too_far, turning_of
-from bezstab.questions.points import engine_holds, meant_in_seconds
+from bezstab.questions.points import engine_holds
 from bezstab.units import check_step
 
 WHICH_METHOD = (
@@ -142,11 +142,6 @@ class Question:
         assert self.point
         return Applied(self.point, None)
 
-    @property
-    def meant_in_seconds(self) -> bool:
-        """Whether the point looks like alpha and beta in 1/s."""
-        return meant_in_seconds(self.methods, self.point)
-
     @cached_property
     def steps(self) -> StepRange | None:
         """The range that h_min begins, up to h_max, by default h; None without h_min. InputError unless it is one."""
@@ -205,18 +200,17 @@ def methods_for(methods: tuple[Method, ...], engine: Engine | None, drive: Drive
 
     InputError where there are none, and for another method than its own with an engine whose steps are of one alone.
     """
-    if not methods and engine and engine.method is None:
+    if engine and not (methods or engine.method):
         raise InputError(f"{engine.name} has no integrator of its own: name yours with --method")
-    if not methods and engine and engine.method:
-        return (lookup(engine.method),)
-    if not methods and drive:
-        return tuple(map(lookup, DRIVE_METHODS))
+    own = engine.method if engine else None
+    if not methods:
+        names = [own] if own else DRIVE_METHODS if drive else []
+        methods = tuple(map(lookup, names))
     if not methods:
         raise InputError(WHICH_METHOD)
-    if engine and engine.level != "acceleration" and [method.name for method in methods] != [engine.method]:
+    if engine and engine.level != "acceleration" and [method.name for method in methods] != [own]:
         raise InputError(
-            f"{engine.name} works at {engine.level} level: its steps are those of {engine.method}, only with --method "
-            f"{engine.method}"
+            f"{engine.name} works at {engine.level} level: its steps are those of {own}, only with --method {own}"
         )
     return methods
 
