@@ -108,13 +108,13 @@ class Engine:
         """
         self._check(values)
         if as_typed or self.apply is None:
-            return Applied(self._within_range(self.read(h, *values)), None if as_typed else ())
-        made = self.apply(h, *values)
-        return Applied(
-            self._within_range(made.point),
-            made.notes,
-            tuple((label, self._within_range(point)) for label, point in made.also),
-        )
+            made = Applied(self.read(h, *values), None if as_typed else ())
+        else:
+            made = self.apply(h, *values)
+        for alpha_hat, beta_hat in made.points:
+            within_float64(alpha_hat, f"--engine {self.name}: α̂")
+            within_float64(beta_hat, f"--engine {self.name}: β̂")
+        return made
 
     def values(self, point: Point, h: Fraction) -> tuple[str, ...]:
         """Return the values that mean a point, as they are typed, h in s; InputError where there are none.
@@ -123,9 +123,9 @@ class Engine:
         """
         try:
             values = self.write(point, h)
-            back = self.applied(tuple(map(rational, values)), h)
-            apart = max(abs(read - asked) - READ_BACK * asked for read, asked in zip(back.point, point, strict=True))
-            reached = min(point) >= 0 and apart <= READ_BACK and not (back.notes or back.also)
+            back = self.applied(tuple(map(rational, values)), h).point
+            apart = max(abs(read - asked) - READ_BACK * asked for read, asked in zip(back, point, strict=True))
+            reached = min(point) >= 0 and apart <= READ_BACK
         except (ArithmeticError, ValueError):  # the formula leaves the real numbers, or the range of float64
             reached = False
         if not reached:
@@ -157,11 +157,6 @@ class Engine:
             if (value < 0 and name in self.from_zero) or (value <= 0 and name in self.above_zero):
                 expected = "0 or more" if name in self.from_zero else "above 0"
                 raise InputError(f"{option}: {name} = {float(value):g}: expected {expected}")
-
-    def _within_range(self, point: Point) -> Point:
-        alpha_hat, beta_hat = point
-        option = f"--engine {self.name}"
-        return within_float64(alpha_hat, f"{option}: α̂"), within_float64(beta_hat, f"{option}: β̂")
 
 
 def engine_without_parameters(point: Point, **facts: Any) -> Engine:

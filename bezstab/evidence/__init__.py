@@ -21,7 +21,6 @@ if TYPE_CHECKING:
         measured_runs,
         pareto_front,
         reference_motion,
-        sweep_compiled,
         swept_runs,
     )
     from bezstab.evidence.chunk_stores import Arrays, chunk_store

@@ -20,10 +20,9 @@ from bezstab.mechanism import (
     energy_balance,
     motion_over,
     observe,
-    runs_compiled,
     simulate,
 )
-from bezstab.methods import Method, evaluations, steps
+from bezstab.methods import Method, steps
 from bezstab.rationals import exact
 from bezstab.stabilising import NOTHING, AfterStep, Stabilise, held_by
 from bezstab.stability import choose, spectral_radius
@@ -68,15 +67,16 @@ def reference_motion(scene: Scene, h: float, duration: float) -> ReferenceMotion
     step, its interpolation included. InputError for a scene that cannot start, NumericalError if the run fails.
     Duration in s.
     """
-    best: ReferenceMotion | None = None
-    for halving in range(1, HALVINGS + 2):
-        along = motion_over(compiled_mechanism(scene), duration, round(duration / h * 2**halving))
-        error = np.inf if best is None else float(np.abs(best.along.at(along.t)[0] - along.q).max())
-        fine = ReferenceMotion(along, error)
-        if best is not None and error > best.error / ROUNDED:
+    halved = (
+        motion_over(compiled_mechanism(scene), duration, round(duration / h * 2**halving))
+        for halving in range(1, HALVINGS + 2)
+    )
+    best = ReferenceMotion(next(halved), np.inf)
+    for along in halved:
+        fine = ReferenceMotion(along, float(np.abs(best.along.at(along.t)[0] - along.q).max()))
+        if fine.error > best.error / ROUNDED:
             return min(best, fine, key=lambda motion: motion.error)
         best = fine
-    assert best
     return best
 
 
@@ -190,18 +190,6 @@ class SweptRuns:
         return [
             " ".join(letter for letter, front in fronts.items() if index in front) for index in range(len(self.runs))
         ]
-
-
-def sweep_compiled(methods: Sequence[Method], step_sizes: Sequence[float], duration: float, repeats: int) -> bool:
-    """Return whether the runs of a sweep are compiled: all or none, so that their times can be compared.
-
-    `runs_compiled` says so for each method's runs together, step sizes and duration in s. By default none are where one
-    is not. InputError as `runs_compiled`.
-    """
-    user_steps = repeats * sum(duration / h for h in step_sizes)
-    return all(
-        runs_compiled(round(user_steps / float(method.step_multiple)) * evaluations(method)) for method in methods
-    )
 
 
 def measured_runs(sweep: Sweep) -> dict[str, NDArray[np.generic]]:

@@ -57,15 +57,15 @@ def completed_chunks(
 def worker_pool(count: int | None = None, scheduler: str | None = None) -> Iterator[Executor]:
     """Give an executor: `count` processes (by default one for each core), or the Dask cluster at tcp://host:port.
 
-    Processes are ended at once when the context is left, whatever they do. InputError without Dask or without an
-    answer; NumericalError if a process is lost, or if a chunk loses so many workers of a cluster that Dask gives it up.
+    All processes that this one has started are ended at once when the context is left, whatever they do. InputError
+    without Dask or without an answer; NumericalError if a process is lost, or if a chunk loses so many workers of a
+    cluster that Dask gives it up.
     """
     if scheduler is None:
         _start_helper()
-        others = set(multiprocessing.active_children())
 
         def end_processes() -> None:
-            for process in set(multiprocessing.active_children()) - others:
+            for process in multiprocessing.active_children():
                 process.kill()
 
         spawn = multiprocessing.get_context("spawn")  # a fork while an executor's threads run may never wake up

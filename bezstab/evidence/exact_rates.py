@@ -145,11 +145,6 @@ class OwnMotions:
     rates: FloatArray
     states: FloatArray
 
-    @property
-    def there(self) -> BoolArray:
-        """Where a motion is found; shape (points,)."""
-        return np.asarray(np.isfinite(self.states).all(axis=(0, 2, 3)))
-
 
 def find_own_motions(
     mechanism: Mechanism, method: Method, h: float, alpha_hat: FloatArray, beta_hat: FloatArray, duration: float
@@ -163,13 +158,10 @@ def find_own_motions(
     """
     course = course_of_steps(mechanism, method, h, duration)
     gains = course.gains(alpha_hat, beta_hat)
-    rates = np.full(alpha_hat.size, np.nan)
+    rates = rates_on_the_motion(course, gains)
     states = np.full((course.steps, alpha_hat.size, 2, mechanism.size), np.nan)
     if course.along.closed:
         _find_motions(course, gains, rates, states)
-    lost = np.isnan(rates)
-    if lost.any():
-        rates[lost] = rates_on_the_motion(course, gains[:, lost])
     return OwnMotions(course, gains, rates, states)
 
 
@@ -219,10 +211,8 @@ def _find_motions(course: Course, gains: FloatArray, rates: FloatArray, states: 
 def _closing(around: Revolution, missing: FloatArray) -> FloatArray:
     """Return d with d = Q d + what is missing, of its shape; no numbers where there is none, or more than one."""
     closing = np.eye(around.product.shape[1]) - around.product * np.exp(around.log_scale)[:, np.newaxis, np.newaxis]
-    usable = np.linalg.det(closing) != 0
-    correction = np.full(closing.shape[:2], np.nan)
-    correction[usable] = np.linalg.solve(closing[usable], missing.reshape(*closing.shape[:2], 1)[usable])[:, :, 0]
-    return correction.reshape(missing.shape)
+    closing[~(np.abs(np.linalg.det(closing)) > 0)] = np.nan
+    return np.asarray(np.linalg.solve(closing, missing.reshape(*closing.shape[:2], 1)).reshape(missing.shape))
 
 
 def _rescaled(changes: FloatArray) -> FloatArray:

@@ -35,7 +35,7 @@ def rates_of_kicked_revolutions(motions: OwnMotions) -> FloatArray:
     nearly lost in rounding.
     """
     rates, course = np.full(motions.rates.size, np.nan), motions.course
-    there = np.flatnonzero(motions.there)
+    there = np.flatnonzero(np.isfinite(motions.states).all(axis=(0, 2, 3)))
     known = 1 + steps_before_a_kick(course.method)
     if known > course.steps or not there.size:
         return rates
@@ -45,8 +45,8 @@ def rates_of_kicked_revolutions(motions: OwnMotions) -> FloatArray:
             following &= _in_range(before) & _in_range(after)
             if not following.any():
                 break
-            for point in np.flatnonzero(following):
-                rates[there[point]] = _largest_multiplier(before[point], after[point]) ** (1 / course.steps)
+            multipliers = _largest_multipliers(before[following], after[following])
+            rates[there[following]] = multipliers ** (1 / course.steps)
     return rates
 
 
@@ -56,12 +56,10 @@ def _in_range(differences: FloatArray) -> BoolArray:
     return np.asarray((largest > SMALLEST) & (largest < LARGEST))
 
 
-def _largest_multiplier(before: FloatArray, after: FloatArray) -> float:
+def _largest_multipliers(before: FloatArray, after: FloatArray) -> FloatArray:
     """Return the largest |eigenvalue| of A in after = A before, on what of `before` stands out of its rounding."""
-    directions, sizes, shares = np.linalg.svd(before)
-    kept = sizes > DIRECTION
-    mapped = directions[:, kept].T @ after @ shares[kept].T / sizes[kept]
-    return float(np.abs(np.linalg.eigvals(mapped)).max())
+    lost = DIRECTION / np.linalg.norm(before, 2, axis=(1, 2))
+    return np.asarray(np.abs(np.linalg.eigvals(after @ np.linalg.pinv(before, lost))).max(axis=1))
 
 
 def _differences(motions: OwnMotions, there: NDArray[np.intp], known: int) -> Iterator[FloatArray]:

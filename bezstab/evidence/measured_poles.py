@@ -248,20 +248,17 @@ def _kicked_responses(
     mechanism: Mechanism, method: Method, h: float, alpha_hat: FloatArray, beta_hat: FloatArray, progress: Progress
 ) -> tuple[FloatArray, FloatArray]:
     """Return half the difference of c_1 after kicks up and down, and the largest |c|; shape (steps, kicks, points)."""
-    shape = (RUN + 1, len(KICKS), alpha_hat.size)
-    difference, size = np.zeros(shape), np.full(shape, np.inf)
+    differences, sizes = [], []
     seen = iter(progress(range(RUN + 1)))
-    compiled = runs_compiled(size.size * 2 * evaluations(method), together=True)
+    compiled = runs_compiled(2 * len(KICKS) * (RUN + 1) * alpha_hat.size * evaluations(method), together=True)
     with np.errstate(all="ignore"):  # what diverges runs into infinity, and is cut off there
-        k = 0
         for c, _ in kicked_motions(mechanism, method, h, alpha_hat, beta_hat, KICKS, RUN, compiled):
-            steps_of_block = slice(k, k + len(c))
-            difference[steps_of_block] = (c[:, 0, 0] - c[:, 0, 1]) / 2
-            size[steps_of_block] = np.abs(c).max(axis=(1, 2))
-            k += len(c)
+            differences.append((c[:, 0, 0] - c[:, 0, 1]) / 2)
+            sizes.append(np.abs(c).max(axis=(1, 2)))
             deque(islice(seen, len(c)), maxlen=0)
+    size = np.concatenate(sizes)
     size[~np.isfinite(size)] = np.inf
-    return difference, size
+    return np.concatenate(differences), size
 
 
 def _measured_pole(

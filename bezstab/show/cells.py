@@ -2,18 +2,12 @@
 
 from decimal import ROUND_FLOOR, Context
 
-from bezstab.show.fields import MISSING, Row, Text, formatted
+from bezstab.show.fields import MISSING, Row, formatted
 
 MOST_FIXED = 1e6  # a modulus from here on is shown with an exponent
 
 LIMITS = ("alpha_hat_min", "alpha_hat_max", "beta_hat_min", "beta_hat_max")
 """The ends of a region's ranges, as rows name them."""
-
-ENDS = ("area", *LIMITS)
-"""What an unbounded region lacks."""
-
-WITHOUT_LIMIT = {"critical_damping_limit": "unlimited", "unconditional_damping_ratio": "none"}
-"""What is said where all steps are stable, or only those that are small enough."""
 
 
 def pole_text(row: Row) -> str:
@@ -31,31 +25,21 @@ def modulus_words(modulus: float) -> str:
     return formatted(modulus, ".6e" if modulus >= MOST_FIXED else ".6f")
 
 
-def any_step(row: Row) -> str:
-    """Return what is said of the step where it has no largest factor: any where no end is, none where no step is."""
-    return {None: MISSING, "diverges": "none"}.get(row["verdict"], "any")
+def any_or_none(row: Row) -> str:
+    """Return what is said of a factor or a gain that has no limit: any, or that none helps where nothing is stable."""
+    if row.get("margins_reason"):
+        return MISSING
+    return {"converges": "any", None: MISSING}.get(row["verdict"], "none helps")
+
+
+def unbounded(row: Row) -> str:
+    """Return what is said of a region's area or of an end that it does not have: unbounded, unless it is empty."""
+    return MISSING if row.get("bounded", True) else "unbounded"
 
 
 def any_speed(row: Row) -> str:
     """Return what is said of a mechanism's speed where it has no limit: any, where it does not turn."""
     return "any" if row["moving_verdict"] == "converges" else MISSING
-
-
-def any_gain(row: Row) -> str:
-    """Return what is said of a gain that has no limit: any, or that none helps."""
-    return "any" if row["verdict"] == "converges" else "none helps"
-
-
-def range_text(gain: str) -> Text:
-    """Return the text of the factors by which a gain may be scaled: 0.45 to 1.6; without an upper end, to any."""
-
-    def text(row: Row) -> str:
-        low, high = row[f"{gain}_factor_min"], row[f"{gain}_factor_max"]
-        if low is None:
-            return MISSING
-        return f"{low:.3g} to any" if high is None else f"{low:.3g} to {high:.3g}"
-
-    return text
 
 
 def step_limit(row: Row) -> float | None:
@@ -84,35 +68,6 @@ def used_up_text(row: Row) -> str:
     return f"{gain} {100 * value / limit:.0f} %"
 
 
-def unbounded_text(key: str, form: str) -> Text:
-    """Return the text of a region's area or of a limit: in words where there is none.
-
-    A limit that the region only comes near, far out, is called "approached".
-    """
-
-    def text(row: Row) -> str:
-        value = row[key]
-        if value is None:
-            return "unbounded" if key in ENDS and not row.get("bounded", True) else WITHOUT_LIMIT.get(key, MISSING)
-        near = key in (row.get("approached") or "").split(", ")
-        return f"{value:.8g} (approached)" if near else formatted(value, form)
-
-    return text
-
-
-def stable_steps_text(row: Row) -> str:
-    """Return up to which beta h all steps are stable at alpha = beta, and what all of them need."""
-    ratio, limit = row["unconditional_damping_ratio"], row["critical_damping_limit"]
-    if limit is not None:
-        exact = row["critical_damping_limit_exact"]
-        return f"{limit:.6g} = {exact}" if exact and "/" in exact else f"{limit:.6g}"
-    if row["stable_for_all"] == "proven":
-        return "all (proven for any α, β)"
-    if ratio is None:
-        return "all"
-    return f"all, as from α/β = {ratio:.6g}" if ratio else "all (no unstable α, β found)"
-
-
 def order_text(row: Row) -> str:
     """Return the order of accuracy, with that for forces of position alone in parentheses if it is another."""
     order = row["order"]
@@ -123,11 +78,6 @@ def order_text(row: Row) -> str:
 def constant_text(row: Row) -> str:
     """Return the error constant as a rational, or as a decimal where it is none."""
     return row.get("error_constant_exact") or formatted(row["error_constant"], ".10g")
-
-
-def milliseconds_text(row: Row) -> str:
-    """Return median and range of the processor time of a run: 3.27 (3.24 to 3.41)."""
-    return f"{1e3 * row['seconds']:.3g} ({1e3 * row['seconds_min']:.3g} to {1e3 * row['seconds_max']:.3g})"
 
 
 def safe_step_text(row: Row) -> str:

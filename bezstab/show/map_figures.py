@@ -40,9 +40,6 @@ from bezstab.show.style import (
 )
 from bezstab.stability import ComplexArray, FloatArray, FrontPoint, Limit, Member, Region
 
-THINNEST, STEP_OF_WIDTH, WIDEST = 0.9, 0.15, 1.8
-"""Points: lines grow thinner from the first to the last, so that of those that coincide all show."""
-
 EDGE_LINES = 0.015  # of the axes' sides: so far apart are the arrows of regions that go on beyond the same edge
 ALONG_AN_EDGE, ARROWS = 121, 5
 """Points along an edge of the axes, and how many of them are arrows."""
@@ -113,10 +110,10 @@ def region_figure(answer: MapAnswer, z: ComplexArray) -> Figure:
         for number, (speed, of_speed) in enumerate(moving.items()):
             label = "its own speed" if speed == 1 else f"{speed:g} times its own speed"
             x, y = plane_coordinates(of_speed.alpha_hat, of_speed.beta_hat, h)
-            _level_line(axes, x, y, of_speed.growth, 0.0, label, DASHES[(number + 1) % 4])
             if number == 0 and of_speed.outside_the_law.any():
                 axes.contourf(x, y, of_speed.outside_the_law, levels=[0.5, 1.5], colors="none", hatches=["....."])
                 axes.add_patch(Rectangle((0, 0), 0, 0, fill=False, hatch=".....", label="law does not hold"))  # a key
+            _level_line(axes, x, y, of_speed.growth, 0.0, label, DASHES[(number + 1) % 4])
         _draw_points(answer, axes)
         _draw_open_edges(region, axes, h, color="white", markeredgecolor="black")
         if question.alpha_beta:
@@ -228,15 +225,11 @@ def comparison_figure(question: MapQuestion) -> Figure:
     with styled():
         figure, axes = plane_axes(rf"$|z_p| = {regions[0].level:g}$", h)
         for place, region in enumerate(regions):
-            width = min(WIDEST, THINNEST + STEP_OF_WIDTH * (len(regions) - 1 - place))  # the last lies on top
-            plot.region(region, axes, h, linewidth=width, **line_at(place))
-        nowhere = (np.nan, np.nan)
-        across, up = (np.array(ends or nowhere, float) for ends in (question.alpha_range, question.beta_range))
-        x, y = plane_coordinates(across, up, h)
+            plot.region(region, axes, h, **line_at(place))  # of those that coincide all show between dashes
         if question.alpha_range:
-            axes.set_xlim(*x)
+            axes.set_xlim(*plane_coordinates(np.array(question.alpha_range, float), np.zeros(2), h)[0])
         if question.beta_range:
-            axes.set_ylim(*y)
+            axes.set_ylim(*plane_coordinates(np.zeros(2), np.array(question.beta_range, float), h)[1])
         for place, region in enumerate(regions):
             _draw_open_edges(region, axes, h, inset=EDGE_LINES * (place + 1), **line_at(place))
         if question.alpha_beta:

@@ -151,4 +151,5 @@ def chain_sentence(row: Row) -> str:
     heavier = "" if row["chain_mass_ratio"] == 1 else f", the last {row['chain_mass_ratio']:g} times as heavy"
     own = counted(row["swept_iterations"], "sweep")
     bodies = counted(row["chain_bodies"], "body", "bodies")
-    return f"{bodies}{heavier}: stable {enough}. With {own} each step multiplies the error by {z_abs:.4f}."
+    change = change_words(z_abs, "converges" if z_abs < 1 else "diverges")
+    return f"{bodies}{heavier}: stable {enough}. With {own} {change}."

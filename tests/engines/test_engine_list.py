@@ -145,15 +145,6 @@ def test_what_has_a_limit_turns_there(name: str, last: str) -> None:
     assert inside < 1 < outside
 
 
-@pytest.mark.parametrize("name", [name for name, engine in ENGINES.items() if engine.method == "implicit-euler"])
-@settings(max_examples=10, deadline=None)
-@given(st.data())
-def test_what_is_solved_implicitly_is_always_stable(name: str, data: st.DataObject) -> None:
-    engine, h = ENGINES[name], Fraction(data.draw(H))
-    alpha_hat, beta_hat = map(float, engine.point(data.draw(likely_values(engine)), h))
-    assert spectral_radius(lookup("implicit-euler"), alpha_hat, beta_hat) < 1
-
-
 @pytest.mark.parametrize("name", ENGINES)
 def test_an_engine_says_where_its_formula_is_from_and_what_it_leaves_out(name: str) -> None:
     engine = ENGINES[name]

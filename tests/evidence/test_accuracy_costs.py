@@ -14,7 +14,6 @@ from bezstab.evidence import (
     pareto_front,
     reference_motion,
     summary,
-    sweep_compiled,
 )
 from bezstab.evidence.sweep_summaries import cost_for
 from bezstab.mechanism import load_scene
@@ -115,20 +114,6 @@ def test_a_sweep_knows_its_fronts(against: Cost) -> None:
         front, points = whole.front(of), [(run.cost(against), run.error(of)) for run in runs]
         assert {points[index] for index in front} == undominated(points)
         assert [index for index, label in enumerate(whole.front_labels) if letter in label] == sorted(front)
-
-
-def test_all_runs_of_a_sweep_are_compiled_or_none(monkeypatch: pytest.MonkeyPatch) -> None:
-    fast, implicit = lookup("AB2"), lookup("bdf2")
-    for choice, methods, least_step, expected in (
-        ("auto", [fast], 1e-3, False),
-        ("auto", [fast], 1e-5, True),
-        ("auto", [fast, implicit], 1e-4, False),
-        ("auto", [fast, implicit], 1e-5, True),
-        ("yes", [fast], 1e-3, True),
-        ("no", [fast], 1e-5, False),
-    ):
-        monkeypatch.setenv("BEZSTAB_COMPILED", choice)
-        assert sweep_compiled(methods, (1e-3, least_step), 1.0, 3) is expected
 
 
 points_of_a_sweep = st.lists(st.tuples(st.floats(1, 9), st.one_of(st.none(), st.floats(1, 9))))

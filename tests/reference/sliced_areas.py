@@ -176,12 +176,26 @@ def proven_turning_points(
 def chebyshev_zeros(series: FloatArray) -> FloatArray:
     """Return the real parts of the zeros of Chebyshev series, one a row, a row each; inf where one has fewer.
 
-    Coefficients that are rounding alone are not taken for a degree.
+    They are the eigenvalues of the series' companion matrix in its symmetric scaling (numpy's chebcompanion), for all
+    series of one degree at once. Coefficients that are rounding alone are not taken for a degree.
     """
-    zeros = np.full((len(series), series.shape[1] - 1), np.inf)
-    for row, c in zip(zeros, series, strict=True):
-        found = chebyshev.chebroots(chebyshev.chebtrim(c, 10 * EPS * np.abs(c).max()))
-        row[: len(found)] = found.real
+    rows, most = len(series), series.shape[1] - 1
+    zeros = np.full((rows, most), np.inf)
+    counts = np.abs(series) > 10 * EPS * np.abs(series).max(axis=1, keepdims=True)
+    degrees = most - np.argmax(counts[:, ::-1], axis=1)
+    for degree in set(degrees[counts.any(axis=1)].tolist()) - {0}:
+        own = degrees == degree
+        c = series[own, : degree + 1]
+        if degree == 1:
+            zeros[own, 0] = -c[:, 0] / c[:, 1]
+            continue
+        scale = np.full(degree, np.sqrt(0.5))
+        scale[0] = 1.0
+        beside = np.full(degree - 1, 0.5)
+        beside[0] = np.sqrt(0.5)
+        companion = np.tile(np.diag(beside, 1) + np.diag(beside, -1), (len(c), 1, 1))
+        companion[:, :, -1] -= c[:, :-1] / c[:, -1:] * (scale / scale[-1]) * 0.5
+        zeros[own, :degree] = np.linalg.eigvals(companion[:, ::-1, ::-1]).real  # turned round: fewer roundings
     return zeros
 
 
