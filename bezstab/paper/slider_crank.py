@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from bezstab.mechanism import (
     Scene,
-    acceleration_function,
+    accelerations,
     compiled_mechanism,
     constraint_errors,
     equations_of_motion,
@@ -270,12 +270,12 @@ def unique_accelerations(terms: Terms) -> Finding:
 
 def constraint_accelerations(terms: Terms, q: FloatArray, v: FloatArray) -> Finding:
     """Return what c̈ = C_q q̈ - γ is at a state off the constraints: with no gains 0, with some what Eq. 6 asks for."""
-    acceleration = acceleration_function(compiled_mechanism(load_scene("slider_crank")), np)
+    mechanism = compiled_mechanism(load_scene("slider_crank"))
     c, cdot = terms.constraints, terms.jacobian @ v
     errors = []
     for two_alpha, beta_squared in ((0.0, 0.0), GAINS):
         asked = -two_alpha * cdot - beta_squared * c
-        qddot = np.array(acceleration(0.0, two_alpha, beta_squared, q, v))
+        qddot = accelerations(mechanism, 0.0, two_alpha, beta_squared, q, v)
         largest_term = max(1.0, np.abs(asked).max(), np.abs(qddot).max())
         errors.append(float(np.abs(terms.jacobian @ qddot - terms.gamma - asked).max() / largest_term))
     free, stabilised = (error < SAME for error in errors)
@@ -300,7 +300,7 @@ def derivatives_of_the_constraints(scene: Scene) -> Finding:
     """
     mechanism = compiled_mechanism(scene)
     q, v = initial_state(mechanism)
-    qddot = np.array(acceleration_function(mechanism, np)(0.0, 0.0, 0.0, q, v))
+    qddot = accelerations(mechanism, 0.0, 0.0, 0.0, q, v)
     before, now, after = (
         constraint_errors(mechanism, t, list(q + v * t + qddot * t**2 / 2)) for t in (-DIFFERENCE, 0.0, DIFFERENCE)
     )
