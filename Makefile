@@ -15,6 +15,8 @@ OF_MILLISECONDS := --h 0.0008 --h 0.0016 --h 0.0032 --h 0.005 --h 0.008 --h 0.01
 BOTH_KINDS := --method B4 --method AB4 --method ABM4 --method SYM --method verlet-half --method bdf2 --method RK4 \
     --method dopri5
 
+MUTANTS := $(or $(TMPDIR),/tmp)/bezstab-mutants
+
 .PHONY: region figures pages times test quick test-slow test-oldest witnesses mutants campaign extremes lint bench clean
 
 region: .venv/installed  ## draw where B4 is stable, into this directory
@@ -67,9 +69,18 @@ witnesses: .venv/tested  ## engines that are not ours, run: PyBullet, pymunk, Bo
 	$(BIN)/pip install --quiet --editable '.[witnesses]'
 	$(BIN)/python -m pytest tests/witnesses tests/evidence/test_mujoco_witness.py
 
-mutants: .venv/tested  ## are the tests able to fail? hours; results stay in a temporary folder, so that it goes on
+# the tree is copied, so that what is interrupted leaves no wrong version behind
+mutants: export PATH := $(CURDIR)/$(BIN):$(PATH)
+mutants: export PYTHONPATH := .
+mutants: .venv/tested  ## are the tests able to fail? wrong versions of a file, in hours: make mutants OF=bezstab/units.py
 	$(BIN)/pip install --quiet --editable '.[mutants]'
-	$(BIN)/python -m tests.mutation.campaign --count 200 --seed 1
+	rm -rf $(MUTANTS) && mkdir -p $(MUTANTS)
+	cp -r bezstab configs tests figures pyproject.toml README.md Makefile $(MUTANTS)
+	sed 's,"OF","$(OF)",' tests/mutants.toml > $(MUTANTS)/mutants.toml
+	cd $(MUTANTS) && python -m pytest -q -m "not slow" --testmon --hypothesis-seed 1
+	cd $(MUTANTS) && cosmic-ray init mutants.toml session.sqlite && cr-filter-operators session.sqlite mutants.toml
+	cd $(MUTANTS) && cosmic-ray exec mutants.toml session.sqlite
+	cd $(MUTANTS) && cr-report --surviving-only --show-diff session.sqlite
 
 extremes: .venv/installed  ## what holds at the extremes, in minutes; the tests run the short form
 	$(BIN)/bezstab extremes

@@ -70,6 +70,8 @@ class AboutFeedback(TypedDict, total=False):
 
 
 Function = TypeVar("Function", bound=Callable[..., Any])
+Asked = TypeVar("Asked")
+Judged = TypeVar("Judged", questions.Answer, questions.HeldAnswer)
 
 
 def _spelled_out(function: Function) -> Function:
@@ -82,6 +84,20 @@ def _spelled_out(function: Function) -> Function:
         others.append(inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=usual))
     function.__signature__ = signature.replace(parameters=others)  # type: ignore[attr-defined]
     return function
+
+
+@contextmanager
+def _in_keywords() -> Iterator[None]:
+    """Turn the options that an InputError names (--h-max) into the keywords of a function (h_max)."""
+    try:
+        yield
+    except InputError as error:
+        raise InputError(re.sub(r"--([a-z]+(?:-[a-z]+)*)", _keyword, str(error))) from None
+
+
+def _keyword(option: re.Match[str]) -> str:
+    """Return the keyword for what an option is about."""
+    return {"time": "duration", "filter": "filter_seconds"}.get(option[1], option[1].replace("-", "_"))
 
 
 def method(name: str | Method) -> Method:
@@ -131,8 +147,7 @@ def poles(method: str | Method, **point: Unpack[PointAtStep[ArrayLike]]) -> Comp
     InputError unless the point is given in one of the two ways. NumericalError if a pole leaves the
     range of float64. Source: the roots of paper Eq. 17.
     """
-    a, b = _plane_arrays(point)
-    return stability.poles(_method(method), a, b)
+    return stability.poles(_method(method), *_plane_arrays(point))
 
 
 @_spelled_out
@@ -147,8 +162,7 @@ def dominant_pole(method: str | Method, **point: Unpack[PointAtStep[ArrayLike]])
 
     Errors as for `poles`. Source: the paper's section 4.
     """
-    a, b = _plane_arrays(point)
-    return stability.dominant_pole(_method(method), a, b)
+    return stability.dominant_pole(_method(method), *_plane_arrays(point))
 
 
 @_spelled_out
@@ -163,8 +177,7 @@ def spectral_radius(method: str | Method, **point: Unpack[PointAtStep[ArrayLike]
     Errors as for `poles`. Close to 1 rounding may decide: `verdict` is exact. Source: the paper's Figs.
     1 to 3.
     """
-    a, b = _plane_arrays(point)
-    return stability.spectral_radius(_method(method), a, b)
+    return stability.spectral_radius(_method(method), *_plane_arrays(point))
 
 
 @_spelled_out
@@ -179,8 +192,7 @@ def verdict(method: str | Method, **point: Unpack[PointAtStep[Number]]) -> Verdi
     InputError unless the numbers are finite and the point is given in one of the two ways. Source: the
     Schur-Cohn test (I. Schur, J. reine angew. Math. 147, 1917) on the polynomial of paper Eq. 17.
     """
-    a, b = _plane_point(point)
-    return stability.verdict(_method(method), a, b)
+    return stability.verdict(_method(method), *_plane_point(point))
 
 
 def region(method: str | Method, level: float = 1.0) -> stability.Region:
@@ -212,6 +224,7 @@ def best_point(method: str | Method) -> stability.BestPoint | None:
 
 
 @_spelled_out
+@_in_keywords()
 def choose(
     method: str | Method | None = None,
     *,
@@ -265,15 +278,22 @@ def choose(
     drive = _drive(pd)
     if method is None and drive:
         raise InputError("pd: name one method, such as 'SYM' where the drive is applied explicitly")
-    with _in_keywords():
-        goal = goal or questions.usual_goal(named, drive)
-        until = _exact_if_given(settle, "settle")
-        question = _question(method, asked, goal=goal, settle=until, equal=equal, engine=named, drive=drive)
-        (chosen,) = questions.answers(question)
+    question = _asked(
+        questions.Question,
+        methods=method,
+        goal=goal or questions.usual_goal(named, drive),
+        settle=settle,
+        equal=equal,
+        engine=named,
+        drive=drive,
+        **asked,
+    )
+    (chosen,) = questions.answers(question)
     return chosen
 
 
 @_spelled_out
+@_in_keywords()
 def check(
     method: str | Method | None = None,
     *,
@@ -319,18 +339,22 @@ def check(
     NumericalError if a pole leaves the range of float64. Sources as for `verdict`.
     """
     named, values = (None, None) if engine is None else engine_and_values(engine)
-    drive = _drive(pd)
-    typed = {"alpha_hat": alpha_hat, "beta_hat": beta_hat, "alpha": alpha, "beta": beta}
-    point = None
-    if not (named or drive) or any(each is not None for each in typed.values()):
-        step = asked.get("h_max") if asked.get("h") is None else asked["h"]
-        point = _plane_point(typed | {"h": step})
-    with _in_keywords():
-        question = _question(method, asked, point=point, engine=named, values=values, as_typed=as_typed, drive=drive)
-        given = list(questions.answers(question))
-    return next((answer for answer in given if not answer.safe), given[0])
+    step = asked.get("h_max") if asked.get("h") is None else asked["h"]
+    typed = {"alpha_hat": alpha_hat, "beta_hat": beta_hat, "alpha": alpha, "beta": beta, "h": step}
+    question = _asked(
+        questions.Question,
+        methods=method,
+        point=_point_if_given(typed, needed=engine is None and pd is None),
+        engine=named,
+        values=values,
+        as_typed=as_typed,
+        drive=_drive(pd),
+        **asked,
+    )
+    return _first_unsafe(questions.answers(question))
 
 
+@_in_keywords()
 def check_drive(
     pd: Sequence[Number],
     *,
@@ -360,19 +384,9 @@ def check_drive(
     InputError for a number out of range, and for a method that is no way of applying a drive. Source:
     Gil et al., J. Comput. Inf. Sci. Eng. 9, 011005, 2009.
     """
-    drive = _drive(pd)
-    assert drive
-    with _in_keywords():
-        question = questions.HeldQuestion(
-            drive=drive,
-            h=_exact(h, "h"),
-            methods=() if method is None else (_method(method),),
-            every=every,
-            late=_exact(late, "late"),
-            filter_seconds=_exact(filter_seconds, "filter_seconds"),
-        )
-        found = list(questions.held_answers(question))
-    return next((answer for answer in found if not answer.safe), found[0])
+    timing = {"every": every, "late": late, "filter_seconds": filter_seconds}
+    question = _asked(questions.HeldQuestion, drive=_drive(pd), h=h, methods=method, **timing)
+    return _first_unsafe(questions.held_answers(question))
 
 
 def largest_step(method: str | Method, *, alpha: Number, beta: Number) -> float:
@@ -388,6 +402,7 @@ def largest_step(method: str | Method, *, alpha: Number, beta: Number) -> float:
 
 
 @_spelled_out
+@_in_keywords()
 def feedback_cost(
     method: str | Method,
     *,
@@ -409,15 +424,13 @@ def feedback_cost(
     InputError unless the point is given in one of the two ways and omega h is from 1e-6 to 1. Source:
     the test equation of Prothero and Robinson (Math. Comp. 28, 1974).
     """
-    a, b = _plane_point(point)
-    with _in_keywords():
-        step = _exact_if_given(point.get("h"), "h")
-        rate, turned = _exact_if_given(omega, "omega"), _exact_if_given(omega_h, "omega_h")
-        motion = questions.motion_of(rate, None, Fraction(1), step, omega_h=turned)
-    return stability.feedback_cost(_method(method), a, b, motion.omega_h)
+    given = {"point": _plane_point(point), "h": point.get("h"), "omega": omega, "omega_h": omega_h}
+    question = _asked(questions.Question, methods=method, **given)
+    return stability.feedback_cost(question.methods[0], *question.given.point, question.motion.omega_h)
 
 
 @_spelled_out
+@_in_keywords()
 def simulate(
     scene: str | Scene,
     method: str | Method,
@@ -450,20 +463,19 @@ def simulate(
     feedback is given in one of the two ways. NumericalError if the start cannot be perturbed. Source:
     paper Eqs. 6 to 9.
     """
-    given = _plane_point({**point, "h": h}) if stabilise == "baumgarte" or point else None
-    with _in_keywords():
-        question = questions.RunQuestion(
-            scene=_scene(scene),
-            method=_method(method),
-            duration=_real(duration, "duration"),
-            h=_real(h, "h"),
-            point=given,
-            stabilise=stabilise,
-            iterations=iterations,
-            perturb=_real(perturb, "perturb"),
-            start=start,
-        )
-        return questions.run_answer(question)
+    question = _asked(
+        questions.RunQuestion,
+        scene=scene,
+        method=_method(method),
+        duration=duration,
+        h=h,
+        point=_point_if_given({**point, "h": h}, needed=stabilise == "baumgarte"),
+        stabilise=stabilise,
+        iterations=iterations,
+        perturb=perturb,
+        start=start,
+    )
+    return questions.run_answer(question)
 
 
 @_spelled_out
@@ -482,7 +494,7 @@ def verify(
     InputError for a scene that cannot start, and unless the points are given in one of the two ways.
     Source: opposite kicks and linear prediction (Prony).
     """
-    alpha_hat, beta_hat = np.broadcast_arrays(*_plane_arrays({**point, "h": h}))
+    alpha_hat, beta_hat = _plane_arrays({**point, "h": h})
     step = _real(h, "h")
     check_step(step)
     kicked = mechanism.compiled_mechanism(_scene(scene))
@@ -490,6 +502,7 @@ def verify(
 
 
 @_spelled_out
+@_in_keywords()
 def probe(
     c: ArrayLike,
     *,
@@ -520,15 +533,14 @@ def probe(
     """
     if methods is not None and (isinstance(methods, str | Method) or not isinstance(methods, Iterable)):
         raise InputError(f"methods = {shown(methods)}: expected a list of methods")
-    h = _exact_if_given(point.get("h"), "h")
-    with _in_keywords():
-        question = questions.PoleQuestion(
-            point=_plane_point(point) if point.keys() - {"h"} else None,
-            methods=tuple(map(_method, methods or ())),
-            every=every,
-            h=None if h is None else float(h),
-            turning=_exact_if_given(turning, "turning"),
-        )
+    h = point.get("h")
+    question = questions.PoleQuestion(
+        point=_point_if_given(point),
+        methods=tuple(map(_method, methods or ())),
+        every=every,
+        h=None if h is None else _real(h, "h"),
+        turning=None if turning is None else _exact(turning, "turning"),
+    )
     c = stability.real_array(c, "c")
     minus = None if minus is None else stability.real_array(minus, "minus")
     return questions.Probe(question, "c", evidence.probed_pole(c, minus, differenced))
@@ -586,10 +598,6 @@ def _exact(value: Number, name: str) -> Fraction:
     return exact(value) if isinstance(value, float) else within_float64(Fraction(value), name)
 
 
-def _exact_if_given(value: Number | None, name: str) -> Fraction | None:
-    return None if value is None else _exact(value, name)
-
-
 def _drive(gains: Sequence[Number] | None) -> Drive | None:
     """Return the drive of gains (kp, kd, inertia); InputError for another number of them."""
     if gains is None:
@@ -599,15 +607,19 @@ def _drive(gains: Sequence[Number] | None) -> Drive | None:
     return Drive(*(_exact(gain, name) for gain, name in zip(gains, ("kp", "kd", "inertia"), strict=True)))
 
 
-def _question(method: str | Method | None, asked: AboutFeedback, **found: Any) -> questions.Question:
-    """Return the question of `choose` or `check`: its keywords as `READ` reads them, and the fields that need several.
+def _asked(kind: Callable[..., Asked], **given: Any) -> Asked:
+    """Return a question of that kind, its keywords as `READ` reads them; those that are None are left to the question.
 
     TypeError for a keyword that is none.
     """
-    methods = () if method is None else (_method(method),)
-    given: dict[str, Any] = {name: value for name, value in asked.items() if value is not None}
-    read = {name: READ[name](value, name) if name in READ else value for name, value in given.items()}
-    return questions.Question(methods=methods, **read, **found)
+    told = {name: value for name, value in given.items() if value is not None}
+    return kind(**{name: READ[name](value, name) if name in READ else value for name, value in told.items()})
+
+
+def _first_unsafe(answers: Iterable[Judged]) -> Judged:
+    """Return the first answer that is not safe; the first of all where every one is."""
+    found = list(answers)
+    return next((answer for answer in found if not answer.safe), found[0])
 
 
 def _whole(value: int, name: str) -> int:
@@ -621,34 +633,20 @@ def _scene_or_name(given: str | Scene, _name: str) -> str | Scene:
     return given if isinstance(given, str) else scene(given)
 
 
-@contextmanager
-def _in_keywords() -> Iterator[None]:
-    """Turn the options that an InputError names (--h-max) into the keywords of a function (h_max)."""
-    try:
-        yield
-    except InputError as error:
-        raise InputError(re.sub(r"--([a-z]+(?:-[a-z]+)*)", _keyword, str(error))) from None
-
-
-def _keyword(option: re.Match[str]) -> str:
-    """Return the keyword for what an option is about."""
-    return {"time": "duration", "filter": "filter_seconds"}.get(option[1], option[1].replace("-", "_"))
-
-
 def _real(value: Number, name: str) -> float:
-    """Return one number as float64, infinite and nan ones too, which whoever takes it refuses in its own words."""
-    if isinstance(value, float) and not math.isfinite(value):
-        return value
+    """Return one number as float64; errors as `_exact`."""
     return float(_exact(value, name))
 
 
 READ: Mapping[str, Callable[[Any, str], Any]] = {
-    **dict.fromkeys(("h", "h_min", "h_max", "omega", "omega_h", "speed", "mass_ratio"), _exact),
+    **dict.fromkeys(("h", "h_min", "h_max", "omega", "omega_h", "speed", "mass_ratio", "settle"), _exact),
+    **dict.fromkeys(("late", "filter_seconds", "duration", "perturb"), _exact),
     **dict.fromkeys(("chain", "iterations"), _whole),
     "spread": _real,
     "scene": _scene_or_name,
+    "methods": lambda given, _name: (method(given),),
 }
-"""How keywords about feedback are read; the others are taken as they are."""
+"""How keywords are read; the others are taken as they are."""
 
 
 def _plane_point(point: Mapping[str, Any], read: Callable[[Any, str], Any] = _exact) -> tuple[Any, Any]:
@@ -665,14 +663,12 @@ def _plane_point(point: Mapping[str, Any], read: Callable[[Any, str], Any] = _ex
     return to_dimensionless(read(given["alpha"], "alpha"), read(given["beta"], "beta"), _exact(h, "h"))
 
 
+def _point_if_given(point: Mapping[str, Any], *, needed: bool = False) -> tuple[Any, Any] | None:
+    """Return the same; None if no coordinate is given, unless a point is needed."""
+    given = any(point.get(name) is not None for name in Point.__annotations__)
+    return _plane_point(point) if given or needed else None
+
+
 def _plane_arrays(point: Mapping[str, Any]) -> tuple[FloatArray, FloatArray]:
-    """Return the same as float64 arrays; InputError if their shapes do not fit each other."""
-    first, second = _plane_point(point, stability.real_array)
-    shapes = np.shape(first), np.shape(second)
-    try:
-        np.broadcast_shapes(*shapes)
-    except ValueError:
-        raise InputError(
-            f"shapes {shapes[0]} and {shapes[1]}: alpha and beta, or their hats, must broadcast, as numpy calls it"
-        ) from None
-    return first, second
+    """Return the same as float64 arrays, broadcast; InputError if their shapes do not fit each other."""
+    return stability.plane_arrays(*_plane_point(point, stability.real_array))

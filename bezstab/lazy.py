@@ -9,21 +9,21 @@ A package names them once, in imports that only tools which read, instead of run
 """
 
 import importlib
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from functools import cache
 
 
 def lazy_names(package: str) -> Callable[[str], object]:
     """Return a `__getattr__` for `package` that loads, on first use, what it imports under TYPE_CHECKING.
 
-    A name that it imports from itself is one of its modules. AttributeError for any other name, with the nearest.
+    A name that it imports from itself is one of its modules. AttributeError for any other name; Python adds the nearest
+    to its traceback.
     """
 
     def load(name: str) -> object:
         homes = imported_for_types(package)
         if name not in homes:
-            # With its name given, Python adds no suggestion of its own, which only a traceback would show.
-            raise AttributeError(f"module {package!r} has no attribute {name!r}{_suggestion(name, homes)}", name=name)
+            raise AttributeError(f"module {package!r} has no attribute {name!r}")
         if homes[name] == package:
             return importlib.import_module(f"{package}.{name}")
         return getattr(importlib.import_module(homes[name]), name)
@@ -44,11 +44,3 @@ def imported_for_types(package: str) -> Mapping[str, str]:
                 if isinstance(each, ast.ImportFrom) and each.module:
                     homes |= {alias.name: each.module for alias in each.names}
     return homes
-
-
-def _suggestion(name: str, known: Iterable[str]) -> str:
-    """Return a question with the nearest known name, '' if none is near."""
-    import difflib  # which nobody needs who types what there is
-
-    near = difflib.get_close_matches(name, list(known), n=1)
-    return f": did you mean {near[0]}?" if near else ""

@@ -1,12 +1,14 @@
 """Small systems of linear equations: solved exactly, or many at a time in floats."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from fractions import Fraction
+from typing import TYPE_CHECKING
 
-import numpy as np
-from numpy.typing import NDArray
-
-FloatArray = NDArray[np.float64]
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
 
 
 def solution(rows: Sequence[Sequence[Fraction]], right_sides: Sequence[Sequence[Fraction]]) -> list[list[Fraction]]:
@@ -27,8 +29,10 @@ def solution(rows: Sequence[Sequence[Fraction]], right_sides: Sequence[Sequence[
     return [row[unknowns:] for row in table[:unknowns]]
 
 
-def inverses(matrices: FloatArray) -> FloatArray:
+def inverses(matrices: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the inverse of each of a batch of matrices, shape (m, m, *batch); not finite where there is none."""
+    import numpy as np  # exact numbers do without, and --help
+
     stack: NDArray[np.floating] = np.moveaxis(matrices, (0, 1), (-2, -1))
     try:
         inverse = np.linalg.inv(stack)

@@ -4,6 +4,7 @@ Nothing is ever executed: an entry is a text, a number, an exact number written 
 """
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from typing import Any, TypeVar
 
 from bezstab.errors import InputError
@@ -14,6 +15,7 @@ LEAST = 1e-100  # of a number that is not 0, and of the inverse of the largest: 
 LISTED = 200  # characters of the keys that are there, where one is missing
 SIZE = "0 or of size 1e-100 to 1e100"
 
+Kind = TypeVar("Kind")
 Read = TypeVar("Read")
 """What a reader makes of an entry; a reader raises TypeError or ValueError for what it does not take."""
 
@@ -35,16 +37,16 @@ def a_positive_number(value: object) -> float:
     return found
 
 
-def a_text(value: object) -> str:
-    """Return a text."""
-    if not isinstance(value, str):
+def of_type(kind: type[Kind], value: object) -> Kind:
+    """Return a value of that type."""
+    if not isinstance(value, kind):
         raise TypeError
     return value
 
 
 def a_line(value: object) -> str:
     """Return one line of text that is not blank."""
-    text = a_text(value)
+    text = of_type(str, value)
     if not text.strip() or not text.isprintable():
         raise ValueError
     return text
@@ -52,13 +54,7 @@ def a_line(value: object) -> str:
 
 def list_of(read: Callable[[Any], Read]) -> Callable[[object], list[Read]]:
     """Return the reader of a list, each entry of which `read` reads."""
-
-    def read_list(value: object) -> list[Read]:
-        if not isinstance(value, list):
-            raise TypeError
-        return [read(entry) for entry in value]
-
-    return read_list
+    return lambda value: [read(entry) for entry in of_type(list, value)]
 
 
 def pair_of(read: Callable[[Any], Read]) -> Callable[[object], tuple[Read, Read]]:
@@ -73,13 +69,7 @@ def pair_of(read: Callable[[Any], Read]) -> Callable[[object], tuple[Read, Read]
 
 def table_of(read: Callable[[Any], Read]) -> Callable[[object], dict[str, Read]]:
     """Return the reader of a table, each entry of which `read` reads."""
-
-    def read_table(value: object) -> dict[str, Read]:
-        if not isinstance(value, dict):
-            raise TypeError
-        return {key: read(entry) for key, entry in value.items()}
-
-    return read_table
+    return lambda value: {key: read(entry) for key, entry in of_type(dict, value).items()}
 
 
 def as_it_is(value: Any) -> Any:
@@ -127,7 +117,7 @@ class TomlTable:
 
     def texts(self, key: str) -> list[str]:
         """Return a list of texts."""
-        return self.entry(key, list_of(a_text), "a list of names")
+        return self.entry(key, list_of(partial(of_type, str)), "a list of names")
 
     def number(self, key: str, default: float | None = None) -> float:
         """Return a number that is 0 or of size 1e-100 to 1e100."""

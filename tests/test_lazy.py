@@ -14,9 +14,3 @@ def test_a_name_is_that_of_the_module_that_defines_it() -> None:
 def test_any_other_name_is_an_attribute_error_that_names_both() -> None:
     with pytest.raises(AttributeError, match=r"module 'bezstab\.methods' has no attribute 'rational'"):
         load("rational")
-
-
-def test_a_misspelt_name_is_answered_with_the_nearest_once() -> None:
-    with pytest.raises(AttributeError, match=r"no attribute 'acuracy': did you mean accuracy\?$") as caught:
-        load("acuracy")
-    assert caught.value.obj is None  # so that Python's traceback does not suggest a second time

@@ -1,20 +1,19 @@
 """The question that was typed, and the sentences below its answers."""
 
 from collections.abc import Callable, Iterable, Sequence
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
+from bezstab import questions
 from bezstab.cli.command_group import NUMERICAL_TROUBLE
-from bezstab.cli.options import typed_options
+from bezstab.cli.options import TypedPoint, typed_options
 from bezstab.cli.output import for_reading, say, show_command, show_text, worked_out
 from bezstab.engines import Engine
 from bezstab.errors import NumericalError
-from bezstab.methods import Method
+from bezstab.methods import Method, lookup
 from bezstab.show import Row, motion_words, varying_words
 
-if TYPE_CHECKING:
-    from bezstab.questions import Answer, Question
-
 Asked = TypeVar("Asked")
+OfScene = TypeVar("OfScene", "questions.Question", "questions.MapQuestion")
 
 
 def asked(kind: Callable[..., Asked], **typed: Any) -> Asked:
@@ -31,16 +30,14 @@ def asked(kind: Callable[..., Asked], **typed: Any) -> Asked:
     if point:
         typed["point"] = point.at(typed["h"] or (typed.get("h_max") if typed.get("h_min") else None))
     question = kind(**typed)
-    if point and not point.physical:
-        say_if_units_were_mistaken(question)
+    if point and not typed.get("sequence"):  # which may be to let errors grow
+        say_if_units_were_mistaken(typed["methods"] if "methods" in typed else (typed["method"],), point)
     return question
 
 
-def asked_of_feedback(**typed: Any) -> "Question":
-    """Return the question about feedback that was typed, once it is known how its scene moves."""
-    from bezstab.questions import Question
-
-    question = asked(Question, **typed)
+def asked_of_scene(kind: "type[OfScene]", **typed: Any) -> "OfScene":
+    """Return the same, once it is known how its scene moves: a note says so if that is too far in a step."""
+    question = asked(kind, **typed)
     say_each(worked_out(lambda: question.warnings, typed["scene"]))
     return question
 
@@ -76,7 +73,7 @@ def show_sentences(sentences: Iterable[str | None]) -> None:
         show_text(f"\n{sentence}")
 
 
-def show_below(question: "Question", found: "Sequence[Answer]", *, motion: bool = True) -> None:
+def show_below(question: "questions.Question", found: "Sequence[questions.Answer]", *, motion: bool = True) -> None:
     """Print below the answers on which motion errors are told; say on standard error why they are not known.
 
     For people to read, it is also said what an engine did to its values, and what the conversion leaves out.
@@ -101,21 +98,22 @@ def say_what_is_left_out(engine: Engine, *, many: bool = False) -> None:
         say(f"{engine.name}: sweeps are its {engine.sweeping.word}; of them left out: {engine.sweeping.excludes}")
 
 
-def say_varying(answers: "Iterable[Answer]") -> None:
+def say_varying(answers: "Iterable[questions.Answer]") -> None:
     """Print a sentence about steps that vary, and the command of a run in which errors grow."""
-    from bezstab.questions import growing_run
-
     for answer in answers:
         if answer.varying:
             show_text("\n" + varying_words(answer.method.name, answer.varying))
-            if line := growing_run(answer):
+            if line := questions.growing_run(answer):
                 show_text("\nThis shows errors grow:\n")
                 show_command(line)
 
 
-def say_if_units_were_mistaken(question: Any) -> None:
-    """Say on standard error if the point of a question looks like alpha and beta in 1/s, and how to say that it is."""
-    if question.meant_in_seconds:
+def say_if_units_were_mistaken(methods: Sequence[Method], point: TypedPoint) -> None:
+    """Say on standard error if a point looks like alpha and beta in 1/s, and how to say that it is.
+
+    It does where none of the methods is stable; without any, where the method of most engines is not.
+    """
+    if not point.physical and questions.meant_in_seconds(methods or (lookup("SYM"),), point.numbers):
         needed = "" if "--h" in typed_options() else " and your --h"
         note = "--alpha and --beta were taken as α̂ and β̂, without unit; if they are in 1/s, add --physical"
         say(f"note: {note}{needed}")

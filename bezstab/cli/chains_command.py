@@ -3,10 +3,10 @@
 from collections.abc import Sequence
 from fractions import Fraction
 
+from bezstab import questions, show
 from bezstab.cli.asking import say_what_is_left_out
 from bezstab.cli.options import NUMBER, EngineValues, changed, command, option
 from bezstab.cli.output import Files, for_reading, show_rows
-from bezstab.show import CHAINS, chain_rows
 
 SWEEPS_DRAWN = 50
 
@@ -41,13 +41,10 @@ def chains(
 
     Example: bezstab chains --engine bullet=0.2 --h 1/60 --to 5 --figure none
     """
-    from bezstab import show
-    from bezstab.questions import chain_map
-
     files.check_output()
     words, values = engine
-    maps = [chain_map(words, values, h, ratio, bodies, SWEEPS_DRAWN) for ratio in mass_ratios]
-    show_rows(CHAINS, (row for one in maps for row in chain_rows(words, one)))
+    maps = [questions.chain_map(words, values, h, ratio, bodies, SWEEPS_DRAWN) for ratio in mass_ratios]
+    show_rows(show.CHAINS, (row for one in maps for row in show.chain_rows(words, one)))
 
     typed = ", ".join(f"{name} = {float(value):.4g}" for name, value in zip(words.parameters, values, strict=False))
     title = f"{words.name}: {typed}, h = {float(h):.3g} s"

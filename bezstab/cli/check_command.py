@@ -2,18 +2,16 @@
 
 from collections.abc import Iterable, Iterator
 from itertools import groupby
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from bezstab.cli.asking import asked_of_feedback, say_varying, show_below, show_sentences
+from bezstab import questions
+from bezstab.cli.asking import asked_of_scene, say_varying, show_below, show_sentences
 from bezstab.cli.held_drives import held_asked, show_held
 from bezstab.cli.options import TypedPoint, changed, command, typed_options
 from bezstab.cli.output import for_reading, say, show_rows, show_text
 from bezstab.errors import InputError, NumericalError
 from bezstab.methods import Method
 from bezstab.show import CHECKED, LARGEST_STEPS, answer_row, costs_words, largest_step_row, left_out
-
-if TYPE_CHECKING:
-    from bezstab.questions import Answer
 
 OF_EVERY_STEP = {"--alpha", "--beta", "--physical", "--method", "--format", "--speed"}
 """With no other option, a question about α and β in 1/s is about every step."""
@@ -61,15 +59,13 @@ def check(**typed: Any) -> bool:
 
     Example: bezstab check --method RK2 --h 0.002 --alpha 50 --beta 50 --physical
     """
-    from bezstab.questions import answers, check_speed
-
     if held := held_asked(typed, "--every, --late and --filter"):
         return all(answer.safe for answer in show_held(held))
     if typed["point"].physical and typed_options().keys() <= OF_EVERY_STEP:
-        check_speed(None, typed["speed"])
+        questions.check_speed(None, typed["speed"])
         return _check_without_step(typed["methods"], typed["point"])
-    question = asked_of_feedback(**typed)
-    found = list(_with_instead(answers(question)))
+    question = asked_of_scene(questions.Question, **typed)
+    found = list(_with_instead(questions.answers(question)))
     given = [answer for answer in found if answer.role == "given"]
     if for_reading():
         without = left_out(question)
@@ -85,7 +81,7 @@ def check(**typed: Any) -> bool:
     return all(answer.safe for answer in given)
 
 
-def _with_instead(given: "Iterable[Answer]") -> "Iterator[Answer]":
+def _with_instead(given: "Iterable[questions.Answer]") -> "Iterator[questions.Answer]":
     """Yield the given answers, and for each method the choice instead; say on standard error why there is none."""
     for _, of_method in groupby(given, lambda answer: answer.method):
         answers_of_method = list(of_method)
@@ -98,9 +94,7 @@ def _with_instead(given: "Iterable[Answer]") -> "Iterator[Answer]":
 
 def _check_without_step(methods: tuple[Method, ...], point: TypedPoint) -> bool:
     """Print the step up to which alpha and beta (1/s) are safe with each method; return whether each method has one."""
-    from bezstab.questions import LargestStep, methods_for
-
     assert point.numbers
-    found = [LargestStep(method, *point.numbers) for method in methods_for(methods, None, None)]
+    found = [questions.LargestStep(method, *point.numbers) for method in questions.methods_for(methods, None, None)]
     show_rows(LARGEST_STEPS, map(largest_step_row, found))
     return all(each.safe for each in found)

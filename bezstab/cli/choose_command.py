@@ -3,11 +3,12 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
-from bezstab.cli.asking import asked_of_feedback, say_varying, show_below, show_sentences
+from bezstab import questions
+from bezstab.cli.asking import asked_of_scene, say_varying, show_below, show_sentences
 from bezstab.cli.held_drives import held_asked, show_held
 from bezstab.cli.options import INERTIA, NUMBER, SECONDS, SHARE, changed, command, option, typed_options
 from bezstab.cli.output import for_reading, progress, show_rows, show_text
@@ -15,9 +16,6 @@ from bezstab.goals import GOALS, Goal
 from bezstab.methods import lookup
 from bezstab.rationals import typed_number
 from bezstab.show import CHOICES, alone_words, answer_row, left_out, trade_words
-
-if TYPE_CHECKING:
-    from bezstab.questions import Answer, HeldQuestion
 
 
 @command(
@@ -82,16 +80,14 @@ def choose(goal: Goal | None, equal: str | None, bandwidth: Fraction | None, **t
 
     Example: bezstab choose --method B4 --h 0.001
     """
-    from bezstab.questions import answers, usual_goal
-
     drive, settle = typed["drive"], typed["settle"]
     settling = drive is not None and settle is not None and goal is None
     asked_by = "--bandwidth, --settle, --every, --late and --filter"
     if held := held_asked(typed, asked_by, "--bandwidth", "--settle", always=settling):
         return _choose_held(held, bandwidth, settle)
-    goal = goal or usual_goal(typed["engine"], drive)
-    question = asked_of_feedback(goal=goal, equal=equal is not None, **typed)
-    chosen = list(progress(answers(question), goal, len(question.methods)))
+    goal = goal or questions.usual_goal(typed["engine"], drive)
+    question = asked_of_scene(questions.Question, goal=goal, equal=equal is not None, **typed)
+    chosen = list(progress(questions.answers(question), goal, len(question.methods)))
     show_rows(CHOICES, map(answer_row, chosen), left_out(question))
     if for_reading():
         say_varying(chosen)
@@ -102,22 +98,20 @@ def choose(goal: Goal | None, equal: str | None, bandwidth: Fraction | None, **t
     return all(answer.safe for answer in chosen)
 
 
-def _trades(chosen: "Sequence[Answer]") -> "Iterator[str]":
+def _trades(chosen: "Sequence[questions.Answer]") -> "Iterator[str]":
     """Yield for each choice what faster decay would cost, and what slower decay would gain."""
     for answer in chosen:
         name = f"{answer.method.name}: " if len(chosen) > 1 else ""
         yield "\n".join(f"{name}{line}" for line in trade_words(answer))
 
 
-def _choose_held(question: "HeldQuestion", bandwidth: Fraction | None, settle: Fraction | None) -> bool:
+def _choose_held(question: "questions.HeldQuestion", bandwidth: Fraction | None, settle: Fraction | None) -> bool:
     """Print gains for a bandwidth (Hz) or a time to settle (s) as `check` would; return whether every way is safe.
 
     Of the question's drive only the inertia counts.
     """
-    from bezstab.questions import held_gains
-
     if "--method" not in typed_options():
         question = replace(question, methods=(lookup("SYM"),))
-    drive = held_gains(question, bandwidth=bandwidth, settle=settle)
+    drive = questions.held_gains(question, bandwidth=bandwidth, settle=settle)
     show_text(f"kp = {typed_number(drive.kp)}, kd = {typed_number(drive.kd)}\n")
     return all(answer.safe for answer in show_held(replace(question, drive=drive)))

@@ -5,6 +5,7 @@ from fractions import Fraction
 
 import click
 
+from bezstab import show
 from bezstab.cli.options import USUAL_METHODS, changed, command
 from bezstab.methods import Method
 
@@ -17,6 +18,4 @@ def explore(methods: Sequence[Method], h: Fraction) -> None:
 
     Example: bezstab explore --method B4 --method AB4
     """
-    from bezstab.show import open_explorer
-
-    open_explorer(methods, float(h), click.echo)
+    show.open_explorer(methods, float(h), click.echo)

@@ -1,5 +1,6 @@
 """The command that measures what holds at extreme sizes: extremes."""
 
+from bezstab import evidence
 from bezstab.cli.options import command, flag
 from bezstab.cli.output import progress, show_rows
 from bezstab.show import EXTREMES
@@ -15,9 +16,7 @@ def extremes(short: bool) -> bool:
 
     Example: bezstab extremes --short
     """
-    from bezstab.evidence import extreme_checks
-
-    checks = list(extreme_checks(not short))
+    checks = list(evidence.extreme_checks(not short))
     outcomes = [check() for check in progress(checks, "extremes")]
     show_rows(EXTREMES, map(EXTREMES.row, outcomes))
     return all(outcome.held for outcome in outcomes)

@@ -4,11 +4,11 @@ from typing import TYPE_CHECKING
 
 import click
 
+from bezstab import show
 from bezstab.cli.options import command, option
 from bezstab.cli.output import Files, show_rows
 from bezstab.errors import InputError
 from bezstab.methods import STEP_FAMILIES
-from bezstab.show import MEMBERS, Row
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -30,23 +30,22 @@ def family(name: str, first: int, last: int | None, files: Files) -> None:
 
     Example: bezstab family bezier --from 2 --to 5
     """
-    from bezstab import show
-    from bezstab.stability import bezier_limit, family_members
+    from bezstab import stability
 
     largest = STEP_FAMILIES[name].largest
     last = largest if last is None else last
     if not first <= last <= largest:
         raise InputError(f"--from {first} --to {last}: expected 1 <= from <= to <= {largest} for {name}")
     files.check_output()
-    members = family_members(name, first, last)
-    limit = bezier_limit() if name == "bezier" else None
-    rows: list[Row] = [MEMBERS.row(member) for member in members]
+    members = stability.family_members(name, first, last)
+    limit = stability.bezier_limit() if name == "bezier" else None
+    rows: list[show.Row] = [show.MEMBERS.row(member) for member in members]
     if limit:
         rows.append(show.limit_row(limit))
-    show_rows(MEMBERS, rows)
+    show_rows(show.MEMBERS, rows)
 
     def draw() -> "Figure":
-        families = {each: family_members(each, 2, family.largest) for each, family in STEP_FAMILIES.items()}
+        families = {each: stability.family_members(each, 2, family.largest) for each, family in STEP_FAMILIES.items()}
         return show.family_figure(families | {name: members}, name, limit)
 
     files.write(files.path("family", name), draw)

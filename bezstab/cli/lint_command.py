@@ -3,29 +3,24 @@
 from collections.abc import Sequence
 from fractions import Fraction
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 
+from bezstab import evidence
 from bezstab.cli.options import OF_A_CONTROLLER, ParsedType, command, option
 from bezstab.cli.output import for_reading, progress, show_rows, show_text
 from bezstab.errors import InputError
 from bezstab.rationals import rational
 from bezstab.show import LINTED
 
-if TYPE_CHECKING:
-    from bezstab.evidence import MotorGains
 
-
-def _gains(text: str) -> "MotorGains":
+def _gains(text: str) -> "evidence.MotorGains":
     """Return the gains that hip.*=200,5 says."""
-    from bezstab.evidence import MotorGains
-
     pattern, equals, numbers = text.rpartition("=")
     gains = numbers.split(",")
     if not (pattern and equals and len(gains) == 2):
         raise InputError(f"{text!r}: expected NAME=KP,KD")
-    return MotorGains(pattern, *map(rational, gains))
+    return evidence.MotorGains(pattern, *map(rational, gains))
 
 
 @command(
@@ -39,7 +34,7 @@ def _gains(text: str) -> "MotorGains":
     OF_A_CONTROLLER,
 )
 @click.argument("model", type=click.Path(path_type=Path))
-def lint(model: Path, gains: "Sequence[MotorGains]", every: int, late: Fraction) -> bool:
+def lint(model: Path, gains: "Sequence[evidence.MotorGains]", every: int, late: Fraction) -> bool:
     """Judge a MuJoCo model: exit status 1 if anything is unsafe.
 
     MODEL is MuJoCo's XML or a URDF. MuJoCo also opens the files that it includes: meshes, textures, height fields.
@@ -62,12 +57,11 @@ def lint(model: Path, gains: "Sequence[MotorGains]", every: int, late: Fraction)
 
     Example: bezstab lint robot.xml
     """
-    from bezstab.evidence import linted_model, read_mujoco_model
-    from bezstab.stability import Timing
+    from bezstab import stability
 
-    timing = Timing(every, late)
-    model_data = read_mujoco_model(model)
-    linted = list(progress(linted_model(model_data, gains, timing), "lint", model_data.size))
+    timing = stability.Timing(every, late)
+    model_data = evidence.read_mujoco_model(model)
+    linted = list(progress(evidence.linted_model(model_data, gains, timing), "lint", len(model_data.elements)))
     heading = f"{model.name}: timestep {model_data.h:g} s, integrator {model_data.integrator}"
     if linted or not for_reading():
         show_rows(LINTED, (LINTED.row(each, advice=each.advice or None) for each in linted), heading=heading)

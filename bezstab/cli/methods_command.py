@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 import click
 
+from bezstab import questions
 from bezstab.cli.options import METHOD, command, flag
 from bezstab.cli.output import chosen_format, show_groups, show_rows, show_text
 from bezstab.methods import GROUPS, Method, lookup
@@ -27,10 +28,8 @@ def methods(methods: Sequence[Method], latex: bool) -> None:
 
     Example: bezstab methods B4
     """
-    from bezstab.questions import region_answer
-
     if methods:
-        rows = [whole_row(region_answer(method), latex=latex) for method in methods]
+        rows = [whole_row(questions.region_answer(method), latex=latex) for method in methods]
         show_rows(NAMED_METHODS, rows, in_blocks=True)
         show_text("\nSteady errors are shares of a motion of ω rad/s, to leading order in θ = iωh.")
         return

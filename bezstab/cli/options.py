@@ -335,7 +335,11 @@ GROUPS: Mapping[str, tuple[str | Option | Rule, ...]] = {
     "swept": ("chain", "mass_ratio", "sweeps"),
     "picture": ("output", "figure"),
     "files": ("picture", "table"),
-    "work": ("workers", "scheduler", "resume"),
+    "shared_out": (  # runs that take long, and the table that comes of them
+        *("compiled", "workers", "scheduler", "resume", "picture"),
+        changed("table", default="csv"),
+        "form",
+    ),
 }
 """Options that go together, by a name for all of them, with their rules."""
 

@@ -193,7 +193,7 @@ def results_of_chunks(
     """Give the results of independent chunks, in their order; processes or a cluster's workers compute them.
 
     Finished chunks are kept in `path` + .chunks, so that a run of the same `job` can resume; once the results are used
-    they are deleted. A damaged chunk is computed again. InputError while another run uses them.
+    they are deleted. A damaged chunk is computed again, and a message says so. InputError while another run uses them.
     """
     from bezstab.evidence import chunk_store, completed_chunks, worker_pool
 
@@ -201,7 +201,9 @@ def results_of_chunks(
     kept = f"bezstab: what is finished lies in {kept_in}: --resume goes on from there"
     with worker_pool(work.workers, work.scheduler) as pool, chunk_store(kept_in, job, work.resume) as store:
         with if_stopped(partial(say, kept)):
-            arriving = completed_chunks(compute, chunks, pool, store)
+            arriving = completed_chunks(
+                compute, chunks, pool, store, lambda file: say(f"bezstab: {file} is damaged: computed again")
+            )
             results = dict(progress(arriving, path.name, len(chunks)))
             yield [results[number] for number in range(len(chunks))]
         store.discard()

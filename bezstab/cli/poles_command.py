@@ -3,7 +3,8 @@
 from dataclasses import replace
 from typing import Any
 
-from bezstab.cli.asking import asked_of_feedback, show_below
+from bezstab import questions
+from bezstab.cli.asking import asked_of_scene, show_below
 from bezstab.cli.options import USUAL_METHODS, Rule, changed, command, flag
 from bezstab.cli.output import show_rows
 from bezstab.show import POLES, one_pole_sentence, pole_rows
@@ -30,12 +31,11 @@ def poles(all_poles: bool, **typed: Any) -> None:
     Example: bezstab poles --alpha 0.5 --beta 0.1
     """
     from bezstab import stability
-    from bezstab.questions import answers
 
-    question = asked_of_feedback(**typed)
+    question = asked_of_scene(questions.Question, **typed)
     poles_of = stability.poles if all_poles else stability.dominant_pole
     margins = question.drive is not None
-    at_point = [each for each in answers(question, margins=margins) if each.goal == "as given"]
+    at_point = [each for each in questions.answers(question, margins=margins) if each.goal == "as given"]
     rows = [
         row
         for each in at_point

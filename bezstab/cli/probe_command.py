@@ -3,19 +3,16 @@
 import sys
 from fractions import Fraction
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
+from bezstab import evidence, questions
 from bezstab.cli.asking import asked, show_sentences
 from bezstab.cli.options import NUMBER, changed, command, flag, option
 from bezstab.cli.output import for_reading, show_rows
 from bezstab.errors import InputError
-from bezstab.show import LIKENESS, PROBED, cells, like_point_row, likeness_sentence, nearest_rows
-
-if TYPE_CHECKING:
-    from bezstab.evidence import Log
-    from bezstab.questions import LogQuestion
+from bezstab.show import LIKE_POINT, LIKENESS, PROBED, cells, likeness_sentence, nearest, row_in_seconds
 
 
 @command(
@@ -55,15 +52,20 @@ def probe(**typed: Any) -> None:
 
     Example: bezstab probe log.csv --minus unkicked.csv --alpha 1 --beta 0.25
     """
-    from bezstab.questions import check_told, log_answers
-
-    found = list(log_answers(asked(_question, **typed)))
+    found = list(questions.log_answers(asked(_question, **typed)))
     fits = [PROBED.row(answer.found, column=answer.column) for answer in found]
-    likenesses = [{"column": answer.column, **cells(LIKENESS, one)} for answer in found for one in answer.likenesses]
-    points = [like_point_row(answer.column, one, answer.question.h) for answer in found for one in answer.points]
+    shown = nearest if for_reading() else list
+    likenesses = [
+        {"column": answer.column, **cells(LIKENESS, one)} for answer in found for one in shown(answer.likenesses)
+    ]
+    points = [
+        {"column": answer.column, **row_in_seconds(LIKE_POINT, one, answer.question.h)}
+        for answer in found
+        for one in answer.points
+    ]
     if for_reading():
         show_rows(PROBED, fits)
-        for rows in filter(None, (nearest_rows(likenesses), points)):
+        for rows in filter(None, (likenesses, points)):
             click.echo()
             show_rows(PROBED, rows, ("reason",))
         for answer in found:
@@ -72,23 +74,19 @@ def probe(**typed: Any) -> None:
             show_sentences(f"{answer.column}: {sentence}" for sentence in said)
     else:
         show_rows(PROBED, [*fits, *likenesses, *points])
-    check_told(found)
+    questions.check_told(found)
 
 
-def _question(log: Path, minus: Path | None, h: Fraction | None, **typed: Any) -> "LogQuestion":
+def _question(log: Path, minus: Path | None, h: Fraction | None, **typed: Any) -> "questions.PoleQuestion":
     """Return the question about logs in files."""
-    from bezstab.questions import LogQuestion
-
     kicked, other = _read(log), None if minus is None else _read(minus)
-    return LogQuestion(log=kicked, minus=other, h=None if h is None else float(h), **typed)
+    return questions.PoleQuestion(log=kicked, minus=other, h=None if h is None else float(h), **typed)
 
 
-def _read(path: Path) -> "Log":
+def _read(path: Path) -> "evidence.Log":
     """Return the log in a file, or on standard input for the path -."""
-    from bezstab.evidence import log_from, read_log
-
     if str(path) != "-":
-        return read_log(path)
+        return evidence.read_log(path)
     if sys.stdin is None:  # as Python has it where it was closed
         raise InputError("standard input is closed: there is no log to read")
-    return log_from(sys.stdin.buffer, "standard input")
+    return evidence.log_from(sys.stdin.buffer, "standard input")

@@ -1,20 +1,17 @@
 """The command that draws where a method is stable: region."""
 
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
-import numpy as np
 
-from bezstab.cli.asking import asked, of_each, say_each
+from bezstab import questions, show
+from bezstab.cli.asking import asked_of_scene, of_each, say_each
 from bezstab.cli.command_group import NUMERICAL_TROUBLE
-from bezstab.cli.held_drives import held_asked, show_held
+from bezstab.cli.held_drives import held_asked, write_held
 from bezstab.cli.options import NUMBER, POSITIVE, SPEED, Rule, changed, command, flag, option
-from bezstab.cli.output import Files, progress, show_rows, show_text, worked_out
-from bezstab.show import REGIONS, Row, combined_words, region_row
-
-if TYPE_CHECKING:
-    from bezstab.questions import MapAnswer, MapQuestion
+from bezstab.cli.output import Files, progress, show_rows, show_text
+from bezstab.methods import Method
 
 
 @command(
@@ -68,55 +65,42 @@ def region(quality: str, grid: int | None, files: Files, **typed: Any) -> int:
 
     Example: bezstab region --method B4
     """
-    from bezstab import show
-    from bezstab.questions import MapAnswer, MapQuestion
-    from bezstab.stability import QUALITY
+    from bezstab import stability
 
-    points = grid or QUALITY[quality]
+    points = grid or stability.QUALITY[quality]
     drawn = ("--quality", "--grid", "--output", "--figure")
     if held := held_asked(typed, "--pd", *drawn, always=typed["drive"] is not None):
-        files.check_output()
-        for of_drive in show_held(held):
-            path = files.path("region", of_drive.method.name, "held")
-            files.write(path, partial(show.held_figure, of_drive, points))
+        write_held(held, points, files)
         return 0
     del typed["drive"]
-    question = asked(MapQuestion, points=points, **typed)
-    say_each(worked_out(lambda: question.warnings, typed["scene"]))
+    question = asked_of_scene(questions.MapQuestion, points=points, **typed)
     files.check_output()
     if question.compare:
         rows, status = _write_boundaries(question, files), 0
     else:
-        rows, status = of_each(question.methods, lambda method: _write_map(MapAnswer(question, method), files))
-    show_rows(REGIONS, rows, () if question.levels else ("z_abs_below",))
+        rows, status = of_each(question.methods, lambda method: _write_map(question, method, files))
+    show_rows(show.REGIONS, rows, () if question.levels else ("z_abs_below",))
     if question.motion:
-        show_text(combined_words(question.motion))
+        show_text(show.combined_words(question.motion))
     return status if question.best_points_known else NUMERICAL_TROUBLE
 
 
-def _write_map(answer: "MapAnswer", files: Files) -> list[Row]:
+def _write_map(question: "questions.MapQuestion", method: Method, files: Files) -> list[show.Row]:
     """Write the map of one method; return its rows."""
-    from bezstab import show
-
-    say_each([answer.choice_reason] if answer.question.motion else [])
+    answer = questions.MapAnswer(question, method)
+    say_each([answer.choice_reason])
     if files.wanted:
-        z = np.array(list(progress(answer.dominant_poles(), answer.method.name, len(answer.axes[1]))))
-        of_what = "accuracy" if answer.question.motion else answer.question.scene
-        path = files.path("region", answer.method.name, of_what)
+        z = answer.dominant_poles(partial(progress, label=method.name, length=len(answer.axes[1])))
+        path = files.path("region", method.name, "accuracy" if question.motion else question.scene)
         files.write(path, lambda: show.map_figure(answer, z), lambda: show.map_arrays(answer, z))
     return show.map_rows(answer)
 
 
-def _write_boundaries(question: "MapQuestion", files: Files) -> list[Row]:
+def _write_boundaries(question: "questions.MapQuestion", files: Files) -> list[show.Row]:
     """Write the boundaries of all methods into one table and one figure; return a row for each."""
-    from bezstab import show
-
-    regions = [answer.region for answer in question.compared]
-    shown = (question.alpha_range, question.beta_range, question.seconds, question.alpha_beta)
-    path = files.path("compare", *(method.name for method in question.methods))
     files.write(
-        path,
-        lambda: show.comparison_figure(regions, *shown),
-        lambda: show.boundary_arrays(regions, question.seconds),
+        files.path("compare", *(method.name for method in question.methods)),
+        partial(show.comparison_figure, question),
+        lambda: show.boundary_arrays([answer.region for answer in question.compared], question.seconds),
     )
-    return [region_row(answer) for answer in question.compared]
+    return [show.region_row(answer) for answer in question.compared]

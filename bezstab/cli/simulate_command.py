@@ -4,11 +4,11 @@ from typing import Any
 
 import click
 
+from bezstab import questions, show
 from bezstab.cli.asking import asked
 from bezstab.cli.options import NUMBER, SEQUENCE, changed, command, option
 from bezstab.cli.output import Files, say, show_rows, worked_out
 from bezstab.errors import NumericalError
-from bezstab.show import SIMULATIONS, passages_words
 
 
 @command(
@@ -56,22 +56,19 @@ def simulate(files: Files, **typed: Any) -> None:
 
     Example: bezstab simulate --method AB4 --alpha 0.5 --beta 0.101 --time 2
     """
-    from bezstab import show
-    from bezstab.questions import RunQuestion, run_answer
-
     if typed["stabilise"] != "baumgarte":
         typed["point"] = None
-    question = asked(RunQuestion, **typed)
+    question = asked(questions.RunQuestion, **typed)
     files.check_output()
     worked_out(lambda: question.mechanism, typed["scene"])
-    run = worked_out(lambda: run_answer(question), question.method.name)
+    run = worked_out(lambda: questions.run_answer(question), question.method.name)
     files.write(
         files.path("simulate", typed["scene"], question.method.name),
         lambda: show.history_figure(run),
         lambda: show.history_arrays(run),
     )
-    show_rows(SIMULATIONS, [SIMULATIONS.row(run)])
+    show_rows(show.SIMULATIONS, [show.SIMULATIONS.row(run)])
     if len(run.singular_times):
-        say(f"bezstab: {passages_words(run.singular_times.tolist())}")
+        say(f"bezstab: {show.passages_words(run.singular_times.tolist())}")
     if run.failure:
         raise NumericalError(run.failure)

@@ -1,17 +1,15 @@
 """The command that measures what accuracy costs: tradeoff."""
 
+from collections.abc import Sequence
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
+from bezstab import evidence, questions, show
 from bezstab.cli.asking import say_if_units_were_mistaken
 from bezstab.cli.options import POSITIVE, SECONDS, Rule, TypedPoint, changed, command, flag, option, typed_options
 from bezstab.cli.output import Files, Work, progress, results_of_chunks, show_rows, show_text, worked_out
-from bezstab.show import FRONTS, SWEPT, combined_words, front_row
-
-if TYPE_CHECKING:
-    from bezstab.questions import FrontQuestion
 
 OF_RUNS = (
     *("--alpha", "--beta", "--physical", "--stabilise", "--iterations", "--time", "--tolerance", "--repeats"),
@@ -46,11 +44,7 @@ OF_RUNS = (
         "is made with feedback and with projection, and errors are compared with factorizations.",
         default="evaluations",
     ),
-    "compiled",
-    "work",
-    "picture",
-    changed("table", default="csv"),
-    "form",
+    "shared_out",
     Rule(("--level",), "it says how fast errors must decay", needs=("--predicted",)),
     Rule(("--against projection",), "it has runs with and without feedback", excludes=("--stabilise",)),
     Rule(("--predicted",), "it simulates nothing", excludes=OF_RUNS),
@@ -78,42 +72,35 @@ def tradeoff(predicted: bool, point: TypedPoint, tolerance: Fraction, work: Work
 
     Example: bezstab tradeoff --method B4 --method AB4 --h 0.002 --h 0.004 --time 2
     """
-    from bezstab import evidence, show
-    from bezstab.questions import FrontQuestion, TradeQuestion
-
     levels = typed.pop("levels")
     if predicted:
-        scene = typed_options().get("--scene")
-        of_fronts = {name: typed[name] for name in ("methods", "omega", "speed", "steps")}
-        _show_fronts(FrontQuestion(**of_fronts, scene=scene, levels=levels), files)
+        _show_fronts(files, levels, **{name: typed[name] for name in ("methods", "omega", "speed", "steps")})
         return
-    question = TradeQuestion(numbers=point.numbers, physical=point.physical, **typed)
-    say_if_units_were_mistaken(question)
+    question = questions.TradeQuestion(numbers=point.numbers, physical=point.physical, **typed)
+    say_if_units_were_mistaken(question.methods, point)
     path = files.path("tradeoff", typed["scene"])
-    job = f"{question.methods} {question}"
     sweeps = worked_out(lambda: question.sweeps, typed["scene"])
-    with results_of_chunks(evidence.measured_runs, sweeps, path, job, work) as results:
+    with results_of_chunks(evidence.measured_runs, sweeps, path, f"{question.methods} {question}", work) as results:
         swept = question.swept(results)
-        rows = [SWEPT.row(run, front=front) for run, front in zip(swept.runs, swept.front_labels, strict=True)]
+        rows = [show.SWEPT.row(run, front=front) for run, front in zip(swept.runs, swept.front_labels, strict=True)]
         files.write(path, None, lambda: show.untimed_arrays(rows))
         for name, draw in show.trade_figures(swept, question.moving.name).items():
             files.write(path.with_name(f"{path.name}_{name}"), draw)
-    show_rows(SWEPT, rows)
+    show_rows(show.SWEPT, rows)
     show_text("\n" + "\n".join(question.sentences(swept, float(tolerance))))
 
 
-def _show_fronts(question: "FrontQuestion", files: Files) -> None:
+def _show_fronts(files: Files, levels: Sequence[Fraction], **typed: Any) -> None:
     """Print the least error that each method forces, by speed of decay; write it as table and figure."""
-    from bezstab import show
-
+    question = questions.FrontQuestion(levels=levels, scene=typed_options().get("--scene"), **typed)
     files.check_output()
     fronts = list(progress(question.fronts(), "fronts", len(question.methods)))
     h = None if question.h is None else float(question.h)
-    rows = [front_row(point, h) for front in fronts for point in front]
+    rows = [show.row_in_seconds(show.FRONTS.fields, point, h) for front in fronts for point in front]
     files.write(
         files.path("tradeoff", "predicted"),
         lambda: show.error_front_figure([front for front in fronts if front]),
         lambda: show.untimed_arrays(rows),
     )
-    show_rows(FRONTS, rows)
-    show_text(combined_words(question.motion))
+    show_rows(show.FRONTS, rows)
+    show_text(show.combined_words(question.motion))

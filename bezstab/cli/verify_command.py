@@ -1,20 +1,16 @@
 """The command that holds predicted poles against measured ones: verify."""
 
 from functools import partial
-from itertools import chain
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
+from bezstab import evidence, questions, show
 from bezstab.cli.asking import asked, of_each
 from bezstab.cli.command_group import NUMERICAL_TROUBLE
 from bezstab.cli.options import Rule, changed, command, flag, option
 from bezstab.cli.output import Files, Work, for_reading, progress, results_of_chunks, show_rows, show_text, worked_out
-from bezstab.show import FORCED, MEASUREMENTS, SUMMARIES, VERDICT_MAPS, WITNESSED, Row
-
-if TYPE_CHECKING:
-    from bezstab.methods import Method
-    from bezstab.questions import VerifyQuestion
+from bezstab.methods import Method
 
 WHICH_POINTS = ("--alpha", "--points", "--map", "--witness")
 """Options each of which says what is verified."""
@@ -35,11 +31,7 @@ WHICH_POINTS = ("--alpha", "--points", "--map", "--witness")
     flag("--accuracy", "Compare predicted and measured errors that the feedback makes."),
     option("--witness", click.Choice(["mujoco"]), "Run the scene in this engine, with its own integrators."),
     changed("h", default="0.001"),
-    "compiled",
-    "work",
-    "picture",
-    changed("table", default="csv"),
-    "form",
+    "shared_out",
     Rule(("--accuracy",), "it compares one point", excludes=("--points", "--map", "--witness", "--floquet")),
     Rule(WHICH_POINTS, "each says which points are verified", excludes=WHICH_POINTS),
 )
@@ -61,49 +53,42 @@ def verify(across: int | None, accuracy: bool, witness: str | None, work: Work, 
 
     Example: bezstab verify --method AB4 --points 20
     """
-    from bezstab import evidence
-    from bezstab.questions import VerifyQuestion
-
-    question = asked(VerifyQuestion, **typed)
+    question = asked(questions.VerifyQuestion, **typed)
     worked_out(lambda: question.mechanism, typed["scene"])
     if accuracy:
         return _show_forced_errors(question)
     if witness:
         witnesses = evidence.mujoco_witnesses(question.mechanism, float(question.h))
         runs = progress(witnesses, "MuJoCo", evidence.witness_count())
-        show_rows(WITNESSED, [WITNESSED.row(run, scene=question.mechanism.scene.name) for run in runs])
+        show_rows(show.WITNESSED, [show.WITNESSED.row(run, scene=question.mechanism.scene.name) for run in runs])
     elif across:
         rows, status = of_each(question.methods, lambda method: [_write_map(question, method, across, work, files)])
-        show_rows(VERDICT_MAPS, rows)
+        show_rows(show.VERDICT_MAPS, rows)
         return status
     else:
         _show_measurements(question)
     return 0
 
 
-def _show_forced_errors(question: "VerifyQuestion") -> int:
+def _show_forced_errors(question: "questions.VerifyQuestion") -> int:
     """Print predicted and measured errors at shares of a point's gains; return whether all hold, or an exit status."""
-    from bezstab import evidence, show
-
     by_method = [
         list(progress(question.forced_errors(method), method.name, len(evidence.SHARES))) for method in question.methods
     ]
-    every_pair = list(chain.from_iterable(by_method))
+    every_pair = [pair for of_method in by_method for pair in of_method]
     scene = question.mechanism.scene.name
-    show_rows(FORCED, (row for pair in every_pair for row in show.forced_rows(scene, pair)))
+    show_rows(show.FORCED, (row for pair in every_pair for row in show.forced_rows(scene, pair)))
     show_text("\n" + "\n".join(map(evidence.forced_sentence, by_method)))
     outcomes = {pair.holds for pair in every_pair}
     return NUMERICAL_TROUBLE if None in outcomes else outcomes == {True}
 
 
-def _show_measurements(question: "VerifyQuestion") -> None:
+def _show_measurements(question: "questions.VerifyQuestion") -> None:
     """Print the poles measured at one point, else at random ones, and where there are several how well they agree."""
-    from bezstab import evidence, show
-
     scene, floquet = question.mechanism.scene.name, question.floquet
     measured = [question.measurements(method, partial(progress, label=method.name)) for method in question.methods]
-    rows = [MEASUREMENTS.row(each, scene=scene) for of_method in measured for each in of_method]
-    show_rows(MEASUREMENTS, rows, () if floquet else ("right",))
+    rows = [show.MEASUREMENTS.row(each, scene=scene) for of_method in measured for each in of_method]
+    show_rows(show.MEASUREMENTS, rows, () if floquet else ("right",))
     if not for_reading():
         return
     for of_method in measured if floquet else ():
@@ -111,19 +96,18 @@ def _show_measurements(question: "VerifyQuestion") -> None:
     if len(rows) > len(measured):  # of one point each there is nothing to sum up
         click.echo()
         summaries = map(evidence.measurement_summary, measured)
-        show_rows(SUMMARIES, map(SUMMARIES.row, summaries), () if floquet else ("followed",))
+        show_rows(show.SUMMARIES, map(show.SUMMARIES.row, summaries), () if floquet else ("followed",))
 
 
-def _write_map(question: "VerifyQuestion", method: "Method", across: int, work: Work, files: Files) -> Row:
+def _write_map(question: "questions.VerifyQuestion", method: Method, across: int, work: Work, files: Files) -> show.Row:
     """Simulate across x across runs of a method, write their verdicts as table and figure, return how many agree."""
-    from bezstab import evidence, show
     from bezstab.stability import region
 
     scene, h = question.mechanism.scene, float(question.h)
     path = files.path("verify", str(question.scene), method.name)
     chunks = evidence.map_rows(scene, method, h, across)
-    job = f"--map {across} --h {h} {method} {scene}"
+    job = f"verify --map {across} --h {h} {method} {scene}"
     with results_of_chunks(evidence.simulated_verdicts, chunks, path, job, work) as results:
         verdicts = evidence.verdict_map(chunks, results)
         files.write(path, lambda: show.verdict_figure(verdicts, region(method)), lambda: show.verdict_arrays(verdicts))
-    return VERDICT_MAPS.row(verdicts)
+    return show.VERDICT_MAPS.row(verdicts)

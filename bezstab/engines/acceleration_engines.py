@@ -10,7 +10,6 @@ from bezstab.engines.conversions import (
     Point,
     gains_in_words,
     in_words,
-    refuse_unless_positive,
 )
 from bezstab.errors import InputError
 from bezstab.units import feedback_gains, from_dimensionless, from_feedback_gains, to_dimensionless
@@ -21,139 +20,6 @@ def _read_gains(h: Fraction, stiffness: Fraction, damping: Fraction) -> Point:
     return from_feedback_gains(damping, stiffness, h)
 
 
-# Crocoddyl, Pinocchio, RigidBodyDynamics.jl: two gains
-
-
-CROCODDYL = Engine(
-    name="crocoddyl",
-    level="acceleration",
-    parameters=("gains[0]", "gains[1]"),
-    units=("1/s^2", "1/s"),
-    read=_read_gains,
-    write=gains_in_words,
-    paste="gains = [{}, {}]",
-    source="Crocoddyl source, contact-3d.hxx; integrator/euler.hxx (its Euler moves with the new velocity)",
-    excludes="friction cones and impulses",
-)
-
-
-PINOCCHIO = Engine(
-    name="pinocchio",
-    level="acceleration",
-    method=None,
-    parameters=("Kp", "Kd"),
-    units=("1/s^2", "1/s"),
-    read=_read_gains,
-    write=gains_in_words,
-    marks=(("Pinocchio: Kp = Kd = 0", "0 0"),),
-    source="Pinocchio source, contact-info.hpp (corrector, 0 and 0 unless set); constrained-dynamics.hxx",
-    excludes="errors of orientation, which are logarithms of rotations; the proximal solver's mu",
-)
-
-
-RIGID_BODY_DYNAMICS = Engine(
-    name="rigidbodydynamics.jl",
-    level="acceleration",
-    method="RK4",
-    parameters=("k", "d"),
-    units=("1/s^2", "1/s"),
-    read=_read_gains,
-    write=gains_in_words,
-    paste="PDGains({}, {})",
-    marks=(("RigidBodyDynamics.jl: PDGains(100, 20)", "100 20"),),
-    source="RigidBodyDynamics.jl source, mechanism_algorithms.jl, pdcontrol.jl, simulate.jl (Munthe-Kaas with RK4)",
-    excludes="errors of orientation; integrators other than its simulate",
-)
-
-
-# RBDL: one time constant, on the curve of critical damping
-
-
-def _read_rbdl(h: Fraction, time_constant: Fraction) -> Point:
-    refuse_unless_positive("rbdl", T_stab=time_constant)
-    return to_dimensionless(1 / time_constant, 1 / time_constant, h)
-
-
-def _time_constant(name: str, point: Point, h: Fraction) -> float:
-    """Return T = 1 / alpha = 1 / beta in s; InputError, naming the engine, where alpha and beta are not equal."""
-    alpha_hat, beta_hat = map(float, point)
-    nearest = alpha_hat**2 / 4
-    if not alpha_hat > 0 or abs(beta_hat - nearest) > 1e-9 * nearest:  # rounding of a point that was computed
-        raise InputError(f"{name} has one time constant, so β̂ = α̂²/4 ({nearest:g}), not {beta_hat:g}")
-    return 2 * float(h) / alpha_hat
-
-
-def _critical_damping(strongest: float) -> Curve:
-    """Return the points with alpha = beta, up to alpha h = `strongest`."""
-    return lambda share: (2 * strongest * share, (strongest * share) ** 2)
-
-
-FASTEST_ASKED_FOR = 4.0  # of alpha h: there e^-4, a fiftieth of an error, is left after a step
-
-
-RBDL = Engine(
-    name="rbdl",
-    level="acceleration",
-    method=None,
-    parameters=("T_stab",),
-    units=("s",),
-    read=_read_rbdl,
-    write=lambda point, h: (in_words(_time_constant("rbdl", point, h)),),
-    marks=(("RBDL: T_stab = 0.1", "0.1"),),
-    curve=_critical_damping(FASTEST_ASKED_FOR),
-    source="RBDL source, Constraint.h (setBaumgarteTimeConstant, default 0.1 s, off unless enabled)",
-    excludes="contact constraints, which have it on velocities alone",
-)
-
-
-# MapleSim, Drake's older solver: alpha and beta themselves
-
-
-def _write_alpha_beta(point: Point, h: Fraction) -> tuple[str, ...]:
-    alpha, beta = from_dimensionless(float(point[0]), float(point[1]), float(h))
-    return in_words(alpha), in_words(beta)
-
-
-def _engine_with_alpha_and_beta(name: str, source: str) -> Engine:
-    return Engine(
-        name=name,
-        level="acceleration",
-        method=None,
-        parameters=("alpha", "beta"),
-        units=("1/s", "1/s"),
-        read=lambda h, alpha, beta: to_dimensionless(alpha, beta, h),
-        write=_write_alpha_beta,
-        source=source,
-        excludes="nothing: these are the coefficients of c'' + 2 alpha c' + beta^2 c = 0",
-    )
-
-
-MAPLESIM = _engine_with_alpha_and_beta("maplesim", "MapleSim documentation, Multibody Dynamic Exports: SetBaumgarte")
-DRAKE = _engine_with_alpha_and_beta(
-    "drake", "Drake documentation, constraint stabilization (the older constraint solver)"
-)
-
-
-# Chrono's explicit integrators solve for accelerations with c'' = 0 and nothing else
-
-
-def _write_nothing(point: Point, h: Fraction) -> tuple[str, ...]:
-    raise InputError("chrono-explicit has no stabilisation: there is nothing to set")
-
-
-CHRONO_EXPLICIT = Engine(
-    name="chrono-explicit",
-    level="acceleration",
-    method=None,
-    parameters=(),
-    units=(),
-    read=lambda h: NO_FEEDBACK,
-    write=_write_nothing,
-    source="Chrono source, ChIntegrable.cpp (StateSolveA: c'' = 0 by differences), ChTimestepperExplicit.cpp",
-    excludes="nothing: Euler, Runge-Kutta, Heun and leapfrog add no feedback; lumped masses take penalties instead",
-)
-
-
 # MuJoCo. With impedance d and its value dmax at full width, aref = -(damping / dmax) c' - (stiffness d / dmax^2) c, of
 # which d takes part: r = d / dmax scales damping once and stiffness twice. r = d0 / dmax at c = 0, 1 past the width.
 
@@ -162,9 +28,7 @@ DEFAULT_SOLIMP = Fraction("0.9"), Fraction("0.95")
 LEAST_TIME_CONSTANT = 2  # steps: below, refsafe raises it
 
 
-def _read_solref(
-    h: Fraction, first: Fraction, second: Fraction, d0: Fraction | None = None, dmax: Fraction | None = None
-) -> Point:
+def _read_solref(h: Fraction, first: Fraction, second: Fraction, *_solimp: Fraction) -> Point:
     """Return the point of MuJoCo's solref, for an impedance that is the same for all errors (r = 1).
 
     Two positive numbers or two that are not mean different things.
@@ -180,19 +44,15 @@ def _read_solref(
     )
 
 
-def _apply_mujoco(
-    h: Fraction,
-    first: Fraction,
-    second: Fraction,
-    d0: Fraction = DEFAULT_SOLIMP[0],
-    dmax: Fraction = DEFAULT_SOLIMP[1],
-) -> Applied:
+def _apply_mujoco(h: Fraction, first: Fraction, second: Fraction, *solimp: Fraction) -> Applied:
     notes = []
     least = LEAST_TIME_CONSTANT * h
     if first > 0 and second > 0 and first < least:
         notes.append(f"refsafe raises timeconst {float(first):g} s to {LEAST_TIME_CONSTANT}h = {float(least):g} s")
         first = least
-    d0, dmax = (min(max(each, LEAST_IMPEDANCE), LARGEST_IMPEDANCE) for each in (d0, dmax))
+    d0, dmax = (
+        min(max(each, LEAST_IMPEDANCE), LARGEST_IMPEDANCE) for each in (*solimp, *DEFAULT_SOLIMP[len(solimp) :])
+    )
     ratio = d0 / dmax
     alpha_hat, beta_hat = _read_solref(h, first, second)
     if ratio == 1:
@@ -233,40 +93,174 @@ MUJOCO = Engine(
 )
 
 
-# Genesis solves MuJoCo's constraints with one time constant for all of them, critically damped: zeta = 1
-
-
-def _read_genesis(h: Fraction, time_constant: Fraction) -> Point:
-    refuse_unless_positive("genesis", constraint_timeconst=time_constant)
+def _read_time_constant(h: Fraction, time_constant: Fraction) -> Point:
+    """Return the point with alpha = beta = 1 / T."""
     return to_dimensionless(1 / time_constant, 1 / time_constant, h)
+
+
+def _time_constant(point: Point, h: Fraction) -> float:
+    """Return T in s."""
+    return 2 * float(h) / float(point[0])
+
+
+def _critical_damping(strongest: float) -> Curve:
+    """Return the points with alpha = beta, up to alpha h = `strongest`."""
+    return lambda share: (2 * strongest * share, (strongest * share) ** 2)
+
+
+# Genesis solves MuJoCo's constraints with one time constant for all of them, critically damped: zeta = 1
 
 
 def _apply_genesis(h: Fraction, time_constant: Fraction) -> Applied:
     least = LEAST_TIME_CONSTANT * h
-    if time_constant >= least:
-        return Applied(_read_genesis(h, time_constant))
     note = f"constraint_timeconst {float(time_constant):g} s is raised to {LEAST_TIME_CONSTANT}h = {float(least):g} s"
-    return Applied(_read_genesis(h, least), (note,))
+    return Applied(_read_time_constant(h, max(time_constant, least)), (note,) if time_constant < least else ())
 
 
 def _write_genesis(point: Point, h: Fraction) -> tuple[str, ...]:
-    time_constant = _time_constant("genesis", point, h)
-    least = LEAST_TIME_CONSTANT * float(h)
-    if time_constant < least * (1 - 1e-9):  # rounding of a point that was computed
-        raise InputError(f"genesis reaches α̂ <= {2 / LEAST_TIME_CONSTANT:g} only, not {float(point[0]):g}")
-    return (in_words(max(time_constant, least * (1 + 1e-8))),)  # so that its nine digits are not below the clamp
+    time_constant, least = _time_constant(point, h), LEAST_TIME_CONSTANT * float(h)
+    at_clamp = abs(time_constant / least - 1) < 1e-8  # rounding of a point that was computed, and of nine digits
+    return (in_words(least * (1 + 1e-8) if at_clamp else time_constant),)
 
 
 GENESIS = Engine(
     name="genesis",
     level="acceleration",
     parameters=("constraint_timeconst",),
+    above_zero=("constraint_timeconst",),
     units=("s",),
-    read=_read_genesis,
+    read=_read_time_constant,
     write=_write_genesis,
+    reaches=f"β̂ = α̂²/4 with α̂ <= {2 / LEAST_TIME_CONSTANT:g}, as it has one time constant",
     apply=_apply_genesis,
     curve=_critical_damping(1 / LEAST_TIME_CONSTANT),
     source="Genesis source, options/solvers.py (RigidOptions), rigid_solver.py (_sol_min_timeconst); else as mujoco",
     excludes="h is the substep's; sol_params of single joints and shapes; what mujoco leaves out, and that its solimp "
     "makes the feedback milder where the error is small",
+)
+
+
+# Crocoddyl, Pinocchio, RigidBodyDynamics.jl: two gains
+
+
+CROCODDYL = Engine(
+    name="crocoddyl",
+    level="acceleration",
+    parameters=("gains[0]", "gains[1]"),
+    units=("1/s^2", "1/s"),
+    read=_read_gains,
+    write=gains_in_words,
+    paste="gains = [{}, {}]",
+    source="Crocoddyl source, contact-3d.hxx; integrator/euler.hxx (its Euler moves with the new velocity)",
+    excludes="friction cones and impulses",
+)
+
+
+PINOCCHIO = Engine(
+    name="pinocchio",
+    level="acceleration",
+    method=None,
+    parameters=("Kp", "Kd"),
+    units=("1/s^2", "1/s"),
+    read=_read_gains,
+    write=gains_in_words,
+    marks=(("Pinocchio: Kp = Kd = 0", "0 0"),),
+    source="Pinocchio source, contact-info.hpp (corrector, 0 and 0 unless set); constrained-dynamics.hxx",
+    excludes="errors of orientation, which are logarithms of rotations; the proximal solver's mu",
+)
+
+
+FASTEST_ASKED_FOR = 4.0  # of alpha h: there e^-4, a fiftieth of an error, is left after a step
+
+
+RBDL = Engine(
+    name="rbdl",
+    level="acceleration",
+    method=None,
+    parameters=("T_stab",),
+    above_zero=("T_stab",),
+    units=("s",),
+    read=_read_time_constant,
+    write=lambda point, h: (in_words(_time_constant(point, h)),),
+    reaches="β̂ = α̂²/4, as it has one time constant",
+    marks=(("RBDL: T_stab = 0.1", "0.1"),),
+    curve=_critical_damping(FASTEST_ASKED_FOR),
+    source="RBDL source, Constraint.h (setBaumgarteTimeConstant, default 0.1 s, off unless enabled)",
+    excludes="contact constraints, which have it on velocities alone",
+)
+
+
+RIGID_BODY_DYNAMICS = Engine(
+    name="rigidbodydynamics.jl",
+    level="acceleration",
+    method="RK4",
+    parameters=("k", "d"),
+    units=("1/s^2", "1/s"),
+    read=_read_gains,
+    write=gains_in_words,
+    paste="PDGains({}, {})",
+    marks=(("RigidBodyDynamics.jl: PDGains(100, 20)", "100 20"),),
+    source="RigidBodyDynamics.jl source, mechanism_algorithms.jl, pdcontrol.jl, simulate.jl (Munthe-Kaas with RK4)",
+    excludes="errors of orientation; integrators other than its simulate",
+)
+
+
+# MapleSim, Drake's older solver: alpha and beta themselves
+
+
+def _write_alpha_beta(point: Point, h: Fraction) -> tuple[str, ...]:
+    alpha, beta = from_dimensionless(float(point[0]), float(point[1]), float(h))
+    return in_words(alpha), in_words(beta)
+
+
+def _engine_with_alpha_and_beta(name: str, source: str) -> Engine:
+    return Engine(
+        name=name,
+        level="acceleration",
+        method=None,
+        parameters=("alpha", "beta"),
+        units=("1/s", "1/s"),
+        read=lambda h, alpha, beta: to_dimensionless(alpha, beta, h),
+        write=_write_alpha_beta,
+        source=source,
+        excludes="nothing: these are the coefficients of c'' + 2 alpha c' + beta^2 c = 0",
+    )
+
+
+MAPLESIM = _engine_with_alpha_and_beta("maplesim", "MapleSim documentation, Multibody Dynamic Exports: SetBaumgarte")
+DRAKE = _engine_with_alpha_and_beta(
+    "drake", "Drake documentation, constraint stabilization (the older constraint solver)"
+)
+
+
+# Chrono's explicit integrators solve for accelerations with c'' = 0 and nothing else
+
+CHRONO_EXPLICIT = Engine(
+    name="chrono-explicit",
+    level="acceleration",
+    method=None,
+    parameters=(),
+    units=(),
+    read=lambda h: NO_FEEDBACK,
+    write=lambda point, h: (),
+    reaches="(0, 0), as it has no stabilisation",
+    source="Chrono source, ChIntegrable.cpp (StateSolveA: c'' = 0 by differences), ChTimestepperExplicit.cpp",
+    excludes="nothing: Euler, Runge-Kutta, Heun and leapfrog add no feedback; lumped masses take penalties instead",
+)
+
+
+# Brax's spring pipeline: forces of the old state, the new velocity moves
+
+
+BRAX_SPRING = Engine(
+    name="brax-spring",
+    level="acceleration",
+    parameters=("constraint_stiffness", "constraint_vel_damping"),
+    optional=("mass",),
+    above_zero=("mass",),
+    units=("N/m", "N s/m", "kg"),
+    read=lambda h, stiffness, damping, mass=Fraction(1): _read_gains(h, stiffness / mass, damping / mass),
+    write=lambda point, h: (*gains_in_words(point, h), "1"),
+    source="Brax source, spring/joints.py, spring/pipeline.py, spring/integrator.py; io/mjcf.py (2000, 0 unless set)",
+    excludes="angles (constraint_ang_damping); vel_damping and ang_damping; spring_mass_scale; contacts: brax-contact",
 )

@@ -1,13 +1,13 @@
 """What an engine is: its own words for the feedback, what it makes of them, and the method it steps with."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, Literal
 
 from bezstab.engines.sweeping import Sweeping
 from bezstab.errors import InputError
-from bezstab.rationals import within_float64
+from bezstab.rationals import rational, within_float64
 from bezstab.units import feedback_gains
 
 Level = Literal["acceleration", "velocity", "position"]
@@ -16,6 +16,9 @@ Point = tuple[Fraction, Fraction]
 """alpha_hat and beta_hat."""
 
 NO_FEEDBACK: Point = (Fraction(0), Fraction(0))
+
+READ_BACK = 1e-7
+"""Of a point, and beside one: what is read of the nine digits that are pasted differs by less from what was asked."""
 
 Curve = Callable[[Any], tuple[Any, Any]]
 """alpha_hat and beta_hat of a share from 0 (no feedback, or hardly any) to 1 (the strongest); numbers or arrays."""
@@ -47,12 +50,13 @@ class Engine:
     acceleration: true Baumgarte feedback, so that the integrator decides. velocity, position: an engine that feeds the
     error back into velocities or positions; for one constraint its step is that of `method` at that point, no other.
     `method` is the name of the engine's own integrator, None for a library that has none: the user's decides.
-    `read(h, *values)`, and `write(point, h)` with the values as text, raise InputError where the other has nothing.
-    `parameters` are the values needed, `optional` those that may follow, `units` the units of both; `paste` is the
-    line to paste where it is not name = value, for as many values as it has {}. `apply(h, *values)` is what the
-    engine does to values before it uses them (clamps, scaling), None if nothing. `marks` are the settings everybody
-    meets: a label, and the values as they are typed, or 2h for two steps. `excludes` is what the conversion leaves
-    out. `curve` are the points to choose among, None for all of the plane. `jointly` is whether it solves all
+    `parameters` are the values needed, `optional` those that may follow, `units` the units of both; those in
+    `above_zero` and `from_zero` mean nothing below. `read(h, *values)` is the point of such values, `write(point, h)`
+    the values of a point as text. Points without values are found by reading them back: `reaches` says which have some.
+    `paste` is the line to paste where it is not name = value, for as many values as it has {}. `apply(h, *values)` is
+    what the engine does to values before it uses them (clamps, scaling), None if nothing. `marks` are the settings
+    everybody meets: a label, and the values as they are typed, or 2h for two steps. `excludes` is what the conversion
+    leaves out. `curve` are the points to choose among, None for all of the plane. `jointly` is whether it solves all
     constraints together below acceleration level, too. `sweeping` is how it goes through a step in which it solves
     one after another, None where that is not written down here.
     """
@@ -67,6 +71,9 @@ class Engine:
     excludes: str
     method: str | None = "SYM"
     optional: tuple[str, ...] = ()
+    above_zero: tuple[str, ...] = ()
+    from_zero: tuple[str, ...] = ()
+    reaches: str = "α̂ >= 0 and β̂ >= 0 within the range of float64"
     apply: Callable[..., Applied] | None = None
     marks: tuple[tuple[str, str], ...] = ()
     paste: str | None = None
@@ -99,27 +106,32 @@ class Engine:
         The point is that after its clamps and scaling, which are left out where `as_typed`. InputError for another
         number of values, for those that mean nothing and for a point outside float64's range.
         """
-        self._check_number(values)
+        self._check(values)
         if as_typed or self.apply is None:
-            return Applied(self._within_range(self.read(h, *values)), None if as_typed else ())
-        made = self.apply(h, *values)
-        return Applied(
-            self._within_range(made.point),
-            made.notes,
-            tuple((label, self._within_range(point)) for label, point in made.also),
-        )
+            made = Applied(self.read(h, *values), None if as_typed else ())
+        else:
+            made = self.apply(h, *values)
+        for alpha_hat, beta_hat in made.points:
+            within_float64(alpha_hat, f"--engine {self.name}: α̂")
+            within_float64(beta_hat, f"--engine {self.name}: β̂")
+        return made
 
     def values(self, point: Point, h: Fraction) -> tuple[str, ...]:
-        """Return the values that mean a point, as they are typed, h in s; InputError where there are none."""
-        alpha_hat, beta_hat = point
-        if alpha_hat < 0 or beta_hat < 0:
-            raise InputError(
-                f"{self.name}: negative feedback ({float(alpha_hat):g}, {float(beta_hat):g}) cannot be set"
-            )
+        """Return the values that mean a point, as they are typed, h in s; InputError where there are none.
+
+        They are read back
+        """
         try:
-            return self.write(point, h)
-        except (OverflowError, ZeroDivisionError):
-            raise InputError(f"{self.name}: its parameters would leave the range of float64") from None
+            values = self.write(point, h)
+            back = self.applied(tuple(map(rational, values)), h).point
+            apart = max(abs(read - asked) - READ_BACK * asked for read, asked in zip(back, point, strict=True))
+            reached = min(point) >= 0 and apart <= READ_BACK
+        except (ArithmeticError, ValueError):  # the formula leaves the real numbers, or the range of float64
+            reached = False
+        if not reached:
+            alpha_hat, beta_hat = map(float, point)
+            raise InputError(f"{self.name} reaches only {self.reaches}, not ({alpha_hat:g}, {beta_hat:g})")
+        return values
 
     def setting(self, point: Point, h: Fraction) -> str:
         """Return the line to paste for a point, h in s; InputError where there is nothing to set."""
@@ -127,62 +139,37 @@ class Engine:
         if self.paste and self.paste.count("{}") == len(values):
             return self.paste.format(*values)
         names = (*self.parameters, *self.optional)
-        return ", ".join(f"{name} = {value}" for name, value in zip(names, values, strict=False))
+        return ", ".join(f"{name} = {value}" for name, value in zip(names, values, strict=False)) or "nothing to set"
 
     def words(self) -> str:
         """Return the parameters as they are typed, the optional ones in brackets: solref[0],solref[1][,solimp[0]]."""
         optional = "".join(f"[,{name}" for name in self.optional) + "]" * len(self.optional)
         return ",".join(self.parameters) + (optional if self.parameters else optional.replace("[,", "[", 1))
 
-    def _check_number(self, values: tuple[Fraction, ...]) -> None:
-        needed, most = len(self.parameters), len(self.parameters) + len(self.optional)
-        if not needed <= len(values) <= most:
+    def _check(self, values: tuple[Fraction, ...]) -> None:
+        """Raise InputError for another number of values, and for those that mean nothing."""
+        option, names = f"--engine {self.name}", (*self.parameters, *self.optional)
+        if not len(self.parameters) <= len(values) <= len(names):
             expected = ", ".join(self.parameters) or "none"
             then = f", then {', '.join(self.optional)} if you like" if self.optional else ""
-            raise InputError(f"--engine {self.name}: {len(values)} values, expected {expected}{then}")
+            raise InputError(f"{option}: {len(values)} values, expected {expected}{then}")
+        for name, value in zip(names, values, strict=False):
+            if (value < 0 and name in self.from_zero) or (value <= 0 and name in self.above_zero):
+                expected = "0 or more" if name in self.from_zero else "above 0"
+                raise InputError(f"{option}: {name} = {float(value):g}: expected {expected}")
 
-    def _within_range(self, point: Point) -> Point:
-        alpha_hat, beta_hat = point
-        option = f"--engine {self.name}"
-        return within_float64(alpha_hat, f"{option}: α̂"), within_float64(beta_hat, f"{option}: β̂")
 
-
-def engine_without_parameters(
-    name: str,
-    level: Level,
-    point: Point,
-    *,
-    source: str,
-    excludes: str,
-    paste: str = "nothing to set",
-    sweeping: Sweeping | None = None,
-) -> Engine:
-    """Return an engine whose feedback cannot be set: symplectic Euler at one point."""
-
-    def read(h: Fraction) -> Point:
-        return point
-
-    def write(asked: Point, h: Fraction) -> tuple[str, ...]:
-        if asked != point:
-            theirs, others = (f"({float(alpha_hat):g}, {float(beta_hat):g})" for alpha_hat, beta_hat in (point, asked))
-            raise InputError(f"{name} is {theirs}, not {others}")
-        return ()
-
-    def curve(share: Any) -> tuple[Any, Any]:
-        return float(point[0]), float(point[1])
-
+def engine_without_parameters(point: Point, **facts: Any) -> Engine:
+    """Return an engine whose feedback cannot be set: it has one point; `facts` are the other fields of `Engine`."""
+    alpha_hat, beta_hat = map(float, point)
     return Engine(
-        name=name,
-        level=level,
         parameters=(),
         units=(),
-        read=read,
-        write=write,
-        paste=paste,
-        curve=curve,
-        source=source,
-        excludes=excludes,
-        sweeping=sweeping,
+        read=lambda h: point,
+        write=lambda asked, h: (),
+        curve=lambda share: (alpha_hat, beta_hat),
+        reaches=f"({alpha_hat:g}, {beta_hat:g})",
+        **facts,
     )
 
 
@@ -204,20 +191,3 @@ def hard(share: Any) -> tuple[Any, Any]:
 def in_words(value: float) -> str:
     """Return a value as it stands in a line to paste: nine digits, so that what is read back agrees to 1e-8."""
     return f"{value:.9g}"
-
-
-def refuse_below_zero(option: str, **values: Fraction) -> None:
-    """Raise InputError, naming the engine and the values, unless none is below zero."""
-    if min(values.values()) < 0:
-        raise _refusal(option, values, "0 or more")
-
-
-def refuse_unless_positive(option: str, **values: Fraction) -> None:
-    """Raise InputError, naming the engine and the values, unless all are above zero."""
-    if min(values.values()) <= 0:
-        raise _refusal(option, values, "above 0")
-
-
-def _refusal(option: str, values: Mapping[str, Fraction], expected: str) -> InputError:
-    typed = ", ".join(f"{name} = {float(value):g}" for name, value in values.items())
-    return InputError(f"--engine {option}: {typed}: expected {expected}")

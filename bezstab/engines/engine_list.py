@@ -5,76 +5,18 @@ An engine is listed if its formula has a source or is derived from one; what is 
 
 from fractions import Fraction
 
-from bezstab.engines.acceleration_engines import (
-    CHRONO_EXPLICIT,
-    CROCODDYL,
-    DRAKE,
-    GENESIS,
-    MAPLESIM,
-    MUJOCO,
-    PINOCCHIO,
-    RBDL,
-    RIGID_BODY_DYNAMICS,
-)
+from bezstab.engines import acceleration_engines, position_engines, velocity_engines
 from bezstab.engines.conversions import Engine
-from bezstab.engines.implicit_engines import BRAX_SPRING, JOLT_SPRING, PHYSX_DRIVE, XPBD
-from bezstab.engines.position_engines import BOX2D_V2, BRAX_POSITIONAL, JOLT, PBD
-from bezstab.engines.velocity_engines import (
-    BOX2D,
-    BRAX_CONTACT,
-    BULLET,
-    CHIPMUNK,
-    CHRONO_LINEARIZED,
-    DART,
-    DRAKE_SAP,
-    GODOT,
-    GODOT_2D,
-    KAMINO,
-    ODE,
-    PHYSX,
-    PHYSX_TGS,
-    RAPIER,
-)
 from bezstab.errors import InputError, unknown_name
 from bezstab.rationals import rational
 
 ENGINES = {
     engine.name: engine
-    for engine in (
-        MUJOCO,
-        GENESIS,
-        CROCODDYL,
-        PINOCCHIO,
-        RBDL,
-        RIGID_BODY_DYNAMICS,
-        MAPLESIM,
-        DRAKE,
-        CHRONO_EXPLICIT,
-        BRAX_SPRING,
-        BULLET,
-        ODE,
-        DART,
-        BOX2D,
-        BOX2D_V2,
-        RAPIER,
-        CHIPMUNK,
-        CHRONO_LINEARIZED,
-        DRAKE_SAP,
-        BRAX_CONTACT,
-        GODOT,
-        GODOT_2D,
-        KAMINO,
-        JOLT_SPRING,
-        PHYSX,
-        PHYSX_TGS,
-        PHYSX_DRIVE,
-        JOLT,
-        PBD,
-        XPBD,
-        BRAX_POSITIONAL,
-    )
+    for level in (acceleration_engines, velocity_engines, position_engines)
+    for engine in vars(level).values()
+    if isinstance(engine, Engine)
 }
-"""Every engine by name."""
+"""Every engine by name, in the order of the files that they stand in."""
 
 RUN_UNDERNEATH = {
     "avian": "its joints are XPBD: ask about xpbd, or about pbd=1 where the compliance is 0; h is the substep's",

@@ -7,25 +7,30 @@ For one constraint of unit mass each of them is a linear recursion of c and c'. 
 
 and an engine whose two roots are those of this polynomial is symplectic Euler at that point. A step that ends with
 c' = 0, whatever it was, has alpha_hat = 1 and the roots 0 and 1 - beta_hat.
+
+Springs and drives that are solved implicitly are implicit Euler, stable for all: with alpha_hat = damping h and
+beta_hat = stiffness h^2, each per unit of mass, v1 = (v0 - beta_hat c0) / (1 + alpha_hat + beta_hat).
 """
 
 import math
 from fractions import Fraction
+from typing import Any
 
 from bezstab.engines.conversions import (
     Applied,
     Engine,
     Point,
     engine_without_parameters,
+    gains_in_words,
     hard,
     in_words,
-    refuse_below_zero,
-    refuse_unless_positive,
 )
 from bezstab.engines.sweeping import Move, Pass, Sweeping, SweptStep, hard_velocity_step
 from bezstab.errors import InputError
+from bezstab.units import from_feedback_gains
 
 ONE = Fraction(1)
+ONLY_HARD = "α̂ = 1"
 STIFFEST = 0.999
 """The alpha_hat that soft constraints are chosen with: rigid but for a thousandth; beyond, their words are huge."""
 
@@ -33,46 +38,24 @@ DOUBLE_POLE = (1 - math.sqrt(1 - STIFFEST)) ** 2
 """Rapier's largest beta_hat there, over alpha_hat: where the damping ratio is 0."""
 
 
-def _refuse_unless_one(name: str, alpha_hat: Fraction) -> None:
-    if alpha_hat != 1:
-        raise InputError(f"{name} is α̂ = 1, not {float(alpha_hat):g}")
-
-
 # ERP is the share of the error that one step takes back: v1 = -ERP c0. Constraint force mixing softens that: the
 # velocity then keeps a share, J v1 = -(ERP / h) c - CFM f with f the force that was needed, so that
 # alpha_hat = h / (h + CFM m) and beta_hat = alpha_hat ERP for an effective mass m = 1 / (J M^-1 J').
 
 
-def _engine_with_erp(
-    name: str,
-    default: str,
-    source: str,
-    excludes: str,
-    *,
-    word: str = "ERP",
-    jointly: bool = False,
-    sweeping: Sweeping | None = None,
-) -> Engine:
-    def read(h: Fraction, erp: Fraction) -> Point:
-        return ONE, erp
-
-    def write(point: Point, h: Fraction) -> tuple[str, ...]:
-        _refuse_unless_one(name, point[0])
-        return (in_words(float(point[1])),)
-
+def _engine_with_erp(name: str, default: str, word: str = "ERP", **facts: Any) -> Engine:
+    """Return an engine with one such share, which it calls `word`; `facts` are the other fields of `Engine`."""
     return Engine(
         name=name,
         level="velocity",
         parameters=(word,),
         units=("-",),
-        read=read,
-        write=write,
+        read=lambda h, erp: (ONE, erp),
+        write=lambda point, h: (in_words(float(point[1])),),
+        reaches=ONLY_HARD,
         marks=((f"{name}: {word} = {default}", default),),
-        source=source,
-        excludes=excludes,
         curve=hard,
-        jointly=jointly,
-        sweeping=sweeping,
+        **facts,
     )
 
 
@@ -87,8 +70,8 @@ def _cold_step(iterations: int, h: Fraction, share: Fraction) -> SweptStep:
 BULLET = _engine_with_erp(
     "bullet",
     "0.2",
-    "Bullet source, btContactSolverInfo.h",
-    f"CFM = 0; {IMPULSES}",
+    source="Bullet source, btContactSolverInfo.h",
+    excludes=f"CFM = 0; {IMPULSES}",
     sweeping=Sweeping(
         _cold_step,
         iterations=10,
@@ -98,62 +81,9 @@ BULLET = _engine_with_erp(
         excludes="contacts, which it starts warm (0.85), and random order where that is switched on",
     ),
 )
-DART = _engine_with_erp("dart", "0.01", "DART issue 317", f"CFM = 0; {IMPULSES}", jointly=True)
-BRAX_CONTACT = _engine_with_erp(
-    "brax-contact",
-    "0.1",
-    "Brax source, spring/collisions.py (baumgarte_erp), io/mjcf.py (default)",
-    "contacts of its spring pipeline only, as long as they touch; its joints are brax-spring",
-)
-GODOT = _engine_with_erp(
-    "godot",
-    "0.3",
-    "Godot source, godot_pin_joint_3d.cpp",
-    "Jolt, which is jolt, and which new projects use in 3D; PinJoint3D's damping other than 1; other joints in 3D; "
-    f"2D, which is godot-2d; {IMPULSES}",
-    word="bias",
-    sweeping=Sweeping(
-        _cold_step,
-        iterations=16,
-        word="physics/3d/solver/solver_iterations",
-        source="Godot source, godot_pin_joint_3d.cpp (setup sets m_appliedImpulse to 0), physics_server_3d.cpp",
-        excludes="priorities of constraints; a bias is added in every sweep, not to an accumulated impulse, which is "
-        "the same",
-    ),
-)
-
-
-GODOT_2D = _engine_with_erp(
-    "godot-2d",
-    "0.2",
-    "Godot source, godot_joints_2d.cpp (PinJoint2D without softness: a bias impulse for positions alone)",
-    f"softness; angular limits; grooves and springs; {IMPULSES}",
-    word="bias",
-    sweeping=Sweeping(
-        lambda iterations, h, bias: SweptStep(
-            1.0, (Pass("velocity", iterations), Pass("position", iterations, float(bias)), Move())
-        ),
-        iterations=16,
-        word="physics/2d/solver/solver_iterations",
-        source="Godot source, godot_joints_2d.cpp (pre_solve applies P, solve has its own bias impulse), "
-        "godot_step_2d.cpp, physics_server_2d.cpp",
-        excludes="contacts",
-        together=True,
-    ),
-)
-KAMINO = _engine_with_erp(
-    "kamino",
-    "0.01",
-    "Newton source, solvers/kamino: config.py, dynamics/dual.py, integrators/euler.py and moreau.py",
-    "joint limits (beta) and contacts (gamma); armature and implicit drives; what its solver leaves over",
-    word="alpha",
-    jointly=True,
-)
 
 
 def _read_ode(h: Fraction, erp: Fraction, cfm: Fraction = Fraction(0), mass: Fraction = ONE) -> Point:
-    refuse_below_zero("ode", CFM=cfm)
-    refuse_unless_positive("ode", mass=mass)
     alpha_hat = h / (h + cfm * mass)
     return alpha_hat, alpha_hat * erp
 
@@ -162,8 +92,6 @@ def _write_ode(point: Point, h: Fraction) -> tuple[str, ...]:
     alpha_hat, beta_hat = point
     if alpha_hat == 1:
         return (in_words(float(beta_hat)),)
-    if not 0 < alpha_hat < 1:
-        raise InputError(f"ode reaches 0 < α̂ <= 1 only, not {float(alpha_hat):g}")
     erp, cfm = float(beta_hat / alpha_hat), float(h * (1 / alpha_hat - 1))
     return in_words(erp), in_words(cfm), "1"
 
@@ -180,9 +108,12 @@ ODE = Engine(
     level="velocity",
     parameters=("ERP",),
     optional=("CFM", "mass"),
+    from_zero=("CFM",),
+    above_zero=("mass",),
     units=("-", "s/kg", "kg"),
     read=_read_ode,
     write=_write_ode,
+    reaches="0 < α̂ <= 1",
     marks=(("ode: ERP = 0.2", "0.2"),),
     source="ODE wiki, Manual: Concepts",
     curve=hard,  # which needs no effective mass
@@ -198,61 +129,7 @@ ODE = Engine(
 )
 
 
-# Chrono's usual integrator, linearised implicit Euler: v1 = -c / h
-
-
-CHRONO_LINEARIZED = engine_without_parameters(
-    "chrono-linearized",
-    "velocity",
-    (ONE, ONE),
-    paste="EULER_IMPLICIT_LINEARIZED",
-    source="Chrono source, ChTimestepperImplicit.cpp (EulerImplicitLinearized: Qc = C / dt)",
-    excludes="the recovery speed (0.6 m/s unless set), above which an error is taken back at that speed; contacts",
-)
-
-
-# Chipmunk: errorBias is the share of an error that is left after a second, so errorBias^h after a step. It moves first,
-# with the old velocity, and sees the error after that: the roots are the same.
-
-
-def _read_chipmunk(h: Fraction, error_bias: Fraction) -> Point:
-    refuse_below_zero("chipmunk", errorBias=error_bias)
-    return ONE, 1 - Fraction(float(error_bias) ** float(h))
-
-
-def _write_chipmunk(point: Point, h: Fraction) -> tuple[str, ...]:
-    _refuse_unless_one("chipmunk", point[0])
-    left = 1 - float(point[1])
-    if left < 0:
-        raise InputError(f"chipmunk reaches β̂ <= 1 only, not {float(point[1]):g}")
-    error_bias = left ** (1 / float(h))
-    if left > 0 and error_bias == 0:
-        raise InputError(f"chipmunk: the errorBias that leaves {left:g} after this step is below float64's range")
-    return (f"{error_bias:.17g}",)  # all digits: for a small beta_hat it is next to one
-
-
-CHIPMUNK = Engine(
-    name="chipmunk",
-    level="velocity",
-    parameters=("errorBias",),
-    units=("- (per second)",),
-    read=_read_chipmunk,
-    write=_write_chipmunk,
-    marks=(("Chipmunk: errorBias = 0.9^60", str(Fraction("0.9") ** 60)),),
-    curve=hard,
-    source="Chipmunk source, cpConstraint.c, cpPivotJoint.c, cpSpaceStep.c (pymunk: error_bias)",
-    excludes="maxBias and maxForce (infinite unless set); warm starts and the error of iterations; damped springs",
-    sweeping=Sweeping(
-        lambda iterations, h, error_bias: hard_velocity_step(  # its order of moves is the same
-            _read_chipmunk(h, error_bias)[1], iterations, kept=1.0
-        ),
-        iterations=10,
-        word="iterations",
-        source="Chipmunk source, cpSpaceStep.c (cached impulses, then sweeps), cpSpace.c, cpPivotJoint.c",
-        excludes="contacts; steps that vary",
-        together=True,
-    ),
-)
+DART = _engine_with_erp("dart", "0.01", source="DART issue 317", excludes=f"CFM = 0; {IMPULSES}", jointly=True)
 
 
 # Soft constraints by frequency and damping ratio. With the turn t = 2 pi hertz h and x = t (2 zeta + t), the velocity
@@ -282,23 +159,17 @@ USUAL_DAMPING_RATIO = 2.0  # of Box2D's joints
 
 
 def _read_box2d(h: Fraction, hertz: Fraction, damping_ratio: Fraction) -> Point:
-    refuse_below_zero("box2d", hertz=hertz, dampingRatio=damping_ratio)
     return ONE, _soft(h, hertz, damping_ratio)[1]
 
 
 def _apply_box2d(h: Fraction, hertz: Fraction, damping_ratio: Fraction) -> Applied:
-    if hertz * h <= MOST_TURNS:
-        return Applied(_read_box2d(h, hertz, damping_ratio))
     fastest = MOST_TURNS / h
     note = f"hertz {float(hertz):g} is clamped to {float(MOST_TURNS):g}/h = {float(fastest):g}"
-    return Applied(_read_box2d(h, fastest, damping_ratio), (note,))
+    return Applied(_read_box2d(h, min(hertz, fastest), damping_ratio), (note,) if hertz > fastest else ())
 
 
 def _write_box2d(point: Point, h: Fraction) -> tuple[str, ...]:
-    _refuse_unless_one("box2d", point[0])
     share = float(point[1])
-    if not 0 < share <= LARGEST_SHARE:
-        raise InputError(f"box2d reaches 0 < β̂ <= {LARGEST_SHARE:.4g} only, not {share:g}")
     zeta = USUAL_DAMPING_RATIO
     # the turn at which t^2 / (1 + 2 zeta t + t^2) is the share
     turn = (zeta * share + math.sqrt((zeta * share) ** 2 + share * (1 - share))) / (1 - share)
@@ -317,9 +188,11 @@ BOX2D = Engine(
     name="box2d",
     level="velocity",
     parameters=("hertz", "dampingRatio"),
+    from_zero=("hertz", "dampingRatio"),
     units=("Hz", "-"),
     read=_read_box2d,
     write=_write_box2d,
+    reaches=f"α̂ = 1 with 0 < β̂ <= {LARGEST_SHARE:.4g}",
     apply=_apply_box2d,
     marks=(("Box2D joints: 60 Hz, 2", "60 2"),),
     curve=lambda share: (1.0, LARGEST_SHARE * share),
@@ -337,7 +210,6 @@ BOX2D = Engine(
 
 
 def _read_rapier(h: Fraction, natural_frequency: Fraction, damping_ratio: Fraction) -> Point:
-    refuse_unless_positive("rapier", natural_frequency=natural_frequency, damping_ratio=damping_ratio)
     scale, share = _soft(h, natural_frequency, damping_ratio)
     return scale + share - scale * share, scale * share
 
@@ -345,16 +217,11 @@ def _read_rapier(h: Fraction, natural_frequency: Fraction, damping_ratio: Fracti
 def _write_rapier(point: Point, h: Fraction) -> tuple[str, ...]:
     alpha_hat, beta_hat = map(float, point)
     half = (alpha_hat + beta_hat) / 2  # of scale + share, while scale * share is beta_hat
-    difference = half**2 - beta_hat
-    if not (0 < beta_hat < 1 and 0 < alpha_hat < 1 and difference >= 0):
-        raise InputError(f"rapier reaches β̂ < 1 and α̂ < 1 with two real poles only, not ({alpha_hat:g}, {beta_hat:g})")
-    scale = half + math.sqrt(difference)
+    scale = half + math.sqrt(half**2 - beta_hat)
     share = beta_hat / scale
     x = scale / (1 - scale)
     turn = math.sqrt(share / (1 - scale))
     zeta = (x / turn - turn) / 2
-    if not zeta > 0:
-        raise InputError(f"rapier reaches no ({alpha_hat:g}, {beta_hat:g}) with a damping ratio above 0")
     natural_frequency = turn / (2 * math.pi * float(h))
     return f"{natural_frequency:.17g}", f"{zeta:.17g}"  # all digits: 1 - scale may be small
 
@@ -369,9 +236,11 @@ RAPIER = Engine(
     name="rapier",
     level="velocity",
     parameters=("natural_frequency", "damping_ratio"),
+    above_zero=("natural_frequency", "damping_ratio"),
     units=("Hz", "-"),
     read=_read_rapier,
     write=_write_rapier,
+    reaches="0 < β̂ < 1 and 0 < α̂ < 1 with two real poles and a damping ratio above 0",
     marks=(("Rapier joints: 1e6 Hz, 1", "1e6 1"),),
     curve=lambda share: (STIFFEST, STIFFEST * DOUBLE_POLE * share),
     source="Rapier source, integration_parameters.rs, solve.rs in staged_island_solver, joint_velocity_constraint.rs",
@@ -384,6 +253,56 @@ RAPIER = Engine(
         "integration_parameters.rs (warmstart_joints false, one stabilization sweep)",
         excludes="h is the substep's; its order by colours of a graph; warmstart_joints",
     ),
+)
+
+
+# Chipmunk: errorBias is the share of an error that is left after a second, so errorBias^h after a step. It moves first,
+# with the old velocity, and sees the error after that: the roots are the same.
+
+
+def _read_chipmunk(h: Fraction, error_bias: Fraction) -> Point:
+    return ONE, 1 - Fraction(float(error_bias) ** float(h))
+
+
+def _write_chipmunk(point: Point, h: Fraction) -> tuple[str, ...]:
+    return (f"{(1 - float(point[1])) ** (1 / float(h)):.17g}",)  # all digits: for a small beta_hat it is next to one
+
+
+CHIPMUNK = Engine(
+    name="chipmunk",
+    level="velocity",
+    parameters=("errorBias",),
+    from_zero=("errorBias",),
+    units=("- (per second)",),
+    read=_read_chipmunk,
+    write=_write_chipmunk,
+    reaches="α̂ = 1 with β̂ <= 1, where errorBias is within float64",
+    marks=(("Chipmunk: errorBias = 0.9^60", str(Fraction("0.9") ** 60)),),
+    curve=hard,
+    source="Chipmunk source, cpConstraint.c, cpPivotJoint.c, cpSpaceStep.c (pymunk: error_bias)",
+    excludes="maxBias and maxForce (infinite unless set); warm starts and the error of iterations; damped springs",
+    sweeping=Sweeping(
+        lambda iterations, h, error_bias: hard_velocity_step(  # its order of moves is the same
+            _read_chipmunk(h, error_bias)[1], iterations, kept=1.0
+        ),
+        iterations=10,
+        word="iterations",
+        source="Chipmunk source, cpSpaceStep.c (cached impulses, then sweeps), cpSpace.c, cpPivotJoint.c",
+        excludes="contacts; steps that vary",
+        together=True,
+    ),
+)
+
+
+# Chrono's usual integrator, linearised implicit Euler: v1 = -c / h
+
+CHRONO_LINEARIZED = engine_without_parameters(
+    (ONE, ONE),
+    name="chrono-linearized",
+    level="velocity",
+    paste="EULER_IMPLICIT_LINEARIZED",
+    source="Chrono source, ChTimestepperImplicit.cpp (EulerImplicitLinearized: Qc = C / dt)",
+    excludes="the recovery speed (0.6 m/s unless set), above which an error is taken back at that speed; contacts",
 )
 
 
@@ -400,24 +319,20 @@ def _sap_point(h: Fraction, q: Fraction, relaxation_time: Fraction) -> Point:
     return alpha_hat, alpha_hat * h / (h + relaxation_time)
 
 
-def _sap_q(h: Fraction, stiffness: Fraction, relaxation_time: Fraction, inverse_mass: Fraction) -> Fraction:
-    refuse_unless_positive("drake-sap", k=stiffness, w=inverse_mass)
-    refuse_below_zero("drake-sap", tau=relaxation_time)
-    return inverse_mass * h * (h + relaxation_time) * stiffness
-
-
-def _read_sap(h: Fraction, *typed: Fraction) -> Point:
+def _sap_q_and_time(h: Fraction, *typed: Fraction) -> tuple[Fraction, Fraction]:
+    """Return q and tau (s) of k, tau and w as they are typed; near rigid without them."""
     if not typed:
-        return _sap_point(h, NEAR_RIGID, h)
+        return NEAR_RIGID, h
     if len(typed) < 3:
         raise InputError("--engine drake-sap: k, tau and w go together; none of them for a ball or a weld")
-    return _sap_point(h, _sap_q(h, *typed), typed[1])
+    stiffness, relaxation_time, inverse_mass = typed
+    return inverse_mass * h * (h + relaxation_time) * stiffness, relaxation_time
 
 
 def _apply_sap(h: Fraction, *typed: Fraction) -> Applied:
-    as_typed = _read_sap(h, *typed)
-    if not typed or _sap_q(h, *typed) <= NEAR_RIGID:
-        return Applied(as_typed)
+    q, relaxation_time = _sap_q_and_time(h, *typed)
+    if q <= NEAR_RIGID:
+        return Applied(_sap_point(h, q, relaxation_time))
     note = f"near rigid: k is lowered until w/R = {float(NEAR_RIGID):.0f}, and tau is h"
     return Applied(_sap_point(h, NEAR_RIGID, h), (note,))
 
@@ -427,9 +342,6 @@ def _write_sap(point: Point, h: Fraction) -> tuple[str, ...]:
     step = float(h)
     if point == _sap_point(h, NEAR_RIGID, h):
         return ()
-    if not (0 < beta_hat <= alpha_hat < 1 and alpha_hat / (1 - alpha_hat) <= NEAR_RIGID):
-        most = float(NEAR_RIGID / (1 + NEAR_RIGID))
-        raise InputError(f"drake-sap reaches 0 < β̂ <= α̂ <= {most:.6g} only, not ({alpha_hat:g}, {beta_hat:g})")
     relaxation_time = step * (alpha_hat / beta_hat - 1)
     stiffness = alpha_hat / (1 - alpha_hat) / (step * (step + relaxation_time))
     return f"{stiffness:.17g}", f"{relaxation_time:.17g}", "1"  # all digits: tau may be next to 0
@@ -440,9 +352,12 @@ DRAKE_SAP = Engine(
     level="velocity",
     parameters=(),
     optional=("k", "tau", "w"),
+    above_zero=("k", "w"),
+    from_zero=("tau",),
     units=("N/m", "s", "1/kg"),
-    read=_read_sap,
+    read=lambda h, *typed: _sap_point(h, *_sap_q_and_time(h, *typed)),
     write=_write_sap,
+    reaches=f"0 < β̂ <= α̂ <= {float(NEAR_RIGID / (1 + NEAR_RIGID)):.6g}",
     paste="k = inf",
     curve=lambda share: (STIFFEST, STIFFEST * share),
     apply=_apply_sap,
@@ -450,6 +365,106 @@ DRAKE_SAP = Engine(
     marks=(("Drake SAP: near rigid", ""),),
     source="Drake source, sap_holonomic_constraint.h and .cc; sap_ball_constraint.cc",
     excludes="without values a ball or a weld, which are near rigid; limits of impulses; constraints that share bodies",
+)
+
+
+BRAX_CONTACT = _engine_with_erp(
+    "brax-contact",
+    "0.1",
+    source="Brax source, spring/collisions.py (baumgarte_erp), io/mjcf.py (default)",
+    excludes="contacts of its spring pipeline only, as long as they touch; its joints are brax-spring",
+)
+
+
+GODOT = _engine_with_erp(
+    "godot",
+    "0.3",
+    word="bias",
+    source="Godot source, godot_pin_joint_3d.cpp",
+    excludes="Jolt, which is jolt, and which new projects use in 3D; PinJoint3D's damping other than 1; other joints "
+    f"in 3D; 2D, which is godot-2d; {IMPULSES}",
+    sweeping=Sweeping(
+        _cold_step,
+        iterations=16,
+        word="physics/3d/solver/solver_iterations",
+        source="Godot source, godot_pin_joint_3d.cpp (setup sets m_appliedImpulse to 0), physics_server_3d.cpp",
+        excludes="priorities of constraints; a bias is added in every sweep, not to an accumulated impulse, which is "
+        "the same",
+    ),
+)
+
+
+GODOT_2D = _engine_with_erp(
+    "godot-2d",
+    "0.2",
+    word="bias",
+    source="Godot source, godot_joints_2d.cpp (PinJoint2D without softness: a bias impulse for positions alone)",
+    excludes=f"softness; angular limits; grooves and springs; {IMPULSES}",
+    sweeping=Sweeping(
+        lambda iterations, h, bias: SweptStep(
+            1.0, (Pass("velocity", iterations), Pass("position", iterations, float(bias)), Move())
+        ),
+        iterations=16,
+        word="physics/2d/solver/solver_iterations",
+        source="Godot source, godot_joints_2d.cpp (pre_solve applies P, solve has its own bias impulse), "
+        "godot_step_2d.cpp, physics_server_2d.cpp",
+        excludes="contacts",
+        together=True,
+    ),
+)
+
+
+KAMINO = _engine_with_erp(
+    "kamino",
+    "0.01",
+    word="alpha",
+    source="Newton source, solvers/kamino: config.py, dynamics/dual.py, integrators/euler.py and moreau.py",
+    excludes="joint limits (beta) and contacts (gamma); armature and implicit drives; what its solver leaves over",
+    jointly=True,
+)
+
+
+# Catto's soft constraint, without relaxation
+
+
+def _read_jolt_spring(h: Fraction, frequency: Fraction, damping: Fraction) -> Point:
+    turn = Fraction(2 * math.pi) * frequency * h
+    return 2 * damping * turn, turn**2
+
+
+def _write_jolt_spring(point: Point, h: Fraction) -> tuple[str, ...]:
+    alpha_hat, beta_hat = map(float, point)
+    turn = math.sqrt(beta_hat)
+    frequency, damping = turn / (2 * math.pi * float(h)), alpha_hat / (2 * turn)
+    return in_words(frequency), in_words(damping)
+
+
+def _jolt_spring_step(iterations: int, h: Fraction, frequency: Fraction, damping: Fraction) -> SweptStep:
+    alpha_hat, beta_hat = map(float, _read_jolt_spring(h, frequency, damping))
+    total = alpha_hat + beta_hat  # h (c + h k) over the effective mass
+    return hard_velocity_step(beta_hat / total, iterations, kept=1.0, softness=1 / total)
+
+
+JOLT_SPRING = Engine(
+    name="jolt-spring",
+    level="velocity",
+    method="implicit-euler",
+    parameters=("mFrequency", "mDamping"),
+    above_zero=("mFrequency",),
+    from_zero=("mDamping",),
+    units=("Hz", "-"),
+    read=_read_jolt_spring,
+    write=_write_jolt_spring,
+    reaches="β̂ > 0 (for a hard constraint see jolt)",
+    source="Jolt source, SpringPart.h (Catto, Soft constraints, GDC 2011, without relaxation)",
+    excludes="its modes by stiffness; the error of iterations; for a hard constraint see jolt",
+    sweeping=Sweeping(
+        _jolt_spring_step,
+        iterations=10,
+        word="mNumVelocitySteps",
+        source="Jolt source, SpringPart.h, AxisConstraintPart.h, PhysicsSystem.cpp, PhysicsSettings.h",
+        excludes="large islands, which it splits; hard constraints beside the springs",
+    ),
 )
 
 
@@ -467,9 +482,9 @@ def _physx_tgs_step(iterations: int, h: Fraction) -> SweptStep:
 
 PHYSX_JOINTS = "limits, drives and springs of joints; contacts; articulations; maxBiasCoefficient where it is set"
 PHYSX = engine_without_parameters(
-    "physx",
-    "velocity",
     (ONE, ONE),
+    name="physx",
+    level="velocity",
     source="PhysX source, DyConstraintSetup.cpp (erp = 1), DySolverControl.cpp, DyCpuGpu1dConstraint.h",
     excludes=f"TGS, which is physx-tgs; {PHYSX_JOINTS}",
     sweeping=Sweeping(
@@ -481,9 +496,9 @@ PHYSX = engine_without_parameters(
     ),
 )
 PHYSX_TGS = engine_without_parameters(
-    "physx-tgs",
-    "velocity",
     (ONE, 1 - (1 - Fraction(1, 2)) ** TGS_ITERATIONS),
+    name="physx-tgs",
+    level="velocity",
     source="PhysX source, DyTGSDynamics.cpp (mBiasCoefficient), DyTGSContactPrep.cpp (erp = mBiasCoefficient / 2)",
     excludes=f"minPositionIters other than {TGS_ITERATIONS}, but for --chain; {PHYSX_JOINTS}",
     sweeping=Sweeping(
@@ -493,4 +508,18 @@ PHYSX_TGS = engine_without_parameters(
         source="PhysX source, DyTGSDynamics.cpp (iterativeSolveIsland), DyTGSContactPrep.cpp, PxvDynamics.h (4 and 1)",
         excludes="its order by partitions; minVelocityIters other than 1",
     ),
+)
+
+
+PHYSX_DRIVE = Engine(
+    name="physx-drive",
+    level="velocity",
+    method="implicit-euler",
+    parameters=("stiffness", "damping"),
+    from_zero=("stiffness", "damping"),
+    units=("1/s^2", "1/s"),
+    read=lambda h, stiffness, damping: from_feedback_gains(damping, stiffness, h),
+    write=gains_in_words,
+    source="PhysX source, DyCpuGpuArticulation.h, computeImplicitDriveParams (AccelerationDrive)",
+    excludes="the inertia, by which both are divided in force drives (see --pd); force limits; h is TGS's substep",
 )

@@ -14,28 +14,29 @@ if TYPE_CHECKING:
         STEPS,
         Cost,
         ErrorOf,
+        ReferenceMotion,
         Run,
         Sweep,
         SweptRuns,
         measured_runs,
-        sweep_compiled,
+        pareto_front,
+        reference_motion,
         swept_runs,
     )
     from bezstab.evidence.chunk_stores import Arrays, chunk_store
-    from bezstab.evidence.chunks import ATTEMPTS, completed_chunks
+    from bezstab.evidence.chunks import completed_chunks, worker_pool
     from bezstab.evidence.extremes import Check, extreme_checks
     from bezstab.evidence.forced_runs import SHARES, HalvedStep, forced_sentence, halved_steps
-    from bezstab.evidence.linear_prediction import SPREAD, Fit, Refusal, fit_dominant_pole
+    from bezstab.evidence.kicks import LINEAR, kicked_motions
+    from bezstab.evidence.linear_prediction import SPREAD, Fit, fit_dominant_pole
     from bezstab.evidence.logs import Log, error_columns, log_from, parse_log, read_log, row_step, time_column
     from bezstab.evidence.measured_poles import (
-        LINEAR,
         MeasuredVerdict,
         Measurement,
-        kicked_motions,
         measure_poles,
+        measurement_summary,
         random_points,
     )
-    from bezstab.evidence.measurement_summaries import measurement_summary
     from bezstab.evidence.moving_mechanisms import (
         LAW_HOLDS,
         MovingPole,
@@ -48,7 +49,6 @@ if TYPE_CHECKING:
     from bezstab.evidence.mujoco_lint import Linted, linted_model
     from bezstab.evidence.mujoco_models import ModelData, model_data, mujoco_module, read_mujoco_model
     from bezstab.evidence.mujoco_witness import TIMES, Outcome, Witnessed, model_xml, mujoco_witnesses, witness_count
-    from bezstab.evidence.pareto import pareto_front
     from bezstab.evidence.probed_poles import (
         Likeness,
         LikePoint,
@@ -60,9 +60,7 @@ if TYPE_CHECKING:
         steps_between_rows,
     )
     from bezstab.evidence.projection_costs import projection_sentences
-    from bezstab.evidence.reference_motions import ReferenceMotion, reference_motion
     from bezstab.evidence.sweep_summaries import Held, summary, sweep_sentences
     from bezstab.evidence.verdict_maps import MapRows, VerdictMap, map_rows, simulated_verdicts, verdict_map
-    from bezstab.evidence.worker_pools import worker_pool
 
 __getattr__ = lazy_names(__name__)

@@ -2,8 +2,8 @@
 
 import json
 import time
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any, Literal
 
@@ -11,19 +11,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bezstab.errors import InputError, NumericalError
-from bezstab.evidence.forced_runs import COMPARED, predicted_errors
-from bezstab.evidence.pareto import pareto_front
-from bezstab.evidence.reference_motions import ReferenceMotion
+from bezstab.evidence.forced_runs import predicted_errors, settled_error
 from bezstab.mechanism import (
+    Motion,
     Scene,
     Trajectory,
     compiled_mechanism,
     energy_balance,
+    motion_over,
     observe,
-    runs_compiled,
     simulate,
 )
-from bezstab.methods import Method, evaluations, steps
+from bezstab.methods import Method, steps
 from bezstab.rationals import exact
 from bezstab.stabilising import NOTHING, AfterStep, Stabilise, held_by
 from bezstab.stability import choose, spectral_radius
@@ -38,6 +37,11 @@ STEPS = ("0.0001", "0.0002", "0.0004", "0.0008", "0.0016", "0.0032", "0.005", "0
 ABOVE_REFERENCE = 30.0
 """Times the reference's own error: below, an observed order is noise."""
 
+HALVINGS = 4
+"""Of the reference's step at most: each doubles its cost."""
+
+ROUNDED = 4.0
+"""RK4's error falls sixteenfold with each halving; where it falls less than this, rounding has taken over."""
 
 Cost = Literal["evaluations", "time", "projection"]
 """What errors are held against: evaluations, processor time, or, of feedback against projection, factorizations."""
@@ -46,6 +50,33 @@ ErrorOf = Literal["trajectory", "constraint", "energy"]
 
 NO_FEEDBACK = (0.0, 0.0)
 """The point of runs with projection, or with nothing that holds the constraints."""
+
+
+@dataclass(frozen=True)
+class ReferenceMotion:
+    """A motion without feedback from a consistent start, and how far its coordinates may be off (SI)."""
+
+    along: Motion = field(repr=False)
+    error: float
+
+
+def reference_motion(scene: Scene, h: float, duration: float) -> ReferenceMotion:
+    """Return the motion from RK4 at half of h (s) and less, until halving no longer changes it but by rounding.
+
+    Feedback does not enter: the exact motion has c = 0. The error is the largest difference to the run at twice the
+    step, its interpolation included. InputError for a scene that cannot start, NumericalError if the run fails.
+    Duration in s.
+    """
+    best: ReferenceMotion | None = None
+    for halving in range(1, HALVINGS + 2):
+        along = motion_over(compiled_mechanism(scene), duration, round(duration / h * 2**halving))
+        error = np.inf if best is None else float(np.abs(best.along.at(along.t)[0] - along.q).max())
+        fine = ReferenceMotion(along, error)
+        if best is not None and error > best.error / ROUNDED:
+            return min(best, fine, key=lambda motion: motion.error)
+        best = fine
+    assert best
+    return best
 
 
 @dataclass(frozen=True)
@@ -121,6 +152,21 @@ class Run:
         return {"trajectory": self.trajectory_error, "constraint": self.c_max, "energy": abs(self.energy_drift)}[of]
 
 
+def pareto_front(points: Iterable[tuple[float, float | None]]) -> list[int]:
+    """Return the indices of the Pareto front by (cost, error), ascending in cost: none is cheaper and as accurate.
+
+    An error of None is a point that does not compete. Of equal points the first is taken.
+    """
+    ranked = sorted((cost, error, index) for index, (cost, error) in enumerate(points) if error is not None)
+    least_error = np.inf
+    front: list[int] = []
+    for _, error, index in ranked:
+        if error < least_error:
+            least_error = error
+            front.append(index)
+    return front
+
+
 @dataclass(frozen=True)
 class SweptRuns:
     """All runs of a sweep over methods and steps, each method's with the largest step first.
@@ -145,48 +191,30 @@ class SweptRuns:
         ]
 
 
-def sweep_compiled(methods: Sequence[Method], step_sizes: Sequence[float], duration: float, repeats: int) -> bool:
-    """Return whether the runs of a sweep are compiled: all or none, so that their times can be compared.
-
-    `runs_compiled` says so for each method's runs together, step sizes and duration in s. By default none are where one
-    is not. InputError as `runs_compiled`.
-    """
-    user_steps = repeats * sum(duration / h for h in step_sizes)
-    return all(
-        runs_compiled(round(user_steps / float(method.step_multiple)) * evaluations(method)) for method in methods
-    )
-
-
 def measured_runs(sweep: Sweep) -> dict[str, NDArray[np.generic]]:
     """Return for each step, in their order, what Run has, as a JSON text that can be stored like arrays.
 
     InputError where alpha and beta in 1/s leave the range of float64 at a step; errors of `choose`.
     """
-    measured = [_measured_run(sweep, h, point) for h, point in zip(sweep.steps, _points(sweep), strict=True)]
-    return {"runs": np.array(json.dumps(measured))}
+    return {"runs": np.array(json.dumps([_measured_run(sweep, h) for h in sweep.steps]))}
 
 
-def _points(sweep: Sweep) -> list[tuple[float, float]]:
-    """Return alpha_hat and beta_hat at each step."""
+def _point(sweep: Sweep, h: float) -> tuple[float, float]:
+    """Return alpha_hat and beta_hat at a step of h (s)."""
     if sweep.point is None:
         assert sweep.omega is not None
-        motions = (sweep.omega * exact(h) for h in sweep.steps)
-        chosen = [choose(sweep.method, "accurate", margins=False, omega_h=omega_h) for omega_h in motions]
-        return [(each.alpha_hat, each.beta_hat) for each in chosen]
+        chosen = choose(sweep.method, "accurate", margins=False, omega_h=sweep.omega * exact(h))
+        return chosen.alpha_hat, chosen.beta_hat
     if not sweep.physical:
-        return [sweep.point] * len(sweep.steps)
+        return sweep.point
     alpha, beta = map(exact, sweep.point)
-    points = []
-    for h in sweep.steps:
-        alpha_hat, beta_hat = to_dimensionless(alpha, beta, exact(h))
-        points.append((float(alpha_hat), float(beta_hat)))
-    return points
+    alpha_hat, beta_hat = to_dimensionless(alpha, beta, exact(h))
+    return float(alpha_hat), float(beta_hat)
 
 
-def _measured_run(sweep: Sweep, h: float, point: tuple[float, float]) -> dict[str, float | str | None]:
+def _measured_run(sweep: Sweep, h: float) -> dict[str, float | str | None]:
     """Return what one run, as often as it is to be repeated, costs and buys; h in s."""
-    mechanism = compiled_mechanism(sweep.scene)
-    method = sweep.method
+    mechanism, method, point = compiled_mechanism(sweep.scene), sweep.method, _point(sweep, h)
     gains = feedback_gains(*point, h)
     run, seconds = _timed_run(sweep, h, gains)
     seen = observe(mechanism, run.t, run.q, run.v, *gains)
@@ -198,7 +226,7 @@ def _measured_run(sweep: Sweep, h: float, point: tuple[float, float]) -> dict[st
         "z_abs": z_abs,
         "trajectory_error": float(np.abs(run.q - sweep.reference.along.at(run.t)[0]).max()) if whole else None,
         "c_max": seen.c_max,
-        "measured_error": float(np.abs(seen.c[run.t >= COMPARED * run.t[-1]]).max()) if whole else None,
+        "measured_error": settled_error(seen, run.t) if whole else None,
         "predicted_error": _predicted_error(sweep, h, point) if z_abs is not None and z_abs < 1 else None,
         "c_rms": float(np.sqrt((seen.c**2).mean())),
         "cdot_max": seen.cdot_max,

@@ -29,7 +29,7 @@ from bezstab.mechanism import (
     state_function,
 )
 from bezstab.methods import LinearMultistep, Method, coefficient_table, evaluations, lookup, rho_and_sigma, steps
-from bezstab.stability import FloatArray, critical_damping_limit, poles
+from bezstab.stability import critical_damping_limit, poles
 from bezstab.units import feedback_gains
 
 EXPECTED = "15 less those of each pole's condition number"
@@ -90,7 +90,8 @@ def extreme_checks(full: bool) -> Iterator[Callable[[], Check]]:
     for method in map(lookup, ALL_METHODS if full else SHORT_METHODS):
         if coefficient_table(method):  # whose poles are judged by pi(z, mu)
             yield partial(_sizes, method, sizes)
-            yield partial(_double_mu, method)
+            # there both mu are one, and so are the poles of each, pair by pair
+            yield partial(_root_check, "double μ: α̂² = 4β̂", method, (0.25, 0.015625), 12.0)
         if steps(method) > 1 and (mapping := rho_and_sigma(method)):
             yield partial(_double_root, method, *mapping)
     yield _triple_root
@@ -139,11 +140,6 @@ def _root_check(group: str, method: Method, point: tuple[float, float], least: f
     )
 
 
-def _double_mu(method: Method) -> Check:
-    """On alpha_hat^2 = 4 beta_hat both mu are one, and so are the poles of each, pair by pair."""
-    return _root_check("double μ: α̂² = 4β̂", method, (0.25, 0.015625), 12.0)
-
-
 def _double_root(method: Method, *mapping: Sequence[Fraction]) -> Check:
     """At d mu/dz = 0, rho' sigma = rho sigma', two roots meet; rounding alpha_hat, beta_hat parts them by 1e-8."""
     rho, sigma = (np.array(part[::-1], float) for part in mapping)
@@ -166,8 +162,12 @@ def _triple_root() -> Check:
 
 def _long_run(name: str, count: int, stabilized: bool) -> Check:
     """Over millions of steps c does not grow with feedback, and does without."""
+    mechanism, method = compiled_mechanism(load_scene("slider_crank")), lookup(name)
     gains = feedback_gains(*POINT, H) if stabilized else (0.0, 0.0)
-    sizes = _sizes_of_errors(lookup(name), count, gains)
+    start, how = np.concatenate(initial_state(mechanism)), How(runs_compiled(count * evaluations(method)))
+    blocks = march(mechanism, method, H, gains, start, "rk4", count, how)  # whose states need not be kept
+    positions = (block.states[:, : mechanism.size].T for block in blocks)
+    sizes = np.concatenate([np.abs(constraint_errors(mechanism, 0.0, q)).max(axis=0) for q in positions])
     at_first, at_last = sizes[: count // 10].max(), sizes[-count // 10 :].max()
     growth = at_last / at_first
     return Check(
@@ -179,41 +179,26 @@ def _long_run(name: str, count: int, stabilized: bool) -> Check:
     )
 
 
-def _sizes_of_errors(method: Method, count: int, gains: tuple[float, float]) -> FloatArray:
-    """Return the largest |c| (m) after each step of a run of the slider-crank, whose states need not be kept."""
-    mechanism = compiled_mechanism(load_scene("slider_crank"))
-    compiled = runs_compiled(count * evaluations(method))
-    start = np.concatenate(initial_state(mechanism))
-    blocks = march(mechanism, method, H, gains, start, "rk4", count, How(compiled))
-    positions = (block.states[:, : mechanism.size].T for block in blocks)
-    return np.concatenate([np.abs(constraint_errors(mechanism, 0.0, q)).max(axis=0) for q in positions])
-
-
 def _step(name: str, times: float) -> Check:
     """With alpha and beta in 1/s held, a kick decays below the largest stable step and grows above it."""
     method = lookup(name)
     limit = critical_damping_limit(method)
     assert limit
     h = times * limit / STIFF
-    left, failure = _left_of_a_kick(method, h)
-    seen = failure or f"what the kick of {KICK:g} m changes in c: {left:.0e} m"
-    case = f"{name}, {times:g} of the largest"
-    if times < 1:
-        return Check("steps", case, "the kick's effect on c falls below a hundredth", seen, left < KICK / 100)
-    held = failure is not None or left > 100 * KICK
-    return Check("steps", case, "it grows a hundredfold, or failure reported", seen, held)
-
-
-def _left_of_a_kick(method: Method, h: float) -> tuple[float, str | None]:
-    """Return what a kick changes in c (m) after 3000 steps of h (s), and why its run failed if it did."""
     mechanism = compiled_mechanism(load_scene("slider_crank"))
-    gains = 2 * STIFF, STIFF**2
     kicked, calm = (
-        simulate(mechanism, method, h, 3000 * h, gains, perturbed_state(mechanism, kick)) for kick in (KICK, 0.0)
+        simulate(mechanism, method, h, 3000 * h, (2 * STIFF, STIFF**2), perturbed_state(mechanism, kick))
+        for kick in (KICK, 0.0)
     )
     end = min(len(kicked.t), len(calm.t)) - 1
     with_kick, without = (constraint_errors(mechanism, 0.0, run.q[end].tolist()) for run in (kicked, calm))
-    return float(np.abs(with_kick - without).max()), kicked.failure
+    left = float(np.abs(with_kick - without).max())
+    seen = kicked.failure or f"what the kick of {KICK:g} m changes in c: {left:.0e} m"
+    case = f"{name}, {times:g} of the largest"
+    if times < 1:
+        return Check("steps", case, "the kick's effect on c falls below a hundredth", seen, left < KICK / 100)
+    held = kicked.failure is not None or left > 100 * KICK
+    return Check("steps", case, "it grows a hundredfold, or failure reported", seen, held)
 
 
 def _passage(h: float) -> Check:

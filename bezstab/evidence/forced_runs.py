@@ -22,6 +22,7 @@ from bezstab.errors import InputError
 from bezstab.mechanism import (
     Mechanism,
     Motion,
+    Observation,
     along_normals,
     constraint_motion,
     motion,
@@ -29,8 +30,8 @@ from bezstab.mechanism import (
     simulate,
     turned_across,
 )
-from bezstab.methods import Method, leading_error
-from bezstab.stability import LARGEST_OMEGA_H, FloatArray, forced_response, spectral_radius, turning_response
+from bezstab.methods import Method, leading_error, turning_error
+from bezstab.stability import LARGEST_OMEGA_H, FloatArray, forced_response, spectral_radius
 from bezstab.units import feedback_gains
 
 COMPARED = 0.5
@@ -166,9 +167,16 @@ def forced_motions(
     """
     found = []
     for point, predicted in zip(points, predicted_errors(mechanism, method, h, points, duration), strict=True):
-        measured, failure = _measured(mechanism, method, h, point, duration)
-        found.append(ForcedMotion(method, h, *point, predicted, measured, failure))
+        gains = feedback_gains(*point, h)
+        run = simulate(mechanism, method, h, duration, gains)
+        measured = math.nan if run.failure else settled_error(observe(mechanism, run.t, run.q, run.v, *gains), run.t)
+        found.append(ForcedMotion(method, h, *point, predicted, measured, run.failure))
     return found
+
+
+def settled_error(seen: Observation, t: FloatArray) -> float:
+    """Return the largest |c| (SI) in the later half of a run with these times (s), where the start has died away."""
+    return float(seen.largest_c[t >= COMPARED * t[-1]].max())
 
 
 def predicted_errors(
@@ -193,16 +201,15 @@ def _errors_along(
     power = leading_error(method).power
     spectrum = np.fft.fft(along_normals(mechanism, along, _derivative(along, power, h)), axis=0)
     omega_h = 2 * np.pi * np.fft.fftfreq(len(spectrum), along.t[1]) * h
-    turning: FloatArray | None = None
+    turned = turning_error(method)
+    if turned:
+        derivative = _derivative(along, turned.power, h)
+        turning = turned_across(mechanism, along, derivative) * h ** (turned.power + 1)
     for alpha_hat, beta_hat in points:
         response = forced_response(method, alpha_hat, beta_hat, omega_h)[:, np.newaxis]
         error = np.fft.ifft(spectrum * response * h**power, axis=0).real
-        turned = turning_response(method, alpha_hat, beta_hat)
         if turned:
-            lower, factor = turned
-            if turning is None:
-                turning = turned_across(mechanism, along, _derivative(along, lower, h)) * h ** (lower + 1)
-            error = error + factor * turning
+            error = error + turned.at(alpha_hat, beta_hat) * turning
         yield error
 
 
@@ -229,15 +236,3 @@ def _rising(x: FloatArray) -> FloatArray:
     """
     inside = np.clip(x, 0.002, 0.998)  # from there on it is 0 and 1 to rounding
     return 1 / (1 + np.exp(1 / inside - 1 / (1 - inside)))
-
-
-def _measured(
-    mechanism: Mechanism, method: Method, h: float, point: tuple[float, float], duration: float
-) -> tuple[float, str | None]:
-    """Return the largest |c| in the later half of a run, or nan and why it broke down."""
-    gains = feedback_gains(*point, h)
-    run = simulate(mechanism, method, h, duration, gains)
-    if run.failure:
-        return np.nan, run.failure
-    seen = observe(mechanism, run.t, run.q, run.v, *gains)
-    return float(seen.largest_c[run.t >= COMPARED * duration].max()), None

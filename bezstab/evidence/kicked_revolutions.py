@@ -1,6 +1,6 @@
 """The rate of runs that are kicked from the method's own motion, measured over whole revolutions.
 
-What the exact rate predicts (`own_motions`) is how differences of runs beside that motion grow in the long run. At each
+What the exact rate predicts (`exact_rates`) is how differences of runs beside that motion grow in the long run. At each
 point the newest state is kicked in 2 n directions, up and down, and the differences are compared as revolutions end:
 
     kick      D_1 settled: lesser poles are gone       D_2 = A D_1: the largest eigenvalue of A is |z|^N
@@ -12,14 +12,13 @@ Runs that set out from the scene's initial state show another rate for as long a
 """
 
 from collections.abc import Iterator
-from itertools import islice, pairwise
-from typing import Any
+from itertools import chain, islice, pairwise
 
 import numpy as np
+from numpy.typing import NDArray
 
-from bezstab.evidence.own_motions import OwnMotions
-from bezstab.mechanism import resume, states_needed
-from bezstab.methods import Method, steps
+from bezstab.evidence.exact_rates import OwnMotions
+from bezstab.evidence.kicks import kicked_states, steps_before_a_kick
 from bezstab.stability import BoolArray, FloatArray
 
 KICK_OF_GROWTH, KICK_OF_DECAY = 1e-9, 1e-4  # m, rad: up and down together only cubic terms are left, of about 1e-8
@@ -36,25 +35,19 @@ def rates_of_kicked_revolutions(motions: OwnMotions) -> FloatArray:
     nearly lost in rounding.
     """
     rates, course = np.full(motions.rates.size, np.nan), motions.course
-    there = np.flatnonzero(motions.there)
+    there = np.flatnonzero(np.isfinite(motions.states).all(axis=(0, 2, 3)))
     known = 1 + steps_before_a_kick(course.method)
     if known > course.steps or not there.size:
         return rates
     following = np.full(there.size, True)
     with np.errstate(all="ignore"):  # of runs that run into infinity
-        ends = islice(_kicked_runs(motions, there, known), course.steps - 1, None, course.steps)
-        for before, after in pairwise(_differences(state, course.step) for state in ends):
+        for before, after in pairwise(_differences(motions, there, known)):
             following &= _in_range(before) & _in_range(after)
             if not following.any():
                 break
-            for point in np.flatnonzero(following):
-                rates[there[point]] = _largest_multiplier(before[point], after[point]) ** (1 / course.steps)
+            multipliers = _largest_multipliers(before[following], after[following])
+            rates[there[following]] = multipliers ** (1 / course.steps)
     return rates
-
-
-def steps_before_a_kick(method: Method) -> int:
-    """Return how many steps of its own a run has to have taken until a method has all that it remembers."""
-    return max(steps(method), states_needed(method) - 1)
 
 
 def _in_range(differences: FloatArray) -> BoolArray:
@@ -63,33 +56,23 @@ def _in_range(differences: FloatArray) -> BoolArray:
     return np.asarray((largest > SMALLEST) & (largest < LARGEST))
 
 
-def _largest_multiplier(before: FloatArray, after: FloatArray) -> float:
+def _largest_multipliers(before: FloatArray, after: FloatArray) -> FloatArray:
     """Return the largest |eigenvalue| of A in after = A before, on what of `before` stands out of its rounding."""
-    directions, sizes, shares = np.linalg.svd(before)
-    kept = sizes > DIRECTION
-    mapped = directions[:, kept].T @ after @ shares[kept].T / sizes[kept]
-    return float(np.abs(np.linalg.eigvals(mapped)).max())
+    lost = DIRECTION / np.linalg.norm(before, 2, axis=(1, 2))
+    return np.asarray(np.abs(np.linalg.eigvals(after @ np.linalg.pinv(before, lost))).max(axis=1))
 
 
-def _differences(state: FloatArray, h: float) -> FloatArray:
-    """Return the differences of runs kicked up and down, of q and h v; shape (points, 2 n, kicks)."""
-    q_and_v = state.copy()
-    q_and_v[len(q_and_v) // 2 :] *= h
-    return np.moveaxis(q_and_v[:, 0] - q_and_v[:, 1], 2, 0)
-
-
-def _kicked_runs(motions: OwnMotions, there: Any, known: int) -> Iterator[FloatArray]:
-    """Yield the states of the runs of some points, shape (2 n, 2, kicks, points), step by step.
+def _differences(motions: OwnMotions, there: NDArray[np.intp], known: int) -> Iterator[FloatArray]:
+    """Yield how runs kicked up and down differ as revolutions end, in q and h v; shape (points, 2 n, kicks).
 
     They begin with so many states of the own motion, of which the newest is kicked, q or h v, a coordinate each.
     """
-    course, n = motions.course, motions.course.mechanism.size
+    course, size = motions.course, 2 * motions.course.mechanism.size
+    units = np.repeat([1, course.step], size // 2)
+    history = [state.reshape(-1, size).T for state in motions.states[:known, there]]
+    kicks = np.where(motions.rates[there] > 1, KICK_OF_GROWTH, KICK_OF_DECAY)
     gains = motions.gains[0, there], motions.gains[1, there]
-    history = [state.T for state in motions.states[:known, there]]
-    undisturbed = history[-1]
-    kick = np.where(motions.rates[there] > 1, KICK_OF_GROWTH, KICK_OF_DECAY) * np.array([[[1]], [[-1]]])
-    directions = np.eye(2 * n) / np.repeat([1, course.step], n)
-    history[-1] = undisturbed[:, np.newaxis, np.newaxis] + directions[:, np.newaxis, :, np.newaxis] * kick
-    count = REVOLUTIONS * course.steps
-    blocks = resume(course.mechanism, course.method, course.step, gains, history, count, undisturbed=undisturbed)
-    return (state for block in blocks for state in block.states)
+    directions, count = np.eye(size) / units, REVOLUTIONS * course.steps
+    blocks = kicked_states(course.mechanism, course.method, course.step, gains, history, directions, kicks, count)
+    for state in islice(chain.from_iterable(blocks), course.steps, None, course.steps):
+        yield np.moveaxis(state[:, 0] - state[:, 1], 2, 0) * units[:, np.newaxis]

@@ -90,27 +90,20 @@ class Fit:
         return self.poles[0]
 
 
-@dataclass(frozen=True)
-class Refusal:
-    """Why no pole is claimed, in one line."""
-
-    reason: str
-
-
 def fit_dominant_pole(
     responses: FloatArray,
     order: int,
     sizes: FloatArray | None = None,
     limits: Sequence[float] = (np.inf,),
     floor: float = 0.0,
-) -> Fit | Refusal:
-    """Return the dominant pole that several responses of one linear system share, or why it cannot be had.
+) -> tuple[Fit | None, str]:
+    """Return the dominant pole that several responses of one linear system share, or None and why it cannot be had.
 
     `responses` has shape (samples, responses), equally spaced in time; unit as the user likes, for the pole has none.
     `order` is the largest number of poles to look for. `sizes`, of the same shape and by default |responses|, is what
     must not exceed a limit for the system to answer linearly; every one of `limits` is tried. `floor`, in the unit of
     the samples, is what their rounding amounts to: like what is forced, it stays far below a window. A number that is
-    not finite ends a response. No errors are raised: what cannot be fitted is a Refusal.
+    not finite ends a response. No errors are raised.
 
     Every window of every response gives a fit. Of the half with the smaller residuals the one of median |z| is taken;
     if these differ, or stem from one window only, no pole is claimed (Prony's method: Hildebrand, Introduction to
@@ -131,17 +124,17 @@ def fit_dominant_pole(
     better_half = fits[: (len(fits) + 1) // 2]
     # Several responses in one window are no independent witnesses: they may differ by a factor only.
     if len({(fit.start, fit.samples) for fit in better_half}) < 2:
-        return Refusal(f"no linear recursion fits the {longest} samples between round-off and the linear range")
+        return None, f"no linear recursion fits the {longest} samples between round-off and the linear range"
     z = np.array([fit.pole for fit in better_half])
     moduli = np.abs(z)
     for quantity, values in {"|z| (relative)": moduli / moduli.max(), "angle (rad)": np.angle(z)}.items():
         spread = float(np.ptp(values))
         if not spread <= SPREAD:  # not a number included
             differing = f"{spread:.1g} in {quantity}"
-            return Refusal(f"fits differ by {differing}: poles of nearly equal modulus, or too much forced error")
+            return None, f"fits differ by {differing}: poles of nearly equal modulus, or too much forced error"
     median = better_half[int(np.argsort(moduli)[len(moduli) // 2])]
     farthest = TIMES_FARTHEST * float(np.abs(z - median.pole).max())
-    return replace(median, uncertainty=max(farthest, median.uncertainty))
+    return replace(median, uncertainty=max(farthest, median.uncertainty)), ""
 
 
 def response_windows(

@@ -90,23 +90,21 @@ def parse_log(text: str, name: str) -> Log:
         raise InputError(f"{name}: is empty")
     sample = filled[min(1, len(filled) - 1)][1]  # the first line may hold names, the last be cut off
     delimiter = next((each for each in (";", "\t", ",") if each in sample.strip()), None)
-    rows = [(number, _cells(line, delimiter)) for number, line in filled]
-    width = len(rows[0][1])
+    (_, first), *others = rows = [(number, _cells(line, delimiter)) for number, line in filled]
     of_comment = _cells(comments[-1].lstrip("".join(COMMENTS)).strip(), delimiter) if comments else []
-    names = of_comment if len(of_comment) == width else [str(k) for k in range(1, width + 1)]
-    if None in map(_number, rows[0][1]):
-        _, names = rows.pop(0)
+    names = of_comment if len(of_comment) == len(first) else [str(k) for k in range(1, len(first) + 1)]
+    if None in map(_number, first):
+        names, rows = first, others
     if not rows:
         raise InputError(f"{name}: has names, but no rows of numbers")
-    values = np.empty((len(rows), width))
-    for place, (number, cells) in enumerate(rows):
-        if len(cells) != width:
-            raise InputError(f"{name}, line {number}: {len(cells)} cells, expected {width} as above")
-        numbers = [_number(cell) for cell in cells]
-        if None in numbers:
-            raise InputError(f"{name}, line {number}: {cells[numbers.index(None)][:50]!r} is not a number")
-        values[place] = numbers
-    return Log(name, tuple(cell.strip() for cell in names), values)
+    values = []
+    for number, cells in rows:
+        if len(cells) != len(first):
+            raise InputError(f"{name}, line {number}: {len(cells)} cells, expected {len(first)} as above")
+        values.append([_number(cell) for cell in cells])
+        if None in values[-1]:
+            raise InputError(f"{name}, line {number}: {cells[values[-1].index(None)][:50]!r} is not a number")
+    return Log(name, tuple(cell.strip() for cell in names), np.array(values, float))
 
 
 def _cells(line: str, delimiter: str | None) -> list[str]:

@@ -15,40 +15,23 @@ Linear prediction finds the poles of that recursion.
 import cmath
 import math
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from itertools import chain, islice
+from itertools import islice
+from statistics import median
 from typing import Literal
 
 import numpy as np
 
-from bezstab.evidence.kicked_revolutions import rates_of_kicked_revolutions, steps_before_a_kick
-from bezstab.evidence.linear_prediction import NEGLIGIBLE, SAMPLES, SPREAD, Refusal, fit_dominant_pole
-from bezstab.evidence.moving_mechanisms import MovingVerdict, moving_poles
-from bezstab.evidence.own_motions import find_own_motions
-from bezstab.mechanism import (
-    How,
-    Mechanism,
-    constraint_errors,
-    initial_state,
-    march,
-    perturbed_state,
-    resume,
-    runs_compiled,
-    turning_normals,
-)
+from bezstab.evidence.exact_rates import find_own_motions
+from bezstab.evidence.kicked_revolutions import rates_of_kicked_revolutions
+from bezstab.evidence.kicks import APART, AT_ONCE, GROWN, LINEAR, kicked_motions, nothing_happens_without_feedback
+from bezstab.evidence.linear_prediction import NEGLIGIBLE, SAMPLES, SPREAD, fit_dominant_pole
+from bezstab.evidence.moving_mechanisms import MovingPole, moving_poles
+from bezstab.mechanism import Mechanism, runs_compiled, turning_normals
 from bezstab.methods import Method, Verdict, evaluations
 from bezstab.rationals import exact
-from bezstab.stability import (
-    ComplexArray,
-    FloatArray,
-    dominant_pole,
-    poles,
-    region,
-    useful_window,
-    verdict,
-)
-from bezstab.units import feedback_gains
+from bezstab.stability import ComplexArray, FloatArray, dominant_pole, poles, region, useful_window, verdict
 
 MeasuredVerdict = Literal["converges", "diverges", "too close to call"]
 Progress = Callable[[Sequence[int]], Iterable[int]]
@@ -58,21 +41,6 @@ RUN = 1000
 
 KICKS = (1e-4, 1e-6, 1e-8, 1e-11)
 """SI units: decay is seen longest after the largest, growth after the smallest."""
-
-LINEAR = (1e-3, 1e-4, 1e-5)
-"""Largest |c| of a window, SI units: up to here a mechanism of about a metre answers linearly."""
-
-GROWN = 10.0
-"""Times the kick, well before c leaves the linear range; else the mechanism itself broke down."""
-
-AT_ONCE = 10
-"""Steps: growth of tenfold a step, which the linear range may be too small to show, takes fewer to APART."""
-
-APART = 1.0
-"""|c|, SI units, of a mechanism of about a metre that is in pieces."""
-
-CALM = NEGLIGIBLE * LINEAR[0]
-"""Largest |c|, SI units, of a mechanism to which nothing happens in the steps in which feedback has thrown it apart."""
 
 CLOSE = 1e-4
 """Of |z|: nearer to the circle than a hundred of the fit's errors no verdict is given; on a mechanism that moves not
@@ -89,11 +57,11 @@ SEED = 2024
 class Measurement:
     """Predicted and measured dominant pole at one point; `measured` is None, and `reason` says why, if it cannot be.
 
-    `predicted` and its verdict are those of the mechanism at rest; `law_abs` and `law_verdict` what the first-order law
-    makes of them for the motion (`moving_mechanisms`), `floquet_abs` the exact rate over the method's own motion, None
-    unless asked for. Where the motion is not `periodic` that is no exact rate, but a growth over the run.
-    `measured` is what the first steps after the kick show. `measured_rate` is |z| per step over whole revolutions
-    beside the method's own motion, None unless the exact rate is asked for and it can be followed so long.
+    `predicted` and its verdict are those of the mechanism at rest, `moving` what the first-order law makes of them for
+    the motion. `floquet_abs` is the exact rate over the method's own motion, not a number unless asked for. Where the
+    motion is not `periodic` that is no exact rate, but a growth over the run. `measured` is what the first steps after
+    the kick show. `measured_rate` is |z| per step over whole revolutions beside the method's own motion, not a number
+    unless the exact rate is asked for and it can be followed so long.
     """
 
     method: Method
@@ -101,12 +69,11 @@ class Measurement:
     beta_hat: float
     predicted: complex
     predicted_verdict: Verdict
-    law_abs: float
-    law_verdict: MovingVerdict
-    floquet_abs: float | None
+    moving: MovingPole
+    floquet_abs: float
     periodic: bool
     measured: complex | None
-    measured_rate: float | None
+    measured_rate: float
     measured_verdict: MeasuredVerdict
     reason: str
 
@@ -140,22 +107,74 @@ class Measurement:
     @property
     def verdicts_agree(self) -> bool | None:
         """Whether the law's verdict is the measured one; None where either is not settled."""
-        if self.measured_verdict == "too close to call" or self.law_verdict == "not settled for this mechanism":
+        if self.measured_verdict == "too close to call" or not self.moving.settled:
             return None
-        return self.law_verdict == self.measured_verdict
+        return self.moving.verdict == self.measured_verdict
 
     @property
     def right(self) -> str:
         """Which predictions have the measured verdict: those of the map, of the law, and the exact one; "" if none."""
         if self.measured_verdict == "too close to call":
             return ""
-        diverges = self.measured_verdict == "diverges"
-        verdicts = {
-            "at rest": self.predicted_verdict == "diverges",
-            "law": None if self.law_verdict == "not settled for this mechanism" else self.law_abs > 1,
-            "exact" if self.periodic else "over the run": None if self.floquet_abs is None else self.floquet_abs > 1,
-        }
-        return ", ".join(name for name, verdict in verdicts.items() if verdict == diverges) or "none"
+        diverges = {"at rest": self.predicted_verdict == "diverges"}
+        if self.moving.settled:
+            diverges["law"] = self.moving.z_abs_moving > 1
+        if math.isfinite(self.floquet_abs):
+            diverges["exact" if self.periodic else "over the run"] = self.floquet_abs > 1
+        seen = self.measured_verdict == "diverges"
+        return ", ".join(name for name, predicted in diverges.items() if predicted == seen) or "none"
+
+
+@dataclass(frozen=True)
+class MeasurementSummary:
+    """Errors of |z|, and verdicts that contradict theory, of `measured` among all `points` of a method.
+
+    Of the points that were `followed` over a revolution also the median errors of the rate at rest, of the law's and of
+    the exact one, and of how many each is on the wrong side of one; None and "" where none was.
+    """
+
+    method: Method
+    points: int
+    measured: int
+    median_error: float | None
+    largest_error: float | None
+    called: int
+    wrong: int
+    followed: int
+    map_error: float | None
+    law_error: float | None
+    floquet_error: float | None
+    wrong_sides: str
+
+
+def measurement_summary(measurements: Sequence[Measurement]) -> MeasurementSummary:
+    """Return how well the measured poles of one method agree; there is at least one measurement."""
+    errors = [abs(each.difference_abs) for each in measurements if each.difference_abs is not None]
+    agreements = [each.verdicts_agree for each in measurements]
+    followed = [each for each in measurements if math.isfinite(each.measured_rate)]
+    shown = np.array([each.measured_rate for each in followed])
+    rates = np.array([(abs(each.predicted), each.moving.z_abs_moving, each.floquet_abs) for each in followed])
+    predicted = rates.reshape(-1, 3).T
+    map_error, law_error, floquet_error = (_median(np.abs(each - shown).tolist()) for each in predicted)
+    wrong_sides = [str(((each > 1) != (shown > 1)).sum()) for each in predicted]
+    return MeasurementSummary(
+        method=measurements[0].method,
+        points=len(measurements),
+        measured=len(errors),
+        median_error=_median(errors),
+        largest_error=max(errors, default=None),
+        called=sum(agree is not None for agree in agreements),
+        wrong=sum(agree is False for agree in agreements),
+        followed=len(followed),
+        map_error=map_error,
+        law_error=law_error,
+        floquet_error=floquet_error,
+        wrong_sides=", ".join(wrong_sides) if followed else "",
+    )
+
+
+def _median(values: Sequence[float]) -> float | None:
+    return median(values) if values else None
 
 
 def random_points(method: Method, count: int) -> tuple[FloatArray, FloatArray]:
@@ -213,12 +232,11 @@ def measure_poles(
                 beta_hat=b,
                 predicted=predicted,
                 predicted_verdict=verdict(method, exact(a), exact(b)),
-                law_abs=moving[i].z_abs_moving,
-                law_verdict=moving[i].verdict,
-                floquet_abs=_known(exact_rates[i]),
+                moving=moving[i],
+                floquet_abs=float(exact_rates[i]),
                 periodic=turning.closed,
                 measured=measured,
-                measured_rate=_known(shown_rates[i]),
+                measured_rate=float(shown_rates[i]),
                 measured_verdict=measured_verdict,
                 reason=reason,
             )
@@ -226,28 +244,21 @@ def measure_poles(
     return found
 
 
-def _known(rate: float) -> float | None:
-    return float(rate) if np.isfinite(rate) else None
-
-
 def _kicked_responses(
     mechanism: Mechanism, method: Method, h: float, alpha_hat: FloatArray, beta_hat: FloatArray, progress: Progress
 ) -> tuple[FloatArray, FloatArray]:
     """Return half the difference of c_1 after kicks up and down, and the largest |c|; shape (steps, kicks, points)."""
-    shape = (RUN + 1, len(KICKS), alpha_hat.size)
-    difference, size = np.zeros(shape), np.full(shape, np.inf)
+    differences, sizes = [], []
     seen = iter(progress(range(RUN + 1)))
-    compiled = runs_compiled(size.size * 2 * evaluations(method), together=True)
+    compiled = runs_compiled(2 * len(KICKS) * (RUN + 1) * alpha_hat.size * evaluations(method), together=True)
     with np.errstate(all="ignore"):  # what diverges runs into infinity, and is cut off there
-        k = 0
         for c, _ in kicked_motions(mechanism, method, h, alpha_hat, beta_hat, KICKS, RUN, compiled):
-            steps_of_block = slice(k, k + len(c))
-            difference[steps_of_block] = (c[:, 0, 0] - c[:, 0, 1]) / 2
-            size[steps_of_block] = np.abs(c).max(axis=(1, 2))
-            k += len(c)
+            differences.append((c[:, 0, 0] - c[:, 0, 1]) / 2)
+            sizes.append(np.abs(c).max(axis=(1, 2)))
             deque(islice(seen, len(c)), maxlen=0)
+    size = np.concatenate(sizes)
     size[~np.isfinite(size)] = np.inf
-    return difference, size
+    return np.concatenate(differences), size
 
 
 def _measured_pole(
@@ -260,9 +271,9 @@ def _measured_pole(
     # Over a window of SAMPLES steps the lesser of two such moduli does not even fall to 1/e of the other.
     if rival > (1 - 1 / SAMPLES) * abs(predicted):
         return None, f"another pole, of modulus {rival:.6g}, is too near to tell them apart"
-    fit = fit_dominant_pole(difference, order=len(all_poles), sizes=size, limits=LINEAR)
-    if isinstance(fit, Refusal):
-        return None, fit.reason
+    fit, reason = fit_dominant_pole(difference, order=len(all_poles), sizes=size, limits=LINEAR)
+    if fit is None:
+        return None, reason
     is_a_pole = np.abs(all_poles - fit.pole).min() < SPREAD
     if is_a_pole and abs(predicted - fit.pole) > SPREAD:
         return None, f"the kick hardly excites the dominant pole: what answers is one of modulus {abs(fit.pole):.6g}"
@@ -292,52 +303,3 @@ def _measured_verdict(
     second_half = after_largest_kick[len(after_largest_kick) // 2 :]
     settled = second_half.max() < NEGLIGIBLE * after_largest_kick.max()
     return "converges" if settled else "too close to call"
-
-
-def kicked_motions(
-    mechanism: Mechanism,
-    method: Method,
-    h: float,
-    alpha_hat: FloatArray,
-    beta_hat: FloatArray,
-    kicks: Sequence[float],
-    count: int,
-    compiled: bool = False,
-) -> Iterator[tuple[FloatArray, FloatArray]]:
-    """Yield c and q (SI units) of kicked runs, from the kick on over `count` steps, in blocks.
-
-    They have the shape (steps, constraints or coordinates, 2 for up and down, kicks, points); the first block is the
-    kick itself. The kick of the first constraint (SI units)
-    comes after as many steps as the method has; what a multistep method remembers of before is left alone, and so is
-    what a second-order scheme remembers of accelerations: its recursion is linear, and its poles are the same from any
-    first values. h in s, alpha_hat and beta_hat of shape (points,). InputError for a scene that cannot start, and
-    where runs are to be `compiled` without numba.
-    """
-    h_step = h * float(method.step_multiple)
-    gains = feedback_gains(alpha_hat, beta_hat, h)
-    q, v = initial_state(mechanism)
-    start = np.repeat(np.concatenate([q, v])[:, np.newaxis], alpha_hat.size, axis=1)
-    before = march(mechanism, method, h_step, gains, start, "rk4", steps_before_a_kick(method))
-    history = [start, *(state for block in before for state in block.states)]
-    undisturbed = history[-1]
-    displaced = perturbed_state(mechanism, 1.0)[0] - q  # linear in the constraint error
-    direction = np.concatenate([displaced, np.zeros_like(v)])
-    amounts = np.multiply.outer([1.0, -1.0], kicks)[..., np.newaxis]
-    kicked = history[-1] = undisturbed[:, np.newaxis, np.newaxis] + np.multiply.outer(direction, amounts)
-    blocks = resume(mechanism, method, h_step, gains, history, count, How(compiled), undisturbed)
-    k = len(history) - 1
-    for states in chain([kicked[np.newaxis]], (block.states for block in blocks)):
-        times = h_step * np.arange(k, k + len(states), dtype=np.float64)
-        q = states[:, : mechanism.size]
-        c = constraint_errors(mechanism, times.reshape(-1, 1, 1, 1), np.moveaxis(q, 1, 0))
-        yield np.moveaxis(c, 0, 1), q
-        k += len(states)
-
-
-def nothing_happens_without_feedback(mechanism: Mechanism, method: Method, h: float) -> bool:
-    """Return whether without feedback c stays well within the linear range for the first few steps; h in s."""
-    none = np.zeros(1)
-    with np.errstate(all="ignore"):
-        drifting = kicked_motions(mechanism, method, h, none, none, [0.0], AT_ONCE)
-        largest = max(float(np.abs(c).max()) for c, _ in drifting)
-    return largest < CALM  # not so where it is not a number

@@ -53,12 +53,13 @@ def controlled_motors(model: ModelData, gains: Sequence[MotorGains], timing: Tim
 
     The motors of a model share one clock: `every` and `late`; MuJoCo's own delay of a motor adds to the latter.
     """
+    motors = model.of(Motor)
     for each in gains:
-        if not any(re.fullmatch(each.pattern, motor.name) for motor in model.motors):
-            names = ", ".join(motor.name for motor in model.motors) or "none"
+        if not any(re.fullmatch(each.pattern, motor.name) for motor in motors):
+            names = ", ".join(motor.name for motor in motors) or "none"
             raise InputError(f"--pd {each.pattern}: matches no motor; the model's motors: {names}")
     found = []
-    for motor in model.motors:
+    for motor in motors:
         matching = [each for each in gains if re.fullmatch(each.pattern, motor.name)]
         if matching:
             late = timing.late + exact(motor.delay) / exact(model.h)

@@ -15,7 +15,7 @@ A spring, damper or drive with stiffness kp and damping kv on inertia I is alpha
 IMEX-Euler where all damping is implicit, RK4 under RK4, else symplectic Euler, of a point that is divided likewise.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cache, cached_property, partial
@@ -23,13 +23,14 @@ from itertools import accumulate
 
 import numpy as np
 
-from bezstab.engines import ENGINES, Drive
+from bezstab.engines import ENGINES, Point
 from bezstab.errors import NumericalError
 from bezstab.evidence.mujoco_controllers import Controlled, MotorGains, controlled_motors, lifted_step
-from bezstab.evidence.mujoco_models import LEAST_SIZE, Constraint, Feedback, ModelData
+from bezstab.evidence.mujoco_models import LEAST_SIZE, Constraint, Feedback, ModelData, Motor, Unjudged
 from bezstab.methods import Method, Verdict, closed_loop_at, lookup, recursion_verdict
 from bezstab.rationals import exact
 from bezstab.stability import (
+    EPS,
     BoolArray,
     FloatArray,
     Timing,
@@ -37,14 +38,10 @@ from bezstab.stability import (
     held_spectral_radius,
     held_verdict,
     poles,
-    spectral_radius,
 )
 
 FRESH = Timing()
 """A controller as fast as the physics."""
-
-Point = tuple[Fraction, Fraction]
-"""alpha_hat and beta_hat."""
 
 Points = Callable[[Fraction], list[tuple[Point, str]]]
 """Of a factor on the step: the points of an element there, always as many, and what makes each of them."""
@@ -142,26 +139,23 @@ def linted_model(model: ModelData, gains: Sequence[MotorGains] = (), timing: Tim
     and where a pole leaves the range of float64.
     """
     plant = _Plant(model)
-    groups = _along_one_direction(model.feedbacks)
-    bilateral = [constraint for constraint in model.constraints if constraint.active]
-    controlled = controlled_motors(model, gains, timing)
-    several = len(bilateral) + len(groups) + len(controlled) > 1
-    together = _linted_together(plant, bilateral, controlled) if several else None
-    for constraint in model.constraints:
-        alone = _linted_constraint(plant, constraint)
-        yield alone.beside(together) if constraint.active else alone
+    groups = _along_one_direction(model.of(Feedback))
+    bilateral = [constraint for constraint in model.of(Constraint) if constraint.active]
+    controlled = {each.motor.element: each for each in controlled_motors(model, gains, timing)}
+    together = None
+    if len(bilateral) + len(groups) + len(controlled) > 1:
+        together = _linted_together(plant, bilateral, list(controlled.values()))
+    for constraint in model.of(Constraint):
+        yield _linted_constraint(plant, constraint).beside(together if constraint.active else None)
     for group in groups:
-        yield _linted_drive(plant, group).beside(together)
-    for motor in model.motors:
-        judged = [each for each in controlled if each.motor is motor]
-        yield (
-            _linted_motor(plant, judged[0]).beside(together)
-            if judged
-            else _not_judged(
-                motor.element, "motor", f"its control comes from outside: --pd '{motor.name}=KP,KD' judges it"
-            )
-        )
-    for each in model.unjudged:
+        yield _linted_group(plant, group).beside(together)
+    for motor in model.of(Motor):
+        if motor.element in controlled:
+            yield _linted_motor(plant, controlled[motor.element]).beside(together)
+        else:
+            reason = f"its control comes from outside: --pd '{motor.name}=KP,KD' judges it"
+            yield _not_judged(motor.element, "motor", reason)
+    for each in model.of(Unjudged):
         yield _not_judged(each.element, each.kind, each.reason)
     if together:
         yield together
@@ -171,7 +165,7 @@ def _not_judged(element: str, kind: str, reason: str) -> Linted:
     return Linted(element, kind, advice=f"not judged: {reason}")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class _Plant:
     """A model, with what its integrator is for constraints and what that makes of its masses."""
 
@@ -188,19 +182,20 @@ class _Plant:
         return lookup("RK4" if self.model.integrator == "RK4" else "SYM")
 
     @cached_property
-    def damping_modes(self) -> tuple[FloatArray, FloatArray]:
-        """(M + h D)^-1 for every h at once, D what is treated implicitly: basis diag(1 / (1 + h rates)) basis'.
-
-        The basis B and the rates (1/s) solve D B = M B diag(rates), B' M B = 1.
-        """
+    def implicit_damping(self) -> FloatArray:
+        """The damping D that the integrator treats implicitly; shape (dofs, dofs), SI."""
         model = self.model
-        _, damping = _springs_and_dampers(model, [each for each in model.feedbacks if self.is_implicit(each)])
-        try:
-            root = np.linalg.inv(np.linalg.cholesky(model.mass))
-        except np.linalg.LinAlgError:
-            raise NumericalError("the mass matrix at qpos0 is singular to rounding") from None
-        rates, turned = np.linalg.eigh(root @ damping @ root.T)
-        return root.T @ turned, rates
+        return _springs_and_dampers(model, [each for each in model.of(Feedback) if self.is_implicit(each)])[1]
+
+    @cached_property
+    def inverse_mass(self) -> Callable[[float], FloatArray]:
+        """(M + h D)^-1 by h (s), shape (dofs, dofs): what divides accelerations; that of the mass alone at h = 0.
+
+        NumericalError where the mass is singular to rounding.
+        """
+        if np.linalg.cond(self.model.mass) * EPS > 1:
+            raise NumericalError("the mass matrix at qpos0 is singular to rounding")
+        return cache(lambda h: np.linalg.inv(self.model.mass + h * self.implicit_damping))
 
     def is_implicit(self, feedback: Feedback) -> bool:
         """Return whether the integrator treats a damping implicitly."""
@@ -210,8 +205,7 @@ class _Plant:
 
     def inertia_along(self, direction: FloatArray) -> Fraction:
         """Return the inertia along a direction u with all else free, 1 / (u M^-1 u'), to DIGITS."""
-        basis, _ = self.damping_modes
-        inertia = 1 / float(np.sum((direction @ basis) ** 2))
+        inertia = 1 / float(direction @ self.inverse_mass(0.0) @ direction)
         return exact(float(f"{inertia:.{DIGITS}g}"))
 
 
@@ -247,11 +241,10 @@ class _Map:
         if self.timing:
             return np.array([held_spectral_radius(self.method.name, *point, self.timing) for point in points])
         alpha_hat, beta_hat = np.array(points, float).T
-        if beta_hat.any():
-            return spectral_radius(self.method, alpha_hat, beta_hat)
         z = poles(self.method, alpha_hat, beta_hat)
-        others = np.argsort(np.abs(z - 1), axis=-1)[..., 1:]
-        return np.asarray(np.abs(np.take_along_axis(z, others, axis=-1)).max(axis=-1))
+        if not beta_hat.any():
+            z = np.take_along_axis(z, np.argsort(np.abs(z - 1), axis=-1)[:, 1:], axis=-1)
+        return np.asarray(np.abs(z).max(axis=-1))
 
 
 def _linted(element: str, kind: str, setting: str, judge: _Map, points_at: Points) -> Linted:
@@ -297,87 +290,78 @@ def _h_factor(unstable: Callable[[FloatArray], BoolArray]) -> float | None:
 class _Pull:
     """What a constraint does with one impedance if it gets all of its reference, and where it has that."""
 
+    constraint: Constraint
     impedance: float
     where: str
     point: Point
 
+    @property
+    def softening(self) -> FloatArray:
+        """MuJoCo's R of the rows, from its estimate of the diagonal of J M^-1 J'."""
+        return np.maximum(LEAST_SIZE, self.constraint.diagonal * (1 - self.impedance) / self.impedance)
 
-def _pulls(plant: _Plant, constraint: Constraint, solref: tuple[float, float], factor: Fraction) -> list[_Pull]:
-    """Return what a constraint does with that solref at the constraint, and past solimp's width, at a factor on h."""
-    first, second = (exact(value) for value in (solref if _of_one_sign(solref) else DEFAULT_SOLREF))
+
+def _pulls(plant: _Plant, constraint: Constraint, factor: Fraction) -> list[_Pull]:
+    """Return what a constraint does at the constraint, and past solimp's width, at a factor on the step."""
     h = plant.h * factor
-    if plant.model.refsafe and first > 0:
-        h = min(h, first / 2)  # from there on timeconst is 2h, and the point no longer moves
-    alpha_hat, beta_hat = ENGINES["mujoco"].read(h, first, second)
+    in_force, _ = _in_force(plant.model, constraint.solref, h)
+    alpha_hat, beta_hat = ENGINES["mujoco"].read(h, *in_force)
     at_rest, largest, width = constraint.solimp
     impedances = [at_rest, largest] if width > 0 else [(at_rest + largest) / 2]
     if not constraint.positional:  # friction has no position to be off
         impedances, beta_hat = impedances[:1], Fraction(0)
     share = 1 / exact(largest)
     return [
-        _Pull(impedance, where, (alpha_hat * share, beta_hat * exact(impedance) * share**2))
+        _Pull(constraint, impedance, where, (alpha_hat * share, beta_hat * exact(impedance) * share**2))
         for impedance, where in zip(impedances, ("at the constraint", "past solimp's width"), strict=False)
     ]
 
 
+def _in_force(model: ModelData, solref: tuple[float, float], h: Fraction) -> tuple[list[Fraction], str]:
+    """Return the solref that MuJoCo goes by at a step of h (s), and why it is another than what the model says."""
+    taken, why = (solref, "") if _of_one_sign(solref) else (DEFAULT_SOLREF, " as the signs differ")
+    first, second = map(exact, taken)
+    if model.refsafe and 0 < first < 2 * h:
+        first, why = 2 * h, why or " by refsafe"
+    return [first, second], why
+
+
 def _linted_constraint(plant: _Plant, constraint: Constraint) -> Linted:
     setting = f'solref="{_numbers(constraint.solref)}" solimp="{_numbers(constraint.solimp)}"'
-    points_at = partial(_constraint_points, plant, constraint, constraint.solref)
+    points_at = partial(_constraint_points, plant, constraint)
     found = _linted(constraint.element, constraint.kind, setting, _Map(plant.method), points_at)
     return replace(found, advice=_constraint_advice(plant, constraint, found))
 
 
-def _constraint_points(
-    plant: _Plant, constraint: Constraint, solref: tuple[float, float], factor: Fraction
-) -> list[tuple[Point, str]]:
-    """Return the points that a constraint takes with that solref, and what makes each of it."""
+def _constraint_points(plant: _Plant, constraint: Constraint, factor: Fraction) -> list[tuple[Point, str]]:
+    """Return the points that a constraint takes, and what makes each of it."""
+    in_force, why = _in_force(plant.model, constraint.solref, plant.h)
     points = []
-    for pull in _pulls(plant, constraint, solref, factor):
-        alpha_hat, beta_hat = pull.point
-        for share in _shares(plant, constraint, pull.impedance, float(factor) * plant.model.h):
+    for pull in _pulls(plant, constraint, factor):
+        for share in _shares(plant, pull, float(factor) * plant.model.h):
+            reason = f'solref="{_numbers(in_force)}"{why}, d = {pull.impedance:g} {pull.where}'
+            if share == 1 and not len(constraint.jacobian):
+                reason += ", all of it where several contacts share it"
+            elif abs(share - pull.impedance) >= SEEN * pull.impedance:
+                reason += f", {share:.3g} by masses and damping"
             rounded = exact(round(share, DIGITS))
-            why = f"d = {pull.impedance:g} {pull.where}{_share_text(constraint, share, pull.impedance)}"
-            reason = f"{_solref_in_force(plant.model, solref)}, {why}"
-            points.append(((alpha_hat * rounded, beta_hat * rounded), reason))
+            points.append(((pull.point[0] * rounded, pull.point[1] * rounded), reason))
     return points
 
 
-def _share_text(constraint: Constraint, share: float, impedance: float) -> str:
-    """Return the share of its reference that a direction gets, where that is not the impedance."""
-    if constraint.jacobian is None and share == 1:
-        return ", all of it where several contacts share it"
-    return "" if abs(share - impedance) < SEEN * impedance else f", {share:.3g} by masses and damping"
-
-
-def _solref_in_force(model: ModelData, solref: tuple[float, float]) -> str:
-    """Return the solref that MuJoCo goes by, and why it is another than what the model says."""
-    if not _of_one_sign(solref):
-        return f'solref="{_numbers(DEFAULT_SOLREF)}" as the signs differ'
-    first, second = solref
-    if model.refsafe and 0 < first < 2 * model.h:
-        return f'solref="{_numbers((2 * model.h, second))}" by refsafe'
-    return f'solref="{_numbers(solref)}"'
-
-
-def _shares(plant: _Plant, constraint: Constraint, impedance: float, h: float) -> tuple[float, float]:
+def _shares(plant: _Plant, pull: _Pull, h: float) -> tuple[float, float]:
     """Return the least and the largest share of the reference that directions get at a step of h seconds.
 
     They are the eigenvalues of A' (A + R)^-1 of what moves: the impedance, but for MuJoCo's estimate of masses and for
     implicit damping. Contacts, whose rows nobody knows, may share a reference out: then the largest is all of it.
     """
-    if constraint.jacobian is None or constraint.diagonal is None:
-        return impedance, 1.0
-    basis, rates = plant.damping_modes
-    moved = constraint.jacobian @ basis
-    regularized = moved @ moved.T + np.diag(_softening(constraint.diagonal, impedance))
-    shares = np.linalg.eigvals(np.linalg.solve(regularized, (moved / (1 + h * rates)) @ moved.T)).real
+    jacobian = pull.constraint.jacobian
+    if not len(jacobian):
+        return pull.impedance, 1.0
+    regularized = jacobian @ plant.inverse_mass(0.0) @ jacobian.T + np.diag(pull.softening)
+    shares = np.linalg.eigvals(np.linalg.solve(regularized, jacobian @ plant.inverse_mass(h) @ jacobian.T)).real
     moving = shares[shares > ROUNDING]  # a direction that moves nothing has no error either
-    return (float(moving.min()), float(moving.max())) if moving.size else (impedance, impedance)
-
-
-def _softening(diagonal: FloatArray, impedance: float) -> FloatArray:
-    """Return MuJoCo's R of rows, from its estimate of the diagonal of J M^-1 J'."""
-    return np.maximum(LEAST_SIZE, diagonal * (1 - impedance) / impedance)
+    return (float(moving.min()), float(moving.max())) if moving.size else (pull.impedance,) * 2
 
 
 def _constraint_advice(plant: _Plant, constraint: Constraint, found: Linted) -> str:
@@ -402,7 +386,7 @@ def _softness(plant: _Plant, constraint: Constraint, found: Linted) -> str:
     if constraint.solimp[0] < LEAST_HOLD and constraint.solimp[2] > 0:
         return f"solimp leaves small errors alone: d = {constraint.solimp[0]:g} at the constraint itself"
     firm = (2 * plant.model.h, 1.0)
-    points = [point for point, _ in _constraint_points(plant, constraint, firm, AS_IT_IS)]
+    points = [point for point, _ in _constraint_points(plant, replace(constraint, solref=firm), AS_IT_IS)]
     moduli = np.maximum(ROUNDING, [_Map(plant.method).moduli(points).max(), found.z_abs])
     faster, now = np.log(moduli)
     times = faster / now
@@ -413,8 +397,8 @@ def _of_one_sign(solref: tuple[float, float]) -> bool:
     return (solref[0] > 0) == (solref[1] > 0)
 
 
-def _numbers(values: Sequence[float]) -> str:
-    return " ".join(f"{value:.9g}" for value in values)
+def _numbers(values: Iterable[float | Fraction]) -> str:
+    return " ".join(f"{float(value):.9g}" for value in values)
 
 
 # Springs, dampers and drives
@@ -424,21 +408,25 @@ def _along_one_direction(feedbacks: Sequence[Feedback]) -> list[list[Feedback]]:
     """Return the feedbacks in groups that act along one joint or one tendon together."""
     groups: dict[tuple[float, ...], list[Feedback]] = {}
     for feedback in feedbacks:
-        if feedback.direction.any():
-            moved = np.flatnonzero(feedback.direction)
-            shape = feedback.direction[moved] / feedback.direction[moved[0]]
-            groups.setdefault((*moved.tolist(), *shape.round(DIGITS).tolist()), []).append(feedback)
+        moved = feedback.direction[feedback.direction != 0]
+        if moved.size:
+            shape = feedback.direction / moved[0]
+            groups.setdefault(tuple(shape.round(DIGITS).tolist()), []).append(feedback)
     return list(groups.values())
 
 
 @dataclass(frozen=True)
 class _Drive:
-    """Stiffness and damping along one direction, and the inertia there with all other joints free (SI)."""
+    """Stiffness and damping along one direction, and the inertia there with all other joints free (SI).
+
+    `timing` is for a drive whose torque a controller outside computes.
+    """
 
     stiffness: Fraction
     explicit_damping: Fraction
     implicit_damping: Fraction
     inertia: Fraction
+    timing: Timing | None = None
 
     @property
     def damping(self) -> Fraction:
@@ -447,7 +435,8 @@ class _Drive:
 
     def judge(self, plant: _Plant) -> _Map:
         """Return what the integrator is for it."""
-        return _Map(lookup("imex-euler") if self.implicit_damping and not self.explicit_damping else plant.method)
+        all_implicit = self.implicit_damping and not self.explicit_damping
+        return _Map(lookup("imex-euler") if all_implicit else plant.method, self.timing)
 
     def point(self, h: Fraction) -> Point:
         """Return its point at a step of h seconds."""
@@ -456,37 +445,37 @@ class _Drive:
             inertia += self.implicit_damping * h
         return self.damping * h / inertia, self.stiffness * h**2 / inertia
 
+    def linted(self, plant: _Plant, element: str, kind: str, setting: str, reason: str) -> Linted:
+        """Judge it, without advice; `reason` is what makes its point."""
+        judged = f"{reason} with all other joints free"
+        return _linted(
+            element, kind, setting, self.judge(plant), lambda factor: [(self.point(plant.h * factor), judged)]
+        )
 
-def _linted_drive(plant: _Plant, group: Sequence[Feedback]) -> Linted:
+
+def _linted_group(plant: _Plant, group: Sequence[Feedback]) -> Linted:
     drive = _drive(plant, group)
+    if any(feedback.kind == "drive" for feedback in group):
+        kind = "position drive" if drive.stiffness else "velocity drive"
+    else:
+        kind = f"{group[0].kind} {'spring' if drive.stiffness else 'damping'}"
     setting = f"kp {float(drive.stiffness):.6g}, kv {float(drive.damping):.6g}, inertia {float(drive.inertia):.6g}"
     element = ", ".join(dict.fromkeys(feedback.element for feedback in group))
-
-    def points_at(factor: Fraction) -> list[tuple[Point, str]]:
-        return [(drive.point(plant.h * factor), f"{setting} with all other joints free")]
-
-    found = _linted(element, _drive_kind(group, drive), setting, drive.judge(plant), points_at)
+    found = drive.linted(plant, element, kind, setting, setting)
     return replace(found, advice=_drive_advice(plant, drive, found))
 
 
 def _drive(plant: _Plant, group: Sequence[Feedback]) -> _Drive:
     """Return what acts along the direction of a group, per unit of its one joint, else of its first element."""
     direction = group[0].direction
-    moved = np.flatnonzero(direction)
-    if moved.size == 1:
-        direction = direction / direction[moved[0]]
+    if np.count_nonzero(direction) == 1:
+        direction = np.sign(np.abs(direction))
     stiffness, damping = 0.0, {True: 0.0, False: 0.0}
     for feedback in group:
-        arm_squared = float(feedback.direction[moved[0]] / direction[moved[0]]) ** 2
-        stiffness += arm_squared * feedback.stiffness
-        damping[plant.is_implicit(feedback)] += arm_squared * feedback.damping
+        arm = float(feedback.direction @ direction / (direction @ direction))
+        stiffness += arm**2 * feedback.stiffness
+        damping[plant.is_implicit(feedback)] += arm**2 * feedback.damping
     return _Drive(exact(stiffness), exact(damping[False]), exact(damping[True]), plant.inertia_along(direction))
-
-
-def _drive_kind(group: Sequence[Feedback], drive: _Drive) -> str:
-    if any(feedback.kind == "drive" for feedback in group):
-        return "position drive" if drive.stiffness else "velocity drive"
-    return f"{group[0].kind} {'spring' if drive.stiffness else 'damping'}"
 
 
 def _drive_advice(plant: _Plant, drive: _Drive, found: Linted) -> str:
@@ -522,16 +511,12 @@ def _smaller_step(plant: _Plant, end: float | None) -> str:
 
 def _linted_motor(plant: _Plant, controlled: Controlled) -> Linted:
     """Judge a motor with its controller on the inertia along its direction: all other joints are free."""
-    motor, timing = controlled.motor, controlled.timing
-    gain = exact(motor.gain)
-    drive = Drive(gain * controlled.kp, gain * controlled.kd, plant.inertia_along(motor.direction))
-    setting = f"kp {float(drive.kp):.6g}, kd {float(drive.kd):.6g}, every {timing.every}, late {float(timing.late):g}"
-
-    def points_at(factor: Fraction) -> list[tuple[Point, str]]:
-        reason = f"{setting} on inertia {float(drive.inertia):.6g} with all other joints free"
-        return [(drive.point(plant.h * factor), reason)]
-
-    found = _linted(motor.element, "motor", setting, _Map(plant.method, timing), points_at)
+    motor, timing, gain = controlled.motor, controlled.timing, exact(controlled.motor.gain)
+    inertia = plant.inertia_along(motor.direction)
+    drive = _Drive(gain * controlled.kp, gain * controlled.kd, Fraction(0), inertia, timing)
+    gains = f"kp {float(drive.stiffness):.6g}, kd {float(drive.damping):.6g}"
+    setting = f"{gains}, every {timing.every}, late {float(timing.late):g}"
+    found = drive.linted(plant, motor.element, "motor", setting, f"{setting} on inertia {float(inertia):.6g}")
     return found if found.verdict == "converges" else replace(found, advice=_smaller_step(plant, found.h_factor))
 
 
@@ -551,10 +536,9 @@ def _linted_together(plant: _Plant, constraints: Sequence[Constraint], controlle
     @cache
     def modulus(factor: float) -> float:
         """Return |z| with impedances at the constraints or past solimp's width, whichever is worse."""
-        pulls = [_pulls(plant, each, each.solref, exact(factor)) for each in constraints]
+        pulls = [_pulls(plant, each, exact(factor)) for each in constraints]
         ends = {tuple(of_each[end] for of_each in pulls) for end in (0, -1)}
-        held = (list(zip(constraints, of_all, strict=True)) for of_all in ends)
-        return max(_modulus(plant, each, controlled, factor) for each in held)
+        return max(_modulus(plant, held, controlled, factor) for held in ends)
 
     def unstable(factors: FloatArray) -> BoolArray:
         return np.array([modulus(factor) > 1 + ROUNDING for factor in factors.tolist()])
@@ -576,11 +560,7 @@ def _linted_together(plant: _Plant, constraints: Sequence[Constraint], controlle
     )
 
 
-Held = Sequence[tuple[Constraint, _Pull]]
-"""Equalities, each with what it does with one impedance."""
-
-
-def _modulus(plant: _Plant, held: Held, controlled: Sequence[Controlled], factor: float) -> float:
+def _modulus(plant: _Plant, held: Sequence[_Pull], controlled: Sequence[Controlled], factor: float) -> float:
     """Return the largest |z| of a step of all that holds, so many times the model's; 0 where nothing holds."""
     step, forces = _step(plant, held, controlled, factor)
     every = 1
@@ -592,21 +572,24 @@ def _modulus(plant: _Plant, held: Held, controlled: Sequence[Controlled], factor
     return float(moduli.max(initial=0.0))
 
 
-def _step(plant: _Plant, held: Held, controlled: Sequence[Controlled], factor: float) -> tuple[FloatArray, FloatArray]:
+def _step(
+    plant: _Plant, held: Sequence[_Pull], controlled: Sequence[Controlled], factor: float
+) -> tuple[FloatArray, FloatArray]:
     """Return the matrices of one step: of (x, h v), shape (2 dofs, 2 dofs), and of motors' forces."""
     model = plant.model
-    basis, rates = plant.damping_modes
     h, dofs, motors = factor * model.h, len(model.mass), len(controlled)
-    inverse = basis @ basis.T  # of the mass
+    inverse = plant.inverse_mass(0.0)
     arms = np.array([each.motor.direction for each in controlled]).reshape(motors, dofs)
-    stiffness, damping = _springs_and_dampers(model, model.feedbacks)
+    stiffness, damping = _springs_and_dampers(model, model.of(Feedback))
     acceleration = inverse @ np.hstack([-stiffness, -damping, arms.T])  # by positions, velocities and forces
-    if held:
-        jacobian, softening, wanted = _constrained(held, h)
-        missing = np.hstack([wanted, np.zeros((len(jacobian), motors))]) - jacobian @ acceleration
-        forces = np.linalg.solve(jacobian @ inverse @ jacobian.T + np.diag(softening), missing)
-        acceleration = acceleration + inverse @ jacobian.T @ forces
-    slower = (basis / (1 + h * rates)) @ basis.T @ model.mass  # what implicit damping leaves of it
+    # What constraints ask of it, J a = -(alpha_hat / h) J v - (beta_hat / h^2) J x, softened by R.
+    jacobian = np.vstack([np.zeros((0, dofs)), *(pull.constraint.jacobian for pull in held)])
+    points = [pull.point for pull in held for _ in pull.constraint.diagonal]  # of each row
+    alpha_hat, beta_hat = np.array(points, float).reshape(-1, 2, 1).swapaxes(0, 1)
+    asked = np.hstack([-beta_hat / h**2 * jacobian, -alpha_hat / h * jacobian, np.zeros((len(jacobian), motors))])
+    regularized = jacobian @ inverse @ jacobian.T + np.diag(np.hstack([[], *(pull.softening for pull in held)]))
+    acceleration += inverse @ jacobian.T @ np.linalg.solve(regularized, asked - jacobian @ acceleration)
+    slower = plant.inverse_mass(h) @ model.mass  # what implicit damping leaves of it
     in_steps = np.repeat([h * h, h, h * h], [dofs, dofs, motors])  # velocities are in units of 1/h
     whole = np.eye(2 * dofs + motors)
     change = np.zeros_like(whole)
@@ -619,16 +602,3 @@ def _step(plant: _Plant, held: Held, controlled: Sequence[Controlled], factor: f
         whole += change
         whole[:dofs] += whole[dofs : 2 * dofs]
     return whole[: 2 * dofs, : 2 * dofs], whole[: 2 * dofs, 2 * dofs :]
-
-
-def _constrained(held: Held, h: float) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return J and R of the constraints' rows, and the acceleration that positions and velocities ask of them."""
-    jacobians, softenings, wanted = [], [], []
-    for constraint, pull in held:
-        assert constraint.jacobian is not None
-        assert constraint.diagonal is not None
-        alpha_hat, beta_hat = map(float, pull.point)
-        jacobians.append(constraint.jacobian)
-        softenings.append(_softening(constraint.diagonal, pull.impedance))
-        wanted.append(-np.hstack([beta_hat / h**2 * constraint.jacobian, alpha_hat / h * constraint.jacobian]))
-    return np.vstack(jacobians), np.concatenate(softenings), np.vstack(wanted)

@@ -9,9 +9,9 @@ import types
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from copy import copy
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, TypeVar, get_args
 
 import numpy as np
 
@@ -38,27 +38,32 @@ ANY_DISTANCE = 1e6
 """m and rad: farther than anything is from a limit or a contact, and float64 still resolves what is near."""
 
 Integrator = Literal["Euler", "RK4", "implicit", "implicitfast"]
-INTEGRATORS: tuple[Integrator, ...] = ("Euler", "RK4", "implicit", "implicitfast")
+INTEGRATORS: tuple[Integrator, ...] = get_args(Integrator)
 """In the order of MuJoCo's own numbers."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Constraint:
     """One constraint's solref and solimp (d0, dmax, width in m or rad), defaults of classes and mixtures resolved.
 
     `jacobian` (rows, dofs) is that at qpos0, `diagonal` MuJoCo's estimate of the diagonal of J M^-1 J' (1/kg, 1/(kg
-    m^2)); both are None where they depend on the configuration, as those of contacts. `positional` is False for
-    friction, which has damping but no stiffness. `active` is whether it holds both ways from the start.
+    m^2)); both are empty where they depend on the configuration, as those of contacts. `positional` is False for
+    friction, which has damping but no stiffness. `active` is whether it holds both ways from the start. InputError for
+    numbers that mean nothing.
     """
 
     element: str
     kind: str
     solref: tuple[float, float]
     solimp: tuple[float, float, float]
-    jacobian: FloatArray | None = None
-    diagonal: FloatArray | None = None
+    jacobian: FloatArray = field(default_factory=lambda: np.zeros((0, 0)))
+    diagonal: FloatArray = field(default_factory=lambda: np.zeros(0))
     positional: bool = True
     active: bool = False
+
+    def __post_init__(self) -> None:
+        _require_sizes(f"{self.element}: solref", self.solref)
+        _require_sizes(f"{self.element}: solimp", self.solimp)
 
 
 @dataclass(frozen=True)
@@ -67,6 +72,7 @@ class Feedback:
 
     `direction` (dofs,) is the moment arm, gear included; `stiffness` (N/m, N m/rad) and `damping` (N s/m, N m s/rad)
     are those along it. `euler_implicit` is whether MuJoCo's Euler treats the damping implicitly: that of joints alone.
+    InputError for numbers that mean nothing.
     """
 
     element: str
@@ -75,6 +81,9 @@ class Feedback:
     stiffness: float
     damping: float
     euler_implicit: bool
+
+    def __post_init__(self) -> None:
+        _require_sizes(f"{self.element}: kp, kv", (self.stiffness, self.damping))
 
 
 @dataclass(frozen=True)
@@ -101,6 +110,9 @@ class Unjudged:
     reason: str
 
 
+Element = TypeVar("Element", Constraint, Feedback, Motor, Unjudged)
+
+
 @dataclass(frozen=True)
 class ModelData:
     """What a MuJoCo model says of its feedback; h in s, mass (dofs, dofs) in kg and kg m^2 with armatures, at qpos0.
@@ -113,15 +125,11 @@ class ModelData:
     refsafe: bool
     euler_damping: bool
     mass: FloatArray
-    constraints: tuple[Constraint, ...]
-    feedbacks: tuple[Feedback, ...]
-    unjudged: tuple[Unjudged, ...]
-    motors: tuple[Motor, ...] = ()
+    elements: tuple[Constraint | Feedback | Motor | Unjudged, ...]
 
-    @property
-    def size(self) -> int:
-        """Return the number of elements."""
-        return len(self.constraints) + len(self.feedbacks) + len(self.unjudged) + len(self.motors)
+    def of(self, kind: type[Element]) -> list[Element]:
+        """Return the elements of one kind."""
+        return [each for each in self.elements if isinstance(each, kind)]
 
 
 def mujoco_module(wanted_by: str) -> types.ModuleType:
@@ -190,22 +198,13 @@ def model_data(mujoco: types.ModuleType, model: Any) -> ModelData:
     _require_sizes("timestep", (model.opt.timestep,))
     if model.opt.timestep <= 0:
         raise InputError(f"timestep = {model.opt.timestep:g}: expected a positive number")
-    for each in found:
-        if isinstance(each, Constraint):
-            _require_sizes(f"{each.element}: solref", each.solref)
-            _require_sizes(f"{each.element}: solimp", each.solimp)
-        elif isinstance(each, Feedback):
-            _require_sizes(f"{each.element}: kp, kv", (each.stiffness, each.damping))
     return ModelData(
         h=model.opt.timestep,
         integrator=INTEGRATORS[model.opt.integrator],
         refsafe=loaded.has("REFSAFE"),
         euler_damping=loaded.has("EULERDAMP"),
         mass=mass,
-        constraints=tuple(each for each in found if isinstance(each, Constraint)),
-        feedbacks=tuple(each for each in found if isinstance(each, Feedback)),
-        unjudged=tuple(each for each in found if isinstance(each, Unjudged)),
-        motors=tuple(each for each in found if isinstance(each, Motor)),
+        elements=tuple(found),
     )
 
 

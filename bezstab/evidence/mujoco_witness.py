@@ -7,6 +7,8 @@ MuJoCo's constraint reference is aref = -b cdot - k c, Baumgarte's feedback, wit
 import types
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import partial
+from itertools import product
 from typing import Literal
 
 import numpy as np
@@ -69,44 +71,25 @@ def mujoco_witnesses(mechanism: Mechanism, h: float) -> Iterator[Witnessed]:
     mujoco = mujoco_module("--witness mujoco")
     for integrator, name in INTEGRATORS.items():
         method = lookup(name)
-        for boundary in _boundary_points(method):
-            for times in TIMES:
-                alpha_hat, beta_hat = (times * boundary).tolist()
-                yield _witnessed(mujoco, mechanism, integrator, method, h, (alpha_hat, beta_hat), times)
-
-
-def _witnessed(
-    mujoco: types.ModuleType,
-    mechanism: Mechanism,
-    integrator: str,
-    method: Method,
-    h: float,
-    point: tuple[float, float],
-    times: float,
-) -> Witnessed:
-    """Return what one of MuJoCo's integrators does at (alpha_hat, beta_hat), so many times the boundary; h in s."""
-    model = mujoco.MjModel.from_xml_string(model_xml(mechanism.scene, integrator, h, *point))
-    c = _run(mujoco, model, mechanism)
-    remaining = float(c[-RUN // 10 :].max())
-    if len(c) < RUN:
-        measured: Outcome = "diverges"
-    elif remaining < KICK:
-        measured = "converges"
-    else:
-        measured = "neither"
-    z_abs = float(spectral_radius(method, *point))
-    return Witnessed(
-        integrator=integrator,
-        method=method,
-        alpha_hat=point[0],
-        beta_hat=point[1],
-        times_boundary=times,
-        predicted_z_abs=z_abs,
-        predicted_verdict="converges" if z_abs < 1 else "diverges",
-        measured_verdict=measured,
-        remaining=remaining,
-        run_steps=len(c),
-    )
+        for boundary, times in product(_boundary_points(method), TIMES):
+            alpha_hat, beta_hat = (times * boundary).tolist()
+            model = mujoco.MjModel.from_xml_string(model_xml(mechanism.scene, integrator, h, alpha_hat, beta_hat))
+            c = _run(mujoco, model, mechanism)
+            remaining = float(c[-RUN // 10 :].max())
+            ended_early, settled = len(c) < RUN, remaining < KICK
+            z_abs = float(spectral_radius(method, alpha_hat, beta_hat))
+            yield Witnessed(
+                integrator=integrator,
+                method=method,
+                alpha_hat=alpha_hat,
+                beta_hat=beta_hat,
+                times_boundary=times,
+                predicted_z_abs=z_abs,
+                predicted_verdict="converges" if z_abs < 1 else "diverges",
+                measured_verdict="diverges" if ended_early else "converges" if settled else "neither",
+                remaining=remaining,
+                run_steps=len(c),
+            )
 
 
 def witness_count() -> int:
@@ -165,20 +148,16 @@ def _boundary_points(method: Method) -> Iterator[FloatArray]:
     """Yield the first point with |z_p| = 1 on each ray from the origin, as (alpha_hat, beta_hat)."""
     view = region(method).view
     assert view
-    (_, alpha_hat_max), (_, beta_hat_max) = view
+    extent = np.array([largest for _, largest in view])
     for angle in np.radians(RAYS):
-        yield _boundary_on_ray(method, np.array([np.cos(angle) * alpha_hat_max, np.sin(angle) * beta_hat_max]))
+        ray = np.array([np.cos(angle), np.sin(angle)]) * extent
+        met = first_where(partial(_unstable, method, ray), ALONG_A_RAY)
+        assert met
+        yield met[0] * ray
 
 
-def _boundary_on_ray(method: Method, ray: FloatArray) -> FloatArray:
-    """Return the first multiple of the ray with |z_p| = 1."""
-
-    def unstable(multiples: FloatArray) -> BoolArray:
-        return spectral_radius(method, *np.outer(ray, multiples)) >= 1
-
-    met = first_where(unstable, ALONG_A_RAY)
-    assert met
-    return met[0] * ray
+def _unstable(method: Method, ray: FloatArray, times: FloatArray) -> BoolArray:
+    return spectral_radius(method, *np.outer(ray, times)) >= 1
 
 
 def _run(mujoco: types.ModuleType, model: object, mechanism: Mechanism) -> FloatArray:

@@ -15,7 +15,7 @@ stretch; a shorter one may be. But noise does not end with the stretch: a few po
 what they leave over must be as large as the noise of the rows that follow.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -67,28 +67,19 @@ def fit_in_noise(response: FloatArray, order: int) -> NoisyFit | None:
     """Return the poles that a response of a linear system shows beside white noise; None if what is left is no noise.
 
     `response` has shape (samples,), equally spaced in time; the unit is the user's. `order`: largest number of poles.
-    A number that is not finite ends it. Of the stretches from the start on the first that can be explained counts,
-    beginning with the longest. Nonlinear least squares by variable projection (Golub and Pereyra, SIAM J. Numer. Anal.
-    10, 1973), from the matrix pencil's poles (Hua and Sarkar, IEEE Trans. ASSP 38, 1990).
+    A number that is not finite ends it. Of the stretches from the start on, each half as long as the one before, the
+    first that can be explained counts. Nonlinear least squares by variable projection (Golub and Pereyra, SIAM J.
+    Numer. Anal. 10, 1973), from the matrix pencil's poles (Hua and Sarkar, IEEE Trans. ASSP 38, 1990).
     """
     usable = response[: int(np.logical_and.accumulate(np.isfinite(response)).sum())]
-    for start, end in _stretches(len(usable), order):
-        fit = _fit_stretch(usable[start:end], order)
-        if fit is not None and _goes_on(fit.noise, usable[end:]):
-            return fit
-    return None
-
-
-def _stretches(rows: int, order: int) -> Iterator[tuple[int, int]]:
-    """Yield the first row of the stretches that are tried and that after the last, the longest first.
-
-    Each is half as long as the one before. With `order` samples left out at the beginning, too: of long methods the
-    first few belong to poles that are soon gone.
-    """
-    end = min(rows, SAMPLES)
+    end = min(len(usable), SAMPLES)
     while end > FREEDOM:
-        yield from ((start, end) for start in (0, order))
+        for start in (0, order):  # of long methods the first few samples belong to poles that are soon gone
+            fit = _fit_stretch(usable[start:end], order)
+            if fit is not None and _goes_on(fit.noise, usable[end:]):
+                return fit
         end //= 2
+    return None
 
 
 def _goes_on(noise: float, rest: FloatArray) -> bool:
@@ -120,10 +111,14 @@ def _fit_stretch(samples: FloatArray, order: int) -> NoisyFit | None:
 
 def _sums(samples: FloatArray, order: int) -> "list[_Sum]":
     """Return sums of no, one, two and more poles that are fitted to a stretch, until BEYOND more are worth nothing."""
-    vectors = _signal_vectors(samples)
+    # Singular vectors of the Hankel matrix, those of the largest values first.
+    hankel = sliding_window_view(samples, len(samples) // 2)
+    vectors = np.linalg.svd(hankel, full_matrices=False)[2].T
     sums = [_Sum.of(samples, np.zeros(0, complex))]
     for count in range(1, order + BEYOND):
-        fitted = _Sum.fitted(samples, _shifting_poles(vectors[:, :count]))
+        # Poles that nearly fit multiply sums of powers shifted by a row.
+        z = np.linalg.eigvals(np.linalg.lstsq(vectors[:-1, :count], vectors[1:, :count], rcond=None)[0])
+        fitted = _Sum.fitted(samples, np.where(np.abs(z) < NEGLIGIBLE, NEGLIGIBLE, z).astype(complex))
         if fitted.freedom < FREEDOM:
             break
         sums.append(fitted)
@@ -225,18 +220,6 @@ class _Sum:
         """Return in how many samples each pole, a pair together, explains more than the noise."""
         both = np.where(self.z.imag == 0, 1, 2) * np.abs(self.explained.real)
         return np.asarray((both > self.deviation).sum(axis=0))
-
-
-def _signal_vectors(samples: FloatArray) -> FloatArray:
-    """Return the singular vectors of the Hankel matrix of samples, those of the largest values first."""
-    hankel = sliding_window_view(samples, len(samples) // 2)
-    return np.asarray(np.linalg.svd(hankel, full_matrices=False)[2].T)
-
-
-def _shifting_poles(vectors: FloatArray) -> ComplexArray:
-    """Return poles that nearly fit: they multiply sums of powers shifted by a row."""
-    z = np.linalg.eigvals(np.linalg.lstsq(vectors[:-1], vectors[1:], rcond=None)[0])
-    return np.asarray(np.where(np.abs(z) < NEGLIGIBLE, NEGLIGIBLE, z), complex)
 
 
 def _moved(z: ComplexArray, change: ComplexArray | FloatArray) -> ComplexArray:

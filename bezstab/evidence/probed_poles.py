@@ -27,10 +27,10 @@ from numpy.polynomial.polynomial import polyder, polyval2d, polyval3d
 from numpy.typing import ArrayLike
 
 from bezstab.errors import InputError, NumericalError
-from bezstab.evidence.linear_prediction import NEGLIGIBLE, SAMPLES, SPREAD, Fit, Refusal, fit_dominant_pole
+from bezstab.evidence.linear_prediction import NEGLIGIBLE, SAMPLES, SPREAD, Fit, fit_dominant_pole
 from bezstab.evidence.logs import UNEVEN, decimal_place
 from bezstab.evidence.measured_poles import CLOSE, GROWN
-from bezstab.evidence.noisy_prediction import ITERATIONS, RESOLVED, VISIBLE, NoisyFit, NoisyPole, fit_in_noise
+from bezstab.evidence.noisy_prediction import ITERATIONS, RESOLVED, VISIBLE, NoisyFit, fit_in_noise
 from bezstab.methods import Method, closed_loop_at, closed_loop_table
 from bezstab.stability import EPS, ComplexArray, FloatArray, poles, region, spectral_radius, turning_sensitivity, window
 
@@ -152,63 +152,95 @@ def probed_pole(c: ArrayLike, minus: ArrayLike | None = None, differenced: bool 
     that show no pole: `reason` says so. InputError for arrays of other shapes. Method: linear prediction
     (`fit_dominant_pole`); where noise covers the samples, nonlinear least squares (`fit_in_noise`).
     """
-    samples, rounding, cut = _usable_response(c, minus)
+    samples, rounding, cut = _responses(c, minus)
     too_little = _too_little(samples, rounding)
-    if too_little:
-        found = _refused(len(samples), too_little)
-    else:
-        found = _fitted(samples, rounding, differenced or minus is not None)
-    return replace(found, reason=_joined(found.reason, cut))
+    fit, reason = (None, too_little) if too_little else _told(samples, rounding, differenced or minus is not None)
+    reason = "; ".join(filter(None, (reason, cut)))
+    if fit is None:
+        return ProbedPole(None, None, 0, len(samples), (), reason)
+    return ProbedPole(fit.pole, fit.uncertainty, fit.samples, len(samples), fit.poles, reason)
+
+
+def _responses(c: ArrayLike, minus: ArrayLike | None) -> tuple[FloatArray, float, str]:
+    """Return the responses from the kick on, shape (samples, responses), their rounding, and what was cut off, if so.
+
+    The rounding is the value of the last decimal, zero if it is not to be seen. InputError for arrays of other shapes.
+    """
+    samples = _columns(c, "c")
+    other = np.zeros_like(samples) if minus is None else _columns(minus, "minus")
+    if other.shape[1] != samples.shape[1]:
+        raise InputError(f"minus has {other.shape[1]} responses, c has {samples.shape[1]}")
+    rounding = sum(max(decimal_place(column) for column in run.T) for run in (samples, other))
+    shared = min(len(samples), len(other))  # of two runs one may have ended early
+    with np.errstate(invalid="ignore", over="ignore"):  # what is infinite is cut off
+        samples = samples[:shared] - other[:shared]
+    usable = np.logical_and.accumulate(np.isfinite(samples), axis=0)  # what is no number ends a response
+    end = int(usable.any(axis=1).sum())
+    cut = f"row {end + 1} holds no number: only what comes before is used" if end < len(samples) else ""
+    samples = np.where(usable, samples, np.nan)[:end]
+    answers = (np.abs(samples) > rounding).any(axis=1)  # two runs are the same until one is kicked
+    return samples[int(answers.argmax()) if answers.any() else 0 :], rounding, cut
+
+
+def _columns(c: ArrayLike, name: str) -> FloatArray:
+    samples = np.asarray(c, np.float64)
+    if samples.ndim not in (1, 2):
+        raise InputError(f"{name} has {samples.ndim} dimensions: expected (samples,) or (samples, responses)")
+    return samples[:, np.newaxis] if samples.ndim == 1 else samples
+
+
+Told = tuple[Fit | None, str]
+"""The fit that shows the pole, and what is to be kept in mind; or none, and why."""
+
+
+def _told(samples: FloatArray, rounding: float, of_two_runs: bool) -> Told:
+    """Return what tells the pole in responses, shape (samples, responses), or in their differences if much is forced.
+
+    What a motion forces changes slowly from row to row: differences take it off, all but what poles answer themselves.
+    Two runs have it in common; in one run a pole near 1 is believed only if differences show no other.
+    """
+    fits: list[Told] = []
+    changes, floor = samples, rounding / 2
+    for times in range(DIFFERENCES + 1):
+        fit, reason = fit_dominant_pole(changes, ORDER, limits=_linear_limits(changes), floor=floor)
+        fits.append((fit, reason))
+        if fit and not _on_the_circle(fit) and (of_two_runs or _is_not_forced(fit, changes)):
+            return fit, DIFFERENCED if times else ""
+        changes, floor = np.diff(changes, axis=0), 2 * floor  # each of two roundings adds to that of a difference
+    (as_given, reason), (of_changes, _) = fits[:2]
+    if as_given and of_two_runs:  # or it had been claimed
+        return as_given, ON_THE_CIRCLE
+    if as_given and of_changes and _is_slow_pole(as_given, of_changes, samples):
+        # Only as far as differences, which are forced less, show the same pole, is it known to be none that is forced.
+        uncertainty = max(as_given.uncertainty, abs(as_given.pole - of_changes.pole) + of_changes.uncertainty)
+        return replace(as_given, uncertainty=uncertainty), SLOWLY
+    if len(_linear_limits(samples)) == 1:  # else it leaves the linear range: what is left over looks like noise
+        in_noise = filter(None, (fit_in_noise(response, ORDER) for response in samples.T))
+        # Of several responses that which shows its pole best.
+        best = min(in_noise, key=lambda fit: fit.poles[0].uncertainty if fit.poles else np.inf, default=None)
+        if best:
+            return _told_in_noise(best, of_two_runs)
+    if as_given:
+        reason = ON_THE_CIRCLE if _on_the_circle(as_given) else FORCED
+    return None, reason
 
 
 def _too_little(samples: FloatArray, rounding: float) -> str:
     """Return why responses, shape (samples, responses), are too few or too coarse; nothing where they are not."""
     if len(samples) < FEWEST:
         return f"{len(samples)} samples: at least {FEWEST} are needed"
-    largest = float(np.nanmax(np.abs(samples)))
-    if largest == 0 or not np.ptp(samples, axis=0).any():
+    if not np.ptp(samples, axis=0).any():
         return "nothing changes"
     answering = int((np.abs(samples) > 0).any(axis=1).sum())
     if answering < FEWEST // 2:
         return f"the error is gone after {answering} rows: too soon for a pole to be told"
+    largest = float(np.nanmax(np.abs(samples)))
     if rounding > NEGLIGIBLE * largest:
         return f"rounded to {rounding:.3g}, which is more than {NEGLIGIBLE:g} of the largest, {largest:.3g}"
     return ""
 
 
-def _fitted(samples: FloatArray, rounding: float, of_two_runs: bool) -> ProbedPole:
-    """Return the pole in responses, shape (samples, responses), or in their differences if that is what is forced.
-
-    What a motion forces changes slowly from row to row: differences take it off, all but what poles answer themselves.
-    Two runs have it in common; in one run a pole near 1 is believed only if differences show no other.
-    """
-    fits: list[Fit | Refusal] = []
-    changes, floor = samples, rounding / 2
-    for times in range(DIFFERENCES + 1):
-        fit = fit_dominant_pole(changes, ORDER, limits=_linear_limits(changes), floor=floor)
-        fits.append(fit)
-        if isinstance(fit, Fit) and not _on_the_circle(fit) and (of_two_runs or _is_not_forced(fit, changes)):
-            return _claimed(fit, len(samples), DIFFERENCED if times else "")
-        changes, floor = np.diff(changes, axis=0), 2 * floor  # each of two roundings adds to that of a difference
-    as_given, of_changes = fits[0], fits[1]
-    if isinstance(as_given, Fit) and of_two_runs:  # or it had been claimed
-        return _claimed(as_given, len(samples), ON_THE_CIRCLE)
-    if isinstance(as_given, Fit) and isinstance(of_changes, Fit) and _is_slow_pole(as_given, of_changes, samples):
-        # Only as far as differences, which are forced less, show the same pole, is it known to be none that is forced.
-        uncertainty = max(as_given.uncertainty, abs(as_given.pole - of_changes.pole) + of_changes.uncertainty)
-        return _claimed(replace(as_given, uncertainty=uncertainty), len(samples), SLOWLY)
-    leaves_the_linear_range = len(_linear_limits(samples)) > 1  # then what is left over is no noise, but looks like it
-    in_noise = [] if leaves_the_linear_range else [fit_in_noise(response, ORDER) for response in samples.T]
-    fits_in_noise = [fit for fit in in_noise if fit is not None]
-    if fits_in_noise:  # of several responses that which shows its pole best
-        best = min(fits_in_noise, key=lambda fit: fit.poles[0].uncertainty if fit.poles else np.inf)
-        return _told_in_noise(best, len(samples), of_two_runs)
-    if isinstance(as_given, Refusal):
-        return _refused(len(samples), as_given.reason)
-    return _refused(len(samples), ON_THE_CIRCLE if _on_the_circle(as_given) else FORCED)
-
-
-def _told_in_noise(fit: NoisyFit, rows: int, of_two_runs: bool) -> ProbedPole:
+def _told_in_noise(fit: NoisyFit, of_two_runs: bool) -> Told:
     """Return the pole that stands out of noise, or that none does.
 
     In one run a pole near 1 is what the motion forces, and one on the circle may be.
@@ -216,15 +248,15 @@ def _told_in_noise(fit: NoisyFit, rows: int, of_two_runs: bool) -> ProbedPole:
     noise = f"{fit.noise:.2g}"
     poles = [each for each in fit.poles if of_two_runs or abs(each.pole - 1) > RESOLVED]
     if not poles:
-        return _refused(rows, (FORCED_IN_NOISE if fit.poles else ALL_NOISE).format(noise))
+        return None, (FORCED_IN_NOISE if fit.poles else ALL_NOISE).format(noise)
     dominant = poles[0]
     if dominant.uncertainty > RESOLVED:
-        return _refused(rows, HIDDEN_IN_NOISE.format(noise, dominant.pole, dominant.uncertainty))
-    if _on_the_circle(dominant) and not of_two_runs:
-        return _refused(rows, ON_THE_CIRCLE)
-    reason = _joined(IN_NOISE.format(noise), ON_THE_CIRCLE if _on_the_circle(dominant) else "")
-    told = tuple(each.pole for each in poles)
-    return ProbedPole(dominant.pole, dominant.uncertainty, fit.samples, rows, told, reason)
+        return None, HIDDEN_IN_NOISE.format(noise, dominant.pole, dominant.uncertainty)
+    no_recursion = np.nan
+    found = Fit(tuple(each.pole for each in poles), no_recursion, 0, fit.samples, dominant.uncertainty)
+    if not _on_the_circle(found):
+        return found, IN_NOISE.format(noise)
+    return (found, f"{IN_NOISE.format(noise)}; {ON_THE_CIRCLE}") if of_two_runs else (None, ON_THE_CIRCLE)
 
 
 def _is_not_forced(fit: Fit, samples: FloatArray) -> bool:
@@ -238,7 +270,7 @@ def _is_slow_pole(fit: Fit, of_changes: Fit, samples: FloatArray) -> bool:
     return agree and not _on_the_circle(fit) and _explains_the_start(fit, samples)
 
 
-def _on_the_circle(fit: Fit | NoisyPole) -> bool:
+def _on_the_circle(fit: Fit) -> bool:
     return abs(abs(fit.pole) - 1) < max(CLOSE, fit.uncertainty)
 
 
@@ -250,66 +282,8 @@ def _explains_the_start(fit: Fit, samples: FloatArray) -> bool:
     sizes = np.nanmax(np.abs(samples), axis=1)
     before, within = sizes[: fit.start], sizes[fit.start : fit.start + fit.samples]
     with np.errstate(over="ignore"):
-        traced_back = within.max() * abs(fit.pole) ** -fit.start if abs(fit.pole) < 1 else within.max()
+        traced_back = within.max() * np.minimum(abs(fit.pole), 1.0) ** -fit.start  # what grows was no larger
     return bool(before.max(initial=0.0) <= GROWN * traced_back)
-
-
-def _claimed(fit: Fit, rows: int, reason: str) -> ProbedPole:
-    return ProbedPole(fit.pole, fit.uncertainty, fit.samples, rows, fit.poles, reason)
-
-
-def _refused(rows: int, reason: str) -> ProbedPole:
-    return ProbedPole(None, None, 0, rows, (), reason)
-
-
-def _joined(*reasons: str) -> str:
-    return "; ".join(reason for reason in reasons if reason)
-
-
-def _usable_response(c: ArrayLike, minus: ArrayLike | None) -> tuple[FloatArray, float, str]:
-    """Return the responses from the kick on, shape (samples, responses), their rounding, and what was cut off, if so.
-
-    The rounding is zero if it is not to be seen. InputError for arrays of other shapes.
-    """
-    samples, rounding = _response(c, minus)
-    usable = np.logical_and.accumulate(np.isfinite(samples), axis=0)  # what is no number ends a response
-    samples = np.where(usable, samples, np.nan)
-    end = int(usable.any(axis=1).sum())
-    cut = f"row {end + 1} holds no number: only what comes before is used" if end < len(samples) else ""
-    return _from_the_kick_on(samples[:end], rounding), rounding, cut
-
-
-def _response(c: ArrayLike, minus: ArrayLike | None) -> tuple[FloatArray, float]:
-    """Return the responses, shape (samples, responses), and what they are rounded to; 0 if that is not to be seen."""
-    samples = _columns(c, "c")
-    rounding = _rounding(samples)
-    if minus is not None:
-        other = _columns(minus, "minus")
-        if other.shape[1] != samples.shape[1]:
-            raise InputError(f"minus has {other.shape[1]} responses, c has {samples.shape[1]}")
-        rounding += _rounding(other)
-        shared = min(len(samples), len(other))  # of two runs one may have ended early
-        with np.errstate(invalid="ignore", over="ignore"):  # what is infinite is cut off
-            samples = samples[:shared] - other[:shared]
-    return samples, rounding
-
-
-def _from_the_kick_on(samples: FloatArray, rounding: float) -> FloatArray:
-    """Return the samples without those at the beginning that are zero: two runs are the same until one is kicked."""
-    answers = np.flatnonzero((np.abs(samples) > rounding).any(axis=1))
-    return samples[answers[0] :] if answers.size else samples
-
-
-def _columns(c: ArrayLike, name: str) -> FloatArray:
-    samples = np.asarray(c, np.float64)
-    if samples.ndim not in (1, 2):
-        raise InputError(f"{name} has {samples.ndim} dimensions: expected (samples,) or (samples, responses)")
-    return samples[:, np.newaxis] if samples.ndim == 1 else samples
-
-
-def _rounding(samples: FloatArray) -> float:
-    """Return the value of the last decimal to which the samples are rounded, the largest of all columns."""
-    return max(decimal_place(column) for column in samples.T)
 
 
 def _linear_limits(samples: FloatArray) -> Sequence[float]:
@@ -381,12 +355,13 @@ def kicked_responses(
     responses = np.full((steps + 1, len(SHARES)), np.nan)
     with np.errstate(all="ignore"):  # what diverges runs into infinity, and is cut off there
         for place, share in enumerate(SHARES):
-            up, down = start + share * change, start - share * change
+            states = [start + share * change, start - share * change]
             for k in range(steps + 1):
-                responses[k, place] = (float(constraint(up)) - float(constraint(down))) / 2
+                up, down = (float(constraint(each)) for each in states)
+                responses[k, place] = (up - down) / 2
                 if not np.isfinite(responses[k, place]):
                     break
-                up, down = np.asarray(step(up.copy())), np.asarray(step(down.copy()))
+                states = [np.asarray(step(each.copy())) for each in states]
     return responses
 
 
@@ -430,12 +405,11 @@ def _motion_shift(
     """Return by which share of itself, a step, the motion may shift one of a method's poles z; `turned` as above."""
     angle = (TURNED if turned is None else turned) * float(method.step_multiple)
     chi = float(np.abs(turning_sensitivity(method, *point, z[which])))
-    apart = np.abs(z - z[which])
-    apart[which] = np.inf
-    apart[np.abs(z - z[which].conj()) == 0] = np.inf
+    others = np.delete(z, which)
+    apart = np.abs(others - z[which])[others != z[which].conj()]
     # The square of the angle is the size of the law's next order.
     shift = BEYOND_THE_LAW * (chi if np.isfinite(chi) else 0.0) * angle + angle**2
-    if bool((apart < np.sqrt(angle) * np.abs(z[which])).any()) or not np.isfinite(chi):
+    if (apart < np.sqrt(angle) * np.abs(z[which])).any() or not np.isfinite(chi):
         shift = min(shift, np.sqrt(angle)) + np.sqrt(angle)  # at a double pole the change is like a root
     return float(shift)
 

@@ -16,7 +16,7 @@ there are.
 """
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -57,15 +57,8 @@ def pole_digits(method: Method, alpha_hat: float, beta_hat: float) -> PoleDigits
     found = [mp.mpc(z) for z in poles(method, alpha_hat, beta_hat).tolist()]
     with mp.workdps(DIGITS):
         table = [[_exact(entry) for entry in row] for row in coefficient_table(method)]
-        judged = [
-            _judged_pole(table, mu, seen, reference)
-            for mu in _mus(method, alpha_hat, beta_hat)
-            for seen, reference in _seen_and_reference(table, mu, found)
-        ]
-        return PoleDigits(
-            digits=min(pole.digits for pole in judged),
-            margin=min(pole.margin for pole in judged),
-        )
+        judged = [pole for mu in _mus(method, alpha_hat, beta_hat) for pole in _judged_poles(table, mu, found)]
+        return PoleDigits(min(pole.digits for pole in judged), min(pole.margin for pole in judged))
 
 
 def _exact(value: Fraction) -> mp.mpf:
@@ -88,32 +81,20 @@ def _mus(method: Method, alpha_hat: float, beta_hat: float) -> list[mp.mpc]:
     return [larger, product_of_both / larger]
 
 
-def _seen_and_reference(
-    table: Sequence[Sequence[mp.mpf]], mu: mp.mpc, found: Sequence[mp.mpc]
-) -> list[tuple[mp.mpc, mp.mpc]]:
-    """Return the roots of pi(z, mu), each beside the nearest pole that was found."""
+def _judged_poles(table: Sequence[Sequence[mp.mpf]], mu: mp.mpc, found: Sequence[mp.mpc]) -> Iterator[PoleDigits]:
+    """Yield how many digits of each root of pi(z, mu) were found, and how many more than its condition leaves."""
     polynomial = [mp.polyval(row[::-1], mu) for row in table][::-1]  # in z, descending powers
     smallest = min(abs(c) * abs(mu) ** j for row in table for j, c in enumerate(row) if c)
+    starts, count = found, len(polynomial) - 1
     if smallest < sys.float_info.min:  # float64 no longer holds all of its digits
-        roots = different_roots(polynomial, [mp.mpc(1)], 1)
-    else:
-        roots = different_roots(polynomial, found, len(polynomial) - 1)
-
-    def beside(root: mp.mpc) -> mp.mpc:
-        return min(found, key=lambda z: abs(z - root))
-
-    return [(beside(root), root) for root in roots]
-
-
-def _judged_pole(table: Sequence[Sequence[mp.mpf]], mu: mp.mpc, seen: mp.mpc, z: mp.mpc) -> PoleDigits:
-    """Return how many digits of the root z of pi(z, mu) were seen, and how many more than its condition leaves."""
+        starts, count = [mp.mpc(1)], 1
     one_step = len(table) == 2  # pi = z - R(mu)
-    scale = max(abs(z), 1) if one_step else abs(z)
-    error = abs(seen - z) / scale
-    condition = mp.mpf(1) if one_step else _condition(table, mu, z)
-    digits = float(-mp.log10(max(error, MOST_COUNTED)))
-    needed = AT_BEST - float(mp.log10(max(condition, 1)))
-    return PoleDigits(digits=digits, margin=digits - needed)
+    for z in different_roots(polynomial, starts, count):
+        scale = max(abs(z), 1) if one_step else abs(z)
+        error = min(abs(seen - z) for seen in found) / scale
+        condition = mp.mpf(1) if one_step else _condition(table, mu, z)
+        digits = float(-mp.log10(max(error, MOST_COUNTED)))
+        yield PoleDigits(digits, margin=digits - AT_BEST + float(mp.log10(max(condition, 1))))
 
 
 def _condition(table: Sequence[Sequence[mp.mpf]], mu: mp.mpc, z: mp.mpc) -> mp.mpf:

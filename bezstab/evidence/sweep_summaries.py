@@ -159,7 +159,7 @@ def _prediction_sentence(runs: Sequence[Run]) -> Iterator[str]:
 
 def _has_start_of_stages(method: Method) -> bool:
     """Return whether a method keeps its order at fixed alpha_hat and beta_hat, but not its start, which is RK4."""
-    kept = min(leading_error(method, "x").order_left, leading_error(method, "v").order_left)
+    kept = min(leading_error(method, "x").power, leading_error(method, "v").power)
     return steps(method) > 1 and not implicit(method) and kept >= accuracy(method)[0]
 
 

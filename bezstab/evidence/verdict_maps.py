@@ -2,13 +2,13 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bezstab.errors import InputError, NumericalError
-from bezstab.evidence.kick_fates import fates, follow
-from bezstab.evidence.measured_poles import kicked_motions, nothing_happens_without_feedback
+from bezstab.evidence.kicks import fates, follow, kicked_motions, nothing_happens_without_feedback
 from bezstab.evidence.mixing_poles import nearest_poles
 from bezstab.mechanism import Scene, compiled_mechanism, runs_compiled, turning_normals
 from bezstab.methods import Method, evaluations
@@ -131,11 +131,13 @@ def map_rows(scene: Scene, method: Method, h: float, count: int) -> list[MapRows
     ]
 
 
-def simulated_verdicts(rows: MapRows) -> dict[str, BoolArray]:
-    """Return where runs diverge, and where they give no verdict; shape (beta_hat.size, alpha_hat.size).
+def simulated_verdicts(rows: MapRows) -> dict[str, NDArray[Any]]:
+    """Return what `VerdictMap` has of these rows; shape (beta_hat.size, alpha_hat.size).
 
     A run diverges if the constraint error that the kick made grows, and converges if that error dies, whichever comes
-    first (`kick_fates`). InputError for a scene that cannot start, and where rows are to be compiled without numba.
+    first (`kicks`). Predicted is |z_p| at rest, of paper Eq. 17, and by how much the first-order law of the moving
+    mechanism moves it. InputError for a scene that cannot start, and where rows are to be compiled without numba;
+    NumericalError where a predicted pole leaves the range of float64.
     """
     alpha_grid, beta_grid = np.meshgrid(rows.alpha_hat, rows.beta_hat)
     alpha_hat, beta_hat = alpha_grid.ravel(), beta_grid.ravel()
@@ -146,41 +148,29 @@ def simulated_verdicts(rows: MapRows) -> dict[str, BoolArray]:
         blocks = kicked_motions(mechanism, method, h, alpha_hat, beta_hat, [MAP_KICK], MAP_RUN, rows.compiled)
         followed = follow(blocks, masses, MAP_KICK, MAP_RUN)
         diverges, undecided = fates(followed, thrown_apart_is_growth=calm)
-    shape = (rows.beta_hat.size, rows.alpha_hat.size)
-    return {"diverges": diverges.reshape(shape), "undecided": undecided.reshape(shape)}
+    z_abs = np.abs(np.concatenate(list(pole_map(method, rows.alpha_hat, rows.beta_hat))))
+    nearest = nearest_poles(method, alpha_hat, beta_hat)
+    with np.errstate(invalid="ignore"):  # zero times infinite: nothing is known
+        furthest = (np.abs(nearest.z) + np.abs(nearest.shift) * _turning_of_a_step(rows)).max(axis=1)
+    found = {"diverges": diverges, "undecided": undecided, "moved": furthest - z_abs.ravel(), "z_abs": z_abs}
+    return {name: values.reshape(alpha_grid.shape) for name, values in found.items()}
 
 
-def verdict_map(chunks: Sequence[MapRows], found: Sequence[Mapping[str, NDArray[np.generic]]]) -> VerdictMap:
-    """Return the map that these rows make up, from what `simulated_verdicts` found in each, with what is predicted.
+def verdict_map(chunks: Sequence[MapRows], found: Sequence[Mapping[str, NDArray[Any]]]) -> VerdictMap:
+    """Return the map that these rows make up, from what `simulated_verdicts` found in each.
 
-    Dimensionless, arrays of shape (rows of all chunks, columns); predicted is |z_p| at rest, of paper Eq. 17, and by
-    how much the first-order law of the moving mechanism moves it. NumericalError where a predicted pole leaves the
-    range of float64.
+    Dimensionless, arrays of shape (rows of all chunks, columns).
     """
     first = chunks[0]
-    beta_hat = np.concatenate([rows.beta_hat for rows in chunks])
-    z_abs = np.concatenate([np.abs(block) for block in pole_map(first.method, first.alpha_hat, beta_hat)])
     return VerdictMap(
         scene=first.scene,
         method=first.method,
         h=first.h,
         run=MAP_RUN,
         alpha_hat=first.alpha_hat,
-        beta_hat=beta_hat,
-        z_abs=z_abs,
-        diverges=np.concatenate([verdicts["diverges"] for verdicts in found]),
-        undecided=np.concatenate([verdicts["undecided"] for verdicts in found]),
-        moved=np.concatenate([_furthest(rows) for rows in chunks]) - z_abs,
+        beta_hat=np.concatenate([rows.beta_hat for rows in chunks]),
+        **{name: np.concatenate([of_rows[name] for of_rows in found]) for name in found[0]},
     )
-
-
-def _furthest(rows: MapRows) -> FloatArray:
-    """Return the largest modulus that the motion can make of any pole, |z| + |z chi| kappa h; shape of the rows."""
-    alpha_hat, beta_hat = np.meshgrid(rows.alpha_hat, rows.beta_hat)
-    nearest = nearest_poles(rows.method, alpha_hat.ravel(), beta_hat.ravel())
-    with np.errstate(invalid="ignore"):  # zero times infinite: nothing is known
-        furthest = (np.abs(nearest.z) + np.abs(nearest.shift) * _turning_of_a_step(rows)).max(axis=1)
-    return np.asarray(furthest.reshape(alpha_hat.shape))
 
 
 def _turning_of_a_step(rows: MapRows) -> float:

@@ -38,9 +38,9 @@ class StepsTaken(NamedTuple):
 
 
 def steps_taken(
-    mechanism: Mechanism, method: Method, h: float, times: FloatArray, gains: FloatArray, carried: FloatArray
+    mechanism: Mechanism, method: Method, h: float, t: float, gains: FloatArray, carried: FloatArray
 ) -> StepsTaken:
-    """Return what steps of h (s) do that begin at times (s), shape (steps,), with gains (2, steps; SI).
+    """Return what steps of h (s) do that begin at t (s) with gains (2, steps; SI).
 
     `carried` is what each starts with, in units in which h = 1, (steps, quantities, n) in the order of `memory`. What
     Newton's method does not solve is no number.
@@ -50,14 +50,14 @@ def steps_taken(
     room = room_of(program, by_step, h, len(carried))
     found, told = np.empty((1, 2, by_step[0].size)), np.zeros((1, 6))
     array_steps(mechanism, len(carried))(
-        program, Steps(times[np.newaxis], np.array([h]), gains[np.newaxis]), room, found, told
+        program, Steps(np.array([t]), np.array([h]), gains[np.newaxis]), room, found, told
     )
     registers, states = room.registers.reshape(-1, *by_step.shape[1:]), found.reshape(2, *by_step.shape[1:])
     evaluations, quantities = len(program.moments), len(by_step)
     with np.errstate(all="ignore"):  # what runs into infinity shows in the numbers
         known = np.concatenate([by_step, registers[quantities : quantities + evaluations]])
         places = np.moveaxis(np.tensordot(program.table[: 2 * evaluations], known, 1), 2, 0)
-        moments = np.add.outer(times, h * program.moments)
+        moments = t + h * program.moments
         two_alpha, beta_squared = gains[:, :, np.newaxis]
         jacobians = acceleration_jacobians(
             mechanism, moments, two_alpha, beta_squared, places[:, ::2], places[:, 1::2] / h

@@ -8,12 +8,13 @@ from fractions import Fraction
 from functools import cache
 
 import sympy as sp
+from sympy.polys.rings import PolyElement
 
-from bezstab.methods.determinants import in_field
 from bezstab.methods.polynomials import MuTable, PlaneTable, horner
 from bezstab.methods.schemes import Method
 
 Z, MU, ALPHA_HAT, BETA_HAT, S, H = sp.symbols("z mu alpha_hat beta_hat s h")
+PLANE = sp.QQ[ALPHA_HAT, BETA_HAT]
 
 
 def coefficient_table(method: Method) -> MuTable:
@@ -41,7 +42,7 @@ def rho_and_sigma(method: Method) -> tuple[Sequence[Fraction], Sequence[Fraction
 def characteristic_polynomial(method: Method) -> sp.Poly:
     """Return pi(z, mu); zero of a second-order scheme, as `coefficient_table`."""
     table = coefficient_table(method)
-    terms = {(k, j): in_field(c) for k, row in enumerate(table) for j, c in enumerate(row) if c}
+    terms = {(k, j): c for k, row in enumerate(table) for j, c in enumerate(row) if c}
     return sp.Poly.from_dict(terms, Z, MU, domain=sp.QQ)
 
 
@@ -52,14 +53,15 @@ def closed_loop_polynomial(method: Method) -> sp.Poly:
     Paper Eq. 17 for B2; for a multistep method it is rho^2 + alpha_hat rho sigma + beta_hat sigma^2. Monic in z for an
     explicit method; else its leading coefficient is one at alpha_hat = beta_hat = 0.
     """
-    plane = sp.QQ[ALPHA_HAT, BETA_HAT]
-    by_power = {
-        (k,): plane.ring.from_dict({
-            (i, j): in_field(c) for i, row in enumerate(in_plane) for j, c in enumerate(row) if c
-        })
-        for k, in_plane in enumerate(closed_loop_table(method))
-    }  # fmt: skip
-    return sp.Poly.from_dict({power: c for power, c in by_power.items() if c}, Z, domain=plane)
+    return sp.Poly(plane_elements(closed_loop_table(method))[::-1], Z, domain=PLANE)
+
+
+def plane_elements(table: PlaneTable) -> list[PolyElement]:
+    """Return the coefficients of P in z, ascending, as sympy's polynomials in alpha_hat and beta_hat."""
+    return [
+        PLANE.ring.from_dict({(i, j): c for i, row in enumerate(in_plane) for j, c in enumerate(row) if c})
+        for in_plane in table
+    ]
 
 
 @cache

@@ -43,14 +43,9 @@ def coefficient_rows(equations: Sequence[Equation], parts: int = 1) -> Matrix:
         for coefficient, quantity, (by_velocity, by_position) in equation.terms:
             column, latest = place[quantity.name]
             powers = (parts * (latest - quantity.step), by_velocity, by_position)
-            row[column] -= RING.term_new(powers, in_field(coefficient))
+            row[column] -= RING.term_new(powers, coefficient)
         rows.append(row)
     return rows
-
-
-def in_field(number: Fraction) -> sp.Rational:
-    """Return a rational number as one of sympy's field."""
-    return sp.QQ(number.numerator, number.denominator)
 
 
 def as_fraction(number: sp.Rational) -> Fraction:
@@ -146,5 +141,5 @@ def tables_of(*polynomials: PolyElement) -> list[PlaneTable]:
 
 def characteristic(matrix: Sequence[Sequence[Fraction]]) -> list[Fraction]:
     """Return the coefficients of det(z - matrix) in ascending powers of z, exact."""
-    rows = [[in_field(c) for c in row] for row in matrix]
+    rows = [[sp.QQ.convert(c) for c in row] for row in matrix]
     return [as_fraction(c) for c in reversed(DomainMatrix(rows, (len(rows), len(rows)), sp.QQ).charpoly())]

@@ -10,7 +10,7 @@ from bezstab.methods.derivation import ALPHA_HAT, BETA_HAT, MU, Z, closed_loop_p
 from bezstab.methods.schemes import LinearMultistep, Method, PredictorCorrector, RungeKutta
 from bezstab.methods.second_order import SecondOrder
 from bezstab.methods.second_order_formulas import SHOWN_DIGITS, is_long, second_order_text
-from bezstab.methods.steady_errors import LeadingError, Part, PlanePolynomial, leading_error
+from bezstab.methods.steady_errors import LeadingTerm, Part, PlanePolynomial, leading_error
 
 THETA = sp.Symbol("_theta")  # i omega h; with the underscore it is written before alpha_hat and beta_hat
 LATEX = {ALPHA_HAT: r"\hat{\alpha}", BETA_HAT: r"\hat{\beta}", MU: r"\mu", THETA: r"\theta"}
@@ -80,16 +80,15 @@ def steady_error_text(method: Method, part: Part = "x", latex: bool = False) -> 
     long it is instead; LaTeX is written out.
     """
     error = leading_error(method, part)
-    power = error.power if part == "x" else error.power - 1  # h v of the motion itself is theta
-    formula = THETA**power * _quotient(error, exact=method.digits is None)
+    formula = THETA**error.power * _quotient(error, exact=method.digits is None)
     text = _written(formula, latex)
     if latex or len(text) <= LONGEST:
         return text
     lengths = f"{len(error.numerator)} terms over {len(error.denominator)}"
-    return f"{_written(THETA**power, latex)} times {lengths}, too long to be read; as LaTeX it is written out"
+    return f"{_written(THETA**error.power, latex)} times {lengths}, too long to be read; as LaTeX it is written out"
 
 
-def _quotient(error: LeadingError, exact: bool) -> sp.Expr:
+def _quotient(error: LeadingTerm, exact: bool) -> sp.Expr:
     """Return numerator over denominator, with factors taken out; of rounded coefficients what all terms share."""
     if exact:
         return sp.factor(_plane_expression(error.numerator) / _plane_expression(error.denominator))

@@ -7,7 +7,7 @@ from bezstab.errors import InputError, shown
 from bezstab.files import read_toml
 from bezstab.methods.algebraic_numbers import DIGITS
 from bezstab.methods.schemes import LinearMultistep, Method, RungeKutta, Scheme
-from bezstab.toml_tables import TomlTable, a_text, as_it_is, list_of, table_of
+from bezstab.toml_tables import TomlTable, as_it_is, list_of, of_type, table_of
 
 EXAMPLE = "x0 + v0 + 1/2 a0"
 EQUATIONS = f"a table of equations like x1 = {EXAMPLE!r}"
@@ -39,7 +39,7 @@ def _parse_scheme(table: TomlTable, keys: list[str]) -> Scheme:
     """Return the scheme by the table or the pair of keys that the file has; InputError for other keys."""
     from bezstab.methods.recipes import exact_number, recipe  # loads sympy
 
-    row = list_of(lambda text: exact_number(a_text(text)))
+    row = list_of(lambda text: exact_number(of_type(str, text)))
     match keys:
         case ["update"]:
             equations = table.entry("update", table_of(as_it_is), EQUATIONS)

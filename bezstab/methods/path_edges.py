@@ -20,9 +20,9 @@ import sympy as sp
 from sympy.polys.rings import PolyElement
 
 from bezstab.methods.derivation import rho_and_sigma
-from bezstab.methods.determinants import as_fraction, in_field
+from bezstab.methods.determinants import as_fraction
 from bezstab.methods.plane_edges import crossing_polynomials
-from bezstab.methods.root_isolation import BITS, positive_roots, whole_coefficients
+from bezstab.methods.root_isolation import BITS, real_roots
 from bezstab.methods.schemes import Method
 from bezstab.methods.shared_factors import reduced_table, without_shared_factor
 from bezstab.rationals import ZERO
@@ -55,7 +55,7 @@ def _along_path(method: Method, alpha_hat: Fraction, beta_hat: Fraction, powers:
     return [
         sum(
             (
-                _number(c * alpha_hat**k * beta_hat**m) * S ** (i * k + j * m)
+                S ** (i * k + j * m) * (c * alpha_hat**k * beta_hat**m)
                 for k, row in enumerate(in_plane)
                 for m, c in enumerate(row)
             ),
@@ -65,20 +65,16 @@ def _along_path(method: Method, alpha_hat: Fraction, beta_hat: Fraction, powers:
     ]
 
 
-def _number(c: Fraction) -> PolyElement:
-    return RING.convert(in_field(c))
-
-
 def _positive_roots(polynomial: PolyElement) -> list[Fraction]:
     """Return the different positive roots of a polynomial, ascending: none of zero, which vanishes everywhere."""
-    if not polynomial or polynomial.is_ground:
+    if not polynomial:
         return []
     free = sp.Poly.from_dict(dict(polynomial), VARIABLE, domain=sp.QQ).sqf_part()
-    return list(positive_roots(whole_coefficients(free)))
+    return [root for root in real_roots(free) if root > 0]
 
 
 def _value(polynomial: PolyElement, x: Fraction) -> Fraction:
-    return as_fraction(polynomial.evaluate(0, in_field(x)))
+    return as_fraction(polynomial.evaluate(0, x))
 
 
 def _factors_on_the_circle(
@@ -91,12 +87,11 @@ def _factors_on_the_circle(
     """Return the factors at which a linear multistep method has a pair of roots on the circle, in steps of its own."""
     rho_rho, sigma_sigma = (_real_part(each, each) for each in (rho, sigma))
     rho_sigma = _real_part(rho, sigma)
-    a, b = _number(alpha_hat), _number(beta_hat)
     i, j = powers
     if i and j:  # on the path alpha_hat^2 / beta_hat is one number
-        on_path = 4 * b * rho_sigma**2 - a**2 * rho_rho * sigma_sigma if alpha_hat else rho_sigma
+        on_path = rho_sigma**2 * (4 * beta_hat) - rho_rho * sigma_sigma * alpha_hat**2 if alpha_hat else rho_sigma
     else:
-        on_path = rho_rho - b * sigma_sigma if i else 2 * rho_sigma + a * sigma_sigma
+        on_path = rho_rho - sigma_sigma * beta_hat if i else 2 * rho_sigma + sigma_sigma * alpha_hat
     found: list[Fraction] = []
     for t in _positive_roots(on_path):
         size = _value(sigma_sigma, t)
@@ -112,7 +107,7 @@ def _factors_on_the_circle(
     for t in _positive_roots(_imaginary_part(rho, sigma)):
         if t <= 2 and _value(sigma_sigma, t):
             mu = _value(rho_sigma, t) / _value(sigma_sigma, t)
-            found += _positive_roots(_number(mu**2) + _number(mu) * a * S**i + b * S**j)
+            found += _positive_roots(S**i * (mu * alpha_hat) + S**j * beta_hat + mu**2)
     return found
 
 
@@ -132,7 +127,7 @@ def _real_part(first: Sequence[Fraction], second: Sequence[Fraction]) -> PolyEle
     lags = [RING.zero] * len(first)
     for k, c in enumerate(first):
         for m, d in enumerate(second):
-            lags[abs(k - m)] += _number(c * d)
+            lags[abs(k - m)] += c * d
     last, before = _clenshaw(lags)
     return last - (1 - S) * before
 
@@ -142,7 +137,7 @@ def _imaginary_part(first: Sequence[Fraction], second: Sequence[Fraction]) -> Po
     lags = [RING.zero] * len(first)
     for k, c in enumerate(first):
         for m, d in enumerate(second):
-            lags[abs(k - m)] += _number(c * d if k > m else -c * d if k < m else ZERO)
+            lags[abs(k - m)] += c * d if k > m else -c * d if k < m else ZERO
     return _clenshaw(lags[1:])[0]
 
 

@@ -34,16 +34,16 @@ from sympy.polys.matrices import DomainMatrix
 from sympy.polys.rings import PolyElement
 
 from bezstab.errors import NumericalError
-from bezstab.methods.determinants import as_fraction, in_field
-from bezstab.methods.polynomials import horner, without_zeros
-from bezstab.methods.root_isolation import BITS, WholePolynomial, real_roots, shifted, size_in_bits, whole_coefficients
+from bezstab.methods.derivation import ALPHA_HAT, BETA_HAT, PLANE, plane_elements
+from bezstab.methods.determinants import as_fraction
+from bezstab.methods.polynomials import PlaneTable, horner, without_zeros
+from bezstab.methods.root_isolation import BITS, primitive, real_roots, shifted, size_in_bits
 from bezstab.methods.schemes import Method
 from bezstab.methods.schur import is_schur
 from bezstab.methods.shared_factors import reduced_table
 from bezstab.rationals import ONE, ZERO
 
-A, B = sp.symbols("alpha_hat beta_hat")
-RING = sp.QQ[A, B]
+A, B = ALPHA_HAT, BETA_HAT
 
 LONG = 10 * BITS  # of a coefficient: factors are looked for modulo primes of a multiple of that
 HIGH = 8  # degree in alpha_hat: with coefficients so long, discriminants of such curves take minutes
@@ -95,7 +95,7 @@ def plane_strips(method: Method, level: Fraction) -> PlaneStrips | None:
     NumericalError where numbers have so many digits that it would take minutes.
     """
     coefficients = _coefficients(reduced_table(method), level)
-    edges = crossing_polynomials(coefficients, RING)
+    edges = crossing_polynomials(coefficients, PLANE)
     if not all(edges):
         return None  # a pair z_i z_j = r^2, or a root +-r, everywhere
     factors = _factors([sp.Poly.from_dict(dict(edge), A, B, domain=sp.QQ) for edge in edges])
@@ -120,15 +120,10 @@ def plane_strips(method: Method, level: Fraction) -> PlaneStrips | None:
     return PlaneStrips(tables, tuple(strips), tuple(lost))
 
 
-def _coefficients(table: Iterable[CurveTable], level: Fraction) -> list[PolyElement]:
+def _coefficients(table: PlaneTable, level: Fraction) -> list[PolyElement]:
     """Return the coefficients of P(level z), ascending, without a factor that all of them share."""
-    coefficients = [
-        RING.ring.from_dict({
-            (i, j): in_field(c * level**k) for i, row in enumerate(in_plane) for j, c in enumerate(row) if c
-        })
-        for k, in_plane in enumerate(table)
-    ]  # fmt: skip
-    shared = reduce(RING.gcd, coefficients)
+    coefficients = [c * level**k for k, c in enumerate(plane_elements(table))]
+    shared = reduce(PLANE.gcd, coefficients)
     return [coefficient.exquo(shared) for coefficient in coefficients]
 
 
@@ -182,7 +177,7 @@ def _factors(polynomials: Iterable[sp.Poly]) -> list[sp.Poly]:
                     found += [shared, other.exquo(shared)]
                     new = new.exquo(shared)
             found.append(new)
-    return [_primitive(each) for each in found if not each.is_ground]
+    return [primitive(each) for each in found if not each.is_ground]
 
 
 def _parts(polynomial: sp.Poly, long: bool) -> list[sp.Poly]:
@@ -210,14 +205,7 @@ def _refuse_what_takes_minutes(factors: list[sp.Poly], method: Method, level: Fr
 
 def _length(polynomial: sp.Poly) -> int:
     """Return the bits of the longest coefficient, as whole numbers without a common factor."""
-    return max(int(c).bit_length() for c in _primitive(polynomial).coeffs())
-
-
-def _primitive(polynomial: sp.Poly) -> sp.Poly:
-    """Return a multiple with whole coefficients that share no factor, the first positive."""
-    _, whole = polynomial.clear_denoms(convert=True)
-    _, primitive = whole.primitive()
-    return primitive if primitive.LC() > 0 else -primitive
+    return max(int(c).bit_length() for c in primitive(polynomial).coeffs())
 
 
 def _levels(factors: list[sp.Poly], curves: list[sp.Poly]) -> tuple[list[Fraction], list[dict[Fraction, int]]]:
@@ -230,12 +218,8 @@ def _levels(factors: list[sp.Poly], curves: list[sp.Poly]) -> tuple[list[Fractio
     in_beta += [sp.Poly(curve.discriminant().as_expr(), B) for curve in curves]
     for first, second in combinations(curves, 2):
         in_beta.append(sp.Poly(first.resultant(second).as_expr(), B))
-    different: dict[WholePolynomial, None] = {}
-    for polynomial in in_beta:
-        for factor, _ in polynomial.factor_list()[1]:
-            different[whole_coefficients(factor)] = None
-    roots = {factor: real_roots(factor) for factor in different if len(factor) > 1}
-    levels = sorted(root for found in roots.values() for root in found)
+    different = {primitive(factor) for polynomial in in_beta for factor, _ in polynomial.factor_list()[1]}
+    levels = sorted(root for factor in different for root in real_roots(factor))
     lost = []
     for top in by_power:
         of_curve = {}
@@ -243,7 +227,7 @@ def _levels(factors: list[sp.Poly], curves: list[sp.Poly]) -> tuple[list[Fractio
             number = 0  # of leading coefficients that vanish together
             while number < len(top) and (top[number].is_zero or top[number].rem(factor).is_zero):
                 number += 1
-            of_curve.update(dict.fromkeys(roots.get(whole_coefficients(factor), []), number))
+            of_curve.update(dict.fromkeys(real_roots(factor), number))
         lost.append(of_curve)
     return levels, lost
 
@@ -264,7 +248,7 @@ def _shortest_between(low: Fraction, high: Fraction) -> Fraction:
 
 def _polynomial(ascending: Sequence[Fraction]) -> sp.Poly:
     """Return the polynomial in alpha_hat with these coefficients."""
-    return sp.Poly([in_field(c) for c in reversed(ascending)], A, domain=sp.QQ)
+    return sp.Poly(ascending[::-1], A, domain=sp.QQ)
 
 
 def _crossings(curves: Sequence[CurveTable], beta_hat: Fraction) -> tuple[tuple[Crossing, ...], list[Fraction]]:
@@ -272,7 +256,7 @@ def _crossings(curves: Sequence[CurveTable], beta_hat: Fraction) -> tuple[tuple[
     found = []
     for number, curve in enumerate(curves):
         line = _polynomial([horner(row, beta_hat) for row in curve])
-        for k, root in enumerate(real_roots(whole_coefficients(line))):
+        for k, root in enumerate(real_roots(line)):
             found.append((root, (number, k)))
     found.sort()
     return tuple(crossing for _, crossing in found), [root for root, _ in found]
@@ -310,7 +294,7 @@ def _limits(
             in_t = _towards_infinity(tables[number], sign)
             most = 1 / max(ONE, sign * inside)
             at_end = without_zeros([row[0] for row in in_t])
-            roots = list(real_roots(whole_coefficients(_polynomial(at_end).sqf_part())))
+            roots = list(real_roots(_polynomial(at_end).sqf_part()))
         elif level in lost[number]:
             in_t = [[c * (-sign) ** k for k, c in enumerate(shifted(row, level))] for row in tables[number]]
             most = abs(inside - level)
@@ -324,7 +308,7 @@ def _limits(
         places: list[Limit] = [-inf, *map(float, roots), inf] if roots else [-inf, None, inf]
         t = min([most, *(_free_of_crossings(in_t, fence) for fence in fences)])
         line = _polynomial([horner(row, t) for row in in_t])
-        left_of = [int(line.count_roots(None, in_field(fence))) for fence in fences]
+        left_of = [int(line.count_roots(None, fence)) for fence in fences]
         for k in range(count):
             limits[number, k] = places[sum(left <= k for left in left_of)]
     return limits

@@ -1,22 +1,21 @@
 """The real roots of a polynomial in one variable, by exact arithmetic: rational ones exact, others to 70 bits.
 
-Roots may lie forty powers of ten apart, where feedback is weak. So they are isolated octave by octave. The signs of the
-coefficients that Descartes' rule counts, of x = 0 .. infinity mapped to an octave, say whether it has no root (no
-change of sign) or one (one change); else it is halved. (sympy's own isolation is as fast where roots lie close
-together, but takes half a minute for such of ABM2.)
+The signs of the coefficients that Descartes' rule counts, of x = 0 .. infinity mapped to an interval, say whether it
+has no root (no change of sign) or one (one change); else it is halved. Roots may lie forty powers of ten apart, where
+feedback is weak: halving what begins at zero comes to the smallest of them octave by octave. (sympy's own
+isolation is as fast where roots lie close together, but takes half a minute for such of ABM2.)
 """
 
 from collections.abc import Sequence
 from fractions import Fraction
 from functools import cache
 from itertools import pairwise
-from math import ceil, floor, gcd
+from math import ceil, floor
 from typing import TypeVar
 
 import sympy as sp
 
-from bezstab.methods.determinants import as_fraction
-from bezstab.rationals import bisected_integers, whole_multiples
+from bezstab.rationals import ZERO, bisected_integers
 
 BITS = 70  # of a root, relative: float64 has 53
 SHORT = 2**24  # denominators up to it are tried for a root that is known to 70 bits: one that fits is no chance
@@ -27,31 +26,27 @@ WholePolynomial = tuple[int, ...]
 """Whole coefficients without a common factor, ascending powers, the last positive."""
 
 
-def whole_coefficients(polynomial: sp.Poly) -> WholePolynomial:
-    """Return the coefficients of a polynomial in one variable, as whole numbers; it is not zero."""
-    whole, _ = whole_multiples([as_fraction(c) for c in reversed(polynomial.set_domain(sp.QQ).rep.to_list())])
-    shared = gcd(*whole) * (1 if whole[-1] > 0 else -1)
-    return tuple(c // shared for c in whole)
+def primitive(polynomial: sp.Poly) -> sp.Poly:
+    """Return a multiple with whole coefficients that share no factor, the first positive; of a polynomial not zero."""
+    _, whole = polynomial.clear_denoms(convert=True)
+    _, multiple = whole.primitive()
+    return multiple if multiple.LC() > 0 else -multiple
+
+
+def real_roots(polynomial: sp.Poly) -> tuple[Fraction, ...]:
+    """Return the real roots of a polynomial in one variable that has no multiple ones, ascending."""
+    return _real_roots(tuple(int(c) for c in reversed(primitive(polynomial).rep.to_list())))
 
 
 @cache
-def real_roots(whole: WholePolynomial) -> tuple[Fraction, ...]:
-    """Return the real roots of a polynomial that has no multiple ones, ascending."""
-    mirrored = tuple(c * (-1) ** k for k, c in enumerate(whole))
-    at_zero = (Fraction(0),) if whole[0] == 0 else ()
-    return (*(-root for root in reversed(positive_roots(mirrored))), *at_zero, *positive_roots(whole))
-
-
-@cache
-def positive_roots(whole: WholePolynomial) -> tuple[Fraction, ...]:
-    """Return the positive roots of a polynomial that has no multiple ones, ascending."""
-    if whole[0] == 0:
-        whole = whole[1:]
+def _real_roots(whole: WholePolynomial) -> tuple[Fraction, ...]:
+    if len(whole) == 1:
+        return ()
     if len(whole) == 2:
-        return (Fraction(-whole[0], whole[1]),) if whole[0] * whole[1] < 0 else ()
-    first, last = -_octaves_above(whole[::-1]), _octaves_above(whole)
-    octaves = [(Fraction(2) ** k, Fraction(2) ** (k + 1)) for k in range(first, last)]
-    return tuple(_refined(whole, *ends) for octave in octaves for ends in _isolated(whole, *octave))
+        return (Fraction(-whole[0], whole[1]),)
+    bound = Fraction(2) ** _octaves_above(whole)
+    ends = _isolated(whole, -bound, ZERO) + _isolated(whole, ZERO, bound)
+    return tuple(_refined(whole, low, high) for low, high in ends)
 
 
 def value_sign(whole: WholePolynomial, x: Fraction) -> int:
@@ -78,6 +73,8 @@ def _octaves_above(ascending: Sequence[int]) -> int:
 def _isolated(whole: Sequence[int], low: Fraction, high: Fraction) -> list[tuple[Fraction, Fraction]]:
     """Return intervals from low to below high with one root each, ascending; of no width where low is a root.
 
+    Others do not begin or end at zero: within an octave a root is known to so many digits whatever polynomial has it.
+
     x = low + (high - low) / (1 + y), y from zero to infinity, is x from high down to low.
     """
     scale = low.denominator * high.denominator
@@ -86,7 +83,7 @@ def _isolated(whole: Sequence[int], low: Fraction, high: Fraction) -> list[tuple
     of_scaled = shifted([c * scale ** (n - k) for k, c in enumerate(whole)], start)  # in scale x - start
     in_y = shifted([c * width**k for k, c in enumerate(of_scaled)][::-1], 1)  # times (1 + y)^n
     changes = sum(one != other for one, other in pairwise(c > 0 for c in in_y if c))
-    if changes > 1:
+    if changes > 1 or (changes and not low * high):
         middle = (low + high) / 2
         return _isolated(whole, low, middle) + _isolated(whole, middle, high)
     at_low = [(low, low)] if of_scaled[0] == 0 else []
@@ -103,12 +100,12 @@ def shifted(ascending: Sequence[Number], by: Number) -> list[Number]:
 
 
 def _refined(whole: WholePolynomial, low: Fraction, high: Fraction) -> Fraction:
-    """Return the one root between two positive numbers, by bisection on a grid of binary fractions."""
+    """Return the one root between two numbers of one sign, by bisection on a grid of binary fractions."""
     if low == high:
         return low
     slope = tuple(k * c for k, c in enumerate(whole))[1:]
     rising = (value_sign(whole, low) or value_sign(slope, low)) < 0  # low may be a root, too
-    bits = BITS + max(0, -size_in_bits(low))
+    bits = BITS + max(0, -size_in_bits(min(abs(low), abs(high))))
 
     def has_passed_the_root(number: int) -> bool:
         place = Fraction(number, 1 << bits)

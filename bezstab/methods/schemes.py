@@ -82,11 +82,6 @@ class FirstOrder(ABC):
         """P(z; alpha_hat, beta_hat) for a step of h: the product of pi(z, mu) over both mu of the feedback."""
         return self.second_order.table
 
-    @property
-    def by_power_of_z(self) -> MuTable:
-        """What each power of z is multiplied by: the coefficients of the powers of mu."""
-        return self.mu_table
-
     def left_over(self, power: int) -> Iterator[Polynomial]:
         """Yield what linear motions leave over, as `SecondOrder.left_over`."""
         return self.second_order.left_over(power)
@@ -157,11 +152,6 @@ class LinearMultistep(FirstOrder):
             equations.append(Assignment(_at(new + part, 1), _sum([*past, *weighted])))
         return equations
 
-    def divided(self, factor: Polynomial) -> "LinearMultistep":
-        """Return the scheme with rho and sigma divided by a factor of both."""
-        rho, sigma = (quotient_and_remainder(part[::-1], factor)[0][::-1] for part in (self.rho, self.sigma))
-        return LinearMultistep(tuple(rho), tuple(sigma))
-
 
 @dataclass(frozen=True)
 class PredictorCorrector(FirstOrder):
@@ -201,10 +191,6 @@ class PredictorCorrector(FirstOrder):
         )
         predicted, corrected = self.predictor.updates(PREDICTED), self.corrector.updates("", slopes=PREDICTED)
         return SecondOrder((evaluation, *predicted, at_predicted, *corrected))
-
-    def divided(self, factor: Polynomial) -> "PredictorCorrector":
-        """Return the scheme with predictor and corrector divided by a factor of all four polynomials."""
-        return PredictorCorrector(self.predictor.divided(factor), self.corrector.divided(factor))
 
 
 @dataclass(frozen=True)
@@ -278,10 +264,6 @@ class RungeKutta(FirstOrder):
         equations.append(Assignment(_at(POSITION, 1), moved(POSITION, self.weights, velocity)))
         equations.append(Assignment(_at(VELOCITY, 1), moved(VELOCITY, self.weights, acceleration)))
         return SecondOrder(tuple(equations))
-
-    def divided(self, factor: Polynomial) -> "RungeKutta":
-        """Return the scheme: the roots of z - R(mu) all depend on mu."""
-        return self
 
     def left_over(self, power: int) -> Iterator[Polynomial]:
         """Yield what linear motions leave over, then nonlinear ones: one term for each rooted tree."""

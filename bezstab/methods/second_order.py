@@ -107,15 +107,6 @@ class SecondOrder:
         return ()
 
     @property
-    def by_power_of_z(self) -> MuTable:
-        """What each power of z is multiplied by: the coefficients of the powers of alpha_hat and beta_hat."""
-        return tuple(tuple(c for row in in_plane for c in row) for in_plane in self.table)
-
-    def divided(self, factor: Polynomial) -> "SecondOrder":
-        """Return the scheme: its equations stay, whatever factor its P has for all alpha_hat and beta_hat."""
-        return self
-
-    @property
     def evaluated(self) -> tuple[Evaluation, ...]:
         """The equations that evaluate the acceleration."""
         return tuple(equation for equation in self.equations if isinstance(equation, Evaluation))

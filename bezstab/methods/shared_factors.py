@@ -10,9 +10,8 @@ from functools import cache
 import sympy as sp
 
 from bezstab.methods.derivation import Z, closed_loop_table
-from bezstab.methods.determinants import in_field
 from bezstab.methods.polynomials import PlaneTable, polynomial_gcd, quotient_and_remainder, trimmed
-from bezstab.methods.schemes import Method
+from bezstab.methods.schemes import LinearMultistep, Method
 
 
 @cache
@@ -23,8 +22,9 @@ def shared_factor(method: Method) -> tuple[Fraction, ...]:
     common divisor of the coefficients of the powers of mu, or of those of alpha_hat and beta_hat, by Euclid's
     algorithm, exact. A root of it at zero, an unused past value, is left out: it never decides.
     """
+    of_plane = (tuple(c for row in in_plane for c in row) for in_plane in method.scheme.table)
     shared: list[Fraction] = []
-    for polynomial in zip(*method.scheme.by_power_of_z, strict=True):
+    for polynomial in zip(*(method.scheme.mu_table or of_plane), strict=True):
         if any(polynomial):
             shared = polynomial_gcd(shared, polynomial) if shared else trimmed(polynomial)
     while len(shared) > 1 and shared[0] == 0:
@@ -57,7 +57,7 @@ def fixed_poles(method: Method) -> tuple[complex, ...]:
     They are the roots of the factor that rho and sigma share, each at least a double pole, or that all coefficients of
     a second-order scheme's P share; dimensionless. None for an ordinary method.
     """
-    factor = sp.Poly([in_field(c) for c in reversed(shared_factor(method))], Z, domain=sp.QQ)
+    factor = sp.Poly(shared_factor(method)[::-1], Z, domain=sp.QQ)
     poles: list[complex] = []
     if factor.degree() > 0:
         for part, _ in factor.sqf_list()[1]:  # without its multiple roots, which float64 would split
@@ -69,8 +69,11 @@ def fixed_poles(method: Method) -> tuple[complex, ...]:
 def without_shared_factor(method: Method) -> Method:
     """Return the method with the shared factor cancelled: the same poles but for the fixed ones.
 
-    A second-order scheme's equations stay as they are: it is returned unchanged, and what is cancelled is in
-    `reduced_table`.
+    Only a linear multistep method is written with factors that all of pi share. A second-order scheme's equations stay
+    as they are: it is returned unchanged, and what is cancelled is in `reduced_table`.
     """
-    factor = shared_factor(method)
-    return method if len(factor) == 1 else replace(method, scheme=method.scheme.divided(factor))
+    scheme, factor = method.scheme, shared_factor(method)
+    if len(factor) == 1 or not isinstance(scheme, LinearMultistep):
+        return method
+    rho, sigma = (quotient_and_remainder(part[::-1], factor)[0][::-1] for part in (scheme.rho, scheme.sigma))
+    return replace(method, scheme=LinearMultistep(tuple(rho), tuple(sigma)))

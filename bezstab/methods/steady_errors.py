@@ -33,7 +33,7 @@ what is forced.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cache
 from itertools import count
@@ -41,12 +41,25 @@ from math import ceil, factorial, lcm
 from types import MappingProxyType
 from typing import Literal
 
-from bezstab.methods.determinants import RING, as_fraction, coefficient_rows, determinant, in_field
+import sympy as sp
+from sympy.polys.rings import PolyElement, ring
+
+from bezstab.methods.determinants import (
+    RING,
+    RING_ALPHA,
+    RING_BETA,
+    as_fraction,
+    coefficient_rows,
+    determinant,
+)
 from bezstab.methods.scheme_motions import evaluation_errors, evaluation_times
 from bezstab.methods.schemes import Method
 from bezstab.methods.second_order import SecondOrder
 from bezstab.methods.step_equations import POSITION, VELOCITY, Quantity
-from bezstab.rationals import ONE, ZERO
+from bezstab.rationals import ZERO
+
+FORCED_RING, THETA, _, ALPHA, BETA = ring("theta, w, alpha_hat, beta_hat", sp.QQ)
+"""Of the determinants, multiplied by what is forced: w is z^(-1) here, too."""
 
 Part = Literal["x", "v"]
 
@@ -67,57 +80,44 @@ KEPT_DIGITS = 2
 class ForcedErrors:
     """The steady errors of position and velocity: two numerators over one denominator, exact, of the method's own step.
 
-    `denominator` is P(z; alpha_hat, beta_hat) up to a factor; `rounding` the share of its terms' sizes below which a
-    sum is taken for zero: 0 where the coefficients are the method's own.
+    `denominator` is P(z; alpha_hat, beta_hat) up to a factor, a polynomial in z = e^theta; `rounding` the share of its
+    terms' sizes below which a sum is taken for zero: 0 where the coefficients are the method's own.
     """
 
-    method: Method
     position: ExponentialSum = field(repr=False)
     velocity: ExponentialSum = field(repr=False)
     denominator: ExponentialSum = field(repr=False)
     rounding: Fraction = field(repr=False)
 
-    def numerator(self, part: Part) -> ExponentialSum:
-        """Return the numerator of the error of x or of h v."""
-        return self.position if part == "x" else self.velocity
-
     def coefficient(self, terms: ExponentialSum, power: int) -> PlanePolynomial:
         """Return the coefficient of theta^power in one of the sums."""
-        found = {powers: self.series_coefficient(of_powers, power) for powers, of_powers in terms.items()}
-        return {powers: c for powers, c in found.items() if c}
-
-    def series_coefficient(self, of_powers: dict[tuple[Fraction, int], Fraction], power: int) -> Fraction:
-        """Return the coefficient of theta^power in a sum of c theta^m e^(k theta)."""
-        parts = [c * Fraction(k) ** (power - m) / factorial(power - m) for (k, m), c in of_powers.items() if m <= power]
-        total = sum(parts, ZERO)
-        return ZERO if abs(total) <= self.rounding * sum(map(abs, parts), ZERO) else total
+        found: PlanePolynomial = {}
+        for powers, of_powers in terms.items():
+            parts = [c * k ** (power - m) / factorial(power - m) for (k, m), c in of_powers.items() if m <= power]
+            total = sum(parts, ZERO)
+            if abs(total) > self.rounding * sum(map(abs, parts), ZERO):
+                found[powers] = total
+        return found
 
 
 @dataclass(frozen=True)
-class LeadingError:
-    """What is left of a steady error as h shrinks: E theta^power where alpha_hat and beta_hat are held.
+class LeadingTerm:
+    """The first term of a sum in powers of h where alpha_hat and beta_hat are held: `numerator` / `denominator`.
 
-    E = numerator / denominator, polynomials in alpha_hat and beta_hat. `order_left` is the order in h of the error, of
-    q itself or of its velocity, where alpha_hat and beta_hat are held; `order` where alpha and beta are.
+    What it is multiplied by, and what `power` is, the function says that returns it.
     """
 
     power: int
     numerator: PlanePolynomial
     denominator: PlanePolynomial
-    order_left: int
-    order: int
 
-
-@dataclass(frozen=True)
-class TurningError:
-    """What normals that turn add to the leading error: T h^(power + 1) Cdot_q q_t^(power), T = numerator / denominator.
-
-    q_t^(power) is the part of a derivative of the motion that lies along the constraint (docstring of this file).
-    """
-
-    power: int
-    numerator: PlanePolynomial
-    denominator: PlanePolynomial
+    def at(self, alpha_hat: float, beta_hat: float) -> float:
+        """Return numerator / denominator at a point."""
+        above, below = (
+            sum(float(c) * alpha_hat**i * beta_hat**j for (i, j), c in terms.items())
+            for terms in (self.numerator, self.denominator)
+        )
+        return above / below
 
 
 @cache
@@ -127,113 +127,97 @@ def forced_errors(method: Method) -> ForcedErrors:
     InputError where the determinant of its equations would take too long. Source: the docstring of this file.
     """
     step = method.scheme.second_order
-    alike: dict[Quantity, PlanePolynomial] = {result: {(0, 0): ONE} for result in evaluation_times(step)}
+    forcing = THETA**2 + ALPHA * THETA + BETA
+    alike = dict.fromkeys(evaluation_times(step), RING.one)
+    position, velocity = (forcing * _determinant(step, name, alike) for name in (POSITION, VELOCITY))
     unforced = _determinant(step)
+    lowest = max(k for _, k, _, _ in unforced)
     return ForcedErrors(
-        method=method,
-        position=_forced_less(_determinant(step, POSITION, alike), unforced, power=0),
-        velocity=_forced_less(_determinant(step, VELOCITY, alike), unforced, power=1),
-        denominator=unforced,
+        position=_exponential_sum(position - unforced, step, lowest),
+        velocity=_exponential_sum(velocity - THETA * unforced, step, lowest),
+        denominator=_exponential_sum(unforced, step, lowest),
         rounding=ZERO if method.digits is None else Fraction(1, 10 ** (method.digits - KEPT_DIGITS)),
     )
 
 
 def _determinant(
-    step: SecondOrder, name: str | None = None, forced: Mapping[Quantity, PlanePolynomial] = MappingProxyType({})
-) -> ExponentialSum:
+    step: SecondOrder, name: str | None = None, forced: Mapping[Quantity, PolyElement] = MappingProxyType({})
+) -> PolyElement:
     """Return the determinant D of the equations, or D_name: with what is forced in place of the column of a quantity.
 
-    `forced` is what each evaluation adds to its acceleration, by its result, at its own time: times e^(time theta).
+    `forced` is what each evaluation adds to its acceleration, by its result, at its own time: times e^(time theta). The
+    power of z that is left out is the same in all of them.
     """
-    times = evaluation_times(step)
-    parts = lcm(*(time.denominator for time in times.values()))  # of a step, so that all times are whole
+    times, parts = evaluation_times(step), _parts(step)
     rows = coefficient_rows(step.equations, parts)
-    steps = {equation.result.name: equation.result.step for equation in step.equations}
-    if name is not None:
-        column, latest = list(steps).index(name), ceil(max(times.values()))
-        for row, equation in zip(rows, step.equations, strict=True):
-            earlier = int((latest - times.get(equation.result, ZERO)) * parts)
-            added = forced.get(equation.result, {})
-            row[column] = RING.from_dict({(earlier, i, j): in_field(c) for (i, j), c in added.items()})
-        steps[name] = latest
+    latest = max(1, ceil(max(times.values())))  # of a step; x and v are those of its end
+    if name is None:
+        return determinant(rows).mul_monom((parts * (latest - 1), 0, 0)).set_ring(FORCED_RING)
+    column = [equation.result.name for equation in step.equations].index(name)
+    for row, equation in zip(rows, step.equations, strict=True):
+        earlier = int((latest - times.get(equation.result, ZERO)) * parts)
+        row[column] = forced.get(equation.result, RING.zero).mul_monom((earlier, 0, 0))
+    return determinant(rows).set_ring(FORCED_RING)
+
+
+def _parts(step: SecondOrder) -> int:
+    """Return into how many parts a step is divided, so that all times of evaluations are whole."""
+    return lcm(*(time.denominator for time in evaluation_times(step).values()))
+
+
+def _exponential_sum(polynomial: PolyElement, step: SecondOrder, lowest: int = 0) -> ExponentialSum:
+    """Return a polynomial in w = e^(-theta / parts) as a sum, w^lowest being e^0."""
     found: ExponentialSum = {}
-    for (k, i, j), c in determinant(rows).terms():
-        found.setdefault((i, j), {})[sum(steps.values()) - Fraction(k, parts), 0] = as_fraction(c)
+    for (m, k, i, j), c in polynomial.terms():
+        found.setdefault((i, j), {})[Fraction(lowest - k, _parts(step)), m] = as_fraction(c)
     return found
 
 
 @cache
-def leading_error(method: Method, part: Part = "x") -> LeadingError:
-    """Return the first term of the steady error of x (or of h v) in powers of h, and the orders that it leaves.
+def leading_error(method: Method, part: Part = "x") -> LeadingTerm:
+    """Return the first term of the steady error of x (or of v), as a share of the motion's own x (or v).
 
-    The error of v itself is that of h v divided by h: its orders are less by one. Errors as `forced_errors`.
+    It is E theta^power, E = numerator / denominator: `power` is the order in h of the error where alpha_hat and
+    beta_hat are held. Errors as `forced_errors`.
     """
     errors = forced_errors(method)
-    terms = errors.numerator(part)
-    power = next(power for power in count() if errors.coefficient(terms, power))
-    by_h = 0 if part == "x" else 1
-    return LeadingError(
-        power=power,
-        numerator=_in_h(errors.coefficient(terms, power), method.step_multiple, power),
-        denominator=_in_h(errors.coefficient(errors.denominator, 0), method.step_multiple, 0),
-        order_left=power - by_h,
-        order=_least_weight(errors, terms) - _least_weight(errors, errors.denominator) - by_h,
-    )
+    terms, by_theta = (errors.position, 0) if part == "x" else (errors.velocity, 1)  # h v of the motion is theta
+    power = next(power for power in count() if errors.coefficient(terms, power + by_theta))
+    return _in_h(method, power, errors.coefficient(terms, power + by_theta))
 
 
 @cache
-def turning_error(method: Method) -> TurningError | None:
+def turning_error(method: Method) -> LeadingTerm | None:
     """Return what normals that turn add to the leading error of x; None where nothing of its order.
 
-    Errors as `forced_errors`. Source: the docstring of this file.
+    It is T h^(power + 1) Cdot_q q_t^(power), T = numerator / denominator, q_t^(power) the part of a derivative of the
+    motion that lies along the constraint. Errors as `forced_errors`. Source: the docstring of this file.
     """
     errors, step = forced_errors(method), method.scheme.second_order
     for power in range(2, leading_error(method).power):
         off = evaluation_errors(step, power)
         if max(max(map(abs, pair)) for pair in off.values()) <= errors.rounding:
             continue
-        normal = {result: {(0, 1): position, (1, 0): velocity} for result, (position, velocity) in off.items()}
-        across = {result: {(1, 0): position} for result, (position, _) in off.items()}
-        by_normal = errors.coefficient(_determinant(step, POSITION, normal), 1)  # at 0 they cancel
-        by_across = errors.coefficient(_determinant(step, POSITION, across), 0)
-        sums = {
-            powers: -by_normal.get(powers, ZERO) - by_across.get(powers, ZERO) for powers in {*by_normal, *by_across}
-        }
-        numerator = {powers: c for powers, c in sums.items() if abs(c) > errors.rounding}
-        return TurningError(
-            power=power,
-            numerator=_in_h(numerator, method.step_multiple, power + 1),
-            denominator=_in_h(errors.coefficient(errors.denominator, 0), method.step_multiple, 0),
+        normal = {result: RING_BETA * position + RING_ALPHA * velocity for result, (position, velocity) in off.items()}
+        across = {result: RING_ALPHA * position for result, (position, _) in off.items()}
+        by_normal, by_across = (
+            errors.coefficient(_exponential_sum(_determinant(step, POSITION, forced), step), by_theta)
+            for forced, by_theta in ((normal, 1), (across, 0))  # at theta^0 those along the normal cancel
         )
+        sums = {at: -by_normal.get(at, ZERO) - by_across.get(at, ZERO) for at in {*by_normal, *by_across}}
+        numerator = {at: c for at, c in sums.items() if abs(c) > errors.rounding}
+        return replace(_in_h(method, power + 1, numerator), power=power)
     return None
 
 
-def _least_weight(errors: ForcedErrors, terms: ExponentialSum) -> int:
-    """Return the lowest power of h in a sum where alpha and beta are held: alpha_hat counts one, beta_hat two."""
+def _in_h(method: Method, power: int, numerator: PlanePolynomial) -> LeadingTerm:
+    """Return the coefficient of theta^power over D at z = 1, both in theta and the parameters of h.
 
-    def has_terms(weight: int) -> bool:
-        low = [(i, j) for i, j in terms if i + 2 * j <= weight]
-        return any(errors.series_coefficient(terms[i, j], weight - i - 2 * j) for i, j in low)
-
-    return next(weight for weight in count() if has_terms(weight))
-
-
-def _in_h(polynomial: PlanePolynomial, multiple: Fraction, power: int) -> PlanePolynomial:
-    """Return the coefficient of theta^power of a step of `multiple` h, theta and the parameters being those of h."""
-    return {(i, j): c * multiple ** (power + i + 2 * j) for (i, j), c in polynomial.items()}
-
-
-def _forced_less(forced: ExponentialSum, unforced: ExponentialSum, power: int) -> ExponentialSum:
-    """Return F times one sum, F = theta^2 + alpha_hat theta + beta_hat, less theta^power times another.
-
-    Like terms are added up, and those that cancel are left out.
+    They are given in those of the method's own step, which is `step_multiple` h.
     """
-    by_forcing = [(forced, 2, (0, 0), ONE), (forced, 1, (1, 0), ONE), (forced, 0, (0, 1), ONE)]
-    total: ExponentialSum = {}
-    for terms, by_theta, (by_alpha, by_beta), factor in [*by_forcing, (unforced, power, (0, 0), -ONE)]:
-        for (i, j), of_powers in terms.items():
-            sum_so_far = total.setdefault((i + by_alpha, j + by_beta), {})
-            for (k, m), c in of_powers.items():
-                sum_so_far[k, m + by_theta] = sum_so_far.get((k, m + by_theta), ZERO) + factor * c
-    present = {powers: {key: c for key, c in of_powers.items() if c} for powers, of_powers in total.items()}
-    return {powers: of_powers for powers, of_powers in present.items() if of_powers}
+    errors, multiple = forced_errors(method), method.step_multiple
+    of_numerator = {(i, j): c * multiple ** (power + i + 2 * j) for (i, j), c in numerator.items()}
+    of_denominator = {
+        (i, j): c * multiple ** (i + 2 * j) for (i, j), c in errors.coefficient(errors.denominator, 0).items()
+    }
+    return LeadingTerm(power, of_numerator, of_denominator)

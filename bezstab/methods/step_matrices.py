@@ -10,7 +10,6 @@ the state is written in one fixed unit of time instead: entry (i, j) is multipli
 its entries are polynomials in s over one common denominator, which is a number for an explicit scheme.
 """
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
@@ -18,12 +17,23 @@ from functools import cache
 from sympy.polys.rings import PolyElement
 
 from bezstab.errors import InputError
-from bezstab.methods.determinants import RING, Matrix, as_fraction, determinant, in_field
+from bezstab.methods.determinants import (
+    RING,
+    RING_ALPHA,
+    RING_BETA,
+    RING_W,
+    Matrix,
+    as_fraction,
+    coefficient_rows,
+    determinant,
+)
 from bezstab.methods.polynomials import horner
 from bezstab.methods.schemes import STATE, Method, check_one_step
 from bezstab.methods.second_order import SecondOrder
 from bezstab.methods.step_equations import ACCELERATION, POSITION, VELOCITY, Evaluation, Quantity
 from bezstab.rationals import ONE, ZERO
+
+LENGTH = RING_W  # s, where no w is left
 
 StepPolynomial = tuple[Fraction, ...]
 """A polynomial in the length s of a step, coefficients in ascending powers."""
@@ -59,24 +69,22 @@ def step_matrix(method: Method, alpha_hat: Fraction, beta_hat: Fraction, hold: b
     counted in. InputError for a method whose next state depends on more than one step.
     """
     multiple = method.step_multiple
-    alpha_hat, beta_hat = alpha_hat * multiple, beta_hat * multiple**2
     entries, denominator = _plane_matrix(method, hold)
-    power = 0 if hold else 1
-
-    def along(polynomial: PolyElement, shift: int) -> dict[int, Fraction]:
-        """Return a polynomial in alpha_hat and beta_hat as one in s, times s^shift."""
-        result: dict[int, Fraction] = {}
-        for (_, i, j), coefficient in polynomial.terms():
-            key = power * (i + 2 * j) + shift
-            result[key] = result.get(key, ZERO) + as_fraction(coefficient) * alpha_hat**i * beta_hat**j
-        return {key: coefficient for key, coefficient in result.items() if coefficient}
-
-    size = range(len(entries))
-    scaled = [[along(entries[i][j], j - i) for j in size] for i in size]
-    below = along(denominator, 0)
+    along_s = RING.one if hold else LENGTH
+    by_length = [
+        (RING_ALPHA, along_s * (alpha_hat * multiple)),
+        (RING_BETA, along_s**2 * (beta_hat * multiple**2)),
+    ]
+    below = denominator.compose(by_length)
     if not below:
         raise InputError(f"{method.name}: a step has no solution at this point")
-    lowest = min(key for terms in (below, *(entry for row in scaled for entry in row)) for key in terms)
+    last = len(entries) - 1  # all times s^last, lest powers be negative
+    scaled = [
+        [entry.compose(by_length) * LENGTH ** (last + j - i) for j, entry in enumerate(row)]
+        for i, row in enumerate(entries)
+    ]
+    below *= LENGTH**last
+    lowest = min(key for polynomial in (below, *(entry for row in scaled for entry in row)) for key, _, _ in polynomial)
     return StepMatrix(
         entries=tuple(tuple(_ascending(entry, lowest) for entry in row) for row in scaled),
         denominator=_ascending(below, lowest),
@@ -84,56 +92,45 @@ def step_matrix(method: Method, alpha_hat: Fraction, beta_hat: Fraction, hold: b
     )
 
 
-def _ascending(terms: Mapping[int, Fraction], lowest: int) -> StepPolynomial:
+def _ascending(in_s: PolyElement, lowest: int = 0) -> StepPolynomial:
     """Return a polynomial in s, divided by s^lowest, by its coefficients; (0,) for zero."""
-    return tuple(terms.get(power, ZERO) for power in range(lowest, max(terms, default=lowest) + 1))
+    highest = max((power for power, _, _ in in_s), default=lowest)
+    return tuple(as_fraction(in_s.get((power, 0, 0), ZERO)) for power in range(lowest, highest + 1))
 
 
 @cache
 def _plane_matrix(method: Method, hold: bool) -> tuple[Matrix, PolyElement]:
     """Return numerators and denominator of the matrix of what a step carries, as polynomials in alpha_hat, beta_hat.
 
-    By Cramer's rule on the scheme's equations, which are linear in what a step finds.
+    By Cramer's rule on the scheme's equations, which are linear in what a step finds: in their rows that has the power
+    w^0, what the step begins with has w^1.
     """
     check_one_step(method)
     scheme = method.scheme.second_order
-    equations = list(scheme.equations)
-    known = {quantity for equation in equations for quantity in equation.used}
-    known -= {equation.result for equation in equations}
+    results = [equation.result for equation in scheme.equations]
+    place = {result.name: column for column, result in enumerate(results)}
+    rows = coefficient_rows(scheme.equations)
+    found, known = ([[entry.coeff_wrt(0, power) for entry in row] for row in rows] for power in (0, 1))
     stored = Quantity(ACCELERATION, 0)
-    if stored in known and not hold and _ends_with_its_acceleration(scheme):
-        # with alpha and beta fixed the stored acceleration is that of the state: it says nothing new
-        at_start = ((ONE, Quantity(POSITION, 0)),), ((ONE, Quantity(VELOCITY, 0)),)
-        equations.append(Evaluation(stored, *at_start))
-        known.remove(stored)
-    state = STATE if stored in known else STATE[:2]
-    found = [equation.result for equation in equations]
-    place = {quantity: column for column, quantity in enumerate([*found, *(Quantity(name, 0) for name in state)])}
-    rows = [[RING.zero for _ in place] for _ in equations]
-    for number, equation in enumerate(equations):
-        rows[number][number] += RING.one
-        for coefficient, quantity, (by_velocity, by_position) in equation.terms:
-            rows[number][place[quantity]] -= RING.term_new((0, by_velocity, by_position), in_field(coefficient))
+    carried = stored not in results and any(stored in equation.used for equation in scheme.equations)
+    state = STATE if carried else STATE[:2]
 
-    def cramer(number: int, side: int) -> PolyElement:
+    def cramer(name: str, side: str) -> PolyElement:
         """Return the determinant with minus the column of what is known in place of one of what a step finds."""
         return determinant([
-            [-row[side] if column == number else row[column] for column in range(len(found))] for row in rows
+            [-known[number][place[side]] if column == place[name] else entry for column, entry in enumerate(row)]
+            for number, row in enumerate(found)
         ])  # fmt: skip
 
-    entries = [[cramer(place[Quantity(name, 1)], place[Quantity(side, 0)]) for side in state] for name in state]
-    return entries, determinant([row[: len(found)] for row in rows])
+    entries = [[cramer(name, side) for side in state] for name in state]
+    denominator = determinant(found)
+    if carried and not hold and _ends_with_its_acceleration(scheme):
+        # with alpha and beta fixed the stored acceleration is that of the state: it says nothing new
+        entries = [[by_x - RING_BETA * by_a, by_v - RING_ALPHA * by_a] for by_x, by_v, by_a in entries[:2]]
+    return entries, denominator
 
 
 def _ends_with_its_acceleration(scheme: SecondOrder) -> bool:
     """Return whether the acceleration that is stored is the one at the state with which the step ends."""
     at_end = ((ONE, Quantity(POSITION, 1)),), ((ONE, Quantity(VELOCITY, 1)),)
     return Evaluation(Quantity(ACCELERATION, 1), *at_end) in scheme.equations
-
-
-def polynomial_determinant(rows: list[list[StepPolynomial]]) -> StepPolynomial:
-    """Return the determinant of a matrix of polynomials in s, exact, coefficients ascending."""
-    in_ring = [
-        [RING.from_dict({(k, 0, 0): in_field(c) for k, c in enumerate(entry) if c}) for entry in row] for row in rows
-    ]
-    return _ascending({k: as_fraction(c) for (k, _, _), c in determinant(in_ring).terms()}, 0)

@@ -9,6 +9,7 @@ from bezstab.cli.options import command, option
 from bezstab.cli.output import Files, progress, show_rows, write_file
 from bezstab.files import output_directory
 from bezstab.paper.printed import PARTS
+from bezstab.show import CLAIMS
 
 if TYPE_CHECKING:  # so that `bezstab --help`, which lists this command, loads nothing that computes or draws
     from bezstab.paper.reports import Finding, Report
@@ -45,7 +46,8 @@ def paper(only: tuple[str, ...], files: Files) -> None:
         findings += report.findings
     if not only:
         write_text(files.output / "LEDGER.md", ledger_text(findings))
-    show_findings(findings)
+    # as text one claim below the other: a table of them is too wide for any terminal
+    show_rows(CLAIMS, [CLAIMS.row(finding) for finding in findings], in_blocks=True)
 
 
 def write_parts(report: "Report", wanted: set[str], files: Files) -> None:
@@ -61,11 +63,3 @@ def write_parts(report: "Report", wanted: set[str], files: Files) -> None:
 def write_text(path: Path, text: str) -> None:
     """Write a text to a file."""
     write_file(path, lambda file: file.write(text.encode()))
-
-
-def show_findings(findings: "list[Finding]") -> None:
-    """Print what came out; as text one claim below the other, as a table of them is too wide for any terminal."""
-    from bezstab.paper.ledger import finding_rows
-    from bezstab.show import CLAIMS
-
-    show_rows(CLAIMS, finding_rows(findings), in_blocks=True)

@@ -2,12 +2,12 @@
 
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from bezstab.paper.printed import TABLE_6
-from bezstab.paper.reports import Finding, Progress, Report, captioned_table
-from bezstab.show import Row, column
+from bezstab.paper.reports import Claims, Outcome, Progress, Report, captioned_table
+from bezstab.show import column
 
 EQUAL = 0.04  # of the least: by how much the paper's times differ
 
@@ -18,9 +18,11 @@ COSTS = [
     column("method", "method"),
     column("evaluations of f in 10 s", "evaluations", "d"),
     column("paper (s)", "printed"),
-    column("recorded (s)", "recorded_seconds", ".3f"),
-    column("recorded / B4's", "recorded_ratio", ".2f"),
+    column("recorded (s)", "seconds", ".3f"),
+    column("recorded / B4's", "ratio", ".2f"),
 ]
+
+claims = Claims()
 
 
 @dataclass(frozen=True)
@@ -33,30 +35,22 @@ class Cost:
 
 
 def report(_progress: Progress) -> Report:
-    """Return Table 6 and what it claims, with the times recorded once."""
+    """Return Table 6 and what it claims, with the times recorded once: the same on every machine."""
     recorded = recorded_costs()
     caption = (
         "Table 6: what 10 s of simulation cost (h = 1 ms, RK4 at 5 ms). The paper's times are of its three cases. "
         "Ours are not of this run: they were recorded once (processor time, the fastest of 5, one core, not compiled)."
     )
-    return Report(
-        tables={"table6": captioned_table(caption, compared_rows(recorded), COSTS)}, findings=findings(recorded)
-    )
-
-
-def compared_rows(recorded: Sequence[Cost]) -> list[Row]:
-    """Return the rows of Table 6, with the paper's times."""
     ratios = time_ratios(recorded)
-    return [
+    rows = [
         {
-            "method": cost.method,
-            "evaluations": cost.evaluations,
+            **asdict(cost),
             "printed": ", ".join(f"{seconds:.2f}" for seconds in TABLE_6[cost.method]),
-            "recorded_seconds": cost.seconds,
-            "recorded_ratio": ratios[cost.method],
+            "ratio": ratios[cost.method],
         }
         for cost in recorded
     ]
+    return Report(tables={"table6": captioned_table(caption, rows, COSTS)}, findings=claims.findings(recorded))
 
 
 def time_ratios(of: Sequence[Cost]) -> Mapping[str, float]:
@@ -70,37 +64,36 @@ def recorded_costs() -> list[Cost]:
     return [Cost(**row) for row in json.loads(RECORDED.read_text(encoding="utf-8"))]
 
 
-def findings(recorded: Sequence[Cost]) -> list[Finding]:
-    """Return what Table 6 claims of the cost: of exact counts and recorded times, the same on every machine."""
-    return [same_evaluations(recorded), same_times(recorded), one_step_methods_take_longer()]
-
-
-def same_evaluations(recorded: Sequence[Cost]) -> Finding:
+@claims.claim(
+    "Table 6",
+    "the four methods cost the same (RK4 at 5 ms, the others at 1 ms)",
+    "“computational costs are almost the same”",
+)
+def same_evaluations(recorded: Sequence[Cost]) -> Outcome:
     """Return how often f is evaluated in the runs of Table 6."""
     counts = ", ".join(f"{cost.method} {cost.evaluations}" for cost in recorded)
     spread = _spread([cost.evaluations for cost in recorded])
-    return Finding(
-        where="Table 6",
-        claim="the four methods cost the same (RK4 at 5 ms, the others at 1 ms)",
-        paper="“computational costs are almost the same”",
-        here=f"evaluations of f: {counts}; the largest is {spread:.0%} above the smallest",
-        holds=[spread < EQUAL],
-    )
+    return f"evaluations of f: {counts}; the largest is {spread:.0%} above the smallest", [spread < EQUAL]
 
 
-def same_times(recorded: Sequence[Cost]) -> Finding:
+@claims.claim(
+    "Table 6",
+    "they take the same processor time",
+    "“the difference between CPU times of each method is less than 4%”",
+)
+def same_times(recorded: Sequence[Cost]) -> Outcome:
     """Return the processor times that were recorded, as multiples of B4's."""
     ratios = time_ratios(recorded)
-    return Finding(
-        where="Table 6",
-        claim="they take the same processor time",
-        paper="“the difference between CPU times of each method is less than 4%”",
-        here="recorded once, over B4's: " + ", ".join(f"{method} {ratio:.2f}" for method, ratio in ratios.items()),
-        holds=[_spread(list(ratios.values())) < EQUAL],
-    )
+    here = "recorded once, over B4's: " + ", ".join(f"{method} {ratio:.2f}" for method, ratio in ratios.items())
+    return here, [_spread(list(ratios.values())) < EQUAL]
 
 
-def one_step_methods_take_longer() -> Finding:
+@claims.claim(
+    "Table 6",
+    "what differs is due to other programs",
+    "“less than 4%, which is caused by background apps running on the computer”",
+)
+def one_step_methods_take_longer(_recorded: Sequence[Cost]) -> Outcome:
     """Return by how much the paper's own times differ, and whether by chance.
 
     Chance would not put both one-step methods above both multistep methods in each of the three cases.
@@ -108,13 +101,10 @@ def one_step_methods_take_longer() -> Finding:
     cases = [dict(zip(TABLE_6, times, strict=True)) for times in zip(*TABLE_6.values(), strict=True)]
     spreads = [_spread(list(times.values())) for times in cases]
     longer = [min(times["RK4@5"], times["SIE"]) > max(times["B4"], times["AB4"]) for times in cases]
-    return Finding(
-        where="Table 6",
-        claim="what differs is due to other programs",
-        paper="“less than 4%, which is caused by background apps running on the computer”",
-        here=f"its times differ by up to {max(spreads):.1%}, but RK4 and Euler take longer than B4 and AB4 in "
+    return (
+        f"its times differ by up to {max(spreads):.1%}, but RK4 and Euler take longer than B4 and AB4 in "
         f"{sum(longer)} of {len(cases)} cases",
-        holds=[max(spreads) < EQUAL, not all(longer)],
+        [max(spreads) < EQUAL, not all(longer)],
     )
 
 

@@ -5,8 +5,8 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import get_args
 
 from bezstab.paper import comparison, cost, drift, influence, methods, regions, slider_crank
-from bezstab.paper.reports import Agreement, Finding, Progress, Report
-from bezstab.show import CLAIMS, Row, render
+from bezstab.paper.reports import Agreement, Finding, Progress, Report, captioned_table
+from bezstab.show import CLAIMS
 
 SUBJECTS: Mapping[tuple[str, ...], Callable[[Progress], Report]] = {
     ("table1", "table2"): methods.report,
@@ -21,16 +21,9 @@ SUBJECTS: Mapping[tuple[str, ...], Callable[[Progress], Report]] = {
 """Tables and figures that come together, and what makes them, in the order of the ledger."""
 
 
-def finding_rows(findings: Sequence[Finding]) -> list[Row]:
-    """Return the findings as rows."""
-    keys = "where", "claim", "paper", "here", "agreement"
-    return [{key: getattr(finding, key) for key in keys} for finding in findings]
-
-
 def ledger_text(findings: Sequence[Finding]) -> str:
     """Return every claim with what came out, as Markdown."""
     counts = Counter(finding.agreement for finding in findings)
     total = ", ".join(f"{counts[agreement]} {agreement}" for agreement in get_args(Agreement))
-    rows = finding_rows(findings)
-    table = render(rows, CLAIMS.columns(rows), "markdown")
-    return f"# What the paper claims, and what came out\n\nWritten by `bezstab paper`: {total}.\n\n{table}\n"
+    caption = f"# What the paper claims, and what came out\n\nWritten by `bezstab paper`: {total}."
+    return captioned_table(caption, [CLAIMS.row(finding) for finding in findings], CLAIMS.fields)

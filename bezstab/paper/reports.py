@@ -1,10 +1,10 @@
-"""What a subject of the paper hands over: tables, what draws its figures, and what came of each sentence."""
+"""What a subject of the paper hands over: tables, what draws its figures, and what came of each claim."""
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Literal
+from functools import wraps
+from typing import TYPE_CHECKING, Any, Literal
 
-from bezstab.paper.experiments import Experiment
 from bezstab.show import Field, Row, render
 
 if TYPE_CHECKING:
@@ -15,7 +15,7 @@ Agreement = Literal["confirmed", "confirmed with a correction", "not confirmed",
 
 @dataclass(frozen=True)
 class Finding:
-    """A sentence of the paper, what it says, what came out here, and whether each of its conditions holds."""
+    """A claim of the paper: where it stands, what the paper says, what came out here, and which conditions hold."""
 
     where: str
     claim: str
@@ -33,8 +33,36 @@ class Finding:
         return "confirmed with a correction" if any(self.holds) else "not confirmed"
 
 
-Progress = Callable[[Iterator[Experiment], str, int], Iterable[Experiment]]
-"""Passes runs on as they are made, and may show how far it is: it is told their label and their number."""
+Outcome = tuple[str, Sequence[bool]]
+"""What came out of a claim, in words, and whether each of its conditions holds."""
+
+
+@dataclass(frozen=True)
+class Claims:
+    """Claims of the paper in the order of the ledger, each with its test: a function of what they are all about."""
+
+    tests: list[Callable[..., Finding]] = field(default_factory=list)
+
+    def claim(self, where: str, claim: str, paper: str) -> Callable[[Callable[..., Outcome]], Callable[..., Finding]]:
+        """Return a decorator that adds a claim: of what tests it, it makes a function that returns the finding."""
+
+        def added(outcome: Callable[..., Outcome]) -> Callable[..., Finding]:
+            @wraps(outcome)
+            def test(*about: Any) -> Finding:
+                return Finding(where, claim, paper, *outcome(*about))
+
+            self.tests.append(test)
+            return test
+
+        return added
+
+    def findings(self, *about: Any) -> list[Finding]:
+        """Return what came of every claim."""
+        return [test(*about) for test in self.tests]
+
+
+Progress = Callable[[Sequence[Any], str], Iterable[Any]]
+"""Passes on what says which run is next, and may show how far it is: it is told all of them, and their label."""
 
 
 @dataclass(frozen=True)

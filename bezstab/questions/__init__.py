@@ -14,9 +14,9 @@ if TYPE_CHECKING:
     from bezstab.questions.chains import ChainMap, chain_map
     from bezstab.questions.growing_runs import growing_run
     from bezstab.questions.held_drives import HeldAnswer, HeldQuestion, UsedUp, held_answers, held_gains
-    from bezstab.questions.log_probes import LogQuestion, PoleQuestion, Probe, check_told, log_answers
+    from bezstab.questions.log_probes import PoleQuestion, Probe, check_told, log_answers
     from bezstab.questions.motions import ReferenceMotion, check_speed, motion_of
-    from bezstab.questions.points import PlanePoint
+    from bezstab.questions.points import PlanePoint, meant_in_seconds
     from bezstab.questions.question import Question, methods_for, usual_goal
     from bezstab.questions.regions import MapAnswer, MapQuestion, RegionAnswer, region_answer
     from bezstab.questions.runs import RunQuestion, run_answer

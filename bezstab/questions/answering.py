@@ -8,13 +8,15 @@ for, and then kept:
                             └── faster, slower       what faster decay costs, and slower decay gains
 """
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Literal, cast
+from typing import Literal, cast
 
-from bezstab.engines import Curve, Engine, Point
+from bezstab import evidence
+from bezstab.engines import DRIVE_METHODS, Curve, Engine, Point
 from bezstab.errors import InputError, NumericalError
 from bezstab.goals import UP_TO_LONGEST, Goal
 from bezstab.methods import Method
@@ -26,19 +28,15 @@ from bezstab.stability import (
     FeedbackCost,
     Modulus,
     VaryingSteps,
-    choose,
     choose_at_step,
     describe_point,
     feedback_cost,
-    gain_limits,
+    gain_factors,
     largest_stable_step,
     stable_up_to,
     varying_steps,
 )
 from bezstab.units import alpha_and_beta
-
-if TYPE_CHECKING:
-    from bezstab.evidence import MovingPole
 
 CheckedRole = Literal["given", "instead"]
 Role = Literal[CheckedRole, "chosen"]
@@ -57,8 +55,10 @@ class Gains:
 
     A limit is infinite where there is none, None where lowering that gain alone does not help. The largest kp goes with
     this kd, the largest kd with this kp. `used_up` is the gain at its limit, or nearest to it; None without limits.
+    `applied` is what the method is called as a way of applying a drive, None if it is none.
     """
 
+    applied: str | None
     kp: float
     kd: float
     kp_max: float | None
@@ -125,14 +125,12 @@ class Answer(Choice):
         return None if self.margins is None or self.h is None else self.margins.h * self.h
 
     @cached_property
-    def moving(self) -> "MovingPole | None":
+    def moving(self) -> "evidence.MovingPole | None":
         """How the motion of the scene changes the poles."""
-        if self.question.turning is None or self.question.h is None:
+        if self.question.turning is None or self.h is None:
             return None
-        from bezstab.evidence import moving_poles
-
-        turning, h = self.question.turning, float(self.question.h)
-        (pole,) = moving_poles(self.method, turning, h, self.alpha_hat, self.beta_hat)
+        turning = self.question.turning
+        (pole,) = evidence.moving_poles(self.method, turning, self.h, self.alpha_hat, self.beta_hat)
         return pole
 
     @cached_property
@@ -203,8 +201,8 @@ class Answer(Choice):
         """What the same goal chooses for one constraint alone; None if that is this choice."""
         if self.question.swept is None or self.role == "given":
             return None
-        found = _choice_alone(self.question, self.method, cast(Goal, self.goal), self.question.settle, margins=False)
-        alone = _answer(self.question, self.role, found)
+        goal, settle = cast(Goal, self.goal), self.question.settle
+        alone = _chosen_alone(self.question, self.role, self.method, goal, settle, margins=False)
         return None if alone.point == self.point else alone
 
     @cached_property
@@ -219,17 +217,19 @@ class Answer(Choice):
         drive, h = self.question.drive, self.question.h
         if drive is None or h is None:
             return None
-        limits = gain_limits(self)
-        kp, kd = drive.gains(self.alpha_hat, self.beta_hat, float(h))
-        if self.role == "given":
-            kp, kd = float(drive.kp), float(drive.kd)
-        kp_of_one, kd_of_one = drive.gains(1.0, 1.0, float(h))
+        kp, kd = (drive.kp, drive.kd) if self.role == "given" else drive.gains(self.alpha_hat, self.beta_hat, float(h))
+        kd_factor, kp_factor = gain_factors(self)
+        factors: dict[Gain, float | None] = {"kd": kd_factor, "kp": kp_factor}
+        # the distance is the ratio of the gain and its limit, whichever is larger
+        ratios = {gain: max(each, 1 / each) for gain, each in factors.items() if each and math.isfinite(each)}
+        nearest_first = sorted(ratios, key=lambda gain: ratios[gain])
         return Gains(
-            kp=kp,
-            kd=kd,
-            kp_max=None if limits.beta_hat is None else limits.beta_hat * kp_of_one,
-            kd_max=None if limits.alpha_hat is None else limits.alpha_hat * kd_of_one,
-            used_up=None if limits.nearest is None else "kd" if limits.nearest == "alpha_hat" else "kp",
+            applied=DRIVE_METHODS.get(self.method.name),
+            kp=float(kp),
+            kd=float(kd),
+            kp_max=None if kp_factor is None else kp_factor * float(kp),
+            kd_max=None if kd_factor is None else kd_factor * float(kd),
+            used_up=nearest_first[0] if nearest_first else None,
         )
 
     @cached_property
@@ -239,7 +239,7 @@ class Answer(Choice):
         InputError where nothing is stable or the engine cannot express it, NumericalError where it cannot be found.
         """
         goal = usual_goal(self.question.engine, self.question.drive)
-        found = _answer(self.question, "instead", _choice(self.question, self.method, goal))
+        found = _chosen(self.question, "instead", self.method, goal)
         _ = found.setting
         return found
 
@@ -278,10 +278,9 @@ class Answer(Choice):
     def _alternative(self, goal: Goal, settle: Fraction | None = None) -> "Answer | None":
         """Return another choice; None if there is none or it cannot be found: this answer does not need it."""
         try:
-            found = _choice(self.question, self.method, goal, settle, margins=False)
+            return _chosen(self.question, "chosen", self.method, goal, settle, margins=False)
         except (InputError, NumericalError):
             return None
-        return _answer(self.question, "chosen", found)
 
 
 def answers(question: Question, *, margins: bool = True) -> Iterator[Answer]:
@@ -292,8 +291,8 @@ def answers(question: Question, *, margins: bool = True) -> Iterator[Answer]:
     """
     for method in question.methods:
         if question.goal:
-            found = _choice(question, method, question.goal, question.settle, margins=margins)
-            yield _expressible(_answer(question, "chosen", found))
+            found = _chosen(question, "chosen", method, question.goal, question.settle, margins=margins)
+            yield _expressible(found)
             continue
         for label, point in (("as given", question.given.point), *question.given.also):
             yield _answer(question, "given", describe_point(method, label, *point, question.spread, margins), point)
@@ -316,11 +315,11 @@ def _answer(question: Question, role: Role, choice: Choice, point: Point | None 
     return Answer(question=question, role=role, point=exactly, **vars(choice))
 
 
-def _choice(
-    question: Question, method: Method, goal: Goal, settle: Fraction | None = None, *, margins: bool = True
-) -> Choice:
+def _chosen(
+    question: Question, role: Role, method: Method, goal: Goal, settle: Fraction | None = None, *, margins: bool = True
+) -> Answer:
     """Return the choice of a goal; if an engine sweeps over constraints, at most the strongest that they allow."""
-    found = _choice_alone(question, method, goal, settle, margins=margins)
+    found = _chosen_alone(question, role, method, goal, settle, margins=margins)
     swept = question.swept
     if swept is None or not (swept.engine.parameters and _curve(question, goal)):
         return found
@@ -330,33 +329,31 @@ def _choice(
         raise InputError(f"{swept.engine.name}: {words}")
     if found.beta_hat <= strongest[1]:
         return found
-    return describe_point(method, goal, *strongest, question.spread, margins)
+    return _answer(question, role, describe_point(method, goal, *strongest, question.spread, margins))
 
 
-def _choice_alone(
-    question: Question, method: Method, goal: Goal, settle: Fraction | None = None, *, margins: bool = True
-) -> Choice:
+def _chosen_alone(
+    question: Question, role: Role, method: Method, goal: Goal, settle: Fraction | None, *, margins: bool
+) -> Answer:
     """Return the choice of a goal for one constraint; if the question has a goal, for all steps up to h_max."""
-    motion = question.motion
-    along = _curve(question, goal)
     longest = question.h_max if question.goal else None
     modulus: Modulus | None = None
     if question.turning and question.h:
-        from bezstab.evidence import moving_modulus
-
-        modulus = moving_modulus(method, question.turning, float(longest or question.h))
-    of_both: dict[str, Any] = {
-        "spread": question.spread,
-        "equal": question.equal,
-        "modulus": modulus,
-        "along": along,
-        "omega_h": motion.omega_h_max,
-        "margins": margins,
-    }
-    if question.h is None:
-        return choose(method, goal, **of_both)
-    h_max = longest if goal in UP_TO_LONGEST else None
-    return choose_at_step(method, goal, h=question.h, h_max=h_max, settle=settle, **of_both)
+        modulus = evidence.moving_modulus(method, question.turning, float(longest or question.h))
+    choice = choose_at_step(
+        method,
+        goal,
+        h=question.h,
+        h_max=longest if goal in UP_TO_LONGEST else None,
+        settle=settle,
+        spread=question.spread,
+        equal=question.equal,
+        modulus=modulus,
+        along=_curve(question, goal),
+        omega_h=question.motion.omega_h_max,
+        margins=margins,
+    )
+    return _answer(question, role, choice)
 
 
 def _curve(question: Question, goal: Goal) -> Curve | None:

@@ -97,10 +97,15 @@ class HeldAnswer:
 
     def __repr__(self) -> str:
         drive, timing = self.question.drive, self.question.timing
-        applied = f"{DRIVE_METHODS[self.method.name]}, every {timing.every}, late {float(timing.late):g}"
+        applied = f"{self.applied}, every {timing.every}, late {float(timing.late):g}"
         gains = f"kp = {float(drive.kp):g}, kd = {float(drive.kd):g}"
         safe = "safe" if self.safe else "not safe"
         return f"HeldAnswer({applied}: {gains}, |z_p| = {self.z_abs:.6g}, {safe})"
+
+    @property
+    def applied(self) -> str:
+        """What this way of applying a drive is called."""
+        return DRIVE_METHODS[self.method.name]
 
     @property
     def safe(self) -> bool:

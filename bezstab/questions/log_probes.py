@@ -1,6 +1,6 @@
 """The log of another simulator: the pole in each column, and which method or feedback has that pole.
 
-log, columns, steps, a point or methods   →   LogQuestion   →   log_answers   →   Probe: likenesses, or points
+log, columns, steps, a point or methods   →   PoleQuestion   →   log_answers   →   Probe: likenesses, or points
 """
 
 from collections.abc import Iterator, Sequence
@@ -24,15 +24,10 @@ from bezstab.evidence import (
     time_column,
 )
 from bezstab.methods import REGISTRY, Method, lookup
-from bezstab.questions.points import meant_in_seconds
 from bezstab.stability import FloatArray
 
 SAME_STEP = 1e-3
 """The times between rows of two runs may differ by this share, as times in logs are rounded."""
-
-
-USUAL = "SYM"
-"""The method of most engines."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,6 +36,10 @@ class PoleQuestion:
 
     The integrator takes `every` steps of `h` (s) from row to row. Constraints turn at the rate `turning` (1/s).
     InputError for a rate below 0, or without a step.
+
+    With a `log` it is asked of the pole of each column. `columns` and `time` are names or numbers of its columns;
+    without `columns` all but that of times are taken. `minus` is the log of another run, to subtract. With `jointly`
+    one pole is fitted to all columns. InputError for a column that is not there, and for times that do not fit h.
     """
 
     every: int | None = None
@@ -48,19 +47,38 @@ class PoleQuestion:
     point: Point | None = None
     methods: Sequence[Method] = ()
     turning: Fraction | None = None
+    log: Log | None = None
+    columns: Sequence[str] = ()
+    time: str | None = None
+    minus: Log | None = None
+    jointly: bool = False
 
     def __post_init__(self) -> None:
+        _ = self.groups
+        if self.minus and self.log:
+            _check_same_step(self.minus, self.log)
         _ = self.turned
+        row = self.row_step
+        if self.h is None or row is None:
+            return
+        apart = f"the log's times are {row:.6g} s apart"
+        if self.own_steps and not self.logged:
+            raise InputError(f"{apart}: expected a multiple of the step, --h {self.h:g}")
+        if self.every is not None and round(row / self.h) != self.every:
+            raise InputError(f"--every {self.every}: {apart}, {row / self.h:.4g} times --h {self.h:g}")
 
-    @property
-    def meant_in_seconds(self) -> bool:
-        """Whether the point looks like alpha and beta in 1/s: for the methods, without any for what engines have."""
-        return meant_in_seconds(self.methods or (lookup(USUAL),), self.point)
+    @cached_property
+    def groups(self) -> list[list[int]]:
+        """The places of the columns to each of which, or to all of which jointly, a pole is fitted."""
+        if self.log is None:
+            return []
+        places = error_columns(self.log, self.columns, time_column(self.log, self.time))
+        return [places] if self.jointly else [[place] for place in places]
 
-    @property
+    @cached_property
     def row_step(self) -> float | None:
-        """The time between rows in s; None where it is not known."""
-        return None
+        """The time between rows in s; None without a log, or a column of times in it."""
+        return row_step(self.log, time_column(self.log, self.time)) if self.log else None
 
     @cached_property
     def own_steps(self) -> dict[Method, int | None]:
@@ -85,47 +103,6 @@ class PoleQuestion:
         if self.row_step is None:
             raise InputError("--turning is a rate in 1/s: it needs --h, or a column of times in the log")
         return float(self.turning) * self.row_step / (self.every or 1)
-
-
-@dataclass(frozen=True, kw_only=True)
-class LogQuestion(PoleQuestion):
-    """The same question about the pole of each column of a log.
-
-    `columns` and `time` are names or numbers of columns of the log; without `columns` all but that of times are taken.
-    `minus` is the log of another run, to subtract. With `jointly` one pole is fitted to all columns. InputError for a
-    column that is not there, and for times that do not fit h.
-    """
-
-    log: Log
-    columns: Sequence[str] = ()
-    time: str | None = None
-    minus: Log | None = None
-    jointly: bool = False
-
-    def __post_init__(self) -> None:
-        _ = self.groups
-        if self.minus:
-            _check_same_step(self.minus, self.log)
-        super().__post_init__()
-        row = self.row_step
-        if self.h is None or row is None:
-            return
-        apart = f"the log's times are {row:.6g} s apart"
-        if self.own_steps and not self.logged:
-            raise InputError(f"{apart}: expected a multiple of the step, --h {self.h:g}")
-        if self.every is not None and round(row / self.h) != self.every:
-            raise InputError(f"--every {self.every}: {apart}, {row / self.h:.4g} times --h {self.h:g}")
-
-    @cached_property
-    def groups(self) -> list[list[int]]:
-        """The places of the columns to each of which, or to all of which jointly, a pole is fitted."""
-        places = error_columns(self.log, self.columns, time_column(self.log, self.time))
-        return [places] if self.jointly else [[place] for place in places]
-
-    @cached_property
-    def row_step(self) -> float | None:
-        """The time between rows in s; None without a column of times."""
-        return row_step(self.log, time_column(self.log, self.time))
 
 
 @dataclass(frozen=True, repr=False)
@@ -194,9 +171,10 @@ class Probe:
         return bool(self.fitting if self.question.point else self.points or not self.question.own_steps)
 
 
-def log_answers(question: LogQuestion) -> Iterator[Probe]:
-    """Yield the answer for each column, or for all jointly; InputError as `probed_pole`."""
+def log_answers(question: PoleQuestion) -> Iterator[Probe]:
+    """Yield the answer for each column of the question's log, or for all jointly; InputError as `probed_pole`."""
     log, minus = question.log, question.minus
+    assert log
     for group in question.groups:
         names = [log.columns[place] for place in group]
         other = None if minus is None else _columns_called(names, minus, log, group)

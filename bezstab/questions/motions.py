@@ -3,10 +3,12 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cached_property
 
 from bezstab.errors import InputError
 from bezstab.mechanism import (
     ConstraintMotion,
+    Mechanism,
     Scene,
     TurningNormals,
     at_speed,
@@ -30,6 +32,24 @@ class ReferenceMotion:
     omega_h_max: Fraction
     words: str
     amplitude: float | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class SceneQuestion:
+    """A question about a scene that moves `speed` times as fast as given there; properties: errors as `load_scene`."""
+
+    scene: str | Scene
+    speed: Fraction = Fraction(1)
+
+    @property
+    def moving(self) -> Scene:
+        """The scene, as fast as it is asked about."""
+        return scene_at_speed(self.scene, self.speed)
+
+    @cached_property
+    def mechanism(self) -> Mechanism:
+        """The mechanism that runs."""
+        return compiled_mechanism(self.moving)
 
 
 def motion_of(

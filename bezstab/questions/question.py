@@ -9,12 +9,12 @@ from functools import cached_property
 
 from bezstab.engines import DRIVE_METHODS, Applied, Drive, Engine, Point
 from bezstab.errors import InputError
-from bezstab.goals import GOALS, SETTLING, UP_TO_LONGEST, Goal
+from bezstab.goals import SETTLING, UP_TO_LONGEST, Goal
 from bezstab.mechanism import Scene, TurningNormals
 from bezstab.methods import Method, check_one_step, lookup
 from bezstab.questions.chains import SweptConstraints, check_sweeps, constraints_of, constraints_of_chain
 from bezstab.questions.motions import ReferenceMotion, check_speed, motion_of, turn_too_far, turning_of
-from bezstab.questions.points import engine_holds, meant_in_seconds
+from bezstab.questions.points import engine_holds
 from bezstab.units import check_step
 
 WHICH_METHOD = (
@@ -107,11 +107,7 @@ class Question:
             object.__setattr__(self, "h", self.h_max)
 
     def _check_goal(self, goal: Goal) -> None:
-        """Raise InputError for arguments that do not go with the goal, and for a spread that is no share."""
-        if goal not in GOALS:
-            raise InputError(f"goal {goal!r}: expected {', '.join(GOALS)}")
-        if not 0 <= self.spread < 1:
-            raise InputError(f"--spread {self.spread:g}: expected a share from 0 to 1")
+        """Raise InputError for arguments that do not go with the goal."""
         if self.settle is None and goal == "gentle":
             raise InputError("--goal gentle needs --settle: the time in s in which c falls a thousandfold")
         if self.settle is not None and goal not in SETTLING:
@@ -145,11 +141,6 @@ class Question:
             return Applied(self.drive.point(self.h), None)
         assert self.point
         return Applied(self.point, None)
-
-    @property
-    def meant_in_seconds(self) -> bool:
-        """Whether the point looks like alpha and beta in 1/s."""
-        return meant_in_seconds(self.methods, self.point)
 
     @cached_property
     def steps(self) -> StepRange | None:
@@ -209,18 +200,17 @@ def methods_for(methods: tuple[Method, ...], engine: Engine | None, drive: Drive
 
     InputError where there are none, and for another method than its own with an engine whose steps are of one alone.
     """
-    if not methods and engine and engine.method is None:
+    if engine and not (methods or engine.method):
         raise InputError(f"{engine.name} has no integrator of its own: name yours with --method")
-    if not methods and engine and engine.method:
-        return (lookup(engine.method),)
-    if not methods and drive:
-        return tuple(map(lookup, DRIVE_METHODS))
+    own = engine.method if engine else None
+    if not methods:
+        names = [own] if own else DRIVE_METHODS if drive else []
+        methods = tuple(map(lookup, names))
     if not methods:
         raise InputError(WHICH_METHOD)
-    if engine and engine.level != "acceleration" and [method.name for method in methods] != [engine.method]:
+    if engine and engine.level != "acceleration" and [method.name for method in methods] != [own]:
         raise InputError(
-            f"{engine.name} works at {engine.level} level: its steps are those of {engine.method}, only with --method "
-            f"{engine.method}"
+            f"{engine.name} works at {engine.level} level: its steps are those of {own}, only with --method {own}"
         )
     return methods
 

@@ -3,7 +3,7 @@
 methods, levels, a window, an engine, a scene or a motion   →   MapQuestion   →   MapAnswer, by method
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -19,6 +19,7 @@ from bezstab.methods import Method
 from bezstab.questions.motions import ReferenceMotion, motion_of, turn_too_far, turning_of
 from bezstab.questions.question import methods_for
 from bezstab.stability import (
+    QUALITY,
     BestPoint,
     Choice,
     ComplexArray,
@@ -121,7 +122,7 @@ class MapQuestion:
     levels: tuple[Fraction, ...] = ()
     alpha_range: Window | None = None
     beta_range: Window | None = None
-    points: int
+    points: int = QUALITY["balanced"]
     h: Fraction | None = None
     engine: Engine | None = None
     scene: str | None = None
@@ -238,8 +239,8 @@ class MapAnswer:
 
     @property
     def choice_reason(self) -> str | None:
-        """Why there is no most accurate point on a motion; None where there is one."""
-        return self._choice_or_reason[1]
+        """Why there is no most accurate point on a motion; None where there is one, and without a motion."""
+        return self._choice_or_reason[1] if self.question.motion else None
 
     @property
     def best_error(self) -> float | None:
@@ -298,9 +299,12 @@ class MapAnswer:
         alpha_hat, beta_hat = (spaced(float(low), float(high), self.question.points) for low, high in ends)
         return alpha_hat, beta_hat
 
-    def dominant_poles(self) -> Iterator[ComplexArray]:
-        """Yield the dominant poles over both axes, a row (constant beta_hat) at a time; errors as `pole_map`."""
-        return chain.from_iterable(pole_map(self.method, *self.axes))
+    def dominant_poles(self, bar: Callable[[Iterable[ComplexArray]], Iterable[ComplexArray]] = iter) -> ComplexArray:
+        """Return the dominant poles over both axes, a row for each beta_hat; `bar` shows the progress.
+
+        Errors as `pole_map`.
+        """
+        return np.array(list(bar(chain.from_iterable(pole_map(self.method, *self.axes)))))
 
     def errors(self, z: ComplexArray) -> FloatArray:
         """Return the error that is forced over both axes, a share of the motion; nan where |z| is not below 1."""

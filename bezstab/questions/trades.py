@@ -25,14 +25,12 @@ from bezstab.evidence import (
     SweptRuns,
     projection_sentences,
     reference_motion,
-    sweep_compiled,
     sweep_sentences,
     swept_runs,
 )
-from bezstab.mechanism import Scene
-from bezstab.methods import Method
+from bezstab.mechanism import Scene, runs_compiled
+from bezstab.methods import Method, evaluations
 from bezstab.questions import motions
-from bezstab.questions.points import meant_in_seconds
 from bezstab.rationals import exact
 from bezstab.stabilising import NOTHING, AfterStep, Stabilise, after_step
 from bezstab.stability import RATES, FrontPoint, error_front
@@ -42,22 +40,20 @@ MOST_SWEPT = 10**6
 
 
 @dataclass(frozen=True, kw_only=True)
-class TradeQuestion:
+class TradeQuestion(motions.SceneQuestion):
     """What errors do methods make over a `duration` (s) at each of some `steps` (s), and what does that cost?
 
-    The scene moves `speed` times as fast as given there. The feedback is at `numbers` at every step, alpha_hat and
-    beta_hat, or alpha and beta in 1/s with `physical`. Without numbers each step has its own point: that of the goal
-    accurate, for a motion of rate `omega` (1/s), else for the scene's own. A projection of so many `iterations` at most
-    may `stabilise` runs in place of feedback. Costs are counted `against` evaluations or time; against projection each
-    run is made with feedback and with projection. Each is timed `repeats` times. InputError for what does not go
-    together, and for a method whose states cannot be projected.
+    The feedback is at `numbers` at every step, alpha_hat and beta_hat, or alpha and beta in 1/s with `physical`.
+    Without numbers each step has its own point: that of the goal accurate, for a motion of rate `omega` (1/s), else for
+    the scene's own. A projection of so many `iterations` at most may `stabilise` runs in place of feedback. Costs are
+    counted `against` evaluations or time; against projection each run is made with feedback and with projection. Each
+    is timed `repeats` times. InputError for what does not go together, and for a method whose states cannot be
+    projected.
     """
 
-    scene: str | Scene
     methods: Sequence[Method]
     steps: Sequence[Fraction] = ()
     duration: Fraction
-    speed: Fraction = Fraction(1)
     numbers: Point | None = None
     physical: bool = False
     omega: Fraction | None = None
@@ -76,11 +72,6 @@ class TradeQuestion:
         if not longest <= self.duration <= most:
             expected = f"one step ({longest:g} s) to {MOST_SWEPT:g} ({most:g} s)"
             raise InputError(f"--time {float(self.duration):g}: expected {expected}")
-
-    @property
-    def meant_in_seconds(self) -> bool:
-        """Whether the numbers look like alpha and beta in 1/s, where they are not."""
-        return not self.physical and meant_in_seconds(self.methods, self.numbers)
 
     @cached_property
     def step_sizes(self) -> tuple[float, ...]:
@@ -107,21 +98,27 @@ class TradeQuestion:
         return motion.omega_h / shortest
 
     @cached_property
-    def moving(self) -> Scene:
-        """The scene, as fast as it is asked about."""
-        return motions.scene_at_speed(self.scene, self.speed)
-
-    @cached_property
     def reference(self) -> ReferenceMotion:
         """The motion that runs are compared with."""
         return reference_motion(self.moving, self.step_sizes[0], float(self.duration))
+
+    @property
+    def compiled(self) -> bool:
+        """Whether runs are compiled: all or none, so that their times can be compared.
+
+        By default none are where one method's runs together are not. InputError as `runs_compiled`.
+        """
+        user_steps = self.repeats * sum(float(self.duration) / h for h in self.step_sizes)
+        return all(
+            runs_compiled(round(user_steps / float(method.step_multiple)) * evaluations(method))
+            for method in self.methods
+        )
 
     @cached_property
     def sweeps(self) -> list[Sweep]:
         """The runs to make: of each method with each treatment."""
         rate, of_all = self.rate, (self.moving, self.step_sizes, float(self.duration))
-        reference = self.reference
-        compiled = sweep_compiled(self.methods, self.step_sizes, float(self.duration), self.repeats)
+        reference, compiled = self.reference, self.compiled
         return [
             Sweep(method, *of_all, point, self.physical, self.repeats, reference, rate, compiled, after)
             for method in dict.fromkeys(self.methods)

@@ -6,47 +6,31 @@ scene, methods, a step, a point or none   →   VerifyQuestion   →   measured 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cached_property
 
 import numpy as np
 
 from bezstab.engines import Point
 from bezstab.evidence import HalvedStep, Measurement, halved_steps, measure_poles, random_points
-from bezstab.mechanism import Mechanism, Scene, compiled_mechanism
 from bezstab.methods import Method
-from bezstab.questions.motions import scene_at_speed
-from bezstab.questions.points import meant_in_seconds
+from bezstab.questions.motions import SceneQuestion
 from bezstab.stability import choose
 
 RANDOM_POINTS = 20
 
 
 @dataclass(frozen=True, kw_only=True)
-class VerifyQuestion:
+class VerifyQuestion(SceneQuestion):
     """Do runs of a scene, with steps of `h` (s), agree with what is predicted of their constraint errors?
 
-    The scene moves `speed` times as fast as given there. Without a `point` (alpha_hat, beta_hat) so many random
-    `points` are taken, RANDOM_POINTS unless told. With `floquet` the exact prediction for a moving mechanism is asked
-    about as well.
+    Without a `point` (alpha_hat, beta_hat) so many random `points` are taken, RANDOM_POINTS unless told. With `floquet`
+    the exact prediction for a moving mechanism is asked about as well.
     """
 
-    scene: str | Scene
     methods: Sequence[Method]
     h: Fraction
-    speed: Fraction = Fraction(1)
     point: Point | None = None
     points: int | None = None
     floquet: bool = False
-
-    @property
-    def meant_in_seconds(self) -> bool:
-        """Whether the point looks like alpha and beta in 1/s."""
-        return meant_in_seconds(self.methods, self.point)
-
-    @cached_property
-    def mechanism(self) -> Mechanism:
-        """The mechanism that runs; errors as `load_scene`."""
-        return compiled_mechanism(scene_at_speed(self.scene, self.speed))
 
     def measurements(self, method: Method, bar: Callable[[Iterable[int]], Iterable[int]] = iter) -> list[Measurement]:
         """Return predicted and measured poles at the point, else at the random ones; `bar` shows the progress."""

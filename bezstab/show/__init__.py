@@ -34,6 +34,7 @@ from bezstab.show.row_kinds import (
     FRONTS,
     HELD,
     LARGEST_STEPS,
+    LIKE_POINT,
     LIKENESS,
     LINTED,
     LISTED_METHODS,
@@ -55,18 +56,16 @@ from bezstab.show.rows import (
     chain_rows,
     engine_row,
     forced_rows,
-    front_row,
-    held_row,
     largest_step_row,
     left_out,
-    like_point_row,
     limit_row,
     map_rows,
     method_row,
-    nearest_rows,
+    nearest,
     pole_cells,
     pole_rows,
     region_row,
+    row_in_seconds,
     whole_row,
 )
 from bezstab.show.schemas import json_schema
@@ -85,17 +84,15 @@ if TYPE_CHECKING:
     )
     from bezstab.show.explorer import open_explorer
     from bezstab.show.map_figures import (
-        PlaneMap,
         chains_figure,
         comparison_figure,
         error_front_figure,
         family_figure,
         held_figure,
         map_figure,
-        region_figure,
         verdict_figure,
     )
     from bezstab.show.run_figures import history_figure, trade_figures
-    from bezstab.show.style import DASHES, column_figure, legend_below, line_at, save, styled
+    from bezstab.show.style import DASHES, column_figure, line_at, save, styled, with_legend
 
 __getattr__ = lazy_names(__name__)

@@ -2,60 +2,44 @@
 
 from decimal import ROUND_FLOOR, Context
 
-from bezstab.show.fields import MISSING, Row, Text, formatted
-from bezstab.show.words import times_words
+from bezstab.show.fields import MISSING, Row, formatted
 
 MOST_FIXED = 1e6  # a modulus from here on is shown with an exponent
 
 LIMITS = ("alpha_hat_min", "alpha_hat_max", "beta_hat_min", "beta_hat_max")
 """The ends of a region's ranges, as rows name them."""
 
-ENDS = ("area", *LIMITS)
-"""What an unbounded region lacks."""
 
-WITHOUT_LIMIT = {"critical_damping_limit": "unlimited", "unconditional_damping_ratio": "none"}
-"""What is said where all steps are stable, or only those that are small enough."""
-
-
-def pole_text(row: Row, digits: int = 6) -> str:
+def pole_text(row: Row) -> str:
     """Return a complex pole, from z_real and z_imag: 0.762694 ± 0.142074i; a dash where there is none."""
     real, imaginary = row["z_real"], row["z_imag"]
     if real is None:
         return MISSING
-    form = f".{digits}{'f' if max(abs(real), imaginary) < MOST_FIXED else 'e'}"
-    visible = round(imaginary / max(1, abs(real)), digits) != 0
+    form = ".6f" if max(abs(real), imaginary) < MOST_FIXED else ".6e"
+    visible = round(imaginary / max(1, abs(real)), 6) != 0
     return f"{real:{form}} ± {imaginary:{form}}i" if visible else f"{real:{form}}"
 
 
-def filled(template: str) -> Text:
-    """Return the text of a template such as "{z_abs:.4f} a step" with a row's values; a dash if it lacks one."""
-
-    def text(row: Row) -> str:
-        try:
-            return template.format_map(row)
-        except TypeError:  # None has no format
-            return MISSING
-
-    return text
-
-
-def modulus_text(row: Row) -> str:
+def modulus_words(modulus: float) -> str:
     """Return |z|: six decimals, or an exponent where it is huge."""
-    modulus = row["z_abs"]
-    huge = modulus is not None and modulus >= MOST_FIXED
-    return formatted(modulus, ".6e" if huge else ".6f")
+    return formatted(modulus, ".6e" if modulus >= MOST_FIXED else ".6f")
 
 
-def range_text(gain: str) -> Text:
-    """Return the text of the factors by which a gain may be scaled: 0.45 to 1.6; without an upper end, to any."""
+def any_or_none(row: Row) -> str:
+    """Return what is said of a factor or a gain that has no limit: any, or that none helps where nothing is stable."""
+    if row.get("margins_reason"):
+        return MISSING
+    return {"converges": "any", None: MISSING}.get(row["verdict"], "none helps")
 
-    def text(row: Row) -> str:
-        low, high = row[f"{gain}_factor_min"], row[f"{gain}_factor_max"]
-        if low is None:
-            return MISSING
-        return f"{low:.3g} to any" if high is None else f"{low:.3g} to {high:.3g}"
 
-    return text
+def unbounded(row: Row) -> str:
+    """Return what is said of a region's area or of an end that it does not have: unbounded, unless it is empty."""
+    return MISSING if row.get("bounded", True) else "unbounded"
+
+
+def any_speed(row: Row) -> str:
+    """Return what is said of a mechanism's speed where it has no limit: any, where it does not turn."""
+    return "any" if row["moving_verdict"] == "converges" else MISSING
 
 
 def step_limit(row: Row) -> float | None:
@@ -73,36 +57,6 @@ def step_text(row: Row) -> str:
     return formatted(limit, ".4g")
 
 
-def times_least_text(row: Row) -> str:
-    """Return how many times the least the error is that feedback forces on a constraint."""
-    times = row["times_least"]
-    return MISSING if times is None else times_words(times)
-
-
-def both_times_text(row: Row) -> str:
-    """Return the same of the constraint and of its velocity."""
-    velocity = row["times_least_velocity"]
-    return MISSING if velocity is None else f"{times_least_text(row)}; velocity: {times_words(velocity)}"
-
-
-def speed_text(row: Row) -> str:
-    """Return up to how many times its speed a mechanism may move: any, where it does not turn."""
-    speed = row["safe_speed"]
-    return "any" if speed is None and row["moving_verdict"] == "converges" else formatted(speed, ".3g")
-
-
-def gain_limit_text(gain: str) -> Text:
-    """Return the text of a gain's largest stable value: any, or that none helps."""
-
-    def text(row: Row) -> str:
-        limit = row[f"{gain}_max"]
-        if limit is None:
-            return "any" if row["verdict"] == "converges" else "none helps"
-        return formatted(limit, ".4g")
-
-    return text
-
-
 def used_up_text(row: Row) -> str:
     """Return which gain is nearest its limit, and how much of that it is."""
     gain = row["used_up"]
@@ -114,61 +68,16 @@ def used_up_text(row: Row) -> str:
     return f"{gain} {100 * value / limit:.0f} %"
 
 
-def times_text(row: Row) -> str:
-    """Return up to how many times the step is stable: any where there is no end, none where no step is."""
-    if row["h_factor"] is None and row["verdict"] is not None:
-        return "none" if row["verdict"] == "diverges" else "any"
-    return formatted(row["h_factor"], ".4g")
-
-
-def unbounded_text(key: str, form: str) -> Text:
-    """Return the text of a region's area or of a limit: in words where there is none.
-
-    A limit that the region only comes near, far out, is called "approached".
-    """
-
-    def text(row: Row) -> str:
-        value = row[key]
-        if value is None:
-            return "unbounded" if key in ENDS and not row["bounded"] else WITHOUT_LIMIT.get(key, MISSING)
-        near = key in (row["approached"] or "").split(", ")
-        return f"{value:.8g} (approached)" if near else formatted(value, form)
-
-    return text
-
-
-def stable_steps_text(row: Row) -> str:
-    """Return up to which beta h all steps are stable at alpha = beta, and what all of them need."""
-    ratio, limit = row["unconditional_damping_ratio"], row["critical_damping_limit"]
-    if limit is not None:
-        exact = row["critical_damping_limit_exact"]
-        return f"{limit:.6g} = {exact}" if exact and "/" in exact else f"{limit:.6g}"
-    if row["stable_for_all"] == "proven":
-        return "all (proven for any α, β)"
-    if ratio is None:
-        return "all"
-    return f"all, as from α/β = {ratio:.6g}" if ratio else "all (no unstable α, β found)"
-
-
 def order_text(row: Row) -> str:
     """Return the order of accuracy, with that for forces of position alone in parentheses if it is another."""
-    order, without_velocity = row["order"], row["order_position_forces"]
+    order = row["order"]
+    without_velocity = row.get("order_position_forces", order)
     return str(order) if order == without_velocity else f"{order} ({without_velocity})"
 
 
 def constant_text(row: Row) -> str:
     """Return the error constant as a rational, or as a decimal where it is none."""
-    return row["error_constant_exact"] or formatted(row["error_constant"], ".10g")
-
-
-def diverged_text(row: Row) -> str:
-    """Return the error of a run's trajectory, or that it diverged."""
-    return "diverged" if row["failure"] else formatted(row["trajectory_error"], ".1e")
-
-
-def milliseconds_text(row: Row) -> str:
-    """Return median and range of the processor time of a run: 3.27 (3.24 to 3.41)."""
-    return f"{1e3 * row['seconds']:.3g} ({1e3 * row['seconds_min']:.3g} to {1e3 * row['seconds_max']:.3g})"
+    return row.get("error_constant_exact") or formatted(row["error_constant"], ".10g")
 
 
 def safe_step_text(row: Row) -> str:

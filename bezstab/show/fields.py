@@ -40,13 +40,19 @@ def visible(text: str) -> str:
     )
 
 
-def formatted(value: Value, form: str = "") -> str:
-    """Return a value in a format, minus zero as zero; a dash for None and for an empty text.
+Form = str | Callable[[Any], str]
+"""Of a value: a format, or what makes its text."""
+
+
+def formatted(value: Value, form: Form = "") -> str:
+    """Return a value in a form, minus zero as zero; a dash for None and for an empty text.
 
     Truth is yes or no; a format of its own is what it is called in place of no.
     """
     if value is None or value == "":
         return MISSING
+    if callable(form):
+        return form(value)
     if isinstance(value, bool):
         return "yes" if value else form or "no"
     if isinstance(value, float):
@@ -58,19 +64,21 @@ def formatted(value: Value, form: str = "") -> str:
 class Field:
     """One value of a row: its key in JSON and CSV, its meaning and kind, where it is from, and how a table shows it.
 
-    A table shows it in a column below `heading`, unless that is empty, in the format `form`, or as the `text` made of
-    the row. `unit` is "" where it has none. `null` says when there is no value, "" for never. `values_of` names the
-    types that list all that a text can be, such as "evidence.MovingVerdict", with a space between two. `path` leads to
-    it in the result by attributes and places, such as "margins.alpha.0", or "t.-1" for the last time. By default it is
-    the attribute that has the key's name.
+    A table shows it in a column below `heading`, unless that is empty, in its `form`, or as the `text` made of the row.
+    Where there is no value the column shows what `otherwise` makes of the row, by default a dash. `unit` is "" where it
+    has none. `null` says when there is no value, "" for never. `values_of` names the types that list all that a text
+    can be, such as "evidence.MovingVerdict", with a space between two. `path` leads to it in the result by attributes
+    and places, such as "margins.alpha.0", or "t.-1" for the last time. By default it is the attribute that has the
+    key's name.
     """
 
     key: str
     meaning: str
     heading: str = ""
-    form: str = ""
+    form: Form = ""
     kind: Kind = "number"
     text: Text | None = None
+    otherwise: Text | None = None
     unit: str = ""
     null: str = ""
     values_of: str = ""
@@ -91,11 +99,13 @@ class Field:
 
     def cell(self, row: Row) -> str:
         """Return what the column of this field shows of a row, on one line; a dash where there is no value."""
-        return visible(self.text(row) if self.text else formatted(row[self.key], self.form))
+        value = row.get(self.key)
+        make = self.otherwise if value is None and self.otherwise else self.text
+        return visible(make(row) if make else formatted(value, self.form))
 
-    def shown(self, heading: str, form: str = "", text: Text | None = None) -> Field:
+    def shown(self, heading: str, form: Form = "", text: Text | None = None) -> Field:
         """Return the same field as another table shows it."""
-        return replace(self, heading=heading, form=form, text=text)
+        return replace(self, heading=heading, form=form, text=text, otherwise=None)
 
     def of(self, path: str) -> Field:
         """Return the same field where another result has it."""

@@ -2,32 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
 from functools import partial
+from itertools import cycle
 from operator import mul
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.colors import FuncNorm, Normalize
+from matplotlib.colors import FuncNorm, ListedColormap, Normalize
 from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
 from matplotlib.path import Path
 from matplotlib.patheffects import AbstractPathEffect, withStroke
 from matplotlib.ticker import FixedLocator, MaxNLocator
 
-from bezstab.engines import DRIVE_METHODS
 from bezstab.methods import STEP_FAMILIES
 from bezstab.show import plot
-from bezstab.show.plot import Point, Range
 from bezstab.show.result_sentences import timing_words
 from bezstab.show.style import (
     ABOVE_THE_AXES,
     ACCENT,
+    CONVERGES,
     DASHES,
+    DIVERGES,
     cells,
     column_figure,
-    legend_below,
     line_at,
     mark_in_alpha_and_beta,
     marked_line_at,
@@ -36,13 +36,13 @@ from bezstab.show.style import (
     plane_coordinates,
     styled,
     title_lines,
+    with_legend,
 )
-from bezstab.stability import BestPoint, Choice, ComplexArray, FloatArray, FrontPoint, Limit, Member, Region
-
-THINNEST, STEP_OF_WIDTH, WIDEST = 0.9, 0.15, 1.8
-"""Points: lines grow thinner from the first to the last, so that of those that coincide all show."""
+from bezstab.stability import ComplexArray, FloatArray, FrontPoint, Limit, Member, Region
 
 EDGE_LINES = 0.015  # of the axes' sides: so far apart are the arrows of regions that go on beyond the same edge
+ALONG_AN_EDGE, ARROWS = 121, 5
+"""Points along an edge of the axes, and how many of them are arrows."""
 
 TICKS = (0.1, 0.5, 0.9, 0.99, 0.999, 0.9999)
 """Of |z_p|, where it is drawn evenly in how fast errors fall."""
@@ -52,6 +52,12 @@ FASTEST_DRAWN, SLOWEST_DRAWN = 0.1, 0.9999
 
 MOST_CONTOURS = 12
 """Of a map, each a power of ten; where there would be more, only every second is drawn."""
+
+STAR: dict[str, Any] = {"marker": "*", "markersize": 11, "clip_on": False, "zorder": ABOVE_THE_AXES}
+"""A drive's own gains; no edge of the axes cuts through it."""
+
+MARK_SHAPES = "Ds^vP"
+"""Of points to mark, by their place; after the last the first comes again."""
 
 BELOW_MARKERS = 2.9
 """Of labels: no point is hidden."""
@@ -68,102 +74,99 @@ LIGHTEST = 1.05
 
 if TYPE_CHECKING:  # so that a picture of the plane does not load what runs mechanisms
     from bezstab.engines import Engine
-    from bezstab.evidence import MovingRegion, VerdictMap
-    from bezstab.questions import ChainMap, HeldAnswer, MapAnswer
-
-
-@dataclass(frozen=True, kw_only=True)
-class PlaneMap:
-    """|z_p| of a method over part of the plane, with the points that are drawn where they lie in it.
-
-    z_abs has shape (beta_hat.size, alpha_hat.size), on two ascending axes. With h (s) the axes of its figures are
-    2 alpha (1/s) and beta^2 (1/s^2), else alpha_hat and beta_hat; `marks` are points (alpha_hat, beta_hat) by label.
-    """
-
-    region: Region
-    alpha_hat: FloatArray
-    beta_hat: FloatArray
-    z_abs: FloatArray
-    best: BestPoint | None = None
-    chosen: Choice | None = None
-    h: float | None = None
-    marks: Mapping[str, Point] = field(default_factory=dict)
-
-    def draw_points(self, axes: Axes) -> None:
-        """Draw critical damping and the points that lie in the map, and end the axes where it ends."""
-        x, y = plane_coordinates(self.alpha_hat, self.beta_hat, self.h)
-        plot.critical_damping((self.alpha_hat[0], self.alpha_hat[-1]), axes, self.h)
-        whole = {"clip_on": False, "zorder": ABOVE_THE_AXES}  # no edge of the axes cuts through a marker
-        if self.best and self._holds((self.best.alpha_hat, self.best.beta_hat)):
-            plot.best_point(self.best, axes, self.h, **whole)
-        if self.chosen and self._holds((self.chosen.alpha_hat, self.chosen.beta_hat)):
-            plot.choice(self.chosen, axes, self.h, **whole)
-        shown = {label: point for label, point in self.marks.items() if self._holds(point)}
-        plot.marks(shown, axes, self.h, **whole)
-        axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]), facecolor="0.93")
-
-    def _holds(self, point: Point) -> bool:
-        axes = (self.alpha_hat, self.beta_hat)
-        return all(axis[0] <= value <= axis[-1] for axis, value in zip(axes, point, strict=True))
+    from bezstab.evidence import VerdictMap
+    from bezstab.questions import ChainMap, HeldAnswer, MapAnswer, MapQuestion
 
 
 def map_figure(answer: MapAnswer, z: ComplexArray) -> Figure:
     """Return the map of |z_p|, below the errors that feedback forces where they are asked about.
 
     z are the dominant poles over the axes of the answer, of shape (beta_hat.size, alpha_hat.size). With a step the axes
-    are 2 alpha and beta^2, marked in alpha and beta if that is asked for.
+    are 2 alpha (1/s) and beta^2 (1/s^2), marked in alpha and beta if that is asked for; else alpha_hat and beta_hat.
     """
-    question, stable, (alpha_hat, beta_hat) = answer.question, answer.stable, answer.axes
-    shown = PlaneMap(
-        region=stable.region,
-        alpha_hat=alpha_hat,
-        beta_hat=beta_hat,
-        z_abs=np.abs(z),
-        best=stable.best,
-        chosen=answer.chosen,
-        h=question.seconds,
-        marks=question.marks,
-    )
-    if question.motion:
-        return accuracy_map_figure(shown, float(question.motion.omega_h), answer.errors(z), answer.drawn_levels)
-    return region_figure(shown, answer.faster, answer.moving, question.alpha_beta, question.scene_name)
+    return accuracy_map_figure(answer, z) if answer.question.motion else region_figure(answer, z)
 
 
-def region_figure(
-    shown: PlaneMap,
-    faster: Iterable[Region],
-    moving: Mapping[float, MovingRegion] | None = None,
-    alpha_and_beta: bool = False,
-    scene: str = "",
-) -> Figure:
+def region_figure(answer: MapAnswer, z: ComplexArray) -> Figure:
     """Return the |z_p| map with exact boundary, faster regions, best point and critical damping (paper Fig. 1).
 
     The label of an unbounded region says so, and arrows along the edges of the axes point to where it goes on. Of a
-    `scene`, by name, that moves its own boundaries are drawn as well, by times its own speed, and where the law behind
-    the first of them does not hold. With `alpha_and_beta` the axes 2 alpha and beta^2 are marked in alpha and beta.
+    scene that moves its own boundaries are drawn as well, by times its own speed, and where the law behind the first of
+    them does not hold.
     """
-    region, h = shown.region, shown.h
+    question, region, moving = answer.question, answer.stable.region, answer.moving
+    h = question.seconds
     with styled():
-        title = title_lines(region.method.name, f"at rest and on the {scene}") if moving else region.method.name
+        name = region.method.name
+        title = title_lines(name, f"at rest and on the {question.scene_name}") if moving else name
         figure, axes = plane_axes(title, h)
-        image = plot.modulus_map(shown.alpha_hat, shown.beta_hat, shown.z_abs, region.level, axes, h)
-        figure.colorbar(image, label="$|z_p|$")
+        figure.colorbar(plot.modulus_map(*answer.axes, np.abs(z), axes, h), label="$|z_p|$")
         at_rest = " at rest" if moving else ""
         unbounded = "" if region.bounded else " (unbounded)"
-        boundary = {"color": "black", "linestyle": "-", "label": rf"$|z_p| = {region.level:g}${at_rest}{unbounded}"}
-        plot.region(region, axes, h, **boundary)
-        for number, inner in enumerate(faster, start=1):
-            curve = {"color": "white", "linestyle": DASHES[number % 4], "label": rf"$|z_p| = {inner.level:g}${at_rest}"}
-            plot.region(inner, axes, h, **curve)
-        for number, (speed, of_speed) in enumerate((moving or {}).items()):
+        plot.region(region, axes, h, color="black", linestyle="-", label=f"$|z_p| = 1${at_rest}{unbounded}")
+        for number, inner in enumerate(answer.faster, start=1):
+            label = rf"$|z_p| = {inner.level:g}${at_rest}"
+            plot.region(inner, axes, h, color="white", linestyle=DASHES[number % 4], label=label)
+        for number, (speed, of_speed) in enumerate(moving.items()):
             label = "its own speed" if speed == 1 else f"{speed:g} times its own speed"
-            plot.moving_region(of_speed, axes, h, label=label, dashes=DASHES[(number + 1) % 4], hatched=number == 0)
-        shown.draw_points(axes)
-        plot.open_edges(region, axes, h, color="white", markeredgecolor="black")
-        if alpha_and_beta:
+            x, y = plane_coordinates(of_speed.alpha_hat, of_speed.beta_hat, h)
+            if number == 0 and of_speed.outside_the_law.any():
+                axes.contourf(x, y, of_speed.outside_the_law, levels=[0.5, 1.5], colors="none", hatches=["....."])
+                axes.add_patch(Rectangle((0, 0), 0, 0, fill=False, hatch=".....", label="law does not hold"))  # a key
+            _level_line(axes, x, y, of_speed.growth, 0.0, label, DASHES[(number + 1) % 4])
+        _draw_points(answer, axes)
+        _draw_open_edges(region, axes, h, color="white", markeredgecolor="black")
+        if question.alpha_beta:
             mark_in_alpha_and_beta(axes)
-        legend_below(figure, facecolor="0.75")
-        return figure
+        return with_legend(figure, facecolor="0.75")
+
+
+def _draw_points(answer: MapAnswer, axes: Axes) -> None:
+    """Draw critical damping and the points that lie in the map, and end the axes where it ends."""
+    question, (alpha_hat, beta_hat) = answer.question, answer.axes
+    h = question.seconds
+    plot.critical_damping((alpha_hat[0], alpha_hat[-1]), axes, h)
+    x, y = plane_coordinates(alpha_hat, beta_hat, h)
+    axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]), facecolor="0.93")
+
+    whole = {"clip_on": False, "zorder": ABOVE_THE_AXES}  # no edge of the axes cuts through a marker
+    drawn = [plot.point(found, axes, h, **whole) for found in (answer.stable.best, answer.chosen) if found]
+    for shape, (label, point) in zip(cycle(MARK_SHAPES), question.marks.items(), strict=False):
+        drawn.append(plot.point(point, axes, h, marker=shape, label=label, **whole))
+    for marker in drawn:
+        if not axes.viewLim.contains(*np.asarray(marker.get_xydata())[0]):
+            marker.remove()
+
+
+def _level_line(
+    axes: Axes, x: FloatArray, y: FloatArray, values: FloatArray, level: float, label: str, dashes: Any = "-"
+) -> None:
+    """Draw in black, with a label, where values of shape (y.size, x.size) have a level."""
+    axes.plot([], [], color="black", linestyle=dashes, label=label)  # a contour has no label of its own
+    axes.contour(x, y, values, levels=[level], colors="black", linestyles=[dashes], linewidths=1.2)
+
+
+def _draw_open_edges(region: Region, axes: Axes, h: float | None, inset: float = EDGE_LINES, **line: Any) -> None:
+    """Draw arrows along those edges of the axes, whose limits are final, beyond which a region goes on without end.
+
+    They are `inset` (a share of the axes' sides) inside the axes, where the region is.
+    """
+    if region.extent is None:
+        return
+    along = np.linspace(inset, 1 - inset, ALONG_AN_EDGE)
+    for axis, end in np.argwhere(np.isinf(region.extent)):
+        edge = np.full((ALONG_AN_EDGE, 2), float(end))  # in shares of the axes
+        edge[:, 1 - axis] = along
+        points = axes.transLimits.inverted().transform(edge) / plane_coordinates(1.0, 1.0, h)
+        inside = region.contains(*points.T)
+        if inside.any():
+            x, y = np.where(inside, np.clip(edge, inset, 1 - inset).T, np.nan)
+            arrows: dict[str, Any] = {
+                "marker": ("<>", "v^")[axis][end],
+                "markersize": 3,
+                "markevery": ALONG_AN_EDGE // ARROWS,
+            }
+            axes.plot(x, y, transform=axes.transAxes, **{"linestyle": "-", "linewidth": 0.6, **arrows, **line})
 
 
 def decay_scale(z_abs: FloatArray) -> FloatArray:
@@ -176,18 +179,19 @@ def from_decay_scale(values: FloatArray) -> FloatArray:
     return np.exp(-np.exp(-np.asarray(values)))
 
 
-def accuracy_map_figure(shown: PlaneMap, omega_h: float, error: FloatArray, levels: Sequence[float] = ()) -> Figure:
+def accuracy_map_figure(answer: MapAnswer, z: ComplexArray) -> Figure:
     """Return contours of the forced error over the map of |z_p|, on logarithmic axes, with both best points.
 
-    The error, a share of the motion of omega_h rad a step, has the shape of the map, whose axes are > 0; it is nan
-    where errors do not decay. Dashed are further `levels` of |z_p|.
+    The error is a share of the answer's motion. Dashed are further levels of |z_p|.
     """
-    region, z_abs = shown.region, shown.z_abs
+    region, h, z_abs = answer.stable.region, answer.question.seconds, np.abs(z)
+    assert answer.question.motion
     with styled():
-        figure, axes = plane_axes(rf"{region.method.name}, forced errors at $\omega h$ = {omega_h:.3g}", shown.h)
+        omega_h = float(answer.question.motion.omega_h)
+        figure, axes = plane_axes(rf"{region.method.name}, forced errors at $\omega h$ = {omega_h:.3g}", h)
         axes.set(xscale="log", yscale="log")
         axes.grid(visible=False)
-        x, y = plane_coordinates(shown.alpha_hat, shown.beta_hat, shown.h)
+        x, y = plane_coordinates(*answer.axes, h)
         norm = FuncNorm((decay_scale, from_decay_scale), vmin=FASTEST_DRAWN, vmax=SLOWEST_DRAWN)
         stable = np.ma.masked_greater_equal(z_abs, 1.0)
         # as an image in files of lines, too: a mesh of so many cells has no place there
@@ -195,68 +199,65 @@ def accuracy_map_figure(shown: PlaneMap, omega_h: float, error: FloatArray, leve
         bar = figure.colorbar(mesh, label="$|z_p|$", extend="both", format="{x:g}", ticks=TICKS)
         bar.ax.minorticks_off()
         white: dict[str, Any] = {"colors": "white", "linewidths": 0.7, "linestyles": "-"}
-        contours = axes.contour(x, y, np.log10(error), locator=MaxNLocator(MOST_CONTOURS, integer=True), **white)
+        powers = MaxNLocator(MOST_CONTOURS, integer=True)
+        contours = axes.contour(x, y, np.log10(answer.errors(z)), locator=powers, **white)
         contours.set_path_effects(HALO)
         axes.plot([], [], color="white", linewidth=0.7, path_effects=HALO, label="forced error / motion")  # a key
-        boundary = plot.region(region, axes, shown.h, color="black", linestyle="-", label=f"$|z_p| = {region.level:g}$")
+        boundary = plot.region(region, axes, h, color="black", linestyle="-", label="$|z_p| = 1$")
         boundary.set_data(np.transpose(Path(boundary.get_xydata()).interpolated(PARTS).vertices))
-        for number, level in enumerate(levels, start=1):
-            dashes = DASHES[number % 4]
-            axes.contour(x, y, z_abs, levels=[level], colors="black", linewidths=0.8, linestyles=[dashes])
-            label = f"$|z_p| = {level:.4g}$"  # the key of what has none
-            axes.plot([], [], color="black", linewidth=0.8, linestyle=dashes, label=label)
-        shown.draw_points(axes)
+        for number, level in enumerate(answer.drawn_levels, start=1):
+            label, dashes = f"$|z_p| = {level:.4g}$", DASHES[number % 4]
+            _level_line(axes, x, y, z_abs, level, label, dashes)
+        _draw_points(answer, axes)
         for text in axes.clabel(contours, fmt="$10^{%d}$", fontsize=6, colors="black", inline=False):
             box = {"boxstyle": "round,pad=0.1", "facecolor": "white", "edgecolor": "none"}
             text.set(rotation=0, bbox=box, clip_on=False, zorder=BELOW_MARKERS)
-        legend_below(figure, facecolor="0.75")
-        return figure
+        return with_legend(figure, facecolor="0.75")
 
 
-def comparison_figure(
-    regions: Sequence[Region],
-    alpha_range: Range | None = None,
-    beta_range: Range | None = None,
-    h: float | None = None,
-    alpha_and_beta: bool = False,
-) -> Figure:
-    """Return the boundaries of several methods in one plane (paper Fig. 2; with h in s, at equal h, Fig. 3).
+def comparison_figure(question: MapQuestion) -> Figure:
+    """Return the boundaries of several methods in one plane (paper Fig. 2; with a step, at equal h, Fig. 3).
 
-    The ranges are in alpha_hat and beta_hat whatever the axes; without them all of every bounded region shows, and of
-    an unbounded one its window: its label says that it is unbounded, and arrows along the edges of the axes point to
-    where it goes on. `alpha_and_beta` is as for region_figure.
+    Without a window all of every bounded region shows, and of an unbounded one its useful part: its label says that it
+    is unbounded, and arrows along the edges of the axes point to where it goes on. Axes are as for `map_figure`.
     """
+    regions, h = [answer.region for answer in question.compared], question.seconds
     with styled():
         figure, axes = plane_axes(rf"$|z_p| = {regions[0].level:g}$", h)
         for place, region in enumerate(regions):
-            width = min(WIDEST, THINNEST + STEP_OF_WIDTH * (len(regions) - 1 - place))  # the last lies on top
-            plot.region(region, axes, h, linewidth=width, **line_at(place))
-        across, up = (np.array(given or (0, 0), dtype=float) for given in (alpha_range, beta_range))
-        x, y = plane_coordinates(across, up, h)
-        if alpha_range:
-            axes.set_xlim(*x)
-        if beta_range:
-            axes.set_ylim(*y)
+            plot.region(region, axes, h, **line_at(place))  # of those that coincide all show between dashes
+        if question.alpha_range:
+            axes.set_xlim(*plane_coordinates(np.array(question.alpha_range, float), np.zeros(2), h)[0])
+        if question.beta_range:
+            axes.set_ylim(*plane_coordinates(np.zeros(2), np.array(question.beta_range, float), h)[1])
         for place, region in enumerate(regions):
-            plot.open_edges(region, axes, h, inset=EDGE_LINES * (place + 1), **line_at(place))
-        if alpha_and_beta:
+            _draw_open_edges(region, axes, h, inset=EDGE_LINES * (place + 1), **line_at(place))
+        if question.alpha_beta:
             mark_in_alpha_and_beta(axes)
-        legend_below(figure)
-        return figure
+        return with_legend(figure)
 
 
 def verdict_figure(verdicts: VerdictMap, region: Region) -> Figure:
-    """Return the simulated verdicts as cells under the exact boundary; cells that disagree are crossed."""
+    """Return the simulated verdicts as cells under the exact boundary; cells that disagree with it are crossed."""
+    run = (verdicts.scene.name, verdicts.method.name, f"h = {verdicts.h:g} s", f"{verdicts.run} steps")
+    given = f"{verdicts.judged} of {verdicts.undecided.size} runs gave a verdict"
+    agreeing = f"{given}, {verdicts.agreeing} of them agree" if verdicts.judged else "no run gave a verdict"
+    meanings = {"run converges": CONVERGES, "run diverges": DIVERGES}
+    if verdicts.undecided.any():
+        meanings["no verdict"] = "white"
     with styled():
-        run = (verdicts.scene.name, verdicts.method.name, f"h = {verdicts.h:g} s", f"{verdicts.run} steps")
-        given = f"{verdicts.judged} of {verdicts.undecided.size} runs gave a verdict"
-        agreeing = f"{given}, {verdicts.agreeing} of them agree" if verdicts.judged else "no run gave a verdict"
         figure, axes = plane_axes(f"{title_lines(*run)}\n{title_lines(agreeing)}", None)
-        plot.verdicts(verdicts, axes)
+        diverges = np.ma.masked_array(verdicts.diverges, verdicts.undecided)
+        colours = ListedColormap([CONVERGES, DIVERGES])
+        cells(axes, verdicts.alpha_hat, verdicts.beta_hat, diverges, cmap=colours, vmin=0, vmax=1)
+        for meaning, colour in meanings.items():
+            axes.plot([], [], "s", color=colour, markeredgecolor="0.5", label=meaning)
         plot.region(region, axes, color="black", linestyle="-", label=r"$|z_p| = 1$")
-        plot.disagreements(verdicts, axes)
-        legend_below(figure)
-        return figure
+        if verdicts.disagrees.any():
+            rows, columns = np.nonzero(verdicts.disagrees)
+            crosses = verdicts.alpha_hat[columns], verdicts.beta_hat[rows]
+            axes.plot(*crosses, "x", color=ACCENT, markersize=3, label="disagree")
+        return with_legend(figure)
 
 
 def held_figure(answer: HeldAnswer, points: int) -> Figure:
@@ -269,23 +270,19 @@ def held_figure(answer: HeldAnswer, points: int) -> Figure:
     h = float(question.h)
     kp_of_one, kd_of_one = question.drive.gains(1.0, 1.0, h)
     kd, kp = kd_of_one * found.alpha_hat, kp_of_one * found.beta_hat
-    of_method = title_lines(DRIVE_METHODS[answer.method.name], f"h = {h:g} s")
+    of_method = title_lines(answer.applied, f"h = {h:g} s")
     with styled():
         title = f"{of_method}\n{title_lines(timing_words(question.timing, h))}"
         figure, axes = new_axes(title, "kd (N m s/rad)", "kp (N m/rad)", 1.1)
         image = plot.modulus_map(kd, kp, found.z_abs, axes=axes)
         figure.colorbar(image, label="$|z_p|$ a step", location="bottom", shrink=0.8)
         if found.has_edge:
-            axes.contour(kd, kp, found.z_abs, levels=[1.0], colors="black", linewidths=1.2)
-            axes.plot([], [], color="black", label="$|z_p| = 1$")  # a key
+            _level_line(axes, kd, kp, found.z_abs, 1.0, "$|z_p| = 1$")
         if found.law is not None:
             law: dict[str, Any] = {"color": "white", "linestyle": (0, (4, 4)), "linewidth": 1.0}
             axes.plot(kd, kp_of_one * found.law, label="closed form", **law)
         own = float(question.drive.kd), float(question.drive.kp)
-        # no edge of the axes cuts through the marker
-        star: dict[str, Any] = {"marker": "*", "markersize": 11, "linestyle": "", "clip_on": False}
-        star |= {"color": ACCENT, "markeredgecolor": "black", "zorder": ABOVE_THE_AXES}
-        axes.plot(*own, label=f"kp = {own[1]:g}, kd = {own[0]:g}", **star)
+        plot.point(own, axes, label=f"kp = {own[1]:g}, kd = {own[0]:g}", color=ACCENT, **STAR)
         axes.set(xlim=(min(0.0, kd[0]), kd[-1]), ylim=(min(0.0, kp[0]), kp[-1]), facecolor="0.93")
         across = axes.secondary_xaxis("top", functions=(partial(mul, 1 / kd_of_one), partial(mul, kd_of_one)))
         across.set_xlabel(r"$\hat\alpha = $ kd $h$ / inertia")
@@ -293,8 +290,7 @@ def held_figure(answer: HeldAnswer, points: int) -> Figure:
         up.set_ylabel(r"$\hat\beta = $ kp $h^2$ / inertia")
         for axis in (axes.xaxis, axes.yaxis, across.xaxis, up.yaxis):
             axis.set_major_formatter("{x:g}")  # a common factor would stand beside it, on the axis opposite
-        legend_below(figure, facecolor="0.75")
-        return figure
+        return with_legend(figure, facecolor="0.75")
 
 
 def family_figure(families: Mapping[str, Sequence[Member]], shown: str, limit: Limit | None) -> Figure:
@@ -306,15 +302,16 @@ def family_figure(families: Mapping[str, Sequence[Member]], shown: str, limit: L
     members = families[shown]
     own = line_at(list(families).index(shown))
     orders = {member.order for member in members}
-    quantity: plot.Quantity = "error constant" if len(orders) == 1 else "order of accuracy"
     with styled():
         figure = column_figure(1.3)
         (area, fastest), (accuracy, regions) = figure.subplots(2, 2)
         for place, (name, of_family) in enumerate(families.items()):
-            line = {"label": STEP_FAMILIES[name].title, **line_at(place)}
-            plot.family(of_family, "area", area, **line)
-            plot.family(of_family, "least |z_p|", fastest, **line)
-        plot.family(members, quantity, accuracy, **own)
+            line = {"label": STEP_FAMILIES[name].title, "marker": ".", **line_at(place)}
+            n = [member.n for member in of_family]
+            area.plot(n, np.array([member.region.area for member in of_family], float), **line)  # nan for None
+            fastest.plot(n, np.array([member.z_abs for member in of_family], float), **line)
+        errors = [member.error_constant if len(orders) == 1 else member.order for member in members]
+        accuracy.plot([member.n for member in members], np.array(errors, float), marker=".", **own)
         for member, dashes in zip(members[:: max(1, len(members) // 3)], DASHES, strict=False):
             plot.region(member.region, regions, color=own["color"], linestyle=dashes)
         if limit is not None:
@@ -325,15 +322,15 @@ def family_figure(families: Mapping[str, Sequence[Member]], shown: str, limit: L
             regions.plot(limit.boundary[:, 0], limit.boundary[:, 1], **line)
         area.set(ylabel="area of the region", yscale="log")
         fastest.set(ylabel="least $|z_p|$")
-        if len(orders) == 1:
-            accuracy.set(ylabel=f"error constant, all of order {members[0].order}")
+        one_order = f"error constant, all of order {members[0].order}"
+        accuracy.set(ylabel=one_order if len(orders) == 1 else "order of accuracy")
         regions.set(xlabel=r"$\hat\alpha$ (dimensionless)", ylabel=r"$\hat\beta$ (dimensionless)")
         regions.set_ylim(top=1.4 * regions.get_ylim()[1])  # room above the curves
         regions.legend(fontsize=6, loc="upper center", ncols=2, handlelength=1.5, columnspacing=1)
         for axes in (area, fastest, accuracy):
+            axes.set_xlabel("steps $n$")
             axes.xaxis.set_major_locator(MaxNLocator(5, integer=True))
-        legend_below(figure, handles=area.lines)
-        return figure
+        return with_legend(figure, handles=area.lines)
 
 
 def error_front_figure(fronts: Sequence[Sequence[FrontPoint]]) -> Figure:
@@ -352,8 +349,7 @@ def error_front_figure(fronts: Sequence[Sequence[FrontPoint]]) -> Figure:
             axes.plot(x, y, label=front[0].method.name, **marked_line_at(place))
         axes.xaxis.set_major_locator(FixedLocator(TICKS))
         axes.xaxis.set_major_formatter("{x:g}")
-        legend_below(figure)
-        return figure
+        return with_legend(figure)
 
 
 def chains_figure(engine: Engine, title: str, maps: Sequence[ChainMap]) -> Figure:
@@ -386,5 +382,4 @@ def chains_figure(engine: Engine, title: str, maps: Sequence[ChainMap]) -> Figur
         rows[-1].set_xlabel("sweeps in a step")
         figure.suptitle(title)
         figure.colorbar(image, ax=list(rows), label="$|z|$ a step", extend="max")
-        legend_below(figure, rows[0].lines)
-        return figure
+        return with_legend(figure, rows[0].lines)

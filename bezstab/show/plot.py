@@ -1,4 +1,4 @@
-"""Plots for a notebook or a script: each function draws one result and returns what it drew.
+"""Plots for a notebook or a script: each function draws a result of `import bezstab` and returns what it drew.
 
 Without `axes` each makes a new Figure of its own, as the attribute `figure` of what it returns; pyplot is not involved:
 `plot.region(region(method("B4"))).figure.savefig("b4.png")`. With `axes` it draws there, and several results come into
@@ -9,65 +9,46 @@ Further keyword arguments are matplotlib's, for the line that is drawn.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from operator import attrgetter
-from typing import TYPE_CHECKING, Any, Literal, SupportsFloat
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, SupportsFloat
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.colors import ListedColormap
-from matplotlib.contour import QuadContourSet
 from matplotlib.image import AxesImage
 from matplotlib.lines import Line2D
-from matplotlib.patches import Rectangle
 from matplotlib.patheffects import withStroke
 from numpy.typing import ArrayLike
 
 from bezstab.errors import check_kind
 from bezstab.methods import Method
 from bezstab.show.style import (
-    ACCENT,
-    CONVERGES,
     DASHES,
-    DIVERGES,
     cells,
     line_at,
-    marked_line_at,
     new_axes,
     plane_coordinates,
     plane_words,
     styled,
     title_lines,
 )
-from bezstab.stability import BestPoint, Choice, FloatArray, Member, Region, useful_window
+from bezstab.stability import BestPoint, Choice, FloatArray, Region, useful_window
 from bezstab.stability import spectral_radius as spectral_radius_at
 
 if TYPE_CHECKING:  # so that a picture of the plane does not load what runs mechanisms
-    from bezstab.evidence import Cost, ErrorOf, MovingRegion, Run, VerdictMap
     from bezstab.mechanism import Scene, Simulation
 
 Range = tuple[SupportsFloat, SupportsFloat]
-Quantity = Literal["area", "least |z_p|", "error constant", "order of accuracy"]
 Point = tuple[float, float]
 Coordinates = tuple[ArrayLike, ArrayLike]
 
 __all__ = [
-    "best_point",
-    "choice",
     "critical_damping",
-    "disagreements",
-    "family",
     "history",
-    "largest_error",
-    "marks",
     "mechanism",
     "modulus_map",
-    "moving_region",
-    "open_edges",
+    "point",
     "region",
     "spectral_radius",
-    "verdicts",
-    "work_precision",
 ]
 
 
@@ -75,31 +56,9 @@ def __dir__() -> list[str]:
     return sorted(__all__)
 
 
-ALONG_AN_EDGE, ARROWS = 121, 5
-"""Points along an edge of the axes, and how many of them are arrows."""
 PARABOLA = 400  # points of a smooth curve: more than its pixels tell apart
 NAME_OFF = 4.0  # points from a body up to its name
-MARK_SHAPES = "Ds^vP"
 FINE = 0.6  # points: lines of histories, so that fast oscillations are told apart
-ERROR_LABELS: Mapping[ErrorOf, str] = {
-    "trajectory": "trajectory error (m, rad)",
-    "constraint": "largest $|c|$ (SI)",
-    "energy": "energy drift (J)",
-}
-COST_LABELS: Mapping[Cost, str] = {
-    "evaluations": "evaluations of f",
-    "time": "processor time (s)",
-    "projection": r"factorizations of $C_q M^{-1} C_q^T$",
-}
-"""Of a run's errors and costs, for axes."""
-
-QUANTITIES: Mapping[Quantity, str] = {
-    "area": "region.area",
-    "least |z_p|": "z_abs",
-    "error constant": "error_constant",
-    "order of accuracy": "order",
-}
-"""Where a member of a family has them."""
 
 
 def region(region: Region, axes: Axes | None = None, h: float | None = None, **line: Any) -> Line2D:
@@ -122,32 +81,6 @@ def region(region: Region, axes: Axes | None = None, h: float | None = None, **l
     return drawn
 
 
-def moving_region(
-    moving: MovingRegion,
-    axes: Axes | None = None,
-    h: float | None = None,
-    *,
-    label: str = "as it moves",
-    dashes: Any = DASHES[1],
-    hatched: bool = True,
-) -> QuadContourSet:
-    """Draw the boundary of the region of a mechanism that moves, and return it; hatched where the law does not hold.
-
-    With h (s) the axes are 2 alpha (1/s) and beta^2 (1/s^2).
-    """
-    from bezstab.evidence import MovingRegion
-
-    check_kind(moving, MovingRegion, "bezstab.evidence.moving_region")
-    axes = _plane(axes, moving.method.name, h)
-    x, y = plane_coordinates(moving.alpha_hat, moving.beta_hat, h)
-    if hatched and moving.outside_the_law.any():
-        axes.contourf(x, y, moving.outside_the_law, levels=[0.5, 1.5], colors="none", hatches=["....."])
-        axes.add_patch(Rectangle((0, 0), 0, 0, fill=False, hatch=".....", label="law does not hold"))  # a key
-    axes.plot([], [], color="black", linestyle=dashes, label=label)  # a contour has no label of its own
-    edge: QuadContourSet = axes.contour(x, y, moving.growth, levels=[0.0], colors="black", linestyles=[dashes])
-    return edge
-
-
 def spectral_radius(
     method: Method,
     alpha_range: Range,
@@ -167,20 +100,15 @@ def spectral_radius(
 
 
 def modulus_map(
-    alpha_hat: FloatArray,
-    beta_hat: FloatArray,
-    z_abs: FloatArray,
-    level: float = 1.0,
-    axes: Axes | None = None,
-    h: float | None = None,
+    alpha_hat: FloatArray, beta_hat: FloatArray, z_abs: FloatArray, axes: Axes | None = None, h: float | None = None
 ) -> AxesImage:
-    """Draw |z_p|, computed before on an even grid, and return the image; where it is at least `level` it is blank.
+    """Draw |z_p|, computed before on an even grid, and return the image; where it is at least one it is blank.
 
     z_abs has shape (beta_hat.size, alpha_hat.size).
     """
-    inside = np.ma.masked_greater_equal(z_abs, level)
+    stable = np.ma.masked_greater_equal(z_abs, 1.0)
     axes = _plane(axes, "$|z_p|$", h)
-    return cells(axes, *plane_coordinates(alpha_hat, beta_hat, h), inside, cmap="cividis", vmax=level)
+    return cells(axes, *plane_coordinates(alpha_hat, beta_hat, h), stable, cmap="cividis", vmax=1.0)
 
 
 def critical_damping(alpha_range: Range, axes: Axes | None = None, h: float | None = None, **line: Any) -> Line2D:
@@ -200,38 +128,25 @@ def critical_damping(alpha_range: Range, axes: Axes | None = None, h: float | No
     )
 
 
-def best_point(best: BestPoint, axes: Axes | None = None, h: float | None = None, **line: Any) -> Line2D:
-    """Draw a star at the point of least |z_p|, labelled with it, and return the line of one point."""
-    check_kind(best, BestPoint, "bezstab.best_point")
-    label = "deadbeat: $|z_p| = 0$" if best.z_abs == 0 else f"least $|z_p|$: {best.z_abs:.4f}"
-    axes = _plane(axes, best.method.name, h)
-    return _one_point(best.alpha_hat, best.beta_hat, axes, h, line, marker="*", markersize=8, label=label)
+def point(at: BestPoint | Choice | Point, axes: Axes | None = None, h: float | None = None, **line: Any) -> Line2D:
+    """Draw a white marker at a point (alpha_hat, beta_hat), and return the line of one point.
 
-
-def choice(choice: Choice, axes: Axes | None = None, h: float | None = None, **line: Any) -> Line2D:
-    """Draw a circle at the point that was chosen, labelled with its goal and |z_p|; return the line of one point."""
-    check_kind(choice, Choice, "bezstab.choose")
-    label = f"choose {choice.goal}: {f'{abs(choice.pole):.4f}' if choice.pole else 'deadbeat'}"
-    axes = _plane(axes, choice.method.name, h)
-    return _one_point(choice.alpha_hat, choice.beta_hat, axes, h, line, marker="o", markersize=5, label=label)
-
-
-def marks(points: Mapping[str, Point], axes: Axes | None = None, h: float | None = None, **line: Any) -> list[Line2D]:
-    """Draw points (alpha_hat, beta_hat) by their labels, each with a shape of its own, and return a line for each.
-
-    There are five shapes; further points begin again.
+    A best point is a star, labelled with its |z_p|; a choice a circle, labelled with its goal and |z_p|.
     """
+    usual: dict[str, Any] = {"marker": "D", "markersize": 5}
+    match at:
+        case BestPoint():
+            alpha_hat, beta_hat = at.alpha_hat, at.beta_hat
+            label = "deadbeat: $|z_p| = 0$" if at.z_abs == 0 else f"least $|z_p|$: {at.z_abs:.4f}"
+            usual = {"marker": "*", "markersize": 8, "label": label}
+        case Choice():
+            alpha_hat, beta_hat = at.alpha_hat, at.beta_hat
+            label = f"choose {at.goal}: {f'{abs(at.pole):.4f}' if at.pole else 'deadbeat'}"
+            usual = {"marker": "o", "markersize": 5, "label": label}
+        case _:
+            check_kind(at, tuple, "bezstab.best_point or bezstab.choose")
+            alpha_hat, beta_hat = at
     axes = _plane(axes, r"$(\hat\alpha, \hat\beta)$", h)
-    return [
-        _one_point(*point, axes, h, line, marker=MARK_SHAPES[number % len(MARK_SHAPES)], markersize=5, label=label)
-        for number, (label, point) in enumerate(points.items())
-    ]
-
-
-def _one_point(
-    alpha_hat: float, beta_hat: float, axes: Axes, h: float | None, line: Mapping[str, Any], **usual: Any
-) -> Line2D:
-    """Draw a white marker with a black edge, and return the line of one point."""
     white = {"linestyle": "none", "color": "white", "markeredgecolor": "black"}
     return _line(axes, plane_coordinates(alpha_hat, beta_hat, h), line, **white, **usual)
 
@@ -245,110 +160,31 @@ def _line(axes: Axes, points: Coordinates, line: Mapping[str, Any], **usual: Any
     return drawn
 
 
-def open_edges(region: Region, axes: Axes, h: float | None = None, inset: float = 0.015, **line: Any) -> list[Line2D]:
-    """Draw arrows along those edges of the axes, whose limits are final, beyond which a region goes on without end.
-
-    Each edge gives a line with arrows on it, `inset` (a share of the axes' sides) inside the axes, where the region
-    is. Returned are these lines; none for a bounded region.
-    """
-    if region.extent is None:
-        return []
-    along = np.linspace(inset, 1 - inset, ALONG_AN_EDGE)
-    drawn: list[Line2D] = []
-    for axis, end in np.argwhere(np.isinf(region.extent)):
-        edge = np.full((ALONG_AN_EDGE, 2), float(end))  # in shares of the axes
-        edge[:, 1 - axis] = along
-        points = axes.transLimits.inverted().transform(edge) / plane_coordinates(1.0, 1.0, h)
-        inside = region.contains(*points.T)
-        if inside.any():
-            x, y = np.where(inside, np.clip(edge, inset, 1 - inset).T, np.nan)
-            arrows: dict[str, Any] = {"markersize": 3, "markevery": ALONG_AN_EDGE // ARROWS, "linewidth": 0.6}
-            arrows |= {"marker": ("<>", "v^")[axis][end], "label": "_nolegend_", "transform": axes.transAxes}
-            drawn.append(_line(axes, (x, y), line, linestyle="-", **arrows))
-    return drawn
-
-
-def verdicts(verdict_map: VerdictMap, axes: Axes | None = None) -> AxesImage:
-    """Draw simulated verdicts as cells over alpha_hat and beta_hat and return the image.
-
-    Values of shape (beta_hat.size, alpha_hat.size): 0 converges, 1 diverges, blank where the run gave none. What the
-    colours mean is labelled.
-    """
-    axes = _verdict_axes(verdict_map, axes)
-    values = np.ma.masked_array(verdict_map.diverges, verdict_map.undecided)
-    colours = ListedColormap([CONVERGES, DIVERGES])
-    image = cells(axes, verdict_map.alpha_hat, verdict_map.beta_hat, values, cmap=colours, vmin=0, vmax=1)
-    axes.set_facecolor("white")
-    meanings = {"run converges": CONVERGES, "run diverges": DIVERGES}
-    if verdict_map.undecided.any():
-        meanings["no verdict"] = "white"
-    for meaning, colour in meanings.items():
-        axes.plot([], [], "s", color=colour, markeredgecolor="0.5", label=meaning)
-    return image
-
-
-def disagreements(verdict_map: VerdictMap, axes: Axes | None = None) -> Line2D | None:
-    """Cross the cells whose simulated verdict contradicts |z_p| < 1; return the line, None if there are none."""
-    axes = _verdict_axes(verdict_map, axes)
-    rows, columns = np.nonzero(verdict_map.disagrees)
-    if not rows.size:
-        return None
-    alpha_hat, beta_hat = verdict_map.alpha_hat[columns], verdict_map.beta_hat[rows]
-    (drawn,) = axes.plot(alpha_hat, beta_hat, "x", color=ACCENT, markersize=3, label="disagree")
-    return drawn
-
-
-def _verdict_axes(verdict_map: VerdictMap, axes: Axes | None) -> Axes:
-    from bezstab.evidence import VerdictMap
-
-    check_kind(verdict_map, VerdictMap, "bezstab.evidence.verdict_map")
-    return _plane(axes, title_lines(verdict_map.scene.name, verdict_map.method.name), None)
-
-
-def family(members: Sequence[Member], quantity: Quantity = "area", axes: Axes | None = None, **line: Any) -> Line2D:
-    """Draw one quantity of a family's members (at least one) against their number of steps n and return the line.
-
-    Area of the region (dimensionless; a gap where it is unbounded), least |z_p| (a gap where the region is empty),
-    order of accuracy or error constant, which says something between members of one order alone.
-    """
-    axes = _axes(axes, "", "steps $n$", quantity)
-    values = np.array([attrgetter(QUANTITIES[quantity])(member) for member in members], float)  # nan for None
-    return _line(axes, ([member.n for member in members], values), line, marker=".")
-
-
 def history(
     simulation: Simulation,
-    constraint: int = 1,
+    constraint: int | None = 1,
     derivative: bool = False,
     axes: Axes | None = None,
     **line: Any,
 ) -> Line2D:
     """Draw the error of one constraint of a run, or its time derivative, against t (s) and return the line; SI units.
 
-    Constraints count from 1.
+    Constraints count from 1. With None it is the largest |c| over all of them, on a logarithmic axis, with a gap where
+    all constraints hold to the last bit.
     """
-    name = rf"$\dot c_{constraint}$ (SI)" if derivative else rf"$c_{constraint}$ (SI)"
-    axes = _run_axes(simulation, axes, name)
-    errors = simulation.cdot if derivative else simulation.c
-    return _line(axes, (simulation.t, errors[:, constraint - 1]), line, linewidth=FINE)
-
-
-def largest_error(simulation: Simulation, axes: Axes | None = None, **line: Any) -> Line2D:
-    """Draw the largest |c| over all constraints of a run against t (s) on a logarithmic axis and return the line; SI.
-
-    A gap where all constraints hold to the last bit.
-    """
-    axes = _run_axes(simulation, axes, "largest $|c|$ (SI)")
-    axes.set_yscale("log", nonpositive="mask")
-    return _line(axes, (simulation.t, simulation.observation.largest_c), line, linewidth=FINE)
-
-
-def _run_axes(simulation: Simulation, axes: Axes | None, name: str) -> Axes:
     from bezstab.mechanism import Simulation
 
     check_kind(simulation, Simulation, "bezstab.simulate")
+    if constraint is None:
+        name, errors = "largest $|c|$ (SI)", simulation.observation.largest_c
+    else:
+        name = rf"$\dot c_{constraint}$ (SI)" if derivative else rf"$c_{constraint}$ (SI)"
+        errors = (simulation.cdot if derivative else simulation.c)[:, constraint - 1]
     trajectory = simulation.trajectory
-    return _axes(axes, title_lines(trajectory.mechanism.scene.name, trajectory.method.name), "t (s)", name)
+    axes = _axes(axes, title_lines(trajectory.mechanism.scene.name, trajectory.method.name), "t (s)", name)
+    if constraint is None:
+        axes.set_yscale("log", nonpositive="mask")
+    return _line(axes, (simulation.t, errors), line, linewidth=FINE)
 
 
 def mechanism(scene: Scene, q: FloatArray, axes: Axes | None = None) -> list[Line2D]:
@@ -389,25 +225,6 @@ def mechanism(scene: Scene, q: FloatArray, axes: Axes | None = None) -> list[Lin
             path_effects=[withStroke(linewidth=1.6, foreground="white")],  # lines run below
         )
     return lines
-
-
-def work_precision(
-    runs: Sequence[Run],
-    error: ErrorOf = "trajectory",
-    floor: float = 0.0,
-    axes: Axes | None = None,
-    against: Cost = "evaluations",
-    **line: Any,
-) -> Line2D:
-    """Draw an error (SI) of one method's runs (at least one) against their cost, both logarithmic, and return the line.
-
-    Left out are runs that failed and errors up to `floor`, that of the reference.
-    """
-    axes = _axes(axes, "", COST_LABELS[against], ERROR_LABELS[error])
-    axes.set(xscale="log", yscale="log")
-    shown = [(run.cost(against), known) for run in runs if (known := run.error(error)) is not None and known > floor]
-    costs, errors = np.reshape(shown, (-1, 2)).T
-    return _line(axes, (costs, errors), line, label=runs[0].method.name, **marked_line_at(len(axes.lines)))
 
 
 def _plane(axes: Axes | None, title: str, h: float | None) -> Axes:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from bezstab.engines import Point
     from bezstab.evidence import Likeness, Measurement
     from bezstab.questions import Answer, ReferenceMotion
-    from bezstab.stability import BestPoint, FarLimit, FeedbackCost, Timing, VaryingSteps
+    from bezstab.stability import BestPoint, FarLimit, Timing, VaryingSteps
 
 COSTLY = 10.0
 """Times the least error: from here on a sentence says what the feedback costs."""
@@ -45,36 +45,20 @@ def costs_words(answer: Answer) -> str | None:
 
     The better point is given in 1/s where there is a step, and not at all where an engine has words of its own.
     """
-    cost = answer.cost
-    if cost is None or cost.least_at is None:
+    cost, question = answer.cost, answer.question
+    if cost is None or cost.least_at is None or not (cost.times_least and cost.times_least_velocity):
         return None
-    name, h = answer.method.name, answer.question.h
-    least = "the least" if answer.question.engine else f"that at {_point_words(cost.least_at, h)}"
-    if _is_costly(cost.times_least):
-        return f"This feedback costs accuracy: {_constraint_words(name, cost, answer.question.motion, least)}"
-    if _is_costly(cost.times_least_velocity):
-        assert cost.times_least_velocity
-        return (
-            f"This feedback costs accuracy: with {name} the error it forces on velocities is "
-            f"{times_words(cost.times_least_velocity)} times {least}. It is {cost.velocity_error:.1e} of their "
-            "amplitude."
-        )
-    return None
-
-
-def _is_costly(times: float | None) -> bool:
-    return times is not None and times >= COSTLY
-
-
-def _constraint_words(name: str, cost: FeedbackCost, motion: ReferenceMotion, least: str) -> str:
-    """Return which order is left and how large the constraint's error is, `least` being what it is compared with."""
-    assert cost.times_least is not None
+    times = cost.times_least, cost.times_least_velocity
+    if max(times) < COSTLY:
+        return None
     assert cost.total_error is not None
-    keeps = f"order {cost.order_left} of {cost.order}" if cost.order_left < cost.order else f"its order {cost.order}"
-    in_units = "" if motion.amplitude is None else f", {cost.total_error * motion.amplitude:.1e} m or rad"
+    amplitude = question.motion.amplitude
+    in_units = "" if amplitude is None else f" ({cost.total_error * amplitude:.1e} m or rad)"
+    least = "the least" if question.engine else _point_words(cost.least_at, question.h)
     return (
-        f"{name} keeps {keeps}; the error it forces is {times_words(cost.times_least)} times {least}. "
-        f"It is {cost.total_error:.1e} of the motion's amplitude{in_units}."
+        f"This feedback costs accuracy: {answer.method.name} keeps order {cost.order_left} of {cost.order}. Compared "
+        f"with {least} it forces {_errors_words(times)}: {cost.total_error:.1e} of the motion's amplitude{in_units}, "
+        f"{cost.velocity_error:.1e} of its velocity's."
     )
 
 
@@ -272,26 +256,21 @@ def likeness_sentence(like: Sequence[Likeness], point: Point) -> str:
     """Return in words which methods a measured pole fits at a point, the nearest first, and which are excluded."""
     at = f"({float(point[0]):.6g}, {float(point[1]):.6g})"
     fitting = [one for one in like if one.fits]
-    excluded = [one for one in like if not one.fits]
     if not fitting:
         return _nothing_fits(like[0], at)
-    first = fitting[0]
-    equal = first.same_as.split(", ") if first.same_as else []
-    parts = [f"this behaves like {first.method.name} at {at} to {max(first.distance, first.error):.1g}"]
-    if not first.dominant:
-        parts[0] += ", by a lesser pole of it"
-    if equal:
-        parts.append(f"{_listed(equal)} {'has' if len(equal) == 1 else 'have'} the same poles there")
-    others = [one.method.name for one in fitting[1:] if one.method.name not in equal]
-    if others:
-        parts.append(f"{_listed(others)} {'cannot be told from it' if len(others) == 1 else 'cannot be told apart'}")
-    if excluded:
-        names = [one.method.name for one in excluded]
-        if len(names) <= NAMED:
-            parts.append(f"{_listed(names)} {'is' if len(names) == 1 else 'are'} excluded")
-        else:
-            parts.append(f"{len(names)} others are excluded, the nearest {names[0]}, {excluded[0].distance:.1g} off")
-    return "; ".join(parts) + "."
+    first, excluded = fitting[0], [one for one in like if not one.fits]
+    lesser = "" if first.dominant else ", by a lesser pole of it"
+    words = f"this behaves like {first.method.name} at {at} to {max(first.distance, first.error):.1g}{lesser}"
+    equal = first.same_as.split(", ")
+    listed = {
+        "the same poles there": equal,
+        "not to be told from it": [one.method.name for one in fitting[1:] if one.method.name not in equal],
+        "excluded": [one.method.name for one in excluded[:NAMED]],
+    }
+    words += "".join(f"; {what}: {', '.join(names)}" for what, names in listed.items() if any(names))
+    if len(excluded) <= NAMED:
+        return f"{words}."
+    return f"{words} and {len(excluded) - NAMED} others, the nearest {excluded[0].distance:.1g} off."
 
 
 def _nothing_fits(nearest: Likeness, at: str) -> str:
@@ -306,11 +285,6 @@ def _nothing_fits(nearest: Likeness, at: str) -> str:
         f"nothing fits at {at}: {off}. Is α, β or h another, does the mechanism turn much faster (--turning), or are "
         "there several steps from row to row (--every)?"
     )
-
-
-def _listed(names: Sequence[str]) -> str:
-    """Return names as 'A', 'A and B' or 'A, B and C'."""
-    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"
 
 
 def passages_words(times: Sequence[float]) -> str:

@@ -6,29 +6,20 @@ documentation of keys (`bezstab schema`) take it from there.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from functools import partial
 
 from bezstab.show.cells import (
-    both_times_text,
+    any_or_none,
+    any_speed,
     constant_text,
-    diverged_text,
-    filled,
-    gain_limit_text,
-    milliseconds_text,
-    modulus_text,
+    modulus_words,
     order_text,
     pole_text,
-    range_text,
     safe_step_text,
-    speed_text,
-    stable_steps_text,
     step_text,
-    times_least_text,
-    times_text,
-    unbounded_text,
+    unbounded,
     used_up_text,
 )
-from bezstab.show.fields import Field, RowKind, integer, number, text, truth
+from bezstab.show.fields import Field, RowKind, column, integer, number, text, truth
 from bezstab.show.sentences import (
     answer_sentence,
     chain_sentence,
@@ -42,7 +33,7 @@ from bezstab.show.sentences import (
     whole_method_sentence,
     witness_sentence,
 )
-from bezstab.show.words import safety_words
+from bezstab.show.words import safety_words, times_words
 
 UNKNOWN_STEP = "where no step is given"
 UNSTABLE = "where the point is not stable"
@@ -54,16 +45,14 @@ NO_BEST = "where there is no best point; `best_reason` says why"
 NO_SWEEPS = "where the engine does not sweep, or it is not known how"
 UNBOUNDED = "where the region has no end there, or is empty"
 
-METHOD = text("method", "Name of the integration method, with @m where its step is m times h", "method")
-ALPHA_HAT = number("alpha_hat", "Dimensionless damping of the feedback, 2 alpha h", "α̂", ".6f")
-BETA_HAT = number("beta_hat", "Dimensionless stiffness of the feedback, beta^2 h^2", "β̂", ".6f")
-
-
-def point_shown(form: str) -> Sequence[Field]:
-    """Return both fields of a point in another format."""
-    return ALPHA_HAT.shown("α̂", form), BETA_HAT.shown("β̂", form)
-
-
+METHOD = text(
+    "method",
+    "Name of the integration method, with @m where its step is m times h",
+    "method",
+    otherwise=lambda _: "yours",
+)
+ALPHA_HAT = number("alpha_hat", "Dimensionless damping of the feedback, 2 alpha h", "α̂", ".6g")
+BETA_HAT = number("beta_hat", "Dimensionless stiffness of the feedback, beta^2 h^2", "β̂", ".6g")
 ALPHA = number(
     "alpha",
     "Damping of the feedback c'' + 2 alpha c' + beta^2 c = 0",
@@ -80,10 +69,12 @@ BETA = number(
     unit="1/s",
     null="where no step is given, and for a negative beta_hat",
 )
-H = number("h", "Step size", unit="s", null=UNKNOWN_STEP)
+H = number("h", "Step size", "h (s)", "g", unit="s", null=UNKNOWN_STEP)
 Z_REAL = number("z_real", "Real part of the pole", path="pole.real")
 Z_IMAG = number("z_imag", "Imaginary part of the pole, that of the upper one of a pair", path="pole.imag")
-Z_ABS = number("z_abs", "Modulus of the pole: each step multiplies errors by it", "|z_p|", ".4f", path="pole.abs")
+Z_ABS = number(
+    "z_abs", "Modulus of the pole: each step multiplies errors by it", "|z_p|", modulus_words, path="pole.abs"
+)
 Z_ANGLE_DEG = number(
     "z_angle_deg",
     "Angle of the pole: errors turn by it in each step",
@@ -102,9 +93,10 @@ def pole_fields(name: str, which: str, null: str = "") -> Sequence[Field]:
             field,
             key=f"{name}_{field.key}",
             meaning=field.meaning.replace("the pole", f"the pole {which}"),
+            heading=field.heading and f"{name} {field.heading}",
             path=field.path.replace("pole", name),
             null=null,
-        ).hidden
+        )
         for field in POLE
     ]
 
@@ -128,15 +120,16 @@ KAPPA = number(
 Z_ABS_BELOW = number(
     "z_abs_below",
     "What |z_p| is below, or on a front at most; 1 where the method is stable",
-    "|z_p| at most",
-    ".4g",
+    "|z_p| up to",
+    ".6g",
     path="region.level",
 )
 AREA = number(
     "area",
     "Area of the region in alpha_hat and beta_hat",
     "area",
-    text=unbounded_text("area", ".10g"),
+    ".10g",
+    otherwise=unbounded,
     null="where it is infinite or empty",
     path="region.area",
 )
@@ -144,7 +137,8 @@ ALPHA_HAT_MAX = number(
     "alpha_hat_max",
     "Largest alpha_hat of the region",
     "α̂ to",
-    text=unbounded_text("alpha_hat_max", ".8g"),
+    ".8g",
+    otherwise=unbounded,
     null=UNBOUNDED,
     path="region.extent.0.1",
 )
@@ -152,7 +146,8 @@ BETA_HAT_MAX = number(
     "beta_hat_max",
     "Largest beta_hat of the region",
     "β̂ to",
-    text=unbounded_text("beta_hat_max", ".8g"),
+    ".8g",
+    otherwise=unbounded,
     null=UNBOUNDED,
     path="region.extent.1.1",
 )
@@ -164,7 +159,9 @@ BEST_Z_ABS = number(
     null=NO_BEST,
     path="inside.z_abs",
 )
-STEPS = integer("steps", "Number of steps of the method", "steps", null="for the limit of a family")
+STEPS = integer(
+    "steps", "Number of steps of the method", "steps", otherwise=lambda _: "limit", null="for the limit of a family"
+)
 ORDER = integer("order", "Order of accuracy, computed from the coefficients", "order", text=order_text)
 ERROR_CONSTANT = number("error_constant", "Error constant of the method", "error constant", text=constant_text)
 SOURCE = text("source", "Where a method or a conversion is from", "source")
@@ -184,30 +181,39 @@ FORCED_ERROR = number(
 TOTAL_ERROR = number(
     "total_error",
     "Constraint error that is left in a run, as such a share: the largest that is forced at any rate up to omega",
+    "error",
+    ".2e",
     null=NO_ERROR,
     path="cost.total_error",
 )
 VELOCITY_ERROR = number(
     "velocity_error",
     "Error forced on the velocity of that motion, as a share of the velocity's amplitude",
+    "error of velocity",
+    ".2e",
     null=NO_ERROR,
     path="cost.velocity_error",
 )
 ORDER_LEFT = integer(
     "order_left",
     "Order in h of the forced error where alpha_hat and beta_hat are held, at most the method's own",
+    "order left",
     null="where it is not known",
     path="cost.order_left",
 )
 TIMES_LEAST = number(
     "times_least",
     "Total error over that at the point of the goal accurate, which weighs velocities as well",
+    "× least",
+    times_words,
     null="where errors do not decay, or it is not known, or that point is not",
     path="cost.times_least",
 )
 TIMES_LEAST_VELOCITY = number(
     "times_least_velocity",
     "Velocity error over that at the same point",
+    "× least of velocity",
+    times_words,
     null="where errors do not decay, or it is not known, or that point is not",
     path="cost.times_least_velocity",
 )
@@ -216,7 +222,8 @@ H_FACTOR = number(
     "h_factor",
     "Factor on h up to which this alpha and beta are stable",
     "stable for h times",
-    text=times_text,
+    ".4g",
+    otherwise=any_or_none,
     null="where the point is not stable, or any step is",
     path="margins.h",
 )
@@ -229,7 +236,10 @@ H_LIMIT = number(
     null="where the point is not stable, any step is, or h is unknown",
 )
 SETTING = text(
-    "setting", "What to write in the engine's words", null="where no point is given, or the engine's values are"
+    "setting",
+    "What to write in the engine's words",
+    "to paste",
+    null="where no point is given, or the engine's values are",
 )
 SWEEPS = truth(
     "sweeps",
@@ -239,7 +249,7 @@ SWEEPS = truth(
 )
 EXCLUDES = text("excludes", "What the conversion leaves out", "left out", path="question.engine.excludes")
 SCENE = text("scene", "Name of the scene", "scene")
-RUN_STEPS = integer("run_steps", "Steps of the whole run", "steps of each")
+RUN_STEPS = integer("run_steps", "Steps of the whole run", "steps of the run")
 RUN_EVALUATIONS = integer("run_evaluations", "Evaluations of the right-hand side in the whole run", "evaluations")
 FACTORIZATIONS = integer(
     "factorizations",
@@ -247,15 +257,15 @@ FACTORIZATIONS = integer(
     "factorizations",
 )
 STABILISE = text("stabilise", "What holds the constraints", "held by", values_of="stabilising.Stabilise")
-C_MAX = number("c_max", "Largest constraint error", "largest |c| (m, rad)", ".3e", unit="m or rad")
+C_MAX = number("c_max", "Largest constraint error", "largest |c| (m, rad)", ".2e", unit="m or rad")
 CDOT_MAX = number(
-    "cdot_max", "Largest rate of the constraint error", "largest |ċ| (m/s, rad/s)", ".3e", unit="m/s or rad/s"
+    "cdot_max", "Largest rate of the constraint error", "largest |ċ| (m/s, rad/s)", ".2e", unit="m/s or rad/s"
 )
 ENERGY_DRIFT = number(
     "energy_drift",
     "Change of energy that is not the work of drivers and forces",
     "energy drift (J)",
-    ".3e",
+    ".2e",
     unit="J",
 )
 FAILURE = text("failure", "Why the run ended early", "failure", null="if it did not")
@@ -281,7 +291,7 @@ MEASURED_VERDICT = text(
 REASON = text(
     "reason",
     "Why nothing could be measured, or what disturbs it; empty where nothing does",
-    "not measurable because",
+    "remark",
 )
 PREDICTED_ERROR = number(
     "predicted_error",
@@ -337,7 +347,8 @@ MOVING = (
         "safe_speed",
         "Factor on the given speed up to which errors shrink, at most as far as the law holds, kappa h = 0.1",
         "safe to speed",
-        text=speed_text,
+        ".3g",
+        otherwise=any_speed,
         null="where it diverges at rest, or where nothing turns",
     ),
 )
@@ -420,13 +431,14 @@ SWEPT_OVER = (
 )
 """What an engine that sweeps adds: the first to all, the others to --chain and --scene."""
 DRIVE = (
-    text("drive", "How the drive is applied", "applied", null="where the method is no drive's"),
+    text("drive", "How the drive is applied", "applied", null="where the method is no drive's", path="gains.applied"),
     number("kp", "Stiffness of the drive", "kp", ".4g", unit="N m/rad or N/m", path="gains.kp"),
     number(
         "kp_max",
         "Largest stable stiffness with this damping",
         "kp to",
-        text=gain_limit_text("kp"),
+        ".4g",
+        otherwise=any_or_none,
         unit="N m/rad or N/m",
         null="without a limit",
         path="gains.kp_max",
@@ -437,7 +449,8 @@ DRIVE = (
         "kd_max",
         "Largest stable damping with this stiffness",
         "kd to",
-        text=gain_limit_text("kd"),
+        ".4g",
+        otherwise=any_or_none,
         unit="N m s/rad or N s/m",
         null="without a limit",
         path="gains.kd_max",
@@ -480,8 +493,8 @@ VARYING = (
 )
 LIKENESS = (
     METHOD,
-    PREDICTED_Z_ABS.shown("|z| there", ".7f"),
-    PREDICTED_Z_ANGLE_DEG.shown("∠z (deg)", ".4f"),
+    PREDICTED_Z_ABS,
+    PREDICTED_Z_ANGLE_DEG,
     number("distance", "Distance of the fitted pole from that of the method", "distance", ".1e"),
     number("allowed", "Largest distance that still fits", "allowed", ".1e"),
     truth("dominant", "Whether the method's nearest pole is its dominant one"),
@@ -494,13 +507,14 @@ LIKENESS = (
     ),
 )
 LIKE_POINT = (
-    ALPHA_HAT.shown("α̂", text=filled("{alpha_hat:.7g} ± {alpha_hat_error:.1e}")),
-    BETA_HAT.shown("β̂", text=filled("{beta_hat:.7g} ± {beta_hat_error:.1e}")),
-    number("alpha_hat_error", "How far alpha_hat may be off by the error of the fit"),
-    number("beta_hat_error", "How far beta_hat may be off by the error of the fit"),
+    METHOD,
+    ALPHA_HAT,
+    BETA_HAT,
+    number("alpha_hat_error", "How far alpha_hat may be off by the error of the fit", "± of α̂", ".1e"),
+    number("beta_hat_error", "How far beta_hat may be off by the error of the fit", "± of β̂", ".1e"),
     H,
-    ALPHA.shown("α (1/s)", ".7g"),
-    BETA.shown("β (1/s)", ".7g"),
+    ALPHA,
+    BETA,
 )
 MOVING_REGION = (
     number("speed", "Factor on the scene's own speed at which it moves", "speed", "g", null=LEVEL_ROW),
@@ -527,17 +541,17 @@ POLES = RowKind(
         BETA_HAT.hidden,
         Z_REAL.shown("pole z", text=pole_text),
         Z_IMAG,
-        Z_ABS.shown("|z|", text=modulus_text),
+        Z_ABS,
         Z_ANGLE_DEG,
         VERDICT,
         SAFE,
         OMEGA_H,
         FORCED_ERROR,
-        TOTAL_ERROR.shown("error", ".1e"),
-        VELOCITY_ERROR,
-        ORDER_LEFT,
-        TIMES_LEAST.shown("× least", text=times_least_text),
-        TIMES_LEAST_VELOCITY,
+        TOTAL_ERROR,
+        VELOCITY_ERROR.hidden,
+        ORDER_LEFT.hidden,
+        TIMES_LEAST,
+        TIMES_LEAST_VELOCITY.hidden,
     ),
     added=(
         *MOVING,
@@ -553,13 +567,14 @@ REGIONS = RowKind(
     "the region of a method",
     fields=(
         METHOD.of("region.method"),
-        Z_ABS_BELOW.shown("|z_p| below", "g"),
+        Z_ABS_BELOW,
         AREA,
         number(
             "alpha_hat_min",
             "Smallest alpha_hat of the region",
             "α̂ from",
-            text=unbounded_text("alpha_hat_min", ".6g"),
+            ".8g",
+            otherwise=unbounded,
             null=UNBOUNDED,
             path="region.extent.0.0",
         ),
@@ -568,7 +583,8 @@ REGIONS = RowKind(
             "beta_hat_min",
             "Smallest beta_hat of the region",
             "β̂ from",
-            text=unbounded_text("beta_hat_min", ".6g"),
+            ".8g",
+            otherwise=unbounded,
             null=UNBOUNDED,
             path="region.extent.1.0",
         ),
@@ -576,18 +592,21 @@ REGIONS = RowKind(
         text(
             "approached",
             "Those of the four limits that no edge attains: the region comes near them far out",
+            "approached",
             null="where edges attain all that there are",
         ),
         number(
             "critical_damping_limit",
             "Largest beta h on alpha = beta up to which all are stable",
             "βh to (α = β)",
-            text=stable_steps_text,
+            ".6g",
+            otherwise=lambda _: "unlimited",
             null="if all",
         ),
         text(
             "critical_damping_limit_exact",
             "The same as a rational number",
+            "exactly",
             null="if all are stable, or where it is not known to be rational",
         ),
         BEST_Z_ABS,
@@ -618,11 +637,15 @@ REGIONS = RowKind(
         text(
             "stable_for_all",
             "Whether all alpha_hat, beta_hat > 0 are stable",
+            "all α, β stable",
             values_of="stability.StableForAll",
         ),
         number(
             "unconditional_damping_ratio",
             "Damping ratio alpha / beta above which every step is stable",
+            "every h stable from α/β",
+            ".6g",
+            otherwise=lambda _: "none",
             null="if none is",
         ),
     ),
@@ -662,8 +685,11 @@ LISTED_METHODS = RowKind(
 NAMED_METHODS = RowKind(
     "a method that was named",
     fields=tuple(
-        field.shown(
-            field.key.replace("_", " "), text=unbounded_text(field.key, ".10g" if field.kind == "number" else "")
+        replace(
+            field,
+            heading=field.key.replace("_", " "),
+            form=".10g" if field.kind == "number" else "",
+            text=None,
         )
         for field in (
             *LISTED_METHODS.fields[:-1],
@@ -685,14 +711,14 @@ NAMED_METHODS = RowKind(
 MEMBERS = RowKind(
     "a member of a family, or its limit",
     fields=(
-        STEPS.shown("steps", text=lambda row: str(row["steps"] or "limit")).of("n"),
+        STEPS.of("n"),
         METHOD,
-        AREA.shown("area", ".10g"),
-        ALPHA_HAT_MAX.shown("α̂ to", ".8g"),
-        BETA_HAT_MAX.shown("β̂ to", ".8g"),
+        AREA,
+        ALPHA_HAT_MAX,
+        BETA_HAT_MAX,
         BEST_Z_ABS.of("z_abs"),
-        ORDER.shown("order of accuracy"),
-        ERROR_CONSTANT.shown("error constant", ".6f"),
+        ORDER,
+        ERROR_CONSTANT,
     ),
 )
 CHAINS = RowKind(
@@ -726,7 +752,7 @@ CHOICES = RowKind(
         Z_REAL,
         Z_IMAG,
         Z_ABS,
-        Z_ANGLE_DEG.shown("∠z_p (deg)", ".1f"),
+        Z_ANGLE_DEG,
         number(
             "worst",
             "Largest modulus of the dominant pole with alpha and beta off by the spread",
@@ -737,7 +763,7 @@ CHOICES = RowKind(
             "searched",
             "Largest alpha h and beta h that were searched",
             "searched",
-            text=filled("αh, βh to {searched:g}"),
+            "αh, βh to {:g}".format,
             null="where all of the region was, or none of it",
         ),
         H.hidden,
@@ -760,40 +786,46 @@ CHOICES = RowKind(
         number(
             "alpha_factor_min",
             "Least factor by which alpha alone may be scaled",
-            "α times",
-            text=range_text("alpha"),
+            "α times from",
+            ".3g",
             null=UNSTABLE,
             path="margins.alpha.0",
         ),
         number(
             "alpha_factor_max",
             "Largest factor by which alpha alone may be scaled",
+            "α times to",
+            ".3g",
+            otherwise=any_or_none,
             null="where the point is not stable, or any",
             path="margins.alpha.1",
         ),
         number(
             "beta_factor_min",
             "Least factor by which beta alone may be scaled",
-            "β times",
-            text=range_text("beta"),
+            "β times from",
+            ".3g",
             null=UNSTABLE,
             path="margins.beta.0",
         ),
         number(
             "beta_factor_max",
             "Largest factor by which beta alone may be scaled",
+            "β times to",
+            ".3g",
+            otherwise=any_or_none,
             null="where the point is not stable, or any",
             path="margins.beta.1",
         ),
         OMEGA_H,
         FORCED_ERROR,
-        TOTAL_ERROR.shown("error forced", text=filled("{total_error:.1e}; velocity: {velocity_error:.1e}")),
+        TOTAL_ERROR,
         VELOCITY_ERROR,
-        ORDER_LEFT.shown("order left"),
+        ORDER_LEFT,
         TIMES_LEAST,
-        TIMES_LEAST_VELOCITY.shown("times the least error", text=both_times_text),
+        TIMES_LEAST_VELOCITY,
     ),
-    added=(*MOVING, *VARYING, SWEEPS, *SWEPT_OVER, *DRIVE, ENGINE_H_LIMIT, SETTING.shown("to paste")),
+    added=(*MOVING, *VARYING, SWEEPS, *SWEPT_OVER, *DRIVE, ENGINE_H_LIMIT, SETTING),
     sentence=answer_sentence,
 )
 CHECKED = RowKind(
@@ -820,13 +852,14 @@ LINTED = RowKind(
     fields=(
         text("element", "Name of the element of a model", "element"),
         text("kind", "What the element is", "kind"),
-        SETTING,
+        SETTING.hidden,
         text("judged", "Which of its points is judged, and why", "judged"),
-        *point_shown(".4f"),
+        ALPHA_HAT,
+        BETA_HAT,
         text("map", "Method whose region judges the element", "map"),
         VERDICT,
         SAFE,
-        Z_ABS.shown("|z|", ".4f").of("z_abs"),
+        Z_ABS.of("z_abs"),
         H_FACTOR.of("h_factor"),
         text("advice", "What to write instead", "advice", null="where nothing is to be changed"),
     ),
@@ -842,11 +875,11 @@ ENGINES_LISTED = RowKind(
             "level",
             values_of="engines.Level",
         ),
-        METHOD.shown("method", text=lambda row: row["method"] or "yours"),
+        METHOD,
         text("parameters", "What the engine calls the feedback's parameters", "parameters"),
         text("optional", "Which of the parameters may be left away", "then"),
         text("units", "Units of the parameters, in their order", "units"),
-        SETTING.shown("for this point"),
+        SETTING,
         text(
             "witness",
             "With which engine a run has confirmed the conversion",
@@ -870,8 +903,9 @@ SIMULATIONS = RowKind(
         SCENE.of("trajectory.mechanism.scene"),
         METHOD.of("trajectory.method"),
         STABILISE,
-        *point_shown(".6g"),
-        H.shown("h (s)", "g"),
+        ALPHA_HAT,
+        BETA_HAT,
+        H,
         number("time", "When the run ended", "until (s)", ".6g", unit="s", path="t.-1"),
         C_MAX.of("observation.c_max"),
         CDOT_MAX.of("observation.cdot_max"),
@@ -921,18 +955,19 @@ MEASUREMENTS = RowKind(
         BETA_HAT,
         PREDICTED_Z_REAL,
         PREDICTED_Z_IMAG,
-        PREDICTED_Z_ABS.shown("predicted |z|", ".6f"),
+        PREDICTED_Z_ABS,
         number(
             "law_z_abs",
             "Modulus predicted by the first-order law of the motion",
             "|z| by the law",
             ".6f",
-            path="law_abs",
+            path="moving.z_abs_moving",
         ),
         text(
             "law_verdict",
             "Verdict predicted by the first-order law of the motion",
             values_of="evidence.MovingVerdict",
+            path="moving.verdict",
         ),
         number(
             "floquet_z_abs",
@@ -945,7 +980,7 @@ MEASUREMENTS = RowKind(
         ),
         MEASURED_Z_REAL,
         MEASURED_Z_IMAG,
-        MEASURED_Z_ABS.shown("measured |z|", ".6f"),
+        MEASURED_Z_ABS,
         number(
             "measured_rate",
             "Growth per step measured over a whole revolution beside the motion the method makes, the first left out",
@@ -961,8 +996,8 @@ MEASUREMENTS = RowKind(
             null=NOT_MEASURED,
             path="difference_abs",
         ),
-        PREDICTED_Z_ANGLE_DEG.shown("predicted ∠z (deg)", ".3f"),
-        MEASURED_Z_ANGLE_DEG.shown("measured ∠z (deg)", ".3f"),
+        PREDICTED_Z_ANGLE_DEG,
+        MEASURED_Z_ANGLE_DEG,
         number(
             "difference_z_angle_deg",
             "Angle measured less that predicted",
@@ -1004,16 +1039,16 @@ SUMMARIES = RowKind(
     "how well the measured poles of a method agree with the predicted ones",
     fields=(
         METHOD,
-        integer("points", "Points that were tried", "points"),
-        integer("measured", "Points at which a pole could be measured", "measured points"),
-        number("median_error", "Median difference of the moduli", "median error of |z|", ".1e"),
-        number("largest_error", "Largest difference of the moduli", "largest error of |z|", ".1e"),
-        integer("called", "Points at which both verdicts are settled", "verdicts called"),
-        integer("wrong", "Points of these whose verdicts disagree", "wrong verdicts"),
-        integer("followed", "Points followed over a revolution", "followed over a revolution"),
-        number("map_error", "Median error of the rate at rest", "median error at rest", ".1e"),
-        number("law_error", "Median error of the law's rate", "median error of the law", ".1e"),
-        number("floquet_error", "Median error of the exact rate", "median error of the exact rate", ".1e"),
+        column("points", "points"),
+        column("measured points", "measured"),
+        column("median error of |z|", "median_error", ".1e"),
+        column("largest error of |z|", "largest_error", ".1e"),
+        column("verdicts called", "called"),
+        column("wrong verdicts", "wrong"),
+        column("followed over a revolution", "followed"),
+        column("median error at rest", "map_error", ".1e"),
+        column("median error of the law", "law_error", ".1e"),
+        column("median error of the exact rate", "floquet_error", ".1e"),
         text(
             "wrong_sides",
             "Of how many points each rate is on the wrong side of one",
@@ -1075,8 +1110,9 @@ FORCED = RowKind(
         SCENE.hidden,
         METHOD,
         number("gain_share", "Factor on alpha and beta of the point that was chosen or given", "gains", "g"),
-        *point_shown(".4g"),
-        H.shown("h (s)", "g"),
+        ALPHA_HAT,
+        BETA_HAT,
+        H,
         PREDICTED_ERROR.of("predicted"),
         MEASURED_ERROR.of("measured"),
         number(
@@ -1094,7 +1130,7 @@ FORCED = RowKind(
             null="of the largest step",
         ),
         OBSERVED_ORDER,
-        REASON.shown("not compared"),
+        REASON,
     ),
 )
 WITNESSED = RowKind(
@@ -1103,16 +1139,17 @@ WITNESSED = RowKind(
         SCENE,
         text("integrator", "What the other engine calls its integrator", "MuJoCo's integrator"),
         METHOD,
-        *point_shown(".4f"),
+        ALPHA_HAT,
+        BETA_HAT,
         number(
             "times_boundary",
             "Distance of the point from the origin, in those of the boundary on its ray",
             "times the boundary",
             "g",
         ),
-        PREDICTED_Z_ABS.shown("predicted |z|", ".4f").of("predicted_z_abs"),
+        PREDICTED_Z_ABS.of("predicted_z_abs"),
         PREDICTED_VERDICT,
-        MEASURED_VERDICT.shown("verdict seen"),
+        MEASURED_VERDICT,
         number(
             "remaining",
             "Largest constraint error in the last tenth of the run",
@@ -1120,7 +1157,7 @@ WITNESSED = RowKind(
             ".1e",
             unit="m",
         ),
-        RUN_STEPS.shown("after steps"),
+        RUN_STEPS,
     ),
     sentence=witness_sentence,
 )
@@ -1128,18 +1165,15 @@ PROBED = RowKind(
     "the pole in a column of a log, or a method beside it, or a point at which a method has it",
     fields=(
         text("column", "Name of the column of the log", "column"),
-        Z_REAL.shown("pole z, per row", text=partial(pole_text, digits=7)),
+        Z_REAL.shown("pole z", text=pole_text),
         Z_IMAG,
-        Z_ABS.shown("|z|", ".7f"),
-        Z_ANGLE_DEG.shown("∠z (deg)", ".4f"),
+        Z_ABS,
+        Z_ANGLE_DEG,
         number("uncertainty", "How far the fitted pole may be off", "± of z", ".1e", null=NOT_MEASURED),
         integer("samples", "Samples that the fit has used", "rows"),
-        REASON.shown("what is to be said of it"),
+        REASON,
     ),
-    added=(
-        *LIKENESS,
-        *LIKE_POINT,
-    ),
+    added=(*LIKENESS, *LIKE_POINT[1:]),
     sometimes=(
         "samples",
         *(field.key for field in (Z_REAL, Z_IMAG, Z_ABS, Z_ANGLE_DEG, REASON, *LIKENESS, *LIKE_POINT)),
@@ -1151,23 +1185,25 @@ SWEPT = RowKind(
         METHOD,
         STABILISE,
         truth("advised", "Whether the point is the choice of the goal accurate for the scene's motion"),
-        H.shown("h (s)", "g"),
-        *point_shown(".4g"),
+        H,
+        ALPHA_HAT,
+        BETA_HAT,
         Z_ABS.of("z_abs"),
         number(
             "trajectory_error",
             "Largest error of the coordinates",
             "trajectory error (m, rad)",
-            text=diverged_text,
+            ".2e",
+            otherwise=lambda _: "diverged",
             unit="m or rad",
             null="if the run failed",
         ),
         OBSERVED_ORDER.of("order"),
-        C_MAX.shown("largest |c| (m, rad)", ".1e"),
-        MEASURED_ERROR.shown("in the later half", ".1e"),
-        PREDICTED_ERROR.shown("predicted there", ".1e"),
+        C_MAX,
+        MEASURED_ERROR,
+        PREDICTED_ERROR,
         number("c_rms", "Root mean square of the constraint error", "rms c (m, rad)", ".1e", unit="m or rad"),
-        CDOT_MAX.shown("largest |ċ| (m/s, rad/s)", ".1e"),
+        CDOT_MAX,
         number(
             "cdot_rms",
             "Root mean square of the rate of the constraint error",
@@ -1175,18 +1211,18 @@ SWEPT = RowKind(
             ".1e",
             unit="m/s or rad/s",
         ),
-        ENERGY_DRIFT.shown("energy drift (J)", ".1e"),
+        ENERGY_DRIFT,
         RUN_EVALUATIONS.of("evaluations"),
         FACTORIZATIONS,
         number(
             "seconds",
             "Processor time of the run, the median of the repeats",
-            "time (ms)",
-            text=milliseconds_text,
+            "time (s)",
+            ".3g",
             unit="s",
         ),
-        number("seconds_min", "Least processor time of the repeats", unit="s"),
-        number("seconds_max", "Largest processor time of the repeats", unit="s"),
+        number("seconds_min", "Least processor time of the repeats", "least time (s)", ".3g", unit="s"),
+        number("seconds_max", "Largest processor time of the repeats", "largest time (s)", ".3g", unit="s"),
         text(
             "front",
             "T if no run is both cheaper and nearer to the trajectory, c if none is to the constraints",
@@ -1203,12 +1239,13 @@ FRONTS = RowKind(
         OMEGA_H.of("omega_h"),
         Z_ABS_BELOW.of("z_abs_below"),
         Z_ABS.hidden.of("z_abs"),
-        *point_shown(".6g"),
+        ALPHA_HAT,
+        BETA_HAT,
         H,
         ALPHA,
         BETA,
-        TOTAL_ERROR.shown("error of position", ".2e").of("total_error"),
-        VELOCITY_ERROR.shown("of velocity", ".2e").of("velocity_error"),
+        TOTAL_ERROR.of("total_error"),
+        VELOCITY_ERROR.of("velocity_error"),
         number(
             "combined_error",
             "The largest constraint error that is forced at any rate and velocity_error, such shares, added up",
@@ -1247,17 +1284,17 @@ HELD = RowKind(
     "a drive that is held or late",
     fields=(
         METHOD,
-        _APPLIED,
+        _APPLIED.of("applied"),
         VERDICT,
         SAFE,
-        Z_ABS.shown("|z|", ".4f").of("z_abs"),
+        Z_ABS.of("z_abs"),
         number(
             "fresh_z_abs",
             "Modulus of the same drive's pole if each step computes and applies its torque",
             "|z| if fresh",
             ".4f",
         ),
-        H.of("question.h"),
+        H.hidden.of("question.h"),
         integer(
             "every", "Steps of the physics from one computation of the torque to the next", path="question.timing.every"
         ),

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Sequence
 from fractions import Fraction
 from functools import partial
 from types import SimpleNamespace
 from typing import TYPE_CHECKING
 
-from bezstab.engines import DRIVE_METHODS, witness_of
+from bezstab.engines import witness_of
 from bezstab.errors import InputError
 from bezstab.methods import Method, evaluations, implicit, steps
 from bezstab.show.cells import LIMITS
@@ -26,13 +25,9 @@ from bezstab.show.row_kinds import (
     ENGINES_LISTED,
     EXCLUDES,
     FORCED,
-    FRONTS,
-    HELD,
     LARGEST_STEPS,
-    LIKE_POINT,
     LISTED_METHODS,
     MEMBERS,
-    METHOD,
     MOVING,
     POLE,
     POLES,
@@ -47,7 +42,7 @@ from bezstab.units import alpha_and_beta
 EXCLUDED_SHOWN = 5
 """Methods that do not fit and are shown where people read, the nearest; rows for programs have all."""
 
-WITHOUT_ACCURACY = ("total_error", "order_left", "times_least_velocity")
+WITHOUT_ACCURACY = ("total_error", "velocity_error", "order_left", "times_least", "times_least_velocity")
 """Columns that tables of a drive omit: nothing feeds the acceleration of its target forward."""
 
 OF_ONE_ALONE = (
@@ -60,8 +55,8 @@ if TYPE_CHECKING:  # so that a small row does not load what makes the large ones
     from collections.abc import Iterable
 
     from bezstab.engines import Engine
-    from bezstab.evidence import HalvedStep, LikePoint
-    from bezstab.questions import Answer, ChainMap, HeldAnswer, LargestStep, MapAnswer, Question, RegionAnswer
+    from bezstab.evidence import HalvedStep, Likeness, LikePoint
+    from bezstab.questions import Answer, ChainMap, LargestStep, MapAnswer, Question, RegionAnswer
     from bezstab.stability import FrontPoint, Limit, Region
 
 
@@ -144,14 +139,12 @@ def map_rows(answer: MapAnswer) -> list[Row]:
         return [{**row, **forced} for row in (stable, *faster)]
     if not answer.moving:
         return [stable, *faster]
-    kappas = {float(speed): turning.kappa for speed, turning in answer.question.turnings.items()}
-    return [
-        *(
-            {**stable, "speed": speed, "kappa": kappas[speed], "area_moving": moving.area}
-            for speed, moving in answer.moving.items()
-        ),
-        *({**row, "speed": None, "kappa": None, "area_moving": None} for row in faster),
+    kappas = [turning.kappa for turning in answer.question.turnings.values()]
+    at_speeds = [
+        {**stable, "speed": speed, "kappa": kappa, "area_moving": moving.area}
+        for (speed, moving), kappa in zip(answer.moving.items(), kappas, strict=True)
     ]
+    return [*at_speeds, *faster]
 
 
 def _approached(region: Region) -> str | None:
@@ -191,31 +184,16 @@ def forced_rows(scene: str, pair: HalvedStep) -> list[Row]:
     ]
 
 
-def nearest_rows(likenesses: Sequence[Row]) -> list[Row]:
-    """Return of each column's methods, the nearest first, those that fit and a few that do not."""
-    shown: list[Row] = []
-    excluded: Counter[object] = Counter()
-    for row in likenesses:
-        excluded[row["column"]] += not row["fits"]
-        if row["fits"] or excluded[row["column"]] <= EXCLUDED_SHOWN:
-            shown.append(row)
-    return shown
+def nearest(likenesses: Sequence[Likeness]) -> list[Likeness]:
+    """Return of methods, the nearest first, those that fit and a few that do not."""
+    excluded = [one for one in likenesses if not one.fits]
+    return [*(one for one in likenesses if one.fits), *excluded[:EXCLUDED_SHOWN]]
 
 
-def like_point_row(column: str, point: LikePoint, h: float | None) -> Row:
-    """Return a point at which a method has the pole in a column of a log, with h (s) in 1/s too."""
-    return {"column": column, **cells((METHOD, *LIKE_POINT), point, _in_seconds(point, h))}
-
-
-def front_row(point: FrontPoint, h: float | None) -> Row:
-    """Return a point of the front of |z_p| against forced error, with h (s) in 1/s too."""
-    return FRONTS.row(point, **_in_seconds(point, h))
-
-
-def _in_seconds(point: FrontPoint | LikePoint, h: float | None) -> dict[str, Value]:
-    """Return a step (s), and alpha and beta (1/s) of a point with it; None without a step."""
+def row_in_seconds(fields: Sequence[Field], point: FrontPoint | LikePoint, h: float | None) -> Row:
+    """Return the row of a point with a step (s), and with alpha and beta (1/s); None without a step."""
     alpha, beta = (None, None) if h is None else alpha_and_beta(point.alpha_hat, point.beta_hat, h)
-    return {"h": h, "alpha": alpha, "beta": beta}
+    return cells(fields, point, {"h": h, "alpha": alpha, "beta": beta})
 
 
 def chain_rows(engine: Engine, found: ChainMap) -> list[Row]:
@@ -272,7 +250,7 @@ def _added_cells(answer: Answer, *of_engine: Field) -> dict[str, Value]:
         swept_over = SWEPT_OVER if answer.swept else SWEPT_OVER[:1]
         added |= cells((SWEEPS, *swept_over, *of_engine), answer)
     if answer.gains:
-        added |= cells(DRIVE, answer, {"drive": DRIVE_METHODS.get(answer.method.name)})
+        added |= cells(DRIVE, answer)
     if answer.moving:
         added |= cells(MOVING, answer.moving)
     if answer.varying:
@@ -293,8 +271,3 @@ def _applied_cells(answer: Answer) -> dict[str, Value]:
 def largest_step_row(found: LargestStep) -> Row:
     """Return up to which step (s) alpha and beta (1/s) are stable: None where small steps are not."""
     return LARGEST_STEPS.row(found, role="given", h_limit=found.h_limit if found.safe else None)
-
-
-def held_row(answer: HeldAnswer) -> Row:
-    """Return what one way of applying a held or late drive does as a row; limits as gains and as steps."""
-    return HELD.row(answer, drive=DRIVE_METHODS[answer.method.name])

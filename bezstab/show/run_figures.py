@@ -1,25 +1,25 @@
 """Figures of simulations: the history of a run, and what accuracy costs."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from itertools import product
 from typing import Any
 
+import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
-from bezstab.evidence import ErrorOf, SweptRuns
+from bezstab.evidence import Cost, ErrorOf, Run, SweptRuns
 from bezstab.mechanism import Simulation
 from bezstab.show import plot
 from bezstab.show.style import (
     column_figure,
-    legend_below,
     line_at,
     marked_line_at,
-    new_axes,
     styled,
     title_lines,
+    with_legend,
 )
 
 TREATMENTS: dict[tuple[str, bool], tuple[str, dict[str, Any]]] = {
@@ -28,6 +28,18 @@ TREATMENTS: dict[tuple[str, bool], tuple[str, dict[str, Any]]] = {
     ("projection", False): ("projection", {"marker": "o", "markerfacecolor": None}),  # filled
 }
 """What holds the constraints, and whether the point is advised: its name and its markers."""
+
+ERROR_LABELS: Mapping[ErrorOf, str] = {
+    "trajectory": "trajectory error (m, rad)",
+    "constraint": "largest $|c|$ (SI)",
+    "energy": "energy drift (J)",
+}
+COST_LABELS: Mapping[Cost, str] = {
+    "evaluations": "evaluations of f",
+    "time": "processor time (s)",
+    "projection": r"factorizations of $C_q M^{-1} C_q^T$",
+}
+"""Of a run's errors and costs, for axes."""
 
 MARKER = {"markersize": 3.5, "markeredgewidth": 0.7}
 
@@ -53,7 +65,7 @@ def history_figure(simulation: Simulation) -> Figure:
         upper, middle, lower = figure.subplots(3, 1, sharex=True)
         plot.history(simulation, axes=upper)
         plot.history(simulation, derivative=True, axes=middle)
-        plot.largest_error(simulation, axes=lower)
+        plot.history(simulation, None, axes=lower)
         figure.suptitle("\n".join(title))
         for axes in (upper, middle):
             axes.label_outer()
@@ -62,58 +74,57 @@ def history_figure(simulation: Simulation) -> Figure:
 
 
 def work_precision_figure(swept: SweptRuns, scene: str, error: ErrorOf) -> Figure:
-    """Return an error of each run (SI) against its cost, discs behind the Pareto front, failed runs on top.
-
-    The trajectory's is not drawn up to that of the reference.
-    """
-    runs, floor = swept.runs, swept.reference_error if error == "trajectory" else 0.0
+    """Return an error of each run (SI) against its cost, discs behind the Pareto front, failed runs on top."""
+    runs = swept.runs
     with styled():
-        figure, axes = new_axes(title_lines(scene), plot.COST_LABELS[swept.against], plot.ERROR_LABELS[error], 1.15)
+        figure = column_figure(1.15)
+        axes = figure.add_subplot(title=title_lines(scene))
         known_errors = [known for run in runs if (known := run.error(error)) is not None]
         top = 10 * max(known_errors, default=1.0)
         for place, method in enumerate(dict.fromkeys(run.method for run in runs)):
             own = [run for run in runs if run.method == method]
-            plot.work_precision(own, error, floor, axes, swept.against, **marked_line_at(place))
+            _draw_runs(swept, own, error, axes, label=method.name, **marked_line_at(place))
             failed = [run.cost(swept.against) for run in own if run.failure]
             axes.plot(failed, [top] * len(failed), "x", color=line_at(place)["color"], markersize=4)
         if front := swept.front(error):
             discs = {"marker": "o", "linestyle": "none", "color": "0.8", "markersize": 10, "zorder": 1.5}
-            of_front = [runs[number] for number in front]
-            plot.work_precision(of_front, error, floor, axes, swept.against, label="front", **discs)
+            _draw_runs(swept, [runs[number] for number in front], error, axes, label="front", **discs)
         if any(run.failure for run in runs):
             axes.plot([], [], "x", color="0.4", label="diverged")
-        legend_below(figure)
-        return figure
+        return with_legend(figure)
 
 
 def projection_figure(swept: SweptRuns, scene: str) -> Figure:
     """Return errors of runs with feedback and with projection against their factorizations, in three axes.
 
-    They are the trajectory's, not drawn up to that of the reference, the largest |c| and the energy's drift. Colour and
-    dashes are those of a method; its markers are hollow with feedback at the advised points, crosses with feedback at a
-    given one, and filled with projection. Runs that failed are left out.
+    They are the trajectory's, the largest |c| and the energy's drift. Colour and dashes are those of a method; its
+    markers are hollow with feedback at the advised points, crosses with feedback at a given one, and filled with
+    projection. Runs that failed are left out.
     """
     methods = list(dict.fromkeys(run.method for run in swept.runs))
-    used = [key for key in TREATMENTS if any((run.stabilise, run.advised) == key for run in swept.runs)]
     with styled():
         figure = column_figure(1.9)
         panels = figure.subplots(3, 1, sharex=True)
-        for axes, error in zip(panels, plot.ERROR_LABELS, strict=True):
-            floor = swept.reference_error if error == "trajectory" else 0.0
-            for (place, method), key in product(enumerate(methods), used):
-                own = [run for run in swept.runs if (run.method, run.stabilise, run.advised) == (method, *key)]
+        for axes, error in zip(panels, ERROR_LABELS, strict=True):
+            for (place, method), (held, (name, marker)) in product(enumerate(methods), TREATMENTS.items()):
+                own = [run for run in swept.runs if (run.method, run.stabilise, run.advised) == (method, *held)]
                 if own:
-                    line = {**MARKER, **line_at(place), **TREATMENTS[key][1]}
-                    plot.work_precision(own, error, floor, axes, "projection", **line)
+                    line = {"label": f"{method.name}, {name}", **MARKER, **line_at(place), **marker}
+                    _draw_runs(swept, own, error, axes, **line)
             axes.label_outer()
         figure.suptitle(title_lines(scene))
-        of_methods = [Line2D([], [], label=method.name, **line_at(place)) for place, method in enumerate(methods)]
-        of_treatments = [
-            Line2D([], [], color="0.3", linestyle="none", label=name, **{**MARKER, **marker})
-            for name, marker in map(TREATMENTS.__getitem__, used)
-        ]
-        legend_below(figure, [*of_methods, *of_treatments])
-        return figure
+        return with_legend(figure, panels[0].lines)
+
+
+def _draw_runs(swept: SweptRuns, runs: Sequence[Run], error: ErrorOf, axes: Axes, **line: Any) -> None:
+    """Draw an error (SI) of runs against their cost, both logarithmic.
+
+    Left out are runs that failed, and errors of trajectories up to that of the reference.
+    """
+    floor = swept.reference_error if error == "trajectory" else 0.0
+    known = [(run.cost(swept.against), run.error(error) or 0.0) for run in runs]
+    axes.plot(*np.reshape([point for point in known if point[1] > floor], (-1, 2)).T, **line)
+    axes.set(xscale="log", yscale="log", xlabel=COST_LABELS[swept.against], ylabel=ERROR_LABELS[error])
 
 
 def trade_figures(swept: SweptRuns, scene: str) -> dict[str, Callable[[], Figure]]:

@@ -1,15 +1,8 @@
 """What rows say, in words: for each kind of row the sentence above its block of lines."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 from bezstab.show.cells import order_text, safe_step_text, step_limit
 from bezstab.show.fields import Row, formatted
 from bezstab.show.words import change_words, counted, growth_words, safety_words, seconds_words
-
-if TYPE_CHECKING:
-    pass
 
 
 def answer_sentence(row: Row) -> str:
@@ -158,4 +151,5 @@ def chain_sentence(row: Row) -> str:
     heavier = "" if row["chain_mass_ratio"] == 1 else f", the last {row['chain_mass_ratio']:g} times as heavy"
     own = counted(row["swept_iterations"], "sweep")
     bodies = counted(row["chain_bodies"], "body", "bodies")
-    return f"{bodies}{heavier}: stable {enough}. With {own} each step multiplies the error by {z_abs:.4f}."
+    change = change_words(z_abs, "converges" if z_abs < 1 else "diverges")
+    return f"{bodies}{heavier}: stable {enough}. With {own} {change}."

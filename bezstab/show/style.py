@@ -11,7 +11,6 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
-from matplotlib.legend import Legend
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FixedLocator, MaxNLocator
 from numpy.typing import ArrayLike, NDArray
@@ -159,10 +158,10 @@ def marked_line_at(place: int) -> dict[str, Any]:
     }
 
 
-def legend_below(figure: Figure, handles: Sequence[Line2D] | None = None, **box: Any) -> Legend:
-    """Put a legend of all that has a label, or of some lines, below the axes, in as many columns as its width allows.
+def with_legend(figure: Figure, handles: Sequence[Line2D] | None = None, **box: Any) -> Figure:
+    """Return the figure with a legend of all that has a label, or of some lines, below its axes.
 
-    A label that is too long even for one column is broken into lines.
+    It has as many columns as its width allows. A label that is too long even for one column is broken into lines.
     """
     named = {} if handles is None else {"handles": handles}
     for columns in (4, 3, 2, 1):
@@ -177,4 +176,4 @@ def legend_below(figure: Figure, handles: Sequence[Line2D] | None = None, **box:
                 text.set_text(fill(text.get_text(), LABEL_WIDTH))
     height = legend.get_window_extent().height / figure.dpi
     figure.set_figheight(figure.get_figheight() + max(0.0, height - LEGEND_HEIGHT))
-    return legend
+    return figure

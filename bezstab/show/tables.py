@@ -20,8 +20,7 @@ GAP = "  "
 def render(rows: Sequence[Row], columns: Sequence[Field], form: Format) -> str:
     """Return the rows in the given form: every key for json and csv, the chosen columns for text and markdown.
 
-    A key that only other rows have is missing: null, an empty cell; every row has the same. KeyError if a row lacks
-    the key of a chosen column.
+    A key that only other rows have is missing: null, an empty cell, a dash; every row has the same.
     """
     nothing = dict.fromkeys(key for row in rows for key in row)
     if form == "json":
@@ -79,7 +78,7 @@ def wrapped(text: str, width: int) -> str:
 def block(row: Row, columns: Sequence[Field], width: int, sentence: str = "") -> str:
     """Return the row as a line for each column that has a value, its heading in front, below the sentence.
 
-    A value that is longer than its line goes on below itself. KeyError if the row lacks the key of a column.
+    A value that is longer than its line goes on below itself.
     """
     present = [(column.heading, text) for column in columns if (text := column.cell(row)) not in (MISSING, "")]
     indent = max((shown_width(heading) for heading, _ in present), default=0) + len(GAP)

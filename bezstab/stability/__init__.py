@@ -9,7 +9,7 @@ from bezstab.goals import Goal
 from bezstab.lazy import lazy_names
 from bezstab.stability.accurate_points import default_rate
 from bezstab.stability.answer_checks import Modulus
-from bezstab.stability.arrays import EPS, BoolArray, ComplexArray, Extent, FloatArray, real_array
+from bezstab.stability.arrays import EPS, BoolArray, ComplexArray, Extent, FloatArray, plane_arrays, real_array
 from bezstab.stability.best_points import BestPoint, best_point, best_point_or_reason, falls_towards
 from bezstab.stability.choices import Choice, choose, choose_at_step, describe_point
 from bezstab.stability.closed_loop import dominant_pole, poles, spectral_radius, verdict
@@ -23,9 +23,8 @@ from bezstab.stability.forced_errors import (
     combined_error,
     forced_error,
     forced_response,
-    turning_response,
 )
-from bezstab.stability.gain_margins import GainLimits, gain_limits
+from bezstab.stability.gain_margins import gain_factors
 from bezstab.stability.grid_maps import QUALITY, pole_map
 from bezstab.stability.kick_responses import kick_response
 from bezstab.stability.margins import Margins, largest_stable_step, stability_margins, stable_up_to

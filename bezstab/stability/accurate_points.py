@@ -5,7 +5,7 @@ from fractions import Fraction
 
 import numpy as np
 
-from bezstab.errors import InputError, NumericalError
+from bezstab.errors import NumericalError
 from bezstab.methods import Method
 from bezstab.stability.answer_checks import Modulus
 from bezstab.stability.arrays import BoolArray, Extent, FloatArray
@@ -31,31 +31,20 @@ BETTER = 1e-3
 """Relative: edges of what decays fast enough are met so closely."""
 
 
-def accurate_point(
-    method: Method,
-    extent: Extent,
-    error: Modulus,
-    *,
-    omega_h: Fraction,
-    spread: float,
-    equal: bool,
-) -> tuple[float, float]:
-    """Return alpha_hat and beta_hat where an error is least: that of `worst_error` with all but its last two arguments.
+def accurate_point(method: Method, extent: Extent, error: Modulus, *, omega_h: Fraction) -> tuple[float, float]:
+    """Return alpha_hat and beta_hat where an error is least: that of `worst_error`, infinite where decay is too slow.
 
-    Looked at is feedback within the extent; `equal` keeps alpha = beta. InputError if nothing decays as fast as is
-    asked for; NumericalError if another grid has a better point. The test equation is that of
-    methods/steady_errors.py; the goal is this package's.
+    Looked at is feedback within the extent. Any point of it where all is infinite; NumericalError if another grid has a
+    better point. The test equation is that of methods/steady_errors.py; the goal is this package's.
     """
     largest = np.array([extent[0][1] / 2, np.sqrt(extent[1][1])])  # alpha h and beta h
     weakest = min(float(omega_h) * DECAY / RATIOS[1], float(largest.min()))
     low = np.log([weakest, weakest])
     high = np.log(largest)
-    if equal:
-        low, high = low[:1], high.min(keepdims=True)
 
     def errors(points: FloatArray) -> FloatArray:
         """Return the error at each of some points, given by the logarithms of alpha h and beta h."""
-        alpha_h, beta_h = np.exp(points[:, 0]), np.exp(points[:, -1])
+        alpha_h, beta_h = np.exp(points).T
         values = np.full(len(points), np.inf)
         usable = (alpha_h >= RATIOS[0] * beta_h) & (alpha_h <= RATIOS[1] * beta_h)
         values[usable] = error(2 * alpha_h[usable], beta_h[usable] ** 2)
@@ -64,13 +53,10 @@ def accurate_point(
     best, least = zoom_from_grid(
         errors, (low + high) / 2, (high - low) / 2, FIRST_GRID, fold=lambda points: np.clip(points, low, high)
     )
-    if np.isinf(least):
-        raise InputError(f"{method.name}: no feedback settles so fast if α and β are off by a share of {spread:g}")
-    axes = [np.linspace(first, last, SAMPLES) for first, last in zip(low, high, strict=True)]
-    sampled = errors(grid_of(axes).reshape(-1, len(axes))).min()
+    sampled = errors(grid_of(list(np.linspace(low, high, SAMPLES, axis=1))).reshape(-1, 2)).min()
     if sampled < least * (1 - BETTER):
         raise NumericalError(f"{method.name}: the point chosen forces {float(least):.9g}, another {sampled:.9g}")
-    return 2 * float(np.exp(best[0])), float(np.exp(best[-1])) ** 2
+    return 2 * float(np.exp(best[0])), float(np.exp(best[1])) ** 2
 
 
 def default_rate(method: Method, omega_h: Fraction) -> float:

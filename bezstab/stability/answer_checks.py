@@ -81,19 +81,13 @@ def check_least(
     alpha_hat: float,
     beta_hat: float,
     extent: Extent,
-    *,
-    equal: bool = False,
     cut: bool = False,
 ) -> None:
     """Raise NumericalError if an objective is smaller at a sampled point with alpha, beta > 0 than at the answer.
 
-    equal: only alpha = beta is an answer; cut: only points within the extent are.
+    cut: only points within the extent are answers.
     """
     alpha_hats, beta_hats = sampled_points(extent, alpha_hat, beta_hat)
-    if equal:
-        near = alpha_hat * np.concatenate([1 + RINGS, 1 - RINGS])
-        alpha_hats = np.concatenate([near, np.linspace(0, extent[0][1], SAMPLES + 1)[1:]])
-        beta_hats = alpha_hats**2 / 4
     kept = (alpha_hats > 0) & (beta_hats > 0)
     if cut:
         kept &= (alpha_hats <= extent[0][1]) & (beta_hats <= extent[1][1])
@@ -156,24 +150,6 @@ def check_critical(pencil: Pencil, alpha_hat: float, beta_hat: float, extent: Ex
 
 def _real_and_positive(poles: ComplexArray, tolerance: float) -> BoolArray:
     return np.asarray((np.abs(poles.imag) <= tolerance * np.abs(poles)) & (poles.real > 0))
-
-
-def check_gentle(method: Method, modulus: Modulus, alpha_hat: float, rate: float) -> None:
-    """Raise NumericalError unless |z_p| is at most the rate at alpha = beta, and above it at every sampled smaller one.
-
-    `alpha_hat` = 2 alpha h; modulus: |z_p|, or what takes its place.
-    """
-    smaller = alpha_hat * np.concatenate([1 - CLOSE_RINGS, np.arange(1, SAMPLES) / SAMPLES])
-    here = float(modulus(np.array([alpha_hat]), np.array([alpha_hat**2 / 4]))[0])
-    if here > rate + ROOT_OF_ROUNDING:
-        raise NumericalError(f"{method.name}: |z_p| = {here:.9g} at the gentle point, needed {rate:.9g}")
-    values = modulus(smaller, smaller**2 / 4)
-    enough = np.flatnonzero(values < rate - ROOT_OF_ROUNDING)
-    if enough.size:
-        first = smaller[enough].min()
-        raise NumericalError(
-            f"{method.name}: alpha_hat = {first:.9g} with alpha = beta is gentler than {alpha_hat:.9g}"
-        )
 
 
 def check_margin(path: Path, ends: tuple[float, float]) -> None:

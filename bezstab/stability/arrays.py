@@ -58,6 +58,22 @@ def real_array(values: ArrayLike | None, name: str) -> FloatArray:
     raise InputError(f"{name} = {shown(values)}: expected real numbers, one or an array of them")
 
 
+def plane_arrays(alpha_hat: ArrayLike, beta_hat: ArrayLike) -> tuple[FloatArray, FloatArray]:
+    """Return both coordinates of points as arrays of float64, broadcast; errors as `real_array`.
+
+    InputError, too, where their shapes do not fit each other.
+    """
+    given = real_array(alpha_hat, "alpha_hat"), real_array(beta_hat, "beta_hat")
+    try:
+        first, second = np.broadcast_arrays(*given)
+    except ValueError:
+        raise InputError(
+            f"shapes {given[0].shape} and {given[1].shape}: alpha and beta, or their hats, must broadcast, as numpy "
+            "calls it"
+        ) from None
+    return first, second
+
+
 def even_points(count: int) -> tuple[FloatArray, FloatArray]:
     """Return so many points that fill the unit square evenly: both coordinates, each of shape (count,)."""
     k = np.arange(1, count + 1)

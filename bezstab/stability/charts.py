@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from bezstab.stability.arrays import SAME, ComplexArray, Extent, FloatArray
 from bezstab.stability.mu_pencils import MuPencil, all_inside, largest_root_in_z, roots_in_mu
-from bezstab.stability.plane_pencils import PlanePencil, largest_plane_root
+from bezstab.stability.plane_pencils import PlanePencil
 from bezstab.stability.searches import least_between
 
 Place = tuple[float, float]
@@ -113,8 +113,7 @@ def plane_chart(pencil: PlanePencil, view: Extent, curves: Sequence[FloatArray],
 
     def modulus(points: FloatArray) -> FloatArray:
         alpha_hat, beta_hat = points.reshape(-1, 2).T
-        z = np.empty(alpha_hat.size, complex)
-        largest_plane_root(pencil, alpha_hat, beta_hat, (1, alpha_hat.size), into=z)
+        z = pencil.largest_poles(alpha_hat, beta_hat, (1, alpha_hat.size))
         return np.abs(z).reshape(points.shape[:-1])
 
     return Chart(

@@ -10,35 +10,29 @@ from typing import assert_never, get_args
 import numpy as np
 
 from bezstab.errors import InputError, NumericalError
-from bezstab.goals import SETTLING, UP_TO_LONGEST, Goal
+from bezstab.goals import Goal
 from bezstab.methods import Method, Verdict, steps
 from bezstab.rationals import exact
 from bezstab.stability.accurate_points import accurate_point, default_rate, worst_error
-from bezstab.stability.answer_checks import (
-    Modulus,
-    check_critical,
-    check_gentle,
-    check_least,
-)
+from bezstab.stability.answer_checks import Modulus, check_critical, check_least
 from bezstab.stability.arrays import DOUBLE, SLOW, BoolArray, Extent, FloatArray
 from bezstab.stability.best_points import best_point
-from bezstab.stability.closed_loop import largest_modulus, largest_pole, verdict
+from bezstab.stability.closed_loop import converges, largest_modulus, largest_pole, verdict
 from bezstab.stability.critical_points import critical_place
-from bezstab.stability.curve_choices import Curve, least_along, mildest_along
+from bezstab.stability.curve_choices import Curve, least_along, mildest_along, of_equal
 from bezstab.stability.forced_errors import OMEGA_H
 from bezstab.stability.margins import Margins, stability_margins
+from bezstab.stability.path_crossings import ONE
 from bezstab.stability.pencils import Pencil, pencil_of
 from bezstab.stability.regions import Region, chart_of, pole_place, region
 from bezstab.stability.root_finding import TOLD
-from bezstab.stability.searches import checked, first_where, zoom_from_grid
-from bezstab.units import check_step
+from bezstab.stability.searches import checked, zoom_from_grid
 
 THOUSANDFOLD = 1e-3  # what "settled" means for the constraint error
 Within = Callable[[FloatArray, FloatArray, FloatArray], BoolArray]
 """Whether |z_p| is below a bound, over arrays of alpha_hat, beta_hat and bounds."""
 
 SCOUTS = 16  # of the points one in so many is looked at first, for a value that the others must be below
-SAMPLES = 4000  # along a line: |z_p| has no features as narrow as that
 FIRST_GRID = 52  # points per axis of the first grid over the region's box: every valley is seen
 GRID = 49  # points per axis of a zoom: few fine grids take less time than many coarse ones, and lose no valley
 ZOOM = 0.32  # from one grid to the next: eight spacings to either side of its best point
@@ -106,6 +100,7 @@ def choose(
     margins: bool = True,
     along: Curve | None = None,
     omega_h: Fraction = OMEGA_H,
+    share: Fraction = ONE,
 ) -> Choice:
     """Return the point that a goal asks for, dimensionless and proven stable; without `margins` in less time.
 
@@ -117,7 +112,8 @@ def choose(
     by the spread, where fast means decay per second. gentle: the smallest alpha = beta with |z_p| <= rate. `equal`
     keeps alpha = beta. `along` is a curve of points that alone are looked at; of several that are best, the mildest is
     taken, and gentle is the mildest with |z_p| <= rate.
-    `modulus` takes the place of |z_p| at rest, for a mechanism that moves; critical asks for poles at rest.
+    `modulus` takes the place of |z_p| at rest, for a mechanism that moves; critical asks for poles at rest. What is
+    described is the same alpha and beta at a step of so large a `share` of that which they are chosen for.
     InputError if nothing stable meets the goal, for another goal and for a spread outside 0 to 1; NumericalError if a
     second route contradicts the answer (answer_checks). The poles are those of paper Eq. 17; the goals are this
     package's.
@@ -126,18 +122,18 @@ def choose(
         raise InputError(f"goal {goal!r}: expected {', '.join(get_args(Goal))}")
     _check_spread(spread)
     box, cut = search_box(region(method))
+    curve = along or (of_equal(box) if equal or goal == "gentle" else None)
     pencil = pencil_of(method, free=True)  # a pole that no parameters move must not hide the others
     at_rest = modulus is None
     modulus = modulus or partial(largest_modulus, pencil)
     within = pencil.all_within if at_rest else partial(_below, modulus)
     if goal == "accurate":
-        point = _accurate(method, box, modulus, within, omega_h, rate, spread, equal, along)
-        cut = cut and not along
+        point = _accurate(method, box, modulus, within, omega_h, rate, spread, equal, curve)
     elif goal == "gentle":
-        of_all = partial(largest_modulus, pencil_of(method)) if at_rest and not along else modulus
-        rate = 0.0 if rate is None else rate
-        point = mildest_along(along, of_all, rate, method.name) if along else _gentle(method, of_all, box, rate)
-        cut = False
+        of_all = partial(largest_modulus, pencil_of(method)) if at_rest else modulus
+        assert curve
+        what = "any setting of the engine" if along else "alpha = beta"
+        point, cut = mildest_along(curve, of_all, rate or 0.0, f"with {what} {method.name}"), False
     elif goal == "critical":
         if along:
             raise InputError(
@@ -149,19 +145,19 @@ def choose(
             raise InputError(
                 f"--goal critical --keep alpha=beta: the double pole of {method.name} is not at alpha = beta"
             )
-    elif goal == "fastest" and at_rest and not (along or equal) and (best := best_point(method)):
+    elif goal == "fastest" and at_rest and not curve and (best := best_point(method)):
         point, cut = (best.alpha_hat, best.beta_hat), False
     elif goal == "robust" or goal == "fastest":  # noqa: PLR1714 (what the type checker follows)
         objective = _slowest(method, modulus, within, spread) if goal == "robust" else modulus
         # without a curve of the fastest where |z_p| falls on as the feedback grows, or for a mechanism that moves
-        point = least_along(along, objective) if along else _checked_least(pencil, box, objective, equal, cut)
-        cut = cut and not along
+        point = least_along(curve, objective) if curve else _checked_least(pencil, box, objective, cut)
     else:
         assert_never(goal)
-    choice = describe_point(method, goal, exact(point[0]), exact(point[1]), spread, margins)
-    if choice.verdict != "converges":
+    alpha_hat, beta_hat = (exact(each) for each in point)
+    if not converges(method, alpha_hat, beta_hat):
         raise NumericalError(f"{method.name}: the point {point} found for {goal} is not stable")
-    return replace(choice, searched=SEARCHED) if cut else choice
+    choice = describe_point(method, goal, alpha_hat * share, beta_hat * share**2, spread, margins)
+    return replace(choice, searched=SEARCHED) if cut and not along else choice
 
 
 def _accurate(
@@ -173,38 +169,36 @@ def _accurate(
     rate: float | None,
     spread: float,
     equal: bool,
-    along: Curve | None,
+    curve: Curve | None,
 ) -> tuple[float, float]:
     """Return the point of the goal accurate; where nothing decays as fast as it does by default, at half of robust.
 
-    InputError where nothing does at a rate that is given, or along a curve.
+    InputError where nothing does at a rate that is given.
     """
 
     def found(rate: float) -> tuple[float, float]:
         decays = partial(_decays, within, rate)
         error = partial(worst_error, method, decays, omega_h=omega_h, spread=spread)
-        if along is None:
-            return accurate_point(method, box, error, omega_h=omega_h, spread=spread, equal=equal)
-        point = least_along(along, error)
+        point = least_along(curve, error) if curve else accurate_point(method, box, error, omega_h=omega_h)
         if np.isinf(error(*(np.array([each]) for each in point))).any():
-            raise InputError(
-                f"{method.name}: no setting of the engine has |z_p| <= {rate:.6g} if α and β are off by a share of "
-                f"{spread:g}"
-            )
+            what = "setting of the engine" if curve and not equal else "feedback"
+            words = f"settles so fast, to |z_p| <= {rate:.6g}, if α and β are off by a share of {spread:g}"
+            raise InputError(f"{method.name}: no {what} {words}")
         return point
 
     try:
         return found(default_rate(method, omega_h) if rate is None else rate)
     except InputError:
-        if rate is not None or along:
+        if rate is not None:
             raise
-        fast = choose(method, "robust", spread, equal=equal, modulus=modulus, margins=False)
+        along = None if equal else curve
+        fast = choose(method, "robust", spread, equal=equal, modulus=modulus, margins=False, along=along)
         return found(fast.worst**0.5)
 
 
 def _check_spread(spread: float) -> None:
     if not 0 <= spread < 1:
-        raise InputError(f"spread {spread:g}: expected a share from 0 to 1")
+        raise InputError(f"--spread {spread:g}: expected a share from 0 to 1")
 
 
 def search_box(stable: Region) -> tuple[Extent, bool]:
@@ -230,7 +224,7 @@ def choose_at_step(
     method: Method,
     goal: Goal,
     *,
-    h: Fraction,
+    h: Fraction | None,
     h_max: Fraction | None = None,
     settle: Fraction | None = None,
     spread: float = 0.1,
@@ -244,30 +238,15 @@ def choose_at_step(
 
     At a smaller step the same alpha and beta are a smaller alpha_hat = 2 alpha h and beta_hat = beta^2 h^2 (paper Eq.
     16). `settle` (s) is the time in which the error of `gentle` and `accurate` falls a thousandfold; `modulus` and
-    `omega_h`, of the largest step, `along` and `margins` are as for `choose`. Errors as for `choose`; InputError, too,
-    for a step outside 1e-100 to 1e100 s, for an h_max below h or with another goal than robust and accurate, and for a
-    settle that is not positive, missing with gentle, or with another goal than gentle and accurate.
+    `omega_h`, of the largest step, `along` and `margins` are as for `choose`, and so are errors. Without a step there
+    are neither h_max nor a settle.
     """
-    check_step(h)
-    if h_max is not None and (goal not in UP_TO_LONGEST or h_max < h):
-        raise InputError(
-            f"h_max = {float(h_max):g} s: only for the goals robust and accurate, and at least h = {float(h):g} s"
-        )
-    if settle is None and goal == "gentle":
-        raise InputError("the goal gentle needs settle, a time in s")
-    if settle is not None and goal not in SETTLING:
-        raise InputError(f"settle, a time in s, goes with the goals gentle and accurate, not {goal}")
-    if settle is not None and settle <= 0:
-        raise InputError(f"settle = {float(settle):g} s: expected a positive time")
+    largest = h_max or h
     rate = None
-    if settle is not None:
-        rate = THOUSANDFOLD ** float((h_max or h) * method.step_multiple / settle)
-    choice = choose(method, goal, spread, rate, equal, modulus, margins, along, omega_h)
-    if h_max is None or h_max == h:
-        return choice
-    share = h / h_max
-    alpha_hat, beta_hat = exact(choice.alpha_hat) * share, exact(choice.beta_hat) * share**2
-    return replace(describe_point(method, goal, alpha_hat, beta_hat, spread, margins), searched=choice.searched)
+    if settle and largest:
+        rate = THOUSANDFOLD ** float(largest * method.step_multiple / settle)
+    share = h / largest if h and largest else ONE
+    return choose(method, goal, spread, rate, equal, modulus, margins, along, omega_h, share)
 
 
 def describe_point(
@@ -372,32 +351,30 @@ def _below(modulus: Modulus, alpha_hat: FloatArray, beta_hat: FloatArray, bound:
     return np.asarray(modulus(alpha_hat, beta_hat) < bound)
 
 
-def _checked_least(pencil: Pencil, extent: Extent, objective: Modulus, equal: bool, cut: bool) -> tuple[float, float]:
+def _checked_least(pencil: Pencil, extent: Extent, objective: Modulus, cut: bool) -> tuple[float, float]:
     """Return where the objective is least; NumericalError if after a finer search, too, a sampled point is better."""
 
     def found(finer: int) -> tuple[float, float]:
-        alpha_hat, beta_hat = _least(extent, objective, equal, cut, finer)
-        check_least(pencil.method, objective, alpha_hat, beta_hat, extent, equal=equal, cut=cut)
+        alpha_hat, beta_hat = _least(extent, objective, cut, finer)
+        check_least(pencil.method, objective, alpha_hat, beta_hat, extent, cut)
         return alpha_hat, beta_hat
 
     return checked(found)
 
 
-def _least(extent: Extent, objective: Modulus, equal: bool, cut: bool, finer: int) -> tuple[float, float]:
-    """Return where the objective is least over the region's box; with `equal` on the line alpha = beta.
+def _least(extent: Extent, objective: Modulus, cut: bool, finer: int) -> tuple[float, float]:
+    """Return where the objective is least over the region's box.
 
     `finer`: so many times the points along an axis of the first grid, and so many times the zooms, each by a lesser
     factor. Its valleys are narrow, curved and have kinks for beds: the grids wait where a valley leads on, but out of a
     box that cuts off the region they are not led (`cut`).
     """
     largest = np.array([extent[0][1] / 2, math.sqrt(extent[1][1])])  # alpha h and beta h
-    if equal:
-        largest = largest.min(keepdims=True)
 
     def over_positive_points(points: FloatArray) -> FloatArray:
         values = np.full(points.shape[:-1], np.inf)
         positive = (points > 0).all(axis=-1)
-        alpha, beta = points[positive].T[[0, -1]]  # times h; with `equal` the same
+        alpha, beta = points[positive].T  # times h
         values[positive] = objective(2 * alpha, beta**2)
         return values
 
@@ -405,14 +382,14 @@ def _least(extent: Extent, objective: Modulus, equal: bool, cut: bool, finer: in
         over_positive_points,
         largest / 2,
         largest / 2,
-        finer * (SAMPLES if equal else FIRST_GRID),
+        finer * FIRST_GRID,
         points=GRID,
         shrink=ZOOM ** (1 / finer),
         rounds=finer * ZOOMS,
         patient=True,
         fold=(lambda points: np.minimum(points, largest)) if cut else None,
     )
-    return 2 * float(best[0]), float(best[-1]) ** 2
+    return 2 * float(best[0]), float(best[1]) ** 2
 
 
 def _critical_point(method: Method, box: Extent) -> tuple[float, float]:
@@ -426,14 +403,3 @@ def _critical_point(method: Method, box: Extent) -> tuple[float, float]:
     if best and not best.z_abs and math.dist(found, (best.alpha_hat, best.beta_hat)) < AT_DEADBEAT:
         return best.alpha_hat, best.beta_hat
     return found
-
-
-def _gentle(method: Method, modulus: Modulus, extent: Extent, rate: float) -> tuple[float, float]:
-    """Return the smallest alpha = beta with |z_p| <= rate; InputError without one, NumericalError if it is not that."""
-    alpha = np.linspace(0, extent[0][1] / 2, SAMPLES)  # times h, as beta
-    found = first_where(lambda alpha: modulus(2 * alpha, alpha**2) <= rate, alpha)
-    if found is None:
-        name, best = method.name, modulus(2 * alpha, alpha**2).min()
-        raise InputError(f"--settle: with alpha = beta {name} has at best |z_p| = {best:.6g}, needed {rate:.6g}")
-    check_gentle(method, modulus, 2 * found[1], rate)
-    return 2 * found[1], found[1] ** 2

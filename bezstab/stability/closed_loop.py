@@ -15,7 +15,7 @@ from bezstab.methods import (
     is_schur,
     recursion_verdict,
 )
-from bezstab.stability.arrays import EPS, ComplexArray, FloatArray, real_array
+from bezstab.stability.arrays import EPS, ComplexArray, FloatArray, plane_arrays
 from bezstab.stability.neighbourhoods import SIDE
 from bezstab.stability.pencils import Pencil, pencil_of
 from bezstab.stability.root_finding import CHUNK
@@ -52,7 +52,7 @@ def poles(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> ComplexA
     Descending by modulus. Roots of paper Eq. 17. NumericalError if a root leaves the range of float64, or is infinite,
     where an implicit step has no solution.
     """
-    alpha_hat, beta_hat = np.broadcast_arrays(real_array(alpha_hat, "alpha_hat"), real_array(beta_hat, "beta_hat"))
+    alpha_hat, beta_hat = plane_arrays(alpha_hat, beta_hat)
     rows = pencil_of(method).poles(alpha_hat.ravel(), beta_hat.ravel())
     z = rows.T.reshape(*alpha_hat.shape, len(rows))
     order = np.lexsort((-z.imag, -np.abs(z)), axis=-1)
@@ -69,7 +69,7 @@ def dominant_pole(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> 
     found = largest_pole(pencil, alpha_hat, beta_hat)
     infinite = ~np.isfinite(found)
     if infinite.any():
-        alpha_hat, beta_hat = np.broadcast_arrays(real_array(alpha_hat, "alpha_hat"), real_array(beta_hat, "beta_hat"))
+        alpha_hat, beta_hat = plane_arrays(alpha_hat, beta_hat)
         worst = f"({alpha_hat[infinite][0]:.6g}, {beta_hat[infinite][0]:.6g})"
         raise NumericalError(
             f"{method.name}: a pole is infinite at {worst}: the equations of an implicit step have no solution there"
@@ -88,7 +88,7 @@ def spectral_radius(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike) -
 
 def largest_pole(pencil: Pencil, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> ComplexArray:
     """Return what dominant_pole does, from a pencil; infinite where an implicit step has no solution."""
-    alpha_hat, beta_hat = np.broadcast_arrays(real_array(alpha_hat, "alpha_hat"), real_array(beta_hat, "beta_hat"))
+    alpha_hat, beta_hat = plane_arrays(alpha_hat, beta_hat)
     alphas, betas = (each if each.ndim == 2 else each.reshape(1, -1) for each in (alpha_hat, beta_hat))
     dominant = np.empty(alphas.shape, complex)
     most = BLOCK * POLES // max(POLES, pencil.degree)
@@ -97,8 +97,7 @@ def largest_pole(pencil: Pencil, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> C
     for i, j in product(range(0, alphas.shape[0], rows), range(0, alphas.shape[1], columns)):
         tile = np.s_[i : i + rows, j : j + columns]
         height, width = alphas[tile].shape
-        found = np.empty(height * width, complex)
-        pencil.write_largest_poles(alphas[tile].ravel(), betas[tile].ravel(), (height, width), found)
+        found = pencil.largest_poles(alphas[tile].ravel(), betas[tile].ravel(), (height, width))
         dominant[tile] = found.reshape(height, width)
     return _without_rounding(dominant).reshape(alpha_hat.shape)
 

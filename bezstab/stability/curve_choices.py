@@ -1,4 +1,4 @@
-"""Which point of a curve to choose: where an engine can express no more than that, from weak feedback to strong.
+"""Which point of a curve to choose, from weak feedback to strong: all that an engine can express, or alpha = beta.
 
 beta_hat |     .-'            A point of the curve is told by its share of the way, 0 < share <= 1.
          |  .-'
@@ -13,14 +13,26 @@ import numpy as np
 
 from bezstab.errors import InputError, NumericalError
 from bezstab.stability.answer_checks import Modulus
-from bezstab.stability.arrays import DOUBLE, SAME, FloatArray, even_points
+from bezstab.stability.arrays import DOUBLE, EPS, SAME, Extent, FloatArray, even_points
 from bezstab.stability.root_finding import TOLD
 from bezstab.stability.searches import first_where, least_between
 
 Curve = Callable[[Any], tuple[Any, Any]]
 """alpha_hat and beta_hat over arrays of shares of the way."""
 
-SAMPLES = 1000  # |z_p| has no features as narrow as that, and what is narrower the zoom finds
+EVEN: FloatArray = np.linspace(0, 1, 1001)[1:]
+SAMPLES: FloatArray = np.concatenate([np.geomspace(1e-6, EVEN[0], 100)[:-1], EVEN])
+"""Shares of the way: |z_p| has no features as narrow as that, and what is narrower the zoom finds. Errors that a slow
+motion forces are least at weak feedback."""
+CHECKED: FloatArray = even_points(len(EVEN))[0]
+NEARER: FloatArray = 1 - np.array([1e-2, 1e-3, 1e-4, 1e-5])
+"""Times a share: milder feedback that is looked at once more."""
+
+
+def of_equal(extent: Extent) -> Curve:
+    """Return the curve alpha = beta within an extent of alpha_hat and beta_hat that begins at zero."""
+    largest = min(extent[0][1] / 2, extent[1][1] ** 0.5)  # alpha h, and beta h
+    return lambda share: (2 * largest * share, (largest * share) ** 2)
 
 
 def least_along(curve: Curve, objective: Modulus) -> tuple[float, float]:
@@ -32,30 +44,39 @@ def least_along(curve: Curve, objective: Modulus) -> tuple[float, float]:
     def values(shares: FloatArray) -> FloatArray:
         return objective(*_points(curve, shares))
 
-    samples = np.linspace(0, 1, SAMPLES + 1)[1:]
-    sampled = values(samples)
-    nearest = samples[np.argmin(sampled)]
-    zoomed, least = least_between(
-        values, np.maximum(nearest - 2 / SAMPLES, samples[0]), np.minimum(nearest + 2 / SAMPLES, 1)
-    )
+    sampled = values(SAMPLES)
+    k = int(np.argmin(sampled))
+    nearest = SAMPLES[k]
+    zoomed, least = least_between(values, SAMPLES[max(k - 2, 0)], SAMPLES[min(k + 2, len(SAMPLES) - 1)])
     as_small = min(float(least), float(sampled.min())) * (1 + TOLD)
     best = float(zoomed) if least < sampled.min() else float(nearest)  # a sample may be an exact point, as beta_hat = 1
-    if np.count_nonzero(sampled <= as_small) > 1 and (level := first_where(lambda s: values(s) <= as_small, samples)):
+    if np.count_nonzero(sampled <= as_small) > 1 and (level := first_where(lambda s: values(s) <= as_small, SAMPLES)):
         best = level[1]
     here = float(values(np.array([best]))[0])
-    between, _ = even_points(SAMPLES)
-    if values(between).min() < here * (1 - DOUBLE) - SAME:
+    if values(CHECKED).min() < here * (1 - DOUBLE) - SAME:
         raise NumericalError(f"the point chosen along the curve has {here:.9g}, but another has less")
     return _point(curve, best)
 
 
 def mildest_along(curve: Curve, modulus: Modulus, rate: float, name: str) -> tuple[float, float]:
-    """Return the mildest point (alpha_hat, beta_hat) of a curve with |z_p| <= rate; InputError without one."""
-    samples = np.linspace(0, 1, SAMPLES + 1)[1:]
-    found = first_where(lambda shares: modulus(*_points(curve, shares)) <= rate, samples)
+    """Return the mildest point (alpha_hat, beta_hat) of a curve with |z_p| <= rate; InputError without one.
+
+    NumericalError if a milder one that is looked at then has it too. `name` is what has |z_p|.
+    """
+
+    def values(shares: FloatArray) -> FloatArray:
+        return modulus(*_points(curve, shares))
+
+    found = first_where(lambda shares: values(shares) <= rate, SAMPLES)
     if found is None:
-        raise InputError(f"--settle: no setting of the engine has |z_p| <= {rate:.6g} with {name}")
-    return _point(curve, found[1])
+        best = modulus(*(np.array([each]) for each in least_along(curve, modulus)))
+        raise InputError(f"--settle: {name} has at best |z_p| = {best[0]:.6g}, needed {rate:.6g}")
+    share = found[1]
+    looked_at = np.concatenate([share * NEARER, CHECKED])
+    milder = looked_at[(looked_at < share) & (looked_at >= SAMPLES[0])]
+    if values(np.array([share]))[0] > rate + EPS**0.5 or values(milder).min(initial=1) < rate - EPS**0.5:
+        raise NumericalError(f"{name}: a milder point than the gentle one has |z_p| <= {rate:.9g}")
+    return _point(curve, share)
 
 
 def _points(curve: Curve, shares: FloatArray) -> tuple[FloatArray, FloatArray]:

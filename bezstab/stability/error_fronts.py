@@ -8,7 +8,7 @@ For a rate r the front has the least combined error (forced_errors.py) among all
           +----+-------- r
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
@@ -50,9 +50,6 @@ TOO_SLOW, SLOWEST = 1e3, 1e3
 """Where errors decay too slowly, TOO_SLOW + |z_p| stands in for the error's logarithm, which is never so large: the
 search goes to where they decay faster. |z_p| beyond SLOWEST is no slower."""
 
-Logarithms = Callable[[FloatArray], tuple[FloatArray, FloatArray]]
-"""Of the error, and |z_p| itself, at points (..., 2), given by the logarithms of alpha h and beta h."""
-
 
 @dataclass(frozen=True)
 class FrontPoint:
@@ -90,9 +87,8 @@ def error_front(method: Method, rates: Sequence[float] = RATES, omega_h: Fractio
     if reached:
         high = np.log([alpha_hat_max / 2, np.sqrt(beta_hat_max)])
         low = np.minimum(np.log(-WEAKEST * np.log(reached[0])), high - 1)
-        found = checked(partial(_front, method, _logarithms(method, omega_h), low, high, reached, best))
-        alpha_hat, beta_hat = _plane(found)
-        points = list(zip(reached, alpha_hat.tolist(), beta_hat.tolist(), strict=False))
+        found = checked(partial(_front, method, omega_h, low, high, reached, best))
+        points = list(zip(reached, *np.array(_plane(found)).tolist(), strict=False))
     if best:
         points.append((best.z_abs, best.alpha_hat, best.beta_hat))
     return [_front_point(method, omega_h, *point) for point in points]
@@ -120,20 +116,9 @@ def _plane(points: FloatArray) -> tuple[FloatArray, FloatArray]:
     return 2 * np.exp(points[..., 0]), np.exp(2 * points[..., 1])
 
 
-def _logarithms(method: Method, omega_h: Fraction) -> Logarithms:
-    pencil = pencil_of(method, free=True)  # a pole that no parameters move must not hide the others
-
-    def looked_at(points: FloatArray) -> tuple[FloatArray, FloatArray]:
-        alpha_hat, beta_hat = _plane(points)
-        error = combined_error(method, alpha_hat, beta_hat, omega_h)
-        return np.log(error), largest_modulus(pencil, alpha_hat, beta_hat)
-
-    return looked_at
-
-
 def _front(
     method: Method,
-    looked_at: Logarithms,
+    omega_h: Fraction,
     low: FloatArray,
     high: FloatArray,
     rates: Sequence[float],
@@ -146,25 +131,24 @@ def _front(
     faster rate. The last rates have none where nothing there decays so fast. NumericalError where the check finds a
     better point.
     """
+    pencil = pencil_of(method, free=True)  # a pole that no parameters move must not hide the others
 
     def objective(points: FloatArray, rate: float) -> FloatArray:
         """Return the logarithm of the error where it decays so fast, elsewhere what stands in for it."""
-        error, z_abs = looked_at(points)
+        alpha_hat, beta_hat = _plane(points)
+        z_abs = largest_modulus(pencil, alpha_hat, beta_hat)
+        error = np.log(combined_error(method, alpha_hat, beta_hat, omega_h))
         return np.where(z_abs <= rate, error, TOO_SLOW + np.minimum(z_abs, SLOWEST))
-
-    def axes(count: int) -> list[FloatArray]:
-        return [np.linspace(first, last, count) for first, last in zip(low, high, strict=True)]
 
     best = np.empty((0, 2))
     if fastest:
-        there = np.log(np.maximum([fastest.alpha_hat / 2, np.sqrt(fastest.beta_hat)], np.exp(low)))  # not zero
-        best = there[np.newaxis]
+        best = np.log(np.maximum([[fastest.alpha_hat / 2, np.sqrt(fastest.beta_hat)]], np.exp(low)))  # not zero
     front = []
     for rate in reversed(rates):
         at_rate = partial(objective, rate=rate)
         found, _ = lowest_minima(
             at_rate,
-            axes(finer * FIRST_GRID),
+            list(np.linspace(low, high, finer * FIRST_GRID, axis=1)),
             STARTS,
             points=GRID,
             rounds=ROUNDS,
@@ -173,7 +157,7 @@ def _front(
         points = np.concatenate([found, best])
         values = at_rate(points)
         best = points[np.argmin(values)][np.newaxis]
-        if at_rate(grid_of(axes(CHECKED))).min() < values.min() + np.log1p(-BETTER):
+        if at_rate(grid_of(list(np.linspace(low, high, CHECKED, axis=1)))).min() < values.min() + np.log1p(-BETTER):
             raise NumericalError(f"{method.name}: on the front with |z_p| of {rate:g} at most another point is better")
         if values.min() < TOO_SLOW:
             front.append(best[0])

@@ -70,7 +70,7 @@ def feedback_cost(
 def order_left(method: Method) -> int:
     """Return the order in h of constraint errors where alpha_hat and beta_hat are held, at most the method's own."""
     order, _ = accuracy(method)
-    return min(order, leading_error(method).order_left)
+    return min(order, leading_error(method).power)
 
 
 Shares = tuple[float | None, float | None, float | None]

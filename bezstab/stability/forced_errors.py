@@ -13,18 +13,18 @@ Both are shares of the amplitude of the motion. N is summed in exact arithmetic:
 theta^(order + 1). D is taken in powers of z - 1, which float64 knows to all digits near z = 1, too.
 """
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections.abc import Mapping
+from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
 from math import comb
 
 import numpy as np
-from numpy.polynomial.polynomial import polyval2d
+from numpy.polynomial.polynomial import polyval, polyval2d
 from numpy.typing import ArrayLike
 
 from bezstab.errors import InputError
-from bezstab.methods import ExponentialSum, ForcedErrors, Method, forced_errors, leading_error, turning_error
+from bezstab.methods import Method, forced_errors, leading_error
 from bezstab.stability.arrays import ComplexArray, FloatArray
 
 OMEGA_H = Fraction(1, 100)
@@ -36,22 +36,8 @@ SLOWEST = Fraction(1, 10**6)
 BETWEEN = 24
 """Frequencies at which |D| is looked at from 0 on, besides the feedback's own resonance: |D| is smooth."""
 
-AT_ONCE = 2**17
-"""Values of D in one go: few calls for few points, and no more than some megabytes for a map."""
-
 DIGITS = 120
 """Of what is summed: with omega h = 1e-6 and order 12 all but theta^14 = 1e-84 cancels, and enough are left."""
-
-
-@dataclass(frozen=True)
-class ErrorTables:
-    """What float64 needs to know of a method's errors at one theta: tables by powers of alpha_hat and beta_hat."""
-
-    method: Method
-    omega_h: float
-    position: ComplexArray = field(repr=False)
-    velocity: ComplexArray = field(repr=False)
-    denominator: FloatArray = field(repr=False)
 
 
 @dataclass(frozen=True)
@@ -80,24 +66,24 @@ def forced_error(
     those up to omega, so that it grows where the poles come near the circle anywhere: that is what `choose` weighs.
     InputError unless 1e-6 <= omega_h < 1. Stability is not looked at. Source: methods/steady_errors.py.
     """
-    tables = error_tables(method, omega_h)
+    check_omega_h(omega_h)
     alpha_hat, beta_hat = np.broadcast_arrays(np.asarray(alpha_hat, float), np.asarray(beta_hat, float))
     multiple = float(method.step_multiple)
-    a, b, theta = multiple * alpha_hat, multiple**2 * beta_hat, multiple * tables.omega_h
-    of_powers = [polyval2d(a, b, table) for table in tables.denominator]
-    at_own = _denominator_size(of_powers, np.asarray(theta))
+    a, b, theta = multiple * alpha_hat, multiple**2 * beta_hat, multiple * float(omega_h)
+    around_one = _denominator(method, a, b)
+
+    def size(frequency: ArrayLike) -> FloatArray:
+        """Return |D| at a frequency, one for all points or one for each."""
+        return np.abs(polyval(np.expm1(1j * np.asarray(frequency)), around_one, tensor=False))
+
     highest = np.pi if any_frequency else theta
-    resonance = np.sqrt(np.clip(b - a**2 / 2, 0.0, highest**2))
-    least = np.minimum(at_own, _denominator_size(of_powers, resonance))
-    between = np.linspace(0.0, highest, BETWEEN + 1).reshape(-1, *[1] * alpha_hat.ndim)
-    at_once = 1 + AT_ONCE // max(1, alpha_hat.size)
-    for first in range(0, len(between), at_once):
-        sizes = _denominator_size(of_powers, between[first : first + at_once])
-        least = np.minimum(least, sizes.min(axis=0))
-    of_position = np.abs(polyval2d(a, b, tables.position))
-    of_velocity = np.abs(polyval2d(a, b, tables.velocity)) / theta
+    at_own = size(theta)
+    least = np.minimum(at_own, size(np.sqrt(np.clip(b - a**2 / 2, 0.0, highest**2))))  # where the feedback resounds
+    for frequency in np.linspace(0.0, highest, BETWEEN + 1):
+        least = np.minimum(least, size(frequency))
+    position, velocity = (np.abs(polyval2d(a, b, table)) for table in _numerators(method, omega_h))
     with np.errstate(divide="ignore"):  # a pole that answers a frequency without bound
-        return ForcedError(position=of_position / at_own, velocity=of_velocity / at_own, total=of_position / least)
+        return ForcedError(position=position / at_own, velocity=velocity / theta / at_own, total=position / least)
 
 
 def combined_error(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike, omega_h: Fraction) -> FloatArray:
@@ -117,65 +103,6 @@ def check_omega_h(omega_h: Fraction) -> None:
         raise InputError(f"omega h = {float(omega_h):g} rad a step: expected {float(SLOWEST):g} to 1")
 
 
-@lru_cache(maxsize=64)
-def error_tables(method: Method, omega_h: Fraction) -> ErrorTables:
-    """Return the tables of a method at theta = i omega_h; InputError as `forced_error`."""
-    check_omega_h(omega_h)
-    errors = forced_errors(method)
-    of_own_step = omega_h * method.step_multiple
-    return ErrorTables(
-        method=method,
-        omega_h=float(omega_h),
-        position=_at(errors.position, of_own_step),
-        velocity=_at(errors.velocity, of_own_step),
-        denominator=_around_one(errors.denominator),
-    )
-
-
-def _at(terms: ExponentialSum, omega_h: Fraction) -> ComplexArray:
-    """Return a sum at theta = i omega_h as a table by powers of alpha_hat and beta_hat, each entry to all digits."""
-    import mpmath  # which sympy has loaded where there is something to sum
-
-    table = np.zeros(_shape(terms), dtype=complex)
-    with mpmath.workdps(DIGITS):
-        theta = mpmath.mpc(0, mpmath.mpmathify(omega_h))
-        for powers, of_powers in terms.items():
-            total = mpmath.fsum(
-                mpmath.mpmathify(c) * theta**m * mpmath.exp(mpmath.mpmathify(k) * theta)
-                for (k, m), c in of_powers.items()
-            )
-            table[powers] = complex(total)
-    return table
-
-
-def _around_one(terms: ExponentialSum) -> FloatArray:
-    """Return the denominator, over a power of z, as a table by powers of z - 1, alpha_hat and beta_hat."""
-    lowest = min(k for of_powers in terms.values() for k, _ in of_powers)
-    degree = int(max(k for of_powers in terms.values() for k, _ in of_powers) - lowest)
-    table = np.zeros((degree + 1, *_shape(terms)))
-    for powers, of_powers in terms.items():
-        for n in range(degree + 1):
-            table[n, *powers] = float(sum(c * comb(int(k - lowest), n) for (k, _), c in of_powers.items()))
-    return table
-
-
-def _shape(terms: ExponentialSum) -> tuple[int, int]:
-    """Return the shape of a table by powers of alpha_hat and beta_hat."""
-    return 1 + max(i for i, _ in terms), 1 + max(j for _, j in terms)
-
-
-def _denominator_size(of_powers: Sequence[FloatArray], theta: FloatArray) -> FloatArray:
-    """Return |D(e^(i theta))|, from the coefficients of the powers of z - 1 at each point, by Horner's rule.
-
-    Shape of theta and the coefficients broadcast.
-    """
-    from_one = np.expm1(1j * theta)
-    total = of_powers[-1] + 0j * from_one
-    for coefficient in reversed(of_powers[:-1]):
-        total = total * from_one + coefficient
-    return np.asarray(np.abs(total))
-
-
 LARGEST_OMEGA_H = 0.6
 """rad a step: beyond, no step follows a motion, and it is left out of a response."""
 
@@ -189,45 +116,72 @@ def forced_response(method: Method, alpha_hat: float, beta_hat: float, omega_h: 
     Complex, shape of omega_h (rad a step, of either sign): N(theta) / (theta^k D(e^theta)), so that a motion with
     h^k phi^(k) = e^(i omega t) has so large an error. Zero beyond LARGEST_OMEGA_H, which no step follows.
     """
-    errors = forced_errors(method)
-    power = leading_error(method).power
-    multiple = float(method.step_multiple)
+    multiple, power = float(method.step_multiple), leading_error(method).power
     a, b = multiple * alpha_hat, multiple**2 * beta_hat
-    theta = 1j * multiple * np.where(np.abs(omega_h) < LARGEST_OMEGA_H, omega_h, 0.0)
-    numerator = np.zeros(theta.shape, dtype=complex)
-    for coefficient in reversed(_series(errors, power)):
-        numerator = numerator * theta + polyval2d(a, b, coefficient)
-    denominator = sum(
-        float(c) * a**i * b**j * np.exp(float(k) * theta)
-        for (i, j), of_powers in errors.denominator.items()
-        for (k, _), c in of_powers.items()
-    )
-    found = numerator / denominator * multiple**power
-    return np.asarray(np.where(np.abs(omega_h) < LARGEST_OMEGA_H, found, 0.0))
+    followed = np.abs(omega_h) < LARGEST_OMEGA_H
+    theta = 1j * multiple * np.where(followed, omega_h, 0.0)
+    numerator = polyval(theta, [polyval2d(a, b, table) for table in _series(method, power)])
+    denominator = polyval(np.expm1(theta), _denominator(method, a, b))
+    return np.where(followed, numerator / denominator * multiple**power, 0.0)
 
 
-def turning_response(method: Method, alpha_hat: float, beta_hat: float) -> tuple[int, float] | None:
-    """Return r and T, where normals that turn add T h^(r + 1) Cdot_q q_t^(r) to the steady error of q; None: nothing.
-
-    To leading order in h. Source: methods/steady_errors.py.
-    """
-    turning = turning_error(method)
-    if turning is None:
-        return None
-    numerator, denominator = (
-        sum(float(c) * alpha_hat**i * beta_hat**j for (i, j), c in terms.items())
-        for terms in (turning.numerator, turning.denominator)
-    )
-    return turning.power, numerator / denominator
+# Tables by powers of alpha_hat and beta_hat, for a method's own step
 
 
 @lru_cache(maxsize=64)
-def _series(errors: ForcedErrors, power: int) -> list[FloatArray]:
-    """Return the numerator of x over theta^power: tables by powers of alpha_hat and beta_hat, for 1, theta, ..."""
-    tables = []
-    for further in range(RESPONSE_TERMS):
-        table = np.zeros(_shape(errors.position))
-        for powers, c in errors.coefficient(errors.position, power + further).items():
-            table[powers] = float(c)
-        tables.append(table)
-    return tables
+def _numerators(method: Method, omega_h: Fraction) -> tuple[ComplexArray, ComplexArray]:
+    """Return N of position and velocity at omega h, as tables whose entries have all digits."""
+    import mpmath  # which sympy has loaded where there is something to sum
+
+    errors = forced_errors(method)
+    with mpmath.workdps(DIGITS):
+        theta = mpmath.mpc(0, mpmath.mpmathify(omega_h * method.step_multiple))
+
+        def total(of_powers: Mapping[tuple[Fraction, int], Fraction]) -> complex:
+            """Return the sum of c theta^m e^(k theta)."""
+            parts = (
+                mpmath.mpmathify(c) * theta**m * mpmath.exp(mpmath.mpmathify(k) * theta)
+                for (k, m), c in of_powers.items()
+            )
+            return complex(mpmath.fsum(parts))
+
+        position, velocity = (
+            _table({powers: total(of_powers) for powers, of_powers in terms.items()})
+            for terms in (errors.position, errors.velocity)
+        )
+        return position, velocity
+
+
+@lru_cache(maxsize=64)
+def _series(method: Method, power: int) -> list[FloatArray]:
+    """Return N of position over theta^power: a table for each power of theta from 0 on."""
+    errors = forced_errors(method)
+    return [_table(errors.coefficient(errors.position, power + further)).real for further in range(RESPONSE_TERMS)]
+
+
+@lru_cache(maxsize=64)
+def _around_one(method: Method) -> list[FloatArray]:
+    """Return D: a table for each power of z - 1 from 0 on."""
+    terms = forced_errors(method).denominator
+    degree = max(int(k) for of_powers in terms.values() for k, _ in of_powers)
+    return [
+        _table(
+            {at: sum(c * comb(int(k), n) for (k, _), c in of_powers.items()) for at, of_powers in terms.items()}
+        ).real
+        for n in range(degree + 1)
+    ]
+
+
+def _denominator(method: Method, a: float | FloatArray, b: float | FloatArray) -> FloatArray:
+    """Return the coefficients of D in powers of z - 1, ascending along axis 0, at points of the method's own step."""
+    return np.array([polyval2d(a, b, table) for table in _around_one(method)])
+
+
+def _table(entries: Mapping[tuple[int, int], complex | Fraction]) -> ComplexArray:
+    """Return what belongs to powers of alpha_hat and beta_hat as an array by them."""
+    table = np.zeros(
+        (1 + max((i for i, _ in entries), default=0), 1 + max((j for _, j in entries), default=0)), complex
+    )
+    for powers, entry in entries.items():
+        table[powers] = complex(entry)
+    return table

@@ -13,7 +13,7 @@ from bezstab.stability.root_finding import CHUNK
 BLOCK = 4 * CHUNK  # points between two looks at the progress bar
 
 QUALITY = {"fast": 50, "balanced": 200, "fine": 1000}
-"""Points per axis of a map (tests/bench/map_costs.py): B4's boundary is read off to 1e-4, 4e-6, 2e-7."""
+"""Points per axis of a map (tests/bench/test_map_costs.py): B4's boundary is read off to 1e-4, 4e-6, 2e-7."""
 
 
 def pole_map(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray) -> Iterator[ComplexArray]:

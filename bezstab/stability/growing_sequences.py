@@ -10,6 +10,7 @@ from fractions import Fraction
 from itertools import groupby
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bezstab.methods import StepMatrix, characteristic, recursion_verdict
 from bezstab.rationals import exact
@@ -49,22 +50,21 @@ def growing_words(matrix: StepMatrix, shortest: Fraction) -> Iterator[list[Fract
 
 def grows(matrix: StepMatrix, word: Sequence[Fraction]) -> bool:
     """Return whether the product of the steps, first taken first, has a spectral radius of one or more: exact."""
-    product = np.eye(matrix.size, dtype=object)
-    for length, same in groupby(word):
-        product = np.linalg.matrix_power(np.array(matrix.at(length)), len(list(same))) @ product
-    return recursion_verdict(characteristic(product.tolist())) != "converges"
+    return recursion_verdict(characteristic(_product(matrix, word).tolist())) != "converges"
 
 
 def growth_of(matrix: StepMatrix, word: Sequence[Fraction]) -> float:
-    """Return the spectral radius of the product of the steps, in float64; infinite where a step has no solution."""
+    """Return the spectral radius of the product of the steps; infinite where a step has no solution."""
     try:
-        matrices = np.array([matrix.at(length) for length in word], np.float64)
+        product = _product(matrix, word).astype(np.float64)
     except (ZeroDivisionError, OverflowError):
         return float("inf")
-    product = np.eye(matrix.size)
-    with np.errstate(all="ignore"):  # what leaves the range has grown
-        for each in matrices:
-            product = each @ product
-    if not np.isfinite(product).all():
-        return float("inf")
     return float(np.abs(np.linalg.eigvals(product)).max())
+
+
+def _product(matrix: StepMatrix, word: Sequence[Fraction]) -> NDArray[np.object_]:
+    """Return the product of the steps, first taken first: exact. ZeroDivisionError where one has no solution."""
+    product = np.eye(matrix.size, dtype=object)
+    for length, same in groupby(word):
+        product = np.linalg.matrix_power(np.array(matrix.at(length)), len(list(same))) @ product
+    return product

@@ -21,7 +21,6 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.polynomial.polynomial import polyval2d
 
 from bezstab.errors import NumericalError
 from bezstab.stability.arrays import ComplexArray, FloatArray
@@ -96,7 +95,8 @@ class Arc:
         z = self.level * np.exp(1j * theta.ravel())
         mu = self.at(theta.ravel())
         with np.errstate(all="ignore"):  # at an end, of no weight, two branches may meet
-            slope = -1j * z * polyval2d(z, mu, self.pencil.table_by_z) / polyval2d(z, mu, self.pencil.table_by_mu)
+            by_z, by_mu = self.pencil.slopes(z, mu)
+            slope = -1j * z * by_z / by_mu
             density = -2 * mu.imag**2 * slope.real
         return np.where(np.isfinite(density), density, 0).reshape(1, *theta.shape)
 

@@ -1,12 +1,6 @@
 """Roots of many real quadratics and cubics at once, by formula: poles of one-step methods and second-order schemes.
 
 A quadratic loses digits where its roots nearly meet: there b^2/4 - a c cancels, and the caller hands in a better value.
-A cubic's roots are found one, then two:
-
-      p(z) |      _                    the root beyond the inflection's far side is simple, however the others meet: it
-           |    /   \\        /          has a formula that cancels nothing (Cardano's, or by cosines if all are real)
-      -----+-x-+-----\\--_--/---- z      and one Newton step. Dividing by it, from the end where its power is largest,
-           | /   o     '              leaves a quadratic (W. Kahan, "To solve a real cubic equation", 1986).
 """
 
 from collections.abc import Sequence
@@ -14,9 +8,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from bezstab.stability.arrays import ComplexArray, FloatArray
-from bezstab.stability.root_finding import STEPS
 
-THIRD = 1 / 3
+CUBIC_STEPS = 6  # of Newton's method, from at most three times the root's distance from the inflection
 
 
 def quadratic_roots(half: FloatArray, last: FloatArray, discriminant: FloatArray) -> ComplexArray:
@@ -36,11 +29,13 @@ def quadratic_roots(half: FloatArray, last: FloatArray, discriminant: FloatArray
     return z
 
 
-def largest_quadratic_root(half: FloatArray, discriminant: FloatArray, into: ComplexArray) -> None:
-    """Write the root of largest modulus of z^2 + 2 half z + half^2 - discriminant, Im >= 0."""
+def largest_quadratic_root(half: FloatArray, discriminant: FloatArray) -> ComplexArray:
+    """Return the root of largest modulus of z^2 + 2 half z + half^2 - discriminant, Im >= 0."""
+    z = np.empty(half.shape, complex)
     real_square = np.maximum(discriminant, 0)  # one of the two squares is zero: without branches it takes half the time
-    np.sqrt(real_square - discriminant, out=into.imag)
-    np.negative(half + np.copysign(np.sqrt(real_square), half), out=into.real)
+    np.sqrt(real_square - discriminant, out=z.imag)
+    np.negative(half + np.copysign(np.sqrt(real_square), half), out=z.real)
+    return z
 
 
 def polynomial_of_pair(ascending: Sequence[float], p: FloatArray, q: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -55,34 +50,24 @@ def polynomial_of_pair(ascending: Sequence[float], p: FloatArray, q: FloatArray)
     return ascending[0] - q * above - 0.5 * p * factor, np.broadcast_to(factor, p.shape)
 
 
-def cubic_parts(b: FloatArray, c: FloatArray, d: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return (r, half, last) with z^3 + b z^2 + c z + d = (z - r)(z^2 + 2 half z + last), r real and well apart."""
-    shift = b * THIRD
-    q = shift * shift - c * THIRD
-    r = shift * (shift * shift - 0.5 * c) + 0.5 * d
+def largest_cubic_root(b: FloatArray, c: FloatArray, d: FloatArray) -> ComplexArray:
+    r"""Return the root of largest modulus of z^3 + b z^2 + c z + d, Im >= 0.
+
+        p(z) |      _                    the root beyond the inflection's far side is simple, however the others meet.
+             |    /   \        /          Newton's method comes to it from further out, where all slopes are of one sign
+        -----+-x-+-----\--_--/---- z      (W. Kahan, "To solve a real cubic equation", 1986). Divided by it, the
+             | /   o     '              polynomial leaves a quadratic.
+
+    In t = z - o: t^3 - 3 q t +- 2 size = 0.
+    """
+    shift = b / 3
+    q = shift * shift - c / 3
+    r = shift * (shift * shift - c / 2) + d / 2
     size = np.abs(r)
-    cubed = q * q * q
-    below = size * size - cubed  # negative where all roots are real
-    root = np.sqrt(np.abs(below))
-    apart = np.cbrt(size + root)
-    with np.errstate(all="ignore"):
-        apart += np.where(apart != 0, q / apart, 0)
-        three = below < 0
-        if three.any():
-            radius = np.sqrt(q[three])
-            angle = np.arccos(np.minimum(size[three] / (radius * q[three]), 1))
-            apart[three] = 2 * radius * np.cos(angle * THIRD)
-        z = -np.copysign(apart, r) - shift
-        for _ in range(STEPS):
-            by_one = z + b
-            by_two = by_one * z + c
-            value = by_two * z + d
-            slope = (z + by_one) * z + by_two
-            step = value / slope
-            z = z - np.where(np.isfinite(step), step, 0)
-        # divided from the end at which z's power outweighs
-        from_below = np.abs(z * z * z) > np.abs(d)
-        last_below = -d / z
-        half = 0.5 * np.where(from_below, (last_below - c) / z, b + z)
-        last = np.where(from_below, last_below, c + z * (b + z))
-    return z, half, last
+    t = np.sqrt(3 * np.maximum(q, 0)) + np.cbrt(2 * size)
+    for _ in range(CUBIC_STEPS):
+        t = np.fmax((t * t * t + size) / (1.5 * (t * t - q)), 0)  # 0 / 0 where all three roots meet
+    alone = -np.copysign(t, r) - shift
+    half = 0.5 * (b + alone)
+    z = largest_quadratic_root(half, half * half - (c + alone * (b + alone)))
+    return np.where(np.abs(alone) > np.abs(z), alone, z)

@@ -17,26 +17,25 @@ Proven in exact arithmetic: corner p, edge from e to f, M = N(s) / d(s). The ima
 if and only if (e x f) d(s) + (f - e) x N(s) p > 0, a polynomial in the length s of the step.
 """
 
-import math
 from collections.abc import Iterator
 from fractions import Fraction
 from itertools import pairwise
-from math import lcm
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bezstab.methods import StepMatrix
+from bezstab.rationals import whole_multiples
 from bezstab.stability.arrays import SAME, FloatArray
-from bezstab.stability.lyapunov_quadratics import DIGITS
+from bezstab.stability.lyapunov_quadratics import coefficients_of, powers_of_two, rounded
 from bezstab.stability.positive_polynomials import ExactArray, positivity
 
 Corner = tuple[Fraction, Fraction]
-IntArray = NDArray[np.int_]
 
 RAYS = 720  # directions in the half plane: linear interpolation of V errs by 1e-6 there
+FORWARDS_AND_BACK = np.array([[1], [-1]])  # rows of the rays that the flow goes to next
 RESERVES = (0.5, 0.2, 0.1, 0.05, 0.025)  # shares of each step's decay; the first that leaves V finite is taken
 SWEEPS = 3000  # V grows by a fixed amount each turn if it grows for ever: some hundred turns
+AT_ONCE = (2, 4, 8, 16, 32, 64)  # steps of the shortest length at once, so that V settles in fewer sweeps
 MOST_GROWTH = 3.0  # of V: in the frame of the best ellipse the polygons that were found stay below one
 CORNERS = (9, 18, 36, 72, 144, 360, 720)  # in the half plane, on rays: the fewest that do are the certificate
 
@@ -46,15 +45,16 @@ def invariant_polygon(
     steps: FloatArray,
     matrices: FloatArray,
     flow: FloatArray | None,
-    frame: FloatArray,
+    form: FloatArray,
     shortest: Fraction,
 ) -> list[Corner] | None:
     """Return corners of half a polygon that every step from `shortest` to 1 maps inside; None if none was found.
 
     The other half is their negatives. `matrices` (steps, 2, 2) belong to the lengths `steps`, a sample of the range,
-    `flow` (2, 2) is the G of shorter ones where the range has them, and `frame` (2, 2) maps the state to where its
-    motion is round. Proven for all of the range.
+    `flow` (2, 2) is the G of shorter ones where the range has them, and the root of a quadratic `form` (2, 2) maps the
+    state to where its motion is round. Proven for all of the range.
     """
+    frame = np.linalg.cholesky(form).T
     directions = np.arange(RAYS) * np.pi / RAYS
     circle = np.stack([np.cos(directions), np.sin(directions)])
     back = np.linalg.inv(frame)
@@ -69,11 +69,9 @@ def invariant_polygon(
             continue
         ball = back @ (circle * np.exp(-growth))
         for count in CORNERS:
-            chosen = ball[:, np.arange(count) * RAYS // count]
-            if _seems_invariant(chosen, matrices):
-                corners = _rational(chosen)
-                if proves_decay(corners, matrix, shortest):
-                    return corners
+            corners = _rational(ball[:, np.arange(count) * RAYS // count])
+            if proves_decay(corners, matrix, shortest):
+                return corners
     return None
 
 
@@ -91,20 +89,15 @@ def proves_decay(corners: list[Corner], matrix: StepMatrix, shortest: Fraction) 
 
 def _polynomials(ring: list[Corner], matrix: StepMatrix) -> Iterator[ExactArray]:
     """Yield the denominator, then edge by edge (e x f) d +- (f - e) x N p for all corners, as rows of whole numbers."""
-    parts = [*(entry for row in matrix.entries for entry in row), matrix.denominator]
-    length = max(len(part) for part in parts)
-    scale = lcm(*(coefficient.denominator for part in parts for coefficient in part))
-    filled = [[int(c * scale) for c in part] + [0] * (length - len(part)) for part in parts]
-    upper_left, upper_right, lower_left, lower_right, denominator = (np.array(part, dtype=object) for part in filled)
+    numerators, denominator = coefficients_of(matrix)
     yield denominator[np.newaxis]
-    common = lcm(*(coordinate.denominator for corner in ring for coordinate in corner))
-    whole = np.array([[int(coordinate * common) for coordinate in corner] for corner in ring], dtype=object)
-    points = whole[:-1]
-    image_x = points[:, :1] * upper_left + points[:, 1:] * upper_right  # (corners, powers of s)
-    image_y = points[:, :1] * lower_left + points[:, 1:] * lower_right
-    for start, end in pairwise(whole):
-        beside = (end[0] - start[0]) * image_y - (end[1] - start[1]) * image_x
-        room = (start[0] * end[1] - start[1] * end[0]) * denominator
+    whole, _ = whole_multiples([coordinate for corner in ring for coordinate in corner])
+    points = np.array(whole, object).reshape(-1, 2)
+    images = np.moveaxis(points[:-1] @ np.swapaxes(numerators, 1, 2), 0, -1)  # (corners, 2, powers of s)
+    for start, end in pairwise(points):
+        (x, y), edge = start, end - start
+        beside = edge[0] * images[:, 1] - edge[1] * images[:, 0]
+        room = (x * end[1] - y * end[0]) * denominator
         yield np.concatenate([room + beside, room - beside])
 
 
@@ -122,18 +115,17 @@ def _decays(steps: FloatArray, matrices: FloatArray) -> FloatArray:
 
 def _growth_to_come(matrices: FloatArray, flow: FloatArray | None, circle: FloatArray) -> FloatArray | None:
     """Return V on the rays, by sweeps; None where it does not settle."""
-    images = np.concatenate([matrices, *_powers(matrices[0])]) @ circle
+    several = [np.linalg.matrix_power(matrices[0], count) for count in AT_ONCE]
+    images = np.concatenate([matrices, several]) @ circle
     gain = np.log(np.maximum(np.hypot(images[:, 0], images[:, 1]), np.finfo(np.float64).tiny))
     place = np.arctan2(images[:, 1], images[:, 0]) % np.pi * (RAYS / np.pi)
+    if flow is not None:
+        gain = np.concatenate([gain, _flow_to_next_ray(flow)])
+        place = np.concatenate([place, (np.arange(RAYS) + FORWARDS_AND_BACK) % RAYS])
     below = np.floor(place).astype(int)
     share = place - below
     below %= RAYS
     above = (below + 1) % RAYS
-    if flow is not None:
-        flow_gain, flow_below, flow_above = _flow_to_next_ray(flow)
-        gain = np.concatenate([gain, flow_gain])
-        below, above = np.concatenate([below, flow_below]), np.concatenate([above, flow_above])
-        share = np.concatenate([share, np.zeros_like(flow_gain)])
     growth: FloatArray = np.zeros(RAYS)
     for _ in range(SWEEPS):
         to_come = gain + (1 - share) * growth[below] + share * growth[above]
@@ -147,50 +139,23 @@ def _growth_to_come(matrices: FloatArray, flow: FloatArray | None, circle: Float
     return None
 
 
-def _flow_to_next_ray(flow: FloatArray) -> tuple[FloatArray, IntArray, IntArray]:
-    """Return the growth of the flow from each ray to the next one forwards or backwards, and the number of that ray.
+def _flow_to_next_ray(flow: FloatArray) -> FloatArray:
+    """Return the growth of the flow from each ray to the next one forwards, and to the next one backwards.
 
-    Each of shape (2, rays): forwards, backwards; a growth of -inf where the flow goes the other way. By the values half
-    way between the rays, which is of second order. Both numbers are the same: no interpolation.
+    Of shape (2, rays), -inf where the flow goes the other way. By the values half way between the rays, which is of
+    second order.
     """
-    numbers = np.arange(RAYS)
-    gains, targets = [], []
-    for direction in (1, -1):
-        middle = (numbers + direction / 2) * np.pi / RAYS
-        unit = np.stack([np.cos(middle), np.sin(middle)])
-        moved = flow @ unit
-        radial = (unit * moved).sum(axis=0)
-        turning = unit[0] * moved[1] - unit[1] * moved[0]
-        ways = direction * turning > 0
-        rate = np.divide(radial, np.abs(turning), out=np.full(RAYS, -np.inf), where=ways)
-        gains.append(rate * np.pi / RAYS)
-        targets.append((numbers + direction) % RAYS)
-    return np.array(gains), np.array(targets), np.array(targets)
-
-
-def _powers(matrix: FloatArray) -> list[FloatArray]:
-    """Return 2, 4, 8, ... steps of the shortest length at once, so that V settles in fewer sweeps."""
-    powers = []
-    for _ in range(6):  # 64 steps
-        matrix = matrix @ matrix
-        powers.append(matrix[np.newaxis])
-    return powers
-
-
-def _seems_invariant(corners: FloatArray, matrices: FloatArray) -> bool:
-    """Return whether the polygon is invariant under a sample of the steps, in float64: before it is proven."""
-    ends = np.concatenate([corners[:, 1:], -corners[:, :1]], axis=1)
-    span = corners[0] * ends[1] - corners[1] * ends[0]
-    edge = ends - corners
-    images = matrices @ corners  # (steps, 2, corners)
-    beside = edge[0, :, np.newaxis] * images[:, 1, np.newaxis] - edge[1, :, np.newaxis] * images[:, 0, np.newaxis]
-    return bool((span > 0).all() and (np.abs(beside) < span[:, np.newaxis]).all())
+    middle = (np.arange(RAYS) + FORWARDS_AND_BACK / 2) * np.pi / RAYS
+    x, v = np.cos(middle), np.sin(middle)
+    x_rate, v_rate = (row[0] * x + row[1] * v for row in flow)
+    radial = x * x_rate + v * v_rate
+    turning = FORWARDS_AND_BACK * (x * v_rate - v * x_rate)
+    rate: FloatArray = np.divide(radial, turning, out=np.full(turning.shape, -np.inf), where=turning > 0)
+    return rate * (np.pi / RAYS)
 
 
 def _rational(corners: FloatArray) -> list[Corner]:
-    """Return the corners rounded to rationals, each coordinate by its largest size, a power of two."""
-    largest = np.abs(corners).max(axis=1)
-    sizes = [Fraction(2) ** round(math.log2(size / largest[0])) for size in largest]
-    unit = np.array([float(size) for size in sizes]) * largest[0]
-    scaled = np.rint(corners / unit[:, np.newaxis] * DIGITS)
-    return [(Fraction(int(x), DIGITS) * sizes[0], Fraction(int(v), DIGITS) * sizes[1]) for x, v in scaled.T]
+    """Return the corners rounded to rationals, each coordinate by its largest size."""
+    relative = corners / np.abs(corners[0]).max()
+    units = powers_of_two(np.abs(relative).max(axis=1))
+    return [(x, v) for x, v in rounded(relative, units[:, np.newaxis]).T]

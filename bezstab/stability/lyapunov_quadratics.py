@@ -7,16 +7,16 @@ M = N / d the leading minors of X d^2 - N^T X N are polynomials in s, which must
 
 import math
 from fractions import Fraction
-from itertools import product
+from functools import reduce
+from itertools import combinations_with_replacement, product, zip_longest
 
 import numpy as np
-from numpy.polynomial.polynomial import polymul, polysub
+from numpy.polynomial.polynomial import polyadd, polymul
 
-from bezstab.methods import StepMatrix, StepPolynomial, polynomial_determinant
+from bezstab.methods import StepMatrix
+from bezstab.rationals import ZERO, whole_multiples
 from bezstab.stability.arrays import SAME, SLOW, FloatArray
-from bezstab.stability.positive_polynomials import positivity, whole_rows
-
-Form = list[list[Fraction]]
+from bezstab.stability.positive_polynomials import ExactArray, positivity, whole_rows
 
 DIGITS = 10**9  # denominator of what proves, in units of the state in which its largest numbers are about one
 NEWTON_STEPS = 40  # in each stage; some ten are taken
@@ -31,26 +31,19 @@ def centred_form(matrices: FloatArray, decays: FloatArray) -> FloatArray:
     t k - log det X - sum log det((X - M^T X M) / decay + t) over X and t, k doubling from stage to stage.
     """
     size = matrices.shape[1]
-    basis = _symmetric_basis(size)
-    lost = basis[:, np.newaxis] - np.swapaxes(matrices, 1, 2) @ basis[:, np.newaxis] @ matrices
-    least = np.maximum(decays, SLOW)[:, np.newaxis, np.newaxis]
-    lost /= least
     unit = np.eye(size)
-    slopes = np.concatenate([lost, np.broadcast_to(unit, (1, *lost.shape[1:]))])  # (variables, steps, n, n)
-    own = np.concatenate([basis, np.zeros((1, size, size))])
-    slopes = np.concatenate([slopes, own[:, np.newaxis]], axis=1)  # the last condition: X itself
-    constant = np.concatenate([(unit - np.swapaxes(matrices, 1, 2) @ matrices) / least, unit[np.newaxis]])
+    basis = _symmetric_basis(size)
+    forms = np.concatenate([basis, unit[np.newaxis]])[:, np.newaxis]  # X is the last and multiples of the others
+    lost = forms - np.swapaxes(matrices, 1, 2) @ forms @ matrices
+    conditions = np.concatenate([lost / np.maximum(decays, SLOW)[:, np.newaxis, np.newaxis], forms], axis=1)
+    of_t = np.concatenate([np.broadcast_to(unit, matrices.shape), np.zeros((1, size, size))])  # not of X itself
+    slopes, constant = np.concatenate([conditions[:-1], of_t[np.newaxis]]), conditions[-1]
     values = np.zeros(len(slopes))
     values[-1] = max(0.0, -float(np.linalg.eigvalsh(constant[:-1]).min())) + 1
     weight = 1.0
-
-    def conditions(values: FloatArray) -> FloatArray:
-        result: FloatArray = constant + np.tensordot(values, slopes, axes=1)
-        return result
-
     for _ in range(STAGES):
         for _ in range(NEWTON_STEPS):
-            inverse = np.linalg.inv(conditions(values))
+            inverse = np.linalg.inv(constant + np.tensordot(values, slopes, axes=1))
             scaled = inverse @ slopes
             gradient = -np.trace(scaled, axis1=2, axis2=3).sum(axis=1)
             gradient[-1] += weight
@@ -73,47 +66,55 @@ def _share_of_step(decrement: float) -> float:
 def _symmetric_basis(size: int) -> FloatArray:
     """Return a basis of the symmetric matrices of trace zero, shape (n (n + 1) / 2 - 1, n, n)."""
     found = []
-    for i in range(size):
-        for j in range(i + 1, size):
-            entry = np.zeros((size, size))
-            entry[i, j] = entry[j, i] = 1
-            found.append(entry)
-        if i + 1 < size:
-            entry = np.zeros((size, size))
-            entry[i, i], entry[i + 1, i + 1] = 1, -1
-            found.append(entry)
-    return np.array(found)
+    for i, j in combinations_with_replacement(range(size), 2):
+        entry = np.zeros((size, size))
+        entry[i, j] = entry[j, i] = 1
+        found.append(entry - np.trace(entry) / size * np.eye(size))
+    return np.array(found[:-1])  # the last diagonal entry follows from the others
 
 
-def rational_form(form: FloatArray) -> Form:
-    """Return a positive symmetric matrix rounded to rationals, each entry by the sizes of those on the diagonal.
-
-    These sizes are powers of two, relative to the last: they are exact.
-    """
-    sizes = [Fraction(2) ** round(math.log2(entry / form[-1, -1]) / 2) for entry in np.diag(form)]
-    unit = np.array([float(size) for size in sizes])
-    scaled = np.rint(form / form[-1, -1] / np.outer(unit, unit) * DIGITS)
-    return [
-        [Fraction(int(entry), DIGITS) * own * other for entry, other in zip(row, sizes, strict=True)]
-        for row, own in zip(scaled, sizes, strict=True)
-    ]
+def rational_form(form: FloatArray) -> ExactArray:
+    """Return a positive symmetric matrix rounded to rationals, each entry by the sizes of those on the diagonal."""
+    relative = form / form[-1, -1]
+    sizes = powers_of_two(np.sqrt(np.diag(relative)))
+    return rounded(relative, np.outer(sizes, sizes))
 
 
-def proves_decay(form: Form, matrix: StepMatrix, shortest: Fraction) -> bool:
-    """Return whether X > 0 and every step from `shortest` to 1 makes x^T X x smaller: exact."""
-    size = range(len(form))
-    constant: list[list[StepPolynomial]] = [[(entry,) for entry in row] for row in form]
-    square = polymul(matrix.denominator, matrix.denominator)
+def powers_of_two(sizes: FloatArray) -> ExactArray:
+    """Return the powers of two nearest to some sizes: units that are exact."""
+    return np.array([Fraction(2) ** round(math.log2(size)) for size in sizes])
 
-    def lost(i: int, j: int) -> StepPolynomial:
-        """Return an entry of X d^2 - N^T X N."""
-        left = form[i][j] * square
-        for k, m in product(size, size):
-            left = polysub(left, form[k][m] * polymul(matrix.entries[k][i], matrix.entries[m][j]))
-        return tuple(left)
 
-    left = [[lost(i, j) for j in size] for i in size]
-    minors = [matrix.denominator]
-    for rows in (constant, left):
-        minors += [polynomial_determinant([row[: n + 1] for row in rows[: n + 1]]) for n in size]
-    return positivity(whole_rows(minors), shortest, Fraction(1)).proven
+def rounded(numbers: FloatArray, units: ExactArray) -> ExactArray:
+    """Return numbers rounded to rationals, to DIGITS parts of their units; shape of both broadcast."""
+    whole = np.rint(numbers / units.astype(float) * DIGITS)
+    shares = np.array([Fraction(int(each), DIGITS) for each in whole.flat]).reshape(whole.shape)
+    return np.asarray(shares * units)
+
+
+def proves_decay(form: ExactArray, matrix: StepMatrix, shortest: Fraction) -> bool:
+    """Return whether X > 0, and every step from `shortest` to 1 makes x^T X x smaller: exact, for a rational X."""
+    numerators, denominators = coefficients_of(matrix)
+    powers = range(len(denominators))
+    lost = np.zeros((2 * len(powers) - 1, *form.shape), object)  # X d^2 - N^T X N, by powers of s
+    for i, j in product(powers, powers):
+        lost[i + j] += denominators[i] * denominators[j] * form - numerators[i].T @ form @ numerators[j]
+    minors = [determinant(each[:, :n, :n]) for each in (form[np.newaxis], lost) for n in range(1, len(form) + 1)]
+    return positivity(whole_rows([denominators, *minors]), shortest, Fraction(1)).proven
+
+
+def coefficients_of(matrix: StepMatrix) -> tuple[ExactArray, ExactArray]:
+    """Return N and d of M = N / d by powers of s, shapes (powers, n, n) and (powers,), times one number: whole."""
+    polynomials = [matrix.denominator, *(entry for row in matrix.entries for entry in row)]
+    whole, _ = whole_multiples([c for of_power in zip_longest(*polynomials, fillvalue=ZERO) for c in of_power])
+    table = np.array(whole, object).reshape(-1, len(polynomials))
+    return table[:, 1:].reshape(-1, matrix.size, matrix.size), table[:, 0]
+
+
+def determinant(matrix: ExactArray) -> ExactArray:
+    """Return the determinant of a matrix of polynomials (powers, n, n), ascending powers, by its first row."""
+    if matrix.shape[1] == 1:
+        return matrix[:, 0, 0]
+    minors = (determinant(np.delete(matrix[:, 1:], column, axis=2)) for column in range(matrix.shape[1]))
+    parts = (polymul((-1) ** column * matrix[:, 0, column], minor) for column, minor in enumerate(minors))
+    return np.asarray(reduce(polyadd, parts))

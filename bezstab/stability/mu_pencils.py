@@ -7,10 +7,8 @@ root of P all the same, followed among neighbours (real_factors), but for explic
 known, and next to beta_hat = alpha_hat^2/4.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
-from fractions import Fraction
-from functools import cache
+from functools import cached_property
 
 import numpy as np
 from numpy.polynomial.polynomial import polyder, polyval, polyval2d
@@ -19,10 +17,10 @@ from numpy.typing import NDArray
 from bezstab.errors import NumericalError
 from bezstab.methods import Method, coefficient_table
 from bezstab.stability.arrays import DOUBLE, EPS, SAME, BoolArray, ComplexArray, FloatArray
-from bezstab.stability.exact_sums import feedback_discriminant, feedback_roots
+from bezstab.stability.exact_sums import feedback_roots
 from bezstab.stability.low_degrees import largest_quadratic_root, polynomial_of_pair
 from bezstab.stability.neighbourhoods import FEWEST
-from bezstab.stability.plane_pencils import CANCELS, largest_plane_root, plane_pencil_of
+from bezstab.stability.plane_pencils import CANCELS, PlanePencil, out_of_range
 from bezstab.stability.root_finding import CHUNK, horner, inside_circle, roots_of_table
 
 Mu = NDArray[np.inexact] | complex
@@ -31,28 +29,49 @@ Mu = NDArray[np.inexact] | complex
 LEADING = 4 * EPS  # of the sum of its terms' sizes: a leading coefficient below it is rounding of zero
 REACH = np.finfo(float).max ** 0.5  # of mu, whose square is beta_hat; one zero of R is within its degree
 MOST_FOLLOWED = 18  # poles: of more, whose factors lie close together, most points need all roots, and mu halves them
-ORDINARY = 1e12  # of alpha_hat and beta_hat: their products, of degree 12 at most, are within float64
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class MuPencil:
-    """A method's polynomial pi(z, mu) = sum_kj table[k, j] z^k mu^j in float64, and what follows from it.
+    """A method's polynomial pi(z, mu), and what float64 asks of it.
 
-    `steps` is its degree in z. `table_by_z` and `table_by_mu` are the tables of its derivatives. mu is that of the
-    method's own step, `multiple` times the user's h. Everything is dimensionless.
+    mu is that of the method's own step, `multiple` times the user's h. Everything is dimensionless.
     """
 
     method: Method
-    steps: int
-    table: FloatArray
-    table_by_z: FloatArray
-    table_by_mu: FloatArray
-    multiple: float
+
+    @cached_property
+    def table(self) -> FloatArray:
+        """The coefficients: pi = sum_kj table[k, j] z^k mu^j; NumericalError if they leave float64's range."""
+        try:
+            return np.array(coefficient_table(self.method), float)
+        except OverflowError:
+            raise out_of_range(self.method) from None
+
+    @property
+    def steps(self) -> int:
+        """The degree of pi in z."""
+        return len(self.table) - 1
+
+    @property
+    def multiple(self) -> float:
+        """The length of a step in the user's h."""
+        return float(self.method.step_multiple)
 
     @property
     def degree(self) -> int:
         """How many poles there are, counted with their multiplicity."""
         return 2 * self.steps
+
+    @cached_property
+    def plane(self) -> PlanePencil:
+        """The same method through its P."""
+        return PlanePencil(self.method)
+
+    @cached_property
+    def implicit(self) -> bool:
+        """Whether the leading coefficient in z depends on mu: at some mu a root is infinite."""
+        return bool(self.table[-1, 1:].any())
 
     def feedback_roots(self, alpha_hat: FloatArray, beta_hat: FloatArray) -> tuple[ComplexArray, ComplexArray]:
         """Return both mu that the feedback asks for at some points: a conjugate pair, upper first, or two real ones."""
@@ -82,6 +101,53 @@ class MuPencil:
         within[real] = all_inside(self, second[real], level[real])
         return within
 
+    def largest_poles(self, alpha_hat: FloatArray, beta_hat: FloatArray, shape: tuple[int, int]) -> ComplexArray:
+        """Return the pole of largest modulus, Im >= 0, at each point of a grid of a shape, row by row; in a row.
+
+        Infinite where an implicit step has no solution. NumericalError if a finite pole leaves the range of float64.
+        """
+        explicit_one_step = self.steps == 1 and not self.implicit
+        if alpha_hat.size < FEWEST or (self.degree > MOST_FOLLOWED and not explicit_one_step):
+            return self._largest_by_mu(alpha_hat, beta_hat)
+        with np.errstate(all="ignore"):
+            if explicit_one_step:
+                z = self._larger_of_two(alpha_hat, beta_hat)
+            else:
+                z = self.plane.followed_poles(alpha_hat, beta_hat, shape)
+            square = alpha_hat * alpha_hat / 4
+            kept = np.abs(square - beta_hat) > CANCELS * square  # else P's roots have less than 12 digits
+        rest = np.flatnonzero(~(kept & np.isfinite(z)))
+        z[rest] = self._largest_by_mu(alpha_hat[rest], beta_hat[rest])
+        return z
+
+    def _larger_of_two(self, alpha_hat: FloatArray, beta_hat: FloatArray) -> ComplexArray:
+        """Return the larger pole, Im >= 0, of an explicit one-step method, z = R(mu), at each of a row of points.
+
+        From R at the sum and the product of both mu, as P's coefficients, of high degree, would lose digits.
+        """
+        in_mu = -self.table[0] / self.table[1, 0]
+        stability_function = (in_mu * self.multiple ** np.arange(in_mu.size)).tolist()  # of the user's mu
+        z = np.empty(alpha_hat.size, complex)
+        for start in range(0, alpha_hat.size, CHUNK):
+            chunk = slice(start, start + CHUNK)
+            alphas, betas = alpha_hat[chunk], beta_hat[chunk]
+            middle, factor = polynomial_of_pair(stability_function, alphas, betas)
+            z[chunk] = largest_quadratic_root(-middle, factor * factor * (alphas * alphas / 4 - betas))
+        return z
+
+    def _largest_by_mu(self, alpha_hat: FloatArray, beta_hat: FloatArray) -> ComplexArray:
+        """Return the dominant pole, Im >= 0, of each point of a row: of all roots of pi at both mu.
+
+        Conjugate mu have conjugate poles, so one of the two is enough; of two real mu both are looked at.
+        """
+        first_mu, second_mu = self.feedback_roots(alpha_hat, beta_hat)
+        some = np.flatnonzero(first_mu.imag == 0)
+        both = largest_root_in_z(self, np.concatenate([first_mu, second_mu[some]]))
+        found, others = both[: first_mu.size], both[first_mu.size :]
+        found[some] = np.where(np.abs(others) > np.abs(found[some]), others, found[some])
+        found.imag = np.abs(found.imag)
+        return found
+
     def own_feedback_root(self, alpha_hat: FloatArray, beta_hat: FloatArray, z: ComplexArray) -> ComplexArray:
         """Return the root mu of the feedback that each pole z belongs to; shape of all three."""
         mu = np.stack(self.feedback_roots(alpha_hat.ravel(), beta_hat.ravel())).reshape(2, *z.shape)
@@ -90,36 +156,13 @@ class MuPencil:
 
     def turning_shift(self, alpha_hat: FloatArray, beta_hat: FloatArray, z: ComplexArray) -> ComplexArray:
         """Return z + pi_mu / pi_z at whichever root mu of the feedback each z belongs to (turning)."""
-        own = self.own_feedback_root(alpha_hat, beta_hat, z)
-        slope_z, slope_mu = (polyval2d(z, own, table) for table in (self.table_by_z, self.table_by_mu))
+        slope_z, slope_mu = self.slopes(z, self.own_feedback_root(alpha_hat, beta_hat, z))
         return np.asarray(z + slope_mu / slope_z)
 
-    @property
-    def implicit(self) -> bool:
-        """Whether the leading coefficient in z depends on mu: at some mu a root is infinite."""
-        return bool(self.table[-1, 1:].any())
-
-
-@cache
-def mu_pencil_of(method: Method) -> MuPencil:
-    """Return the mu pencil of a method that has a mu; NumericalError if its coefficients leave float64's range."""
-    table = _floats(method, coefficient_table(method))
-    return MuPencil(
-        method=method,
-        steps=len(table) - 1,
-        table=table,
-        table_by_z=np.asarray(polyder(table, axis=0), float),
-        table_by_mu=np.asarray(polyder(table, axis=1), float),
-        multiple=float(method.step_multiple),
-    )
-
-
-def _floats(method: Method, exact: Sequence[Fraction | Sequence[Fraction]]) -> FloatArray:
-    """Return exact coefficients as float64: the one place where they become so."""
-    try:
-        return np.array(exact, float)
-    except OverflowError:
-        raise NumericalError(f"{method.name}: products of its coefficients leave the range of float64") from None
+    def slopes(self, z: ComplexArray, mu: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
+        """Return the derivatives of pi by z and by mu; shape of both."""
+        by_z, by_mu = (polyval2d(z, mu, polyder(self.table, axis=axis)) for axis in (0, 1))
+        return np.asarray(by_z, complex), np.asarray(by_mu, complex)
 
 
 def roots_in_z(pencil: MuPencil, mu: ComplexArray) -> ComplexArray:
@@ -216,63 +259,6 @@ def deadbeat_mu(pencil: MuPencil) -> ComplexArray:
 
 def all_inside(pencil: MuPencil, mu: ComplexArray, level: float | FloatArray) -> BoolArray:
     """Return whether every root z of pi(., mu) has |z| < level, by Schur's recursion; shape of mu, and of levels."""
-    size = np.ones_like(mu.real)
-    p = np.empty((len(pencil.table), *mu.shape), complex)
     with np.errstate(over="ignore", invalid="ignore"):  # far out, where nothing is inside
-        for row, coefficients in zip(p, pencil.table, strict=True):
-            np.multiply(horner(coefficients, mu), size, out=row)
-            size = size * level
-    return inside_circle(p)
-
-
-def write_largest_poles(
-    pencil: MuPencil, alpha_hat: FloatArray, beta_hat: FloatArray, shape: tuple[int, int], into: ComplexArray
-) -> None:
-    """Write the dominant pole of each point of a row: those of a grid of that shape, row by row; as of P's roots."""
-    many = into.size >= FEWEST and _ordinary(alpha_hat, beta_hat)
-    if many and pencil.steps == 1 and not pencil.implicit:
-        _write_largest_of_one_step(pencil, alpha_hat, beta_hat, into)
-    elif many and pencil.degree <= MOST_FOLLOWED:
-        largest_plane_root(plane_pencil_of(pencil.method), alpha_hat, beta_hat, shape, into)
-        square = alpha_hat * alpha_hat / 4
-        close = np.flatnonzero(np.abs(square - beta_hat) <= CANCELS * square)  # P's roots keep less than 12 digits
-        into[close] = _largest_by_mu(pencil, alpha_hat[close], beta_hat[close])
-    else:
-        for i in range(0, into.size, CHUNK):
-            chunk = slice(i, i + CHUNK)
-            into[chunk] = _largest_by_mu(pencil, alpha_hat[chunk], beta_hat[chunk])
-
-
-def _write_largest_of_one_step(
-    pencil: MuPencil, alpha_hat: FloatArray, beta_hat: FloatArray, into: ComplexArray
-) -> None:
-    """Write the larger pole, Im >= 0, of an explicit one-step method, z = R(mu), at each of a row of points.
-
-    From R at the sum and the product of both mu, as P's coefficients, of high degree, would lose digits.
-    """
-    in_mu = -pencil.table[0] / pencil.table[1, 0]
-    stability_function = (in_mu * pencil.multiple ** np.arange(in_mu.size)).tolist()  # of the user's mu
-    for start in range(0, alpha_hat.size, CHUNK):
-        chunk = slice(start, start + CHUNK)
-        alphas, betas = alpha_hat[chunk], beta_hat[chunk]
-        middle, factor = polynomial_of_pair(stability_function, alphas, betas)
-        largest_quadratic_root(-middle, factor * factor * feedback_discriminant(alphas, betas), into[chunk])
-
-
-def _largest_by_mu(pencil: MuPencil, alpha_hat: FloatArray, beta_hat: FloatArray) -> ComplexArray:
-    """Return the dominant pole, Im >= 0, of each point of a row: of all roots of pi at both mu.
-
-    Conjugate mu have conjugate poles, so one of the two is enough; of two real mu both are looked at.
-    """
-    first_mu, second_mu = pencil.feedback_roots(alpha_hat, beta_hat)
-    some = np.flatnonzero(first_mu.imag == 0)
-    both = largest_root_in_z(pencil, np.concatenate([first_mu, second_mu[some]]))
-    found, others = both[: first_mu.size], both[first_mu.size :]
-    found[some] = np.where(np.abs(others) > np.abs(found[some]), others, found[some])
-    found.imag = np.abs(found.imag)
-    return found
-
-
-def _ordinary(alpha_hat: FloatArray, beta_hat: FloatArray) -> bool:
-    """Return whether all powers of a row of points are far from the ends of float64's range."""
-    return all(bool(row.min() > -ORDINARY and row.max() < ORDINARY) for row in (alpha_hat, beta_hat))
+        coefficients = [np.full(mu.shape, horner(row, mu)) for row in pencil.table]
+    return inside_circle(coefficients, level)

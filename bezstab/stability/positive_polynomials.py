@@ -9,9 +9,10 @@ curve. A polynomial that is not positive somewhere shows it at an end sooner or 
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from math import comb, lcm
+from math import lcm
 
 import numpy as np
+from numpy.polynomial.polynomial import polymul, polypow
 from numpy.typing import NDArray
 
 from bezstab.rationals import whole_multiples
@@ -54,26 +55,20 @@ def positivity(polynomials: ExactArray, low: Fraction, high: Fraction) -> Positi
     return Positivity(proven=not undecided)
 
 
-def whole_rows(polynomials: Sequence[Sequence[Fraction]]) -> ExactArray:
-    """Return polynomials as rows of whole numbers, each multiplied by its denominators, filled up with zeros."""
+def whole_rows(polynomials: Sequence[Sequence[Fraction] | ExactArray]) -> ExactArray:
+    """Return polynomials of exact numbers as rows of whole ones, each times its denominators, filled up with zeros."""
     length = max(len(polynomial) for polynomial in polynomials)
     rows = np.zeros((len(polynomials), length), dtype=object)
     for row, polynomial in zip(rows, polynomials, strict=True):
-        row[: len(polynomial)], _ = whole_multiples(polynomial)
+        row[: len(polynomial)], _ = whole_multiples(list(polynomial))
     return rows
 
 
 def _to_bernstein(degree: int, low: Fraction, high: Fraction) -> ExactArray:
-    """Return the matrix that takes coefficients of powers to Bernstein's on [low, high], times a positive number.
+    """Return the matrix that takes coefficients of powers to Bernstein's on [low, high], times positive numbers.
 
-    s^i = (low + width t)^i gives powers of t, and t^j has the Bernstein coefficients C(k, j) / C(degree, j).
+    With s = (low + high t) / (1 + t) they are the coefficients of (1 + t)^degree p(s) in t, but for binomial factors.
     """
-    width = high - low
-    size = range(degree + 1)
-    by_power = [[comb(i, j) * low ** (i - j) * width**j if j <= i else Fraction(0) for j in size] for i in size]
-    weights = [[Fraction(comb(k, j), comb(degree, j)) for k in size] for j in size]
-    matrix = [
-        [sum((by_power[i][j] * weights[j][k] for j in size), Fraction(0)) for k in size] for i in size
-    ]  # fmt: skip
-    scale = lcm(*(entry.denominator for row in matrix for entry in row))
-    return np.array([[int(entry * scale) for entry in row] for row in matrix], dtype=object)
+    scale = lcm(low.denominator, high.denominator)
+    over, under = np.array([int(low * scale), int(high * scale)], object), np.array([scale, scale], object)
+    return np.array([polymul(polypow(over, i), polypow(under, degree - i)) for i in range(degree + 1)])

@@ -22,7 +22,7 @@ import numpy as np
 
 from bezstab.stability.arrays import SAME, BoolArray, ComplexArray, FloatArray
 from bezstab.stability.low_degrees import largest_quadratic_root
-from bezstab.stability.root_finding import CHUNK, MORE_STEPS, STEPS, STRIDE, roots_of_rows
+from bezstab.stability.root_finding import CHUNK, MORE_STEPS, STEPS, STRIDE, inside_circle, roots_of_rows
 
 STILL = 1e-11  # relative: a last change of p and q so small leaves but rounding, and what is left is far within SAME
 
@@ -150,7 +150,7 @@ def _followed_alone(rows: Rows, z: FloatArray) -> ComplexArray:
             step = value / slope
             z = z - step
         *quotient, _ = _divided_by_root(descending, z)
-        proven = (np.abs(step) <= SAME * np.abs(z)) & _all_within(quotient, np.abs(z))
+        proven = (np.abs(step) <= SAME * np.abs(z)) & inside_circle(quotient[::-1], np.abs(z) * (1 - SAME))
     return np.where(proven, z, np.nan).astype(complex)
 
 
@@ -178,11 +178,10 @@ def _followed_factors(rows: Rows, p: FloatArray, q: FloatArray) -> tuple[FloatAr
 
 def _larger_if_largest(p: FloatArray, q: FloatArray, rest: Rows, settled: BoolArray) -> ComplexArray:
     """Return the larger root z of settled factors, Im >= 0; nan where the rest, descending, has a larger one."""
-    z = np.empty(p.size, complex)
     half = 0.5 * p
-    largest_quadratic_root(half, half * half - q, z)
+    z = largest_quadratic_root(half, half * half - q)
     size = np.sqrt(np.maximum(q, z.real * z.real))  # q of a pair, and z^2 of two real ones, is the larger
-    z[~(settled & _all_within(rest, size))] = np.nan
+    z[~(settled & inside_circle(rest[::-1], size * (1 - SAME)))] = np.nan
     return z
 
 
@@ -246,23 +245,3 @@ def _divided(ascending: Rows, p: FloatArray, q: FloatArray) -> list[FloatArray]:
         before, last = last, np.subtract(coefficient, subtracted, out=subtracted)
         quotient.append(last)
     return quotient
-
-
-def _all_within(descending: Rows, size: FloatArray) -> BoolArray:
-    """Return whether all roots of polynomials have a smaller modulus than a size, by a margin."""
-    rest = list(descending)  # of (size z), divided by size^degree
-    scale = 1 / (size * (1 - SAME))
-    power = scale
-    for k in range(1, len(rest)):
-        rest[k] *= power
-        power = power * scale
-    within = np.full(size.shape, True)
-    while len(rest) > 3:
-        ratio = rest[-1] / rest[0]
-        within &= np.abs(ratio) < 1
-        rest = [one - ratio * other for one, other in zip(rest[:-1], rest[:0:-1], strict=True)]
-    first, *between, last = rest  # of degree one or two: without a division
-    within &= np.abs(last) < np.abs(first)
-    for middle in between:
-        within &= np.abs(middle) < np.abs(first + last)
-    return within

@@ -278,16 +278,20 @@ def _repulsion_of_others(z: ComplexArray) -> ComplexArray:
     return np.asarray(reciprocals.sum(axis=1))
 
 
-def inside_circle(ascending: NDArray[np.inexact]) -> BoolArray:
-    """Return whether all roots of polynomials have |z| < 1, by Schur's recursion; False where one is infinite.
+def inside_circle(ascending: Coefficients, radius: FloatArray | float) -> BoolArray:
+    """Return whether all roots of polynomials have |z| < radius, by Schur's recursion; False where one is infinite.
 
-    Coefficients, real or complex, in ascending powers along the first axis; the shape of the others.
+    Coefficients, real or complex, in ascending powers, arrays of one shape, which is that of the answer.
     """
-    p = ascending
-    inside = np.ones(p.shape[1:], bool)
     with np.errstate(all="ignore"):  # of a point that is out nothing more is asked
+        p, power = [], np.ones_like(radius)
+        for coefficient in ascending:
+            p.append(coefficient * power)  # of z / radius
+            power = power * radius
+        inside = np.ones(p[-1].shape, bool)
         while len(p) > 1:
             k = p[0] / p[-1].conj()
             inside &= np.abs(k) < 1
-            p = p[1:] - k * p[-2::-1].conj()  # without the last coefficient, p(0) - k lead(p), which was 0
+            # without the last coefficient, p(0) - k lead(p), which was 0
+            p = [one - k * other.conj() for one, other in zip(p[1:], p[-2::-1], strict=True)]
     return inside

@@ -12,8 +12,8 @@ their steps commute, and any sequence of steps that decay alone decays.
 """
 
 import math
-from contextlib import suppress
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Literal
 
@@ -31,7 +31,13 @@ from bezstab.methods import (
 from bezstab.stability.arrays import FloatArray
 from bezstab.stability.growing_sequences import growing_words, grows, growth_of
 from bezstab.stability.lyapunov_polygons import invariant_polygon
-from bezstab.stability.lyapunov_quadratics import centred_form, proves_decay, rational_form
+from bezstab.stability.lyapunov_quadratics import (
+    centred_form,
+    coefficients_of,
+    determinant,
+    proves_decay,
+    rational_form,
+)
 from bezstab.stability.positive_polynomials import positivity, whole_rows
 
 Varying = Literal["proven", "refuted", "not known"]
@@ -93,41 +99,33 @@ def varying_steps(
     matrix = step_matrix(method, *at_longest, hold)
     shortest = h_min / h_max
 
-    def result(
-        varying: Varying,
-        kind: Certificate | None = None,
-        certificate: tuple[tuple[Fraction, ...], ...] | None = None,
-        word: tuple[Fraction, ...] | None = None,
-    ) -> VaryingSteps:
-        sequence = None if word is None else tuple(length * h_max for length in word)
-        growth = None if word is None else growth_of(matrix, word)
-        return VaryingSteps(varying, h_min, h_max, hold, kind, certificate, sequence, growth)
+    unknown = VaryingSteps("not known", h_min, h_max, hold)
+
+    def refuted(word: Sequence[Fraction]) -> VaryingSteps:
+        sequence = tuple(length * h_max for length in word)
+        return replace(unknown, varying="refuted", sequence=sequence, growth=growth_of(matrix, word))
 
     alone = _single_step(matrix, shortest)
     if isinstance(alone, Fraction):
-        return result("refuted", word=(alone,))
+        return refuted([alone])
     if matrix.commuting:
-        return result("proven", "commuting") if alone else result("not known")
+        return replace(unknown, varying="proven", kind="commuting") if alone else unknown
     samples = _samples(shortest, down=hold or matrix.size == 3)
     matrices = np.array([matrix.at(s) for s in samples], np.float64)
-    lengths = np.array(samples, np.float64)
-    form: FloatArray | None = None
-    frame: FloatArray | None = None
-    with suppress(np.linalg.LinAlgError):  # where what decays is lost in rounding
-        form = _form(lengths, matrices, *(float(each) for each in at_longest))
-        frame = np.linalg.cholesky(form).T.astype(np.float64)
-    rounded = None if form is None or frame is None else rational_form(form)
-    if rounded and proves_decay(rounded, matrix, shortest):
-        return result("proven", "quadratic", tuple(tuple(row) for row in rounded))
+    form = _form(matrices, *(float(each) for each in at_longest))
+    if form is not None:
+        exact_form = rational_form(form)
+        if proves_decay(exact_form, matrix, shortest):
+            return replace(unknown, varying="proven", kind="quadratic", certificate=tuple(map(tuple, exact_form)))
     word = _growing_word(matrix, h_min, h_max)
     if word:
-        return result("refuted", word=word)
-    if matrix.size == 2 and frame is not None:
+        return refuted(word)
+    if matrix.size == 2 and form is not None:
         flow = _flow(matrix) if not hold and shortest < samples[0] else None
-        corners = invariant_polygon(matrix, lengths, matrices, flow, frame, shortest)
+        corners = invariant_polygon(matrix, np.array(samples, np.float64), matrices, flow, form, shortest)
         if corners:
-            return result("proven", "polygon", tuple(corners))
-    return result("not known")
+            return replace(unknown, varying="proven", kind="polygon", certificate=tuple(corners))
+    return unknown
 
 
 def _single_step(matrix: StepMatrix, shortest: Fraction) -> Fraction | bool:
@@ -137,8 +135,9 @@ def _single_step(matrix: StepMatrix, shortest: Fraction) -> Fraction | bool:
     circle if and only if its values at 1 and -1 and d^2 - D are positive (Jury). A state of three is tested in samples:
     what proves sequences proves single steps, too.
     """
-    square = polymul(matrix.denominator, matrix.denominator)
-    without_solution = positivity(whole_rows([square.tolist()]), shortest, Fraction(1)).exception
+    numerators, denominator = coefficients_of(matrix)
+    square = polymul(denominator, denominator)
+    without_solution = positivity(square[np.newaxis], shortest, Fraction(1)).exception
     if without_solution is not None:
         return without_solution
     if matrix.size != 2:
@@ -146,12 +145,11 @@ def _single_step(matrix: StepMatrix, shortest: Fraction) -> Fraction | bool:
             if recursion_verdict(characteristic(matrix.at(length))) != "converges":
                 return length
         return True
-    (a, b), (c, d) = matrix.entries
-    trace = polymul(polyadd(a, d), matrix.denominator)
-    determinant = polysub(polymul(a, d), polymul(b, c))
-    both = polyadd(square, determinant)
-    conditions = [polysub(both, trace), polyadd(both, trace), polysub(square, determinant)]
-    found = positivity(whole_rows([each.tolist() for each in conditions]), shortest, Fraction(1))
+    trace = polymul(np.trace(numerators, axis1=1, axis2=2), denominator)
+    of_roots = determinant(numerators)
+    both = polyadd(square, of_roots)
+    conditions = [polysub(both, trace), polyadd(both, trace), polysub(square, of_roots)]
+    found = positivity(whole_rows(conditions), shortest, Fraction(1))
     return found.proven if found.exception is None else found.exception
 
 
@@ -170,17 +168,22 @@ def _flow(matrix: StepMatrix) -> FloatArray:
     return (np.array(matrix.at(SHORT), np.float64) - np.eye(2)) / float(SHORT)
 
 
-def _form(lengths: FloatArray, matrices: FloatArray, alpha_hat: float, beta_hat: float) -> FloatArray:
-    """Return the quadratic form that all sampled steps make smaller by the largest share, or nearly so."""
+def _form(matrices: FloatArray, alpha_hat: float, beta_hat: float) -> FloatArray | None:
+    """Return the quadratic form that all sampled steps make smaller by the largest share, or nearly so.
+
+    None where what decays is lost in rounding.
+    """
     radii = np.abs(np.linalg.eigvals(matrices)).max(axis=1)
-    size = matrices.shape[1]
-    frame = np.eye(size)
+    frame = np.eye(matrices.shape[1])
     rate, stiffness = alpha_hat / 2, math.sqrt(abs(beta_hat))
     turning = math.sqrt(abs(stiffness**2 - rate**2))
     frame[:2, :2] = [[max(turning, LEAST_FRAME * stiffness), 0.0], [rate, 1.0]]
-    round_matrices = frame @ matrices @ np.linalg.inv(frame)
-    form: FloatArray = frame.T @ centred_form(round_matrices, 1 - radii**2) @ frame
-    return form
+    try:
+        form: FloatArray = frame.T @ centred_form(frame @ matrices @ np.linalg.inv(frame), 1 - radii**2) @ frame
+        np.linalg.cholesky(form)  # refuses what is not positive
+    except np.linalg.LinAlgError:
+        return None
+    return form if np.isfinite(form).all() else None
 
 
 def _growing_word(matrix: StepMatrix, h_min: Fraction, h_max: Fraction) -> tuple[Fraction, ...] | None:

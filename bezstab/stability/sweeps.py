@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 
 from bezstab.engines import MOST_SWEEPS, Move, Pass, SweptStep, VelocityOfMove
 from bezstab.errors import InputError, NumericalError
+from bezstab.rationals import bisected_integers
 from bezstab.stability.arrays import EPS, FloatArray
 
 MOST_BODIES = 100
@@ -125,25 +126,19 @@ def _sweeps(
 ) -> tuple[FloatArray, FloatArray]:
     """Return T and G in the coordinates of root: k sweeps make T p + G b of p.
 
-    By doubling: T of 2 k sweeps is T T, and G is G + T G.
+    One sweep takes (p, b) to (S p + P b, b); the matrix of that to the power k has T and G in its upper half.
     """
     diagonal = np.where(joints[:, None] == joints, inverse_masses, 0.0)  # D, in blocks
     below = np.where(joints[:, None] > joints, inverse_masses, 0.0)
     triangle = diagonal * (1 + one_pass.softness) / one_pass.relaxation + below
-    added = root @ np.linalg.solve(triangle, root.T)  # G of one sweep
+    added = root @ np.linalg.solve(triangle, root.T)  # P
     identity = np.eye(len(root))
     softened = identity
     if one_pass.softness:  # the inverse of root on the independent combinations
         inverse = np.linalg.pinv(root)
         softened = identity + one_pass.softness * inverse.T @ diagonal @ inverse
-    power = identity - added @ softened  # T of one sweep
-    of_old, of_wanted = identity, np.zeros_like(identity)  # of none, so far
-    remaining = one_pass.sweeps
-    while remaining:
-        if remaining % 2:
-            of_old, of_wanted = power @ of_old, added + power @ of_wanted
-        power, added = power @ power, added + power @ added
-        remaining //= 2
+    one_sweep = np.block([[identity - added @ softened, added], [np.zeros_like(identity), identity]])
+    of_old, of_wanted = np.split(np.linalg.matrix_power(one_sweep, one_pass.sweeps)[: len(root)], 2, axis=1)
     return of_old, of_wanted
 
 
@@ -155,17 +150,16 @@ def _spectral_radius(matrix: FloatArray) -> Growth:
     """Return the largest modulus of the eigenvalues, and how far rounding may have moved it, to first order.
 
     An eigenvalue moves by at most its condition |x| |y| / |y' x| times the perturbation, x and y its right and left
-    eigenvectors. Others may be found worse, as 1 - share is, and 0, which sweeps make multiple: they are not largest
-    where that matters, and where they are, their own condition says so.
+    eigenvectors: a column of V, of length one, and the row of V^-1. Others may be found worse, as 1 - share is, and 0,
+    which sweeps make multiple: they are not largest where that matters, and where they are, their own condition says
+    so.
     """
     values, vectors = np.linalg.eig(matrix)
     largest = int(np.argmax(np.abs(values)))
-    of_left, left_vectors = np.linalg.eig(matrix.T)
-    right, left = vectors[:, largest], left_vectors[:, np.argmin(np.abs(of_left - values[largest]))]
+    condition = float(np.linalg.norm(np.linalg.pinv(vectors)[largest]))
     perturbation = ROUNDINGS * EPS * len(matrix) * float(np.linalg.norm(matrix))
-    overlap = float(np.abs(left @ right))  # both of length one
     most = perturbation ** (1 / len(matrix))  # of one that is all of the matrix's, as 0 may be
-    return Growth(float(np.abs(values[largest])), min(perturbation / overlap, most) if overlap else most)
+    return Growth(float(np.abs(values[largest])), min(perturbation * condition, most))
 
 
 def fewest_sweeps(growth: Callable[[int], Growth]) -> int | None:
@@ -180,11 +174,5 @@ def fewest_sweeps(growth: Callable[[int], Growth]) -> int | None:
         if enough == MOST_SWEEPS:
             return None
         enough = min(2 * enough, MOST_SWEEPS)
-    too_few = enough // 2
-    while enough - too_few > 1:
-        middle = (enough + too_few) // 2
-        if growth(middle).decays:
-            enough = middle
-        else:
-            too_few = middle
-    return enough
+    _, fewest = bisected_integers(lambda sweeps: growth(sweeps).decays, enough // 2, enough)
+    return fewest

@@ -17,7 +17,6 @@ from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
-import mpmath as mp
 import numpy as np
 import sympy as sp
 from matplotlib.backend_bases import MouseEvent
@@ -38,13 +37,10 @@ from bezstab.mechanism import (
     simulate,
 )
 from bezstab.methods import (
-    ALPHA_HAT,
-    BETA_HAT,
     LinearMultistep,
     Method,
     RungeKutta,
     bezier,
-    closed_loop_polynomial,
     implicit,
     lookup,
     recipe,
@@ -54,7 +50,7 @@ from bezstab.methods import (
 from bezstab.show.explorer import Explorer
 from bezstab.stability import FloatArray, Region, region, spectral_radius, window
 from bezstab.stability.boundary_locus import bounds_of
-from bezstab.stability.mu_pencils import MuPencil, mu_pencil_of, roots_in_z
+from bezstab.stability.mu_pencils import MuPencil
 from bezstab.stability.pencils import pencil_of
 from bezstab.stability.region_checks import check_region
 from tests.evidence.exact_rates import own_motion_rates
@@ -62,8 +58,10 @@ from tests.evidence.exact_rates import own_motion_rates
 HERE = Path(__file__).parent
 sys.path.insert(0, str(HERE.parent.parent))  # run as a script, the tests are no package yet
 
-from tests.bench.stable_mask import stable_mask  # noqa: E402
 from tests.bench.timing import interleaved  # noqa: E402
+from tests.reference.companion_poles import radius  # noqa: E402
+from tests.reference.fifty_digit_poles import modulus_from_p  # noqa: E402
+from tests.reference.literal_equation_9 import literal_equation_9  # noqa: E402
 from tests.reference.perturbed_revolutions import runner_motion  # noqa: E402
 from tests.reference.second_order_methods import RECIPES, second_order  # noqa: E402
 
@@ -74,7 +72,6 @@ POINTS = 1000  # per axis
 FEWER_POINTS = 500  # per axis where numpy takes minutes for the larger map, or where many methods are compared
 CLOSE = 1e-12  # the promised agreement with 50 digits at ordinary points
 OFF_AXIS = 1e-7  # companions of a step without solution, which lie on straight lines, have no eigenvalues
-MULTIPLE = 1e-3  # roots closer than this are no ordinary points
 REFERENCES = 200  # ordinary points compared with 50 digits
 SAMPLED = 2000  # points for which NodePy is timed; it takes them one by one
 MEMORY = 50.0  # MB, the promise beyond the result
@@ -118,26 +115,6 @@ class Growth:
     sizes: str
 
 
-def by_eigenvalues(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray) -> FloatArray:
-    """Return |z_p| by numpy's batched eigenvalues of the companion matrices of P."""
-    leading, *rest = (sp.lambdify((ALPHA_HAT, BETA_HAT), c) for c in closed_loop_polynomial(method).all_coeffs())
-    companion = np.zeros((*alpha_hat.shape, len(rest), len(rest)))
-    for column, coefficient in enumerate(rest):
-        companion[..., 0, column] = -coefficient(alpha_hat, beta_hat) / leading(alpha_hat, beta_hat)
-    companion[..., range(1, len(rest)), range(len(rest) - 1)] = 1
-    largest: FloatArray = np.abs(np.linalg.eigvals(companion)).max(axis=-1)
-    return largest
-
-
-def away_from_multiple_roots(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray) -> FloatArray:
-    """Return where no two poles of P lie within MULTIPLE of each other; boolean."""
-    discriminant = np.emath.sqrt(alpha_hat**2 / 4 - beta_hat)
-    mus = (-alpha_hat / 2 + discriminant, -alpha_hat / 2 - discriminant)
-    z = np.concatenate([roots_in_z(mu_pencil_of(method), mu.ravel().astype(complex)) for mu in mus])
-    gaps = [np.abs(z[i] - z[j]) for i in range(len(z)) for j in range(i)]
-    return np.asarray(np.min(gaps, axis=0) > MULTIPLE).reshape(alpha_hat.shape)
-
-
 def axes(method: Method, points: int) -> tuple[FloatArray, FloatArray]:
     """Return both axes of the window that shows the region."""
     alpha_hat, beta_hat = (np.linspace(low, high, points) for low, high in window(region(method)))
@@ -170,23 +147,8 @@ def by_nodepy(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray) -> Fl
     return np.array([max(float(np.abs((rho - mu * sigma).roots).max()) for mu in pair) for pair in pairs])
 
 
-def with_fifty_digits(method: Method, alpha_hat: float, beta_hat: float) -> float:
-    """Return |z_p| from the roots of rho - mu sigma in mpmath."""
-    scheme = method.scheme
-    assert isinstance(scheme, LinearMultistep)
-    with mp.workdps(50):
-        half, square = mp.mpf(alpha_hat) / 2, mp.mpf(beta_hat)
-        mus = (-half + mp.sqrt(half**2 - square), -half - mp.sqrt(half**2 - square))
-        pairs = [
-            (mp.mpf(r.numerator) / r.denominator, mp.mpf(s.numerator) / s.denominator)
-            for r, s in zip(scheme.rho, scheme.sigma, strict=True)
-        ]
-        roots = [mp.polyroots([r - mu * s for r, s in pairs], maxsteps=200, extraprec=200) for mu in mus]
-        return float(max(abs(z) for each in roots for z in each))
-
-
 def maps() -> Iterator[Line]:
-    """Yield the comparisons of the |z_p| map and of the mask."""
+    """Yield the comparisons of the |z_p| map."""
     random = np.random.default_rng(1)
     for name, promise in (("B4", 18.0), ("AB4", 18.0), ("B8", 18.0), ("AB8", 18.0)):
         with_others = name in ("B4", "AB4")
@@ -194,28 +156,27 @@ def maps() -> Iterator[Line]:
         grid = np.meshgrid(a, b)
         calls: list[Callable[[], NDArray[np.generic]]] = [
             partial(rows_of, method, a, b),
-            partial(by_eigenvalues, method, *grid),
+            partial(radius, method, *grid),
         ]
         if with_others:
             some = random.choice(POINTS**2, SAMPLED)
             at_some = (part.ravel()[some] for part in grid)
-            calls += [partial(by_two_processes, method, a, b), partial(stable_mask, method, a, b)]
-            calls += [partial(by_nodepy, method, *at_some)]
+            calls += [partial(by_two_processes, method, a, b), partial(by_nodepy, method, *at_some)]
         (ours, z_abs), (theirs, _), *others = interleaved(*calls, rounds=2)  # the second takes long
         tracemalloc.start()
         spectral_radius(method, a, b[:, np.newaxis])
         memory = (tracemalloc.get_traced_memory()[1] - z_abs.nbytes) / 1e6
         tracemalloc.stop()
-        chosen = random.choice(np.flatnonzero(away_from_multiple_roots(method, *grid)), REFERENCES, replace=False)
+        chosen = random.choice(z_abs.size, REFERENCES, replace=False)  # none is near a multiple root by chance
         points = [grid[0].ravel()[chosen], grid[1].ravel()[chosen]]
-        exact = np.array([with_fifty_digits(method, x, y) for x, y in zip(*points, strict=True)])
+        exact = np.array([modulus_from_p(method, x, y) for x, y in zip(*points, strict=True)])
         error = float(np.abs(z_abs.ravel()[chosen] - exact).max())
         kept = error < CLOSE and memory < MEMORY
         note = f"{ours:.2f} s; error {error:.0e} at {REFERENCES} points; {memory:.0f} MB beyond the result"
         shown = note if kept else f"BROKEN: {CLOSE:g}, {MEMORY:g} MB: {note}"
         yield Line("map", f"{name}: batched eigenvalues, one core", theirs / ours, promise if kept else np.inf, shown)
         if others:
-            (both, same), (mask, stable), (slow, _) = others
+            (both, same), (slow, _) = others
             assert np.allclose(same, z_abs, rtol=1e-12, atol=0)  # other neighbours are followed, so rounding differs
             yield Line(
                 "map",
@@ -226,13 +187,6 @@ def maps() -> Iterator[Line]:
             )
             ratio = slow / SAMPLED * POINTS**2 / ours
             yield Line("map", f"{name}: NodePy 1.1.1", ratio, 200.0, f"NodePy timed at {SAMPLED} of the points")
-            clear = np.abs(z_abs - 1) > CLOSE
-            assert np.array_equal(stable[clear], (z_abs < 1)[clear])
-            region.cache_clear()
-            ((whole, _),) = interleaved(partial(region, method), rounds=1)
-            total = mask + whole
-            note = f"{1e3 * mask:.1f} ms; {theirs / total:.0f} times with what the boundary takes, {1e3 * total:.0f} ms"
-            yield Line("map", f"{name}: batched eigenvalues, stable or not", theirs / mask, 500.0, note)
 
 
 def maps_of_other_kinds() -> Iterator[Line]:
@@ -260,7 +214,7 @@ def maps_of_other_kinds() -> Iterator[Line]:
         name, (a, b) = method.name, axes(method, FEWER_POINTS)
         a, b = a + OFF_AXIS, b + OFF_AXIS
         (ours, z_abs), (theirs, by_companion) = interleaved(
-            partial(rows_of, method, a, b), partial(by_eigenvalues, method, *np.meshgrid(a, b)), rounds=2
+            partial(rows_of, method, a, b), partial(radius, method, *np.meshgrid(a, b)), rounds=2
         )
         off = float(
             np.quantile(np.abs(z_abs - by_companion), 0.99)
@@ -299,7 +253,7 @@ def moving_mechanisms() -> Iterator[Line]:
 def self_checks() -> Iterator[Line]:
     """Yield how many times as long as its check against poles the rest of a region takes: 0.4 at least."""
     for name in ("B4", "AB4", "RK4", "ABM3"):
-        pencil = mu_pencil_of(lookup(name))
+        pencil = MuPencil(lookup(name))
 
         def found(pencil: MuPencil = pencil) -> Region:
             for remembered in (region, bounds_of):
@@ -382,20 +336,10 @@ Slope = Callable[[float, FloatArray], FloatArray]
 
 def literal_slope(mechanism: Mechanism) -> Slope:
     """Return (q, v)' at a time by the paper's Eq. 9 as it stands: its matrices evaluated, put together and solved."""
-    symbolic, n, m = mechanism.equations, mechanism.size, mechanism.constraints
-    parts = (symbolic.jacobian, symbolic.constraints, symbolic.constraints_t, symbolic.gamma, symbolic.forces)
-    mass_of, *others = (
-        sp.lambdify((T, symbolic.q, symbolic.v), part, "numpy") for part in (sp.diag(*symbolic.mass), *parts)
-    )
+    literal, n = literal_equation_9(mechanism.equations, *GAINS), mechanism.size
 
     def slope(t: float, y: FloatArray) -> FloatArray:
-        q, v = y[:n], y[n:]
-        mass = mass_of(t, q, v)
-        jacobian, c, c_t, gamma, forces = (part(t, q, v) for part in others)
-        cdot = jacobian @ v + c_t[:, 0]
-        matrix = np.block([[mass, jacobian.T], [jacobian, np.zeros((m, m))]])
-        right = np.concatenate((forces[:, 0], gamma[:, 0] - GAINS[0] * cdot - GAINS[1] * c[:, 0]))
-        return np.concatenate((v, np.linalg.solve(matrix, right)[:n]))
+        return np.concatenate((y[n:], literal(t, y[:n], y[n:]).accelerations))
 
     return slope
 

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from bezstab.engines import ENGINES
-from bezstab.engines.acceleration_engines import CHRONO_EXPLICIT, CROCODDYL, MUJOCO, PINOCCHIO, RBDL
+from bezstab.engines.acceleration_engines import MUJOCO
 from tests.reference.engine_steps import Step, matrix, two_gains
 
 H = Fraction(2, 1000)
@@ -21,15 +21,6 @@ def test_rules_of_thumb_are_where_they_are_known_to_be() -> None:
     assert marks["Pinocchio: Kp = Kd = 0"] == (Fraction(0), Fraction(0))
     assert marks["Jolt: 0.2, 2 position steps"] == (Fraction(1), Fraction(9, 25))
     assert marks["Brax positional: 0.5"] == (Fraction(1, 2), Fraction(1, 2))
-
-
-def test_crocoddyl_has_stiffness_first_and_so_has_pinocchio() -> None:
-    assert CROCODDYL.point((Fraction(100), Fraction(20)), H) == (Fraction(1, 25), Fraction(1, 2500))
-    assert PINOCCHIO.point((Fraction(100), Fraction(20)), H) == RBDL.point((Fraction(1, 10),), H)
-
-
-def test_chronos_explicit_integrators_have_no_feedback() -> None:
-    assert CHRONO_EXPLICIT.point((), H) == (Fraction(0), Fraction(0))
 
 
 def test_refsafe_raises_a_time_constant_below_two_steps() -> None:

@@ -1,7 +1,6 @@
 """Exact rates of moving mechanisms as tests ask for them: by method, step and points."""
 
-from bezstab.evidence.floquet import course_of_steps, rates_on_the_motion
-from bezstab.evidence.own_motions import find_own_motions
+from bezstab.evidence.exact_rates import course_of_steps, find_own_motions, rates_on_the_motion
 from bezstab.mechanism import Mechanism
 from bezstab.methods import Method
 from bezstab.stability import FloatArray

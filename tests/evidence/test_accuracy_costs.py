@@ -1,23 +1,28 @@
-"""Errors, costs and orders of swept runs, and what a map costs."""
+"""Errors, costs and orders of swept runs, their Pareto fronts, and the reference that they are compared with."""
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
+from bezstab.errors import NumericalError
 from bezstab.evidence import (
     METHODS,
     Cost,
     ErrorOf,
     SweptRuns,
+    pareto_front,
+    reference_motion,
     summary,
-    sweep_compiled,
 )
 from bezstab.evidence.sweep_summaries import cost_for
+from bezstab.mechanism import load_scene
 from bezstab.methods import accuracy, evaluations, lookup
 from bezstab.rationals import exact
 from bezstab.stability import choose
 from tests.evidence.samples import of_campaign
-from tests.evidence.small_sweeps import DURATION, OMEGA, SOFT, reference, swept
-from tests.reference.undominated import undominated
+from tests.evidence.small_sweeps import DURATION, OMEGA, SCENE, SOFT, reference, swept
+from tests.reference.undominated import Point, undominated
 
 QUICK = ("B4", "ABM4", "RK4", "SYM")
 """One of each kind."""
@@ -111,15 +116,34 @@ def test_a_sweep_knows_its_fronts(against: Cost) -> None:
         assert [index for index, label in enumerate(whole.front_labels) if letter in label] == sorted(front)
 
 
-def test_all_runs_of_a_sweep_are_compiled_or_none(monkeypatch: pytest.MonkeyPatch) -> None:
-    fast, implicit = lookup("AB2"), lookup("bdf2")
-    for choice, methods, least_step, expected in (
-        ("auto", [fast], 1e-3, False),
-        ("auto", [fast], 1e-5, True),
-        ("auto", [fast, implicit], 1e-4, False),
-        ("auto", [fast, implicit], 1e-5, True),
-        ("yes", [fast], 1e-3, True),
-        ("no", [fast], 1e-5, False),
-    ):
-        monkeypatch.setenv("BEZSTAB_COMPILED", choice)
-        assert sweep_compiled(methods, (1e-3, least_step), 1.0, 3) is expected
+points_of_a_sweep = st.lists(st.tuples(st.floats(1, 9), st.one_of(st.none(), st.floats(1, 9))))
+
+
+@given(points_of_a_sweep)
+def test_the_front_is_what_no_pair_excludes_by_ascending_cost(points: list[Point]) -> None:
+    front = [points[k] for k in pareto_front(points)]
+    assert set(front) == undominated(points)
+    assert front == sorted(set(front))
+
+
+@pytest.mark.promise(
+    "The reference of `tradeoff`",
+    computed="its own error estimate, against quadrature in thirty digits",
+)
+def test_the_reference_has_the_digits_it_claims() -> None:
+    # one coordinate, by quadrature with 30 digits: see tests/mechanism/test_runner.py
+    true = reference_motion(load_scene("slider_crank"), 1e-3, 2.0)
+    assert true.error < 1e-12
+    angles = true.along.at(np.array([1.0, 2.0]))[0][:, 0]
+    assert angles == pytest.approx([1.822086334469, 2.872938352485], abs=max(true.error, 5e-13))
+
+
+@pytest.mark.slow
+def test_between_its_steps_the_reference_is_as_good() -> None:
+    true, other = (reference_motion(load_scene(SCENE), h, 0.2) for h in (2e-3, 2e-3 * np.sqrt(0.5)))
+    assert np.abs(true.along.at(other.along.t[:-1])[0] - other.along.q[:-1]).max() < true.error + other.error + 1e-13
+
+
+def test_a_reference_that_fails_says_where() -> None:
+    with pytest.raises(NumericalError, match=r"the motion of .* breaks down at t = "):
+        reference_motion(load_scene("four_bar"), 5.0, 500.0)

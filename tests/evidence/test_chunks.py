@@ -6,6 +6,8 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
+from concurrent.futures import Executor
+from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -13,8 +15,7 @@ import numpy as np
 import pytest
 
 from bezstab.errors import InputError, NumericalError
-from bezstab.evidence import ATTEMPTS, Arrays, chunk_store, completed_chunks, worker_pool
-from bezstab.evidence.worker_pools import WorkerPool
+from bezstab.evidence import Arrays, chunk_store, completed_chunks, worker_pool
 
 
 @dataclass(frozen=True)
@@ -39,41 +40,57 @@ def squares(found: dict[int, Arrays]) -> list[int]:
     return [int(found[number]["square"]) for number in sorted(found)]
 
 
-def arrived(jobs: list[Job], workers: WorkerPool, folder: Path) -> dict[int, Arrays]:
+def arrived(jobs: list[Job], workers: Executor, folder: Path, damaged: tuple[str, ...] = ()) -> dict[int, Arrays]:
     """Return what all chunks of a job in this folder give, those that are there already included."""
+    reported: list[str] = []
     with chunk_store(folder / "job", "squares", resume=True) as store:
-        found = list(completed_chunks(square, jobs, workers, store))
+        found = list(completed_chunks(square, jobs, workers, store, lambda file: reported.append(file.name)))
         assert all(store.load(number) for number in range(len(jobs)))
     assert sorted(number for number, _ in found) == list(range(len(jobs)))  # each done once
+    assert tuple(reported) == damaged
     return dict(found)
 
 
-def test_a_resumed_job_does_only_what_is_missing(tmp_path: Path) -> None:
+def test_a_resumed_job_does_only_what_is_missing_or_damaged(tmp_path: Path) -> None:
     with chunk_store(tmp_path / "job", "squares", resume=False) as store:
         store.save(1, {"square": np.array(-1)})
         store.save(3, {"square": np.array(-9)})  # one more than there are jobs
+        store.file(2).write_bytes(b"damaged")
     with worker_pool(1) as workers:
-        found = arrived([Job(number) for number in range(3)], workers, tmp_path)
+        found = arrived([Job(number) for number in range(3)], workers, tmp_path, damaged=("2.npz",))
     assert squares(found) == [0, -1, 4]  # the second was not done again
 
 
 @pytest.mark.slow
-def test_a_lost_worker_costs_no_chunk_and_one_that_kills_every_worker_is_reported(tmp_path: Path) -> None:
-    deaths = tuple(tmp_path / f"death {number}" for number in range(1 + ATTEMPTS))
-    with worker_pool(2) as workers:
-        found = arrived([Job(number, deaths[:1] * (number == 2)) for number in range(5)], workers, tmp_path)
-    assert squares(found) == [0, 1, 4, 9, 16]
-    assert os.getpid() not in {int(arrays["by"]) for arrays in found.values()}
-    assert deaths[0].exists()
-    with worker_pool(1) as workers, chunk_store(tmp_path / "other", "squares", resume=False) as store:
-        with pytest.raises(NumericalError, match="workers were lost 3 times: 1 of 2 chunks"):
-            list(completed_chunks(square, [Job(0), Job(1, deaths)], workers, store))
-        assert store.load(0)
+def test_a_lost_worker_is_one_line_and_what_is_done_is_kept(tmp_path: Path) -> None:
+    jobs = [Job(0), Job(1, (tmp_path / "death",))]
+    with (
+        pytest.raises(NumericalError, match=r"a worker was lost, .* --resume goes on"),
+        worker_pool(1) as workers,
+    ):
+        arrived(jobs, workers, tmp_path)
+    with worker_pool(1) as workers:
+        found = arrived(jobs, workers, tmp_path)
+    assert squares(found) == [0, 1]
+    by_the_lost_one, by_another = (int(found[number]["by"]) for number in range(2))
+    assert len({os.getpid(), by_the_lost_one, by_another}) == 3
 
 
 def test_what_a_worker_raises_is_raised_here(tmp_path: Path) -> None:
     with worker_pool(1) as workers, pytest.raises(InputError, match="at -1"):
         arrived([Job(-1)], workers, tmp_path)
+
+
+def test_busy_workers_are_ended_at_once_where_nobody_waits_for_them() -> None:
+    with worker_pool(1) as workers:
+        busy = workers.submit(time.sleep, 1000)
+    with pytest.raises(BrokenProcessPool):
+        busy.result(timeout=60)
+
+
+def test_a_scheduler_that_does_not_answer_is_one_line() -> None:
+    with pytest.raises(InputError, match="--scheduler nonsense"), worker_pool(scheduler="nonsense://x"):
+        pass
 
 
 @pytest.fixture

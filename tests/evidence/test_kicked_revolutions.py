@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from bezstab.evidence import random_points
+from bezstab.evidence.exact_rates import find_own_motions
 from bezstab.evidence.kicked_revolutions import rates_of_kicked_revolutions
-from bezstab.evidence.own_motions import find_own_motions
 from bezstab.methods import lookup
 from bezstab.stability import FloatArray, spectral_radius
 from tests.evidence.driven_four_bar import four_bar

@@ -8,6 +8,7 @@ import pytest
 
 from bezstab.errors import InputError
 from bezstab.evidence import ModelData, model_data, mujoco_module, read_mujoco_model
+from bezstab.evidence.mujoco_models import Constraint, Feedback
 
 mujoco: Any = pytest.importorskip("mujoco")
 
@@ -51,7 +52,7 @@ def robot() -> ModelData:
 
 
 def solrefs(robot: ModelData, kind: str) -> dict[str, tuple[float, float]]:
-    return {each.element: each.solref for each in robot.constraints if each.kind == kind}
+    return {each.element: each.solref for each in robot.of(Constraint) if each.kind == kind}
 
 
 def test_mixtures_of_contacts_are_mujocos_own(robot: ModelData) -> None:
@@ -74,14 +75,14 @@ def test_geoms_of_all_shapes_meet_however_far_apart_they_are() -> None:
     )
     floor = '<geom type="plane" size="1 1 1"/><geom type="plane" size="1 1 1" pos="0 0 -1"/>'
     model = mujoco.MjModel.from_xml_string(f"<mujoco><worldbody>{floor}{bodies}</worldbody></mujoco>")
-    found = [contact.solref[0] for contact in model_data(mujoco, model).constraints]
+    found = [contact.solref[0] for contact in model_data(mujoco, model).of(Constraint)]
     assert sorted(found) == [0.01, 0.02, 0.03, 0.04, 0.05]
     assert model.geom_margin.max() == 0  # the model itself is left as it was
 
 
 def test_geoms_that_cannot_touch_make_no_contact(robot: ModelData) -> None:
     """Parent and child, excluded bodies, and what is welded to the world."""
-    pairs = {each.element for each in robot.constraints if each.kind == "contact"}
+    pairs = {each.element for each in robot.of(Constraint) if each.kind == "contact"}
     assert not pairs & {"geom 'a' and geom 'b'", "geom 'a' and geom 'c'", "geom 'b' and geom 'c'"}
 
 
@@ -96,14 +97,14 @@ def test_options_hold_for_all_that_is_read() -> None:
         f' {flag}="disable"' for flag in ("equality", "limit", "frictionloss", "contact", "spring", "damper")
     )
     found = read(f'<option><flag refsafe="disable" eulerdamp="disable"{flags}/></option>')
-    assert not found.constraints
-    assert {each.kind for each in found.feedbacks} == {"drive"}
+    assert not found.of(Constraint)
+    assert {each.kind for each in found.of(Feedback)} == {"drive"}
     assert (found.refsafe, found.euler_damping) == (False, False)
     grouped = ROBOT.replace('name="motor"', 'name="motor" group="2"')
     found = read('<option actuatorgroupdisable="2"/>', grouped)
-    assert [each.element for each in found.feedbacks if each.kind == "drive"] == ["actuator 1"]
+    assert [each.element for each in found.of(Feedback) if each.kind == "drive"] == ["actuator 1"]
     found = read('<option o_solref="0.2 1"><flag override="enable"/></option>')
-    assert {each.solref for each in found.constraints if each.kind == "contact"} == {(0.2, 1)}
+    assert {each.solref for each in found.of(Constraint) if each.kind == "contact"} == {(0.2, 1)}
 
 
 @pytest.mark.parametrize(

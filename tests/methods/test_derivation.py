@@ -24,7 +24,6 @@ from bezstab.methods import (
 )
 from bezstab.methods.derivation import characteristic_polynomial
 from tests.methods.kinds import EXPLICIT, SAMPLE, sampled
-from tests.reference.closed_loops import sympy_rational
 from tests.reference.steppers import State, trajectory
 
 NAMES = [*EXPLICIT, "B4@1/2", "RK4@5", "ABM3@2"]
@@ -60,7 +59,7 @@ def test_the_mapping_is_the_characteristic_polynomial_solved(name: str) -> None:
     (equation,) = mapping_equations(method)
     if not isinstance(method.scheme, PredictorCorrector):
         assert equation.lhs == (Z if isinstance(method.scheme, RungeKutta) else S)
-    difference = (equation.lhs - equation.rhs).subs(S, MU / (H * sympy_rational(method.step_multiple)))
+    difference = (equation.lhs - equation.rhs).subs(S, MU / (H * sp.Rational(method.step_multiple)))
     numerator = sp.Poly(sp.numer(sp.together(sp.expand(difference))), Z, MU, domain="QQ")
     pi = characteristic_polynomial(method)
     assert numerator * pi.LC() == pi * numerator.LC()
@@ -87,5 +86,5 @@ def test_closed_loop_is_the_minimal_recursion_of_the_stabilised_constraint(name:
     for k in range(3 * n):
         assert sum(p_i * c_i for p_i, c_i in zip(p, c[k : k + n + 1], strict=True)) == 0
     # the stepper's two unknowns at its n points obey no shorter recursion: the Hankel matrix is regular
-    hankel = [[sympy_rational(c[n + i + j]) for j in range(n)] for i in range(n)]
+    hankel = [[sp.Rational(c[n + i + j]) for j in range(n)] for i in range(n)]
     assert DomainMatrix.from_Matrix(sp.Matrix(hankel)).to_field().rank() == n

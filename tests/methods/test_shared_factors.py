@@ -14,7 +14,7 @@ from bezstab.methods import (
     without_shared_factor,
 )
 from tests.methods.random_recipes import VERLET
-from tests.reference.random_methods import product
+from tests.reference.known_roots import product
 
 F = Fraction
 
@@ -23,7 +23,7 @@ def with_factor(*factor: Fraction) -> Method:
     """AB2 with rho and sigma multiplied by one polynomial."""
     scheme = lookup("AB2").scheme
     assert isinstance(scheme, LinearMultistep)
-    rho, sigma = (tuple(product(list(polynomial), list(factor))) for polynomial in (scheme.rho, scheme.sigma))
+    rho, sigma = (tuple(product([polynomial, factor])) for polynomial in (scheme.rho, scheme.sigma))
     return Method("shared", LinearMultistep(rho, sigma), "")
 
 

@@ -1,36 +1,19 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from bezstab.methods import lookup
 from bezstab.paper import regions
-from bezstab.paper.reports import Agreement, Finding
-from bezstab.stability import region, spectral_radius
+from bezstab.paper.printed import FASTER_LEVEL, LEAST_Z_ABS, TABLE_5, PrintedCase
+from bezstab.stability import best_point, dominant_pole, region, spectral_radius
 
 
-@pytest.fixture(scope="module")
-def found() -> list[Finding]:
-    return regions.findings()
-
-
-@pytest.mark.parametrize(
-    ("words", "agreement", "number"),
-    [
-        ("smallest |z_p|", "confirmed with a correction", "0.57735, 0.60698, 0.62588"),
-        ("shrink slightly", "confirmed with a correction", "0.822"),
-        ("loses more than", "confirmed", "17 %"),
-        ("RK4 costs 5 times", "confirmed with a correction", "4 and 1"),
-        ("at equal cost", "confirmed", "0.8097"),
-        ("RK4 at 4h", "confirmed", "0.5402"),
-        ("wider region at the same cost", "confirmed with a correction", "4.000"),
-        ("Adams–Moulton", "not confirmed", "B3 0.887, AM3 120.45; B4 0.810, AM4 20.10"),
-        ("depends on the integrator", "confirmed", "AB4 diverges (1.456)"),
-    ],
-)
-@pytest.mark.slow
-def test_the_questions_to_settle(found: list[Finding], words: str, agreement: Agreement, number: str) -> None:
-    (finding,) = (finding for finding in found if words in finding.claim)
-    assert finding.agreement == agreement
-    assert number in finding.here
+@pytest.mark.parametrize("name", LEAST_Z_ABS)
+def test_the_papers_least_values_lie_above_the_exact_ones_like_those_of_a_grid(name: str) -> None:
+    best = best_point(lookup(name))
+    assert best is not None
+    assert 0 < LEAST_Z_ABS[name] - best.z_abs < 0.03 < FASTER_LEVEL[name] - best.z_abs
 
 
 def test_a_counterexample_is_one() -> None:
@@ -48,6 +31,24 @@ def test_where_all_methods_agree_the_integrator_does_not_decide(monkeypatch: pyt
 def test_a_false_least_modulus_is_not_confirmed(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(regions, "LEAST_Z_ABS", {"B2": 0.1, "B3": 0.1, "B4": 0.1})
     assert regions.least_moduli().agreement == "not confirmed"
+
+
+def table_5_with(*names: str) -> dict[int, PrintedCase]:
+    """Return Table 5 as it would be if "Euler semi-implicit" were these methods, cut off after three decimals."""
+    cases = {}
+    for (number, case), name in zip(TABLE_5.items(), names, strict=True):
+        pole = complex(dominant_pole(lookup(name), *case.point))
+        printed = (f"{pole.real:.3f}", f"{pole.imag:.3f}", f"{abs(pole):.3f}", "0")
+        cases[number] = replace(case, poles={**case.poles, "SIE": printed})
+    return cases
+
+
+def test_euler_semi_implicit_is_an_euler_step_corrected_once_and_nothing_else_would_be_taken_for_it() -> None:
+    asked = regions.what_semi_implicit_euler_is
+    assert (asked().agreement, asked().here.count("3 of 3")) == ("confirmed with a correction", 1)
+    assert asked(table_5_with("SYM", "SYM", "SYM")).agreement == "confirmed"
+    assert asked(table_5_with("AB2", "AB2", "AB2")).agreement == "not confirmed"
+    assert asked(table_5_with("SYM", "AB2", "AB2")).agreement == "not confirmed"
 
 
 def test_a_panel_of_fig_1_has_the_regions_s_and_h() -> None:

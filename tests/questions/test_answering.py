@@ -1,6 +1,7 @@
 """Answers: what is asked of them is found then, and agrees with the function that finds it."""
 
 from fractions import Fraction
+from math import inf
 
 import pytest
 
@@ -31,7 +32,7 @@ def test_what_to_take_instead_is_not_looked_for_unless_asked(monkeypatch: pytest
     def refuse(*_: object, **__: object) -> None:
         raise AssertionError("looked for a choice")
 
-    monkeypatch.setattr("bezstab.questions.answering.choose", refuse)
+    monkeypatch.setattr("bezstab.questions.answering.choose_at_step", refuse)
     assert [answer.role for answer in answers(Question(methods=SYM, point=POINT))] == ["given"]
 
 
@@ -68,6 +69,31 @@ def test_of_a_drive_kp_and_kd_are_told() -> None:
     assert explicit.gains
     assert (explicit.gains.kp, explicit.gains.kd, explicit.gains.used_up) == (1000, 80, "kd")
     assert explicit.gains.kp_max is None
+
+
+LIMITS = [
+    ("SYM", "1", "1/4", 2 - 1 / 8, 2, "kd"),  # 2 kd + kp < 4
+    ("SYM", "1/10", "3", 1 / 2, 4 - 1 / 5, "kp"),
+    ("SYM", "19/10", "1/2", 7 / 4, 1 / 5, "kd"),  # unstable: each is lowered until it is stable
+    ("SYM", "3", "1/4", 2 - 1 / 8, None, "kd"),  # where one alone is too much the other does not help
+    ("SYM", "1/10", "5", None, 4 - 1 / 5, "kp"),
+    ("SYM", "3", "5", None, None, None),
+    ("SYM", "0", "1/100", None, None, None),  # rounding on the circle is no decay
+    ("imex-euler", "1", "1", inf, 6, "kp"),
+    ("implicit-euler", "1", "1", inf, inf, None),
+]
+
+
+@pytest.mark.parametrize(("name", "kd", "kp", "kd_max", "kp_max", "used_up"), LIMITS)
+def test_gains_reach_the_edge_of_what_is_stable(
+    name: str, kd: str, kp: str, kd_max: float | None, kp_max: float | None, used_up: str | None
+) -> None:
+    """On an inertia of 1, with steps of 1 s, kd is alpha_hat and kp is beta_hat."""
+    drive = Drive(Fraction(kp), Fraction(kd), Fraction(1))
+    found = first(Question(methods=(lookup(name),), drive=drive, h=Fraction(1))).gains
+    assert found
+    assert (found.kd_max, found.kp_max) == pytest.approx((kd_max, kp_max))
+    assert found.used_up == used_up
 
 
 def test_faster_decay_costs_and_slower_decay_gains() -> None:

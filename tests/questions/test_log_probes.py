@@ -7,7 +7,7 @@ import pytest
 
 from bezstab.evidence import Log
 from bezstab.methods import lookup
-from bezstab.questions import LogQuestion, log_answers
+from bezstab.questions import PoleQuestion, log_answers
 from bezstab.stability import dominant_pole
 
 POINT = (Fraction(1, 2), Fraction(1, 4))
@@ -22,12 +22,12 @@ def decay(every: int = 1) -> Log:
 
 
 def test_the_method_that_made_a_log_is_the_nearest() -> None:
-    (answer,) = log_answers(LogQuestion(log=decay(), point=POINT, methods=(RK4, SYM)))
+    (answer,) = log_answers(PoleQuestion(log=decay(), point=POINT, methods=(RK4, SYM)))
     assert [one.method for one in answer.likenesses] == [SYM, RK4]
     assert (answer.column, answer.told, answer.fits) == ("c", True, True)
 
 
 def test_without_a_point_it_is_found() -> None:
-    (answer,) = log_answers(LogQuestion(log=decay(every=2), h=0.01, methods=(SYM,)))
+    (answer,) = log_answers(PoleQuestion(log=decay(every=2), h=0.01, methods=(SYM,)))
     places = [(point.alpha_hat, point.beta_hat) for point in answer.points]
     assert any(place == pytest.approx((0.5, 0.25), rel=1e-6) for place in places)

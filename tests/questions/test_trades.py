@@ -28,11 +28,6 @@ def test_against_projection_each_method_runs_with_feedback_and_with_projection()
     assert QUESTION.rate is None  # no point is advised
 
 
-def test_numbers_look_like_one_over_seconds_only_where_they_are_not() -> None:
-    strong = replace(QUESTION, numbers=(Fraction(50), Fraction(60)))
-    assert (strong.meant_in_seconds, replace(strong, physical=True).meant_in_seconds) == (True, False)
-
-
 def test_smaller_steps_cost_more_and_err_less() -> None:
     swept = QUESTION.swept([measured_runs(sweep) for sweep in QUESTION.sweeps])
     larger, smaller = swept.runs
@@ -48,3 +43,19 @@ def test_a_front_has_the_speeds_that_were_asked_for() -> None:
     (front,) = FrontQuestion(methods=(SYM,), levels=(Fraction("0.9"),)).fronts()
     found = [float(spectral_radius(SYM, point.alpha_hat, point.beta_hat)) for point in front]
     assert found[0] == pytest.approx(0.9, abs=1e-6)
+
+
+def test_all_runs_of_a_sweep_are_compiled_or_none(monkeypatch: pytest.MonkeyPatch) -> None:
+    fast, implicit = lookup("AB2"), lookup("bdf2")
+    for choice, methods, least_step, expected in (
+        ("auto", [fast], "0.001", False),
+        ("auto", [fast], "1e-5", True),
+        ("auto", [fast, implicit], "1e-4", False),
+        ("auto", [fast, implicit], "1e-5", True),
+        ("yes", [fast], "0.001", True),
+        ("no", [fast], "1e-5", False),
+    ):
+        monkeypatch.setenv("BEZSTAB_COMPILED", choice)
+        steps = Fraction("0.001"), Fraction(least_step)
+        question = TradeQuestion(scene="pendulum", methods=methods, steps=steps, duration=Fraction(1))
+        assert question.compiled is expected

@@ -5,23 +5,14 @@ from functools import cache
 import numpy as np
 from numpy.polynomial import polynomial
 
-from bezstab.methods import Method, closed_loop_polynomial
+from bezstab.methods import Method, closed_loop_table
 from bezstab.stability import ComplexArray, FloatArray
 
 
 @cache
 def closed_loop_tables(method: Method) -> FloatArray:
     """Return C with P(z) = sum_kij C[k, i, j] alpha_hat^i beta_hat^j z^(n - k), rounded from the exact P."""
-    coefficients = [
-        c.as_poly(*closed_loop_polynomial(method).domain.symbols).terms()
-        for c in closed_loop_polynomial(method).all_coeffs()
-    ]
-    degree = max(max(powers) for terms in coefficients for powers, _ in terms)
-    table = np.zeros((len(coefficients), degree + 1, degree + 1))
-    for k, terms in enumerate(coefficients):
-        for (i, j), c in terms:
-            table[k, i, j] = float(c)
-    return table
+    return np.array(closed_loop_table(method)[::-1], float)
 
 
 def polynomial_at(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray, level: float = 1.0) -> FloatArray:

@@ -3,8 +3,8 @@
 from collections import Counter
 from collections.abc import Sequence
 from fractions import Fraction
-from functools import reduce
 
+import numpy as np
 from hypothesis import strategies as st
 
 from bezstab.methods import Polynomial, Verdict
@@ -36,16 +36,12 @@ def reciprocal(factor: Factor) -> Factor:
     return tuple(a / factor[0] for a in factor[::-1])
 
 
-def product(factors: Sequence[Factor]) -> list[Fraction]:
-    """Return the polynomial with all their roots."""
-
-    def times(p: list[Fraction], q: Factor) -> list[Fraction]:
-        return [
-            sum((p[i] * q[k - i] for i in range(len(p)) if 0 <= k - i < len(q)), Fraction(0))
-            for k in range(len(p) + len(q) - 1)
-        ]
-
-    return reduce(times, factors, [ONE])
+def product(factors: Sequence[Sequence[Fraction]]) -> list[Fraction]:
+    """Return the product of polynomials, in powers that ascend or descend as theirs do."""
+    result = np.array([ONE])
+    for factor in factors:
+        result = np.convolve(result, np.array(factor))
+    return list(result)
 
 
 def scaled(p: Polynomial, s: Fraction) -> list[Fraction]:

@@ -14,13 +14,13 @@ FloatArray = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Solution:
-    """c and cdot (shape (m,)), qddot (n,), lambda (m,), and the condition number of the matrix they come from."""
+    """c and cdot (shape (m,)), qddot (n,), lambda (m,), and the matrix that the last two come from."""
 
     c: FloatArray
     cdot: FloatArray
     accelerations: FloatArray
     multipliers: FloatArray
-    condition: float
+    matrix: FloatArray
 
 
 def literal_equation_9(
@@ -41,6 +41,6 @@ def literal_equation_9(
         matrix = np.block([[mass, jacobian.T], [jacobian, np.zeros((m, m))]])
         right = np.concatenate([forces, gamma - two_alpha * cdot - beta_squared * c])
         unknown = np.linalg.solve(matrix, right)
-        return Solution(c, cdot, unknown[:n], unknown[n:], float(np.linalg.cond(matrix)))
+        return Solution(c, cdot, unknown[:n], unknown[n:], matrix)
 
     return solution

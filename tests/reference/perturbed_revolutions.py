@@ -1,21 +1,15 @@
 """Floquet multipliers and periodic motions from the runner itself, by steps on complex numbers."""
 
-from collections.abc import Iterator
 from itertools import islice
-from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from bezstab.mechanism import Mechanism, motion, resume, simulate
 from bezstab.methods import Method, steps
 from bezstab.stability import FloatArray
 from bezstab.units import feedback_gains
 
-AnyArray = NDArray[Any]  # of real or complex numbers
-
 EPSILON = 1e-30
-ENDLESS = 10**5  # steps, of which some are taken
 CORRECTIONS = 12  # of Newton's method
 PERIODIC = 1e-10  # m, rad: what a revolution may leave
 REVOLUTIONS, SETTLED = 30, 1e-9  # m, rad: what the last of so many may still change
@@ -82,21 +76,9 @@ def _revolution(
     mechanism: Mechanism, method: Method, count: int, alpha_hat: float, beta_hat: float, start: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Return the last states after a revolution, and their derivatives by those before it."""
-    directions = start[:, np.newaxis] + 1j * EPSILON * np.eye(start.size)
-    past = steps(method)
-    states = [
-        *np.split(directions, past),
-        *islice(_run(mechanism, method, count, alpha_hat, beta_hat, directions), count),
-    ]
-    after = np.concatenate(states[-past:])
-    return after.real[:, 0], after.imag / EPSILON
-
-
-def _run(
-    mechanism: Mechanism, method: Method, count: int, alpha_hat: ArrayLike, beta_hat: ArrayLike, start: AnyArray
-) -> Iterator[AnyArray]:
-    """Yield states, (2 n, ...) each, of runs from those from which they go on, shape (states 2 n, ...)."""
     h = motion(mechanism, 1.0).duration / count
-    gains = feedback_gains(np.asarray(alpha_hat), np.asarray(beta_hat), h / float(method.step_multiple))
-    history = np.split(start, steps(method))
-    return (state for block in resume(mechanism, method, h, gains, history, ENDLESS) for state in block.states)
+    gains = feedback_gains(alpha_hat, beta_hat, h / float(method.step_multiple))
+    past = np.split(start[:, np.newaxis] + 1j * EPSILON * np.eye(start.size), steps(method))
+    later = (state for block in resume(mechanism, method, h, gains, past, count) for state in block.states)
+    after = np.concatenate([*past, *islice(later, count)][-len(past) :])
+    return after.real[:, 0], after.imag / EPSILON

@@ -2,22 +2,13 @@
 
 import random
 from fractions import Fraction
-from functools import reduce
 
 from bezstab.errors import InputError
 from bezstab.methods import LinearMultistep, Method, PredictorCorrector, RungeKutta, recipe
 from tests.methods.random_recipes import random_recipe
+from tests.reference.known_roots import product
 
 Polynomial = list[Fraction]  # descending powers of z
-
-
-def product(first: Polynomial, second: Polynomial) -> Polynomial:
-    """Return the product of two polynomials in descending powers."""
-    result = [Fraction(0)] * (len(first) + len(second) - 1)
-    for i, a in enumerate(first):
-        for j, b in enumerate(second):
-            result[i + j] += a * b
-    return result
 
 
 def small(rng: random.Random, size: Fraction) -> Fraction:
@@ -44,7 +35,7 @@ def random_rho(rng: random.Random, steps: int) -> Polynomial:
             p = small(rng, Fraction(19, 20)) * (1 + q)
             factors.append([Fraction(1), p, q])
             degree += 2
-    return reduce(product, factors)
+    return product(factors)
 
 
 def random_sigma(rng: random.Random, rho: Polynomial, explicit: bool) -> Polynomial:

@@ -110,7 +110,7 @@ def event_zeros(
     """
     tables = closed_loop_tables(method)
     n, low, high = len(tables) - 1, *free_range
-    size = (tables.shape[2] - 1) * (n - 1) + 1
+    size = (max(tables.shape[1:]) - 1) * (n - 1) + 1
     nodes = chebyshev.chebpts1(size)
     fixed_nodes, free_nodes = np.broadcast_arrays(fixed[:, None], (low + high + (high - low) * nodes) / 2)
     points = (free_nodes, fixed_nodes) if transposed else (fixed_nodes, free_nodes)

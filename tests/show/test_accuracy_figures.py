@@ -1,6 +1,7 @@
 """Figures of forced errors: contours, boundary and fronts are where they are said to be."""
 
 from fractions import Fraction
+from typing import Any
 
 import numpy as np
 import pytest
@@ -8,20 +9,23 @@ from matplotlib.axes import Axes
 from matplotlib.contour import QuadContourSet
 
 from bezstab.methods import lookup
-from bezstab.show.map_figures import PlaneMap, accuracy_map_figure, error_front_figure
-from bezstab.stability import FrontPoint, combined_error, region, spectral_radius
+from bezstab.questions import MapAnswer, MapQuestion
+from bezstab.show.map_figures import error_front_figure, map_figure
+from bezstab.stability import FrontPoint, combined_error, spectral_radius
 from tests.show.drawn import lines_of
 
 OMEGA_H = Fraction(1, 100)
+"""As usual where no motion is named."""
 
 
 def drawn_map(name: str) -> Axes:
-    method = lookup(name)
-    alpha_hat, beta_hat = np.geomspace(2e-3, 6, 61), np.geomspace(1e-6, 9, 61)
-    z_abs = spectral_radius(method, alpha_hat, beta_hat[:, np.newaxis])
-    error = np.where(z_abs < 1, combined_error(method, alpha_hat, beta_hat[:, np.newaxis], OMEGA_H), np.nan)
-    shown = PlaneMap(region=region(method), alpha_hat=alpha_hat, beta_hat=beta_hat, z_abs=z_abs)
-    return accuracy_map_figure(shown, float(OMEGA_H), error, [0.99]).axes[0]
+    window: dict[str, Any] = {
+        "alpha_range": (Fraction("2e-3"), Fraction(6)),
+        "beta_range": (Fraction("1e-6"), Fraction(9)),
+    }
+    question = MapQuestion(methods=(lookup(name),), accuracy=True, levels=(Fraction("0.99"),), points=61, **window)
+    answer = MapAnswer(question, lookup(name))
+    return map_figure(answer, np.array(list(answer.dominant_poles()))).axes[0]
 
 
 @pytest.mark.promise(

@@ -1,6 +1,7 @@
 """Figures of the plane: what their artists hold is what was given."""
 
 from dataclasses import replace
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
@@ -10,43 +11,36 @@ from matplotlib.collections import QuadMesh
 from bezstab.evidence import map_rows, simulated_verdicts, verdict_map
 from bezstab.mechanism import load_scene
 from bezstab.methods import lookup
-from bezstab.show.map_figures import (
-    PlaneMap,
-    accuracy_map_figure,
-    comparison_figure,
-    family_figure,
-    region_figure,
-    verdict_figure,
-)
-from bezstab.stability import best_point, bezier_limit, choose, family_members, region, spectral_radius, window
+from bezstab.questions import MapAnswer, MapQuestion
+from bezstab.show.map_figures import comparison_figure, family_figure, map_figure, verdict_figure
+from bezstab.stability import bezier_limit, family_members, region
 from tests.show.drawn import lines_of
 
 
-@pytest.mark.parametrize("h", [None, 0.001])
-@pytest.mark.parametrize("on", ["even axes", "logarithmic axes"])
-def test_a_map_draws_what_it_is_given(on: str, h: float | None) -> None:
-    method, scale = lookup("B4"), np.array([1 / (h or 1), 1 / (h or 1) ** 2])
-    even = on == "even axes"
-    ends = window(region(method)) if even else ((2e-3, 1.6), (1e-6, 0.8))
-    alpha_hat, beta_hat = ((np.linspace if even else np.geomspace)(low, high, 41) for low, high in ends)
-    z_abs = spectral_radius(method, alpha_hat, beta_hat[:, None])
-    best, chosen = best_point(method), choose(method, "robust", margins=False)
-    points: dict[str, Any] = {"best": best, "chosen": chosen, "marks": {"a rule": (0.1, 0.2), "far out": (3, 3)}}
-    shown = PlaneMap(region=region(method), alpha_hat=alpha_hat, beta_hat=beta_hat, z_abs=z_abs, h=h, **points)
-    faster = [region(method, level) for level in (0.75, 0.9)]
-    figure = region_figure(shown, faster) if even else accuracy_map_figure(shown, 0.01, z_abs)
-    axes = figure.axes[0]
+@pytest.mark.parametrize("h", [None, Fraction("0.001")])
+@pytest.mark.parametrize("accuracy", [False, True])
+def test_a_map_draws_what_it_is_given(accuracy: bool, h: Fraction | None, monkeypatch: pytest.MonkeyPatch) -> None:
+    """On even axes, and on logarithmic ones where errors are asked about."""
+    monkeypatch.setattr(MapQuestion, "marks", {"a rule": (0.1, 0.2), "far out": (3, 3)})
+    method, scale = lookup("B4"), np.array([1, 1] if h is None else [1e3, 1e6])
+    levels = () if accuracy else (Fraction("0.75"), Fraction("0.9"))
+    answer = MapAnswer(MapQuestion(methods=(method,), h=h, accuracy=accuracy, levels=levels, points=41), method)
+    z = np.array(list(answer.dominant_poles()))
+    alpha_hat, beta_hat = answer.axes
+    axes = map_figure(answer, z).axes[0]
     (image,) = axes.images or [each for each in axes.collections if isinstance(each, QuadMesh)]
     values = np.ma.masked_array(image.get_array())
-    assert (np.ma.getmaskarray(values) == (z_abs >= 1)).all()
-    assert values.compressed().tolist() == z_abs[z_abs < 1].tolist()
+    assert (np.ma.getmaskarray(values) == (np.abs(z) >= 1)).all()
+    assert values.compressed().tolist() == np.abs(z)[np.abs(z) < 1].tolist()
     low, high = np.transpose([axes.get_xlim(), axes.get_ylim()])
     assert [low, high] == pytest.approx(np.transpose([alpha_hat, beta_hat])[[0, -1]] * scale)
     lines = lines_of(axes)
+    best, chosen = answer.stable.best, answer.chosen
     assert best
+    assert chosen
     for label, point in {
         "least $|z_p|$: 0.6259": (best.alpha_hat, best.beta_hat),
-        f"choose robust: {abs(chosen.pole):.4f}": (chosen.alpha_hat, chosen.beta_hat),
+        f"choose {chosen.goal}: {abs(chosen.pole):.4f}": (chosen.alpha_hat, chosen.beta_hat),
         "a rule": (0.1, 0.2),
     }.items():
         assert lines[label][0] == pytest.approx(np.array(point) * scale)
@@ -54,12 +48,12 @@ def test_a_map_draws_what_it_is_given(on: str, h: float | None) -> None:
     (parabola,) = (points for label, points in lines.items() if label.startswith("critical damping"))
     assert parabola[:, 1] == pytest.approx(parabola[:, 0] ** 2 / 4)  # beta^2 = (2 alpha)^2/4 in either unit
     assert ("1/s" in axes.get_xlabel()) == (h is not None)
-    if even:  # nodes are at the centres of pixels
-        for drawn in (region(method), *faster):
+    if not accuracy:  # nodes are at the centres of pixels
+        for drawn in (answer.stable.region, *answer.faster):
             assert lines[f"$|z_p| = {drawn.level:g}$"][:-1] == pytest.approx(drawn.boundary[0] * scale)
         left, right, *_ = axes.images[0].get_extent()
         step = (alpha_hat[1] - alpha_hat[0]) * scale[0]
-        assert (left + step / 2, right - step / 2) == pytest.approx((0, alpha_hat[-1] * scale[0]))
+        assert (left + step / 2, right - step / 2) == pytest.approx((alpha_hat[0] * scale[0], alpha_hat[-1] * scale[0]))
 
 
 def test_the_verdict_figure_shows_cells_boundary_and_disagreement() -> None:
@@ -97,12 +91,13 @@ def test_the_family_figure_has_a_point_per_method_and_the_limit() -> None:
 
 
 def test_a_comparison_draws_each_boundary_in_a_given_window_or_in_alpha_and_beta() -> None:
-    regions = [region(lookup(name)) for name in ("B4", "RK4@5")]
-    axes = comparison_figure(regions, (0.0, 1.0), (0.0, 0.5), h=0.001).axes[0]
-    for line, shape in zip(axes.lines[:2], regions, strict=True):
-        assert np.array(line.get_xydata())[:-1] == pytest.approx(shape.boundary[0] * [1e3, 1e6])
+    methods = lookup("B4"), lookup("RK4@5")
+    ends: dict[str, Any] = {"alpha_range": (Fraction(0), Fraction(1)), "beta_range": (Fraction(0), Fraction("0.5"))}
+    axes = comparison_figure(MapQuestion(methods=methods, h=Fraction("0.001"), **ends)).axes[0]
+    for line, method in zip(axes.lines[:2], methods, strict=True):
+        assert np.array(line.get_xydata())[:-1] == pytest.approx(region(method).boundary[0] * [1e3, 1e6])
     assert (*axes.get_xlim(), *axes.get_ylim()) == pytest.approx((0, 1e3, 0, 0.5e6))
-    (axes,) = comparison_figure(regions[:1], h=0.001, alpha_and_beta=True).axes
+    (axes,) = comparison_figure(MapQuestion(methods=methods[:1], h=Fraction("0.001"), alpha_beta=True)).axes
     for ticks, labels, power, scale in (
         (axes.get_xticks(), axes.get_xticklabels(), 1, 2),  # at 2 alpha
         (axes.get_yticks(), axes.get_yticklabels(), 2, 1),  # at beta^2
@@ -111,13 +106,14 @@ def test_a_comparison_draws_each_boundary_in_a_given_window_or_in_alpha_and_beta
         assert ticks == pytest.approx([scale * float(label.get_text()) ** power for label in labels])
 
 
-@pytest.mark.parametrize("h", [None, 0.01])
-def test_arrows_along_the_edges_are_where_an_unbounded_region_goes_on(h: float | None) -> None:
+@pytest.mark.parametrize("h", [None, Fraction("0.01")])
+def test_arrows_along_the_edges_are_where_an_unbounded_region_goes_on(h: Fraction | None) -> None:
     """Beside the two unbounded ones the bounded region has none."""
-    regions = [region(lookup(name)) for name in ("RK4", "hht", "newmark")]
-    axes = comparison_figure(regions, h=h).axes[0]
+    methods = tuple(map(lookup, ("RK4", "hht", "newmark")))
+    regions = [region(method) for method in methods]
+    axes = comparison_figure(MapQuestion(methods=methods, h=h)).axes[0]
     low, high = np.transpose([axes.get_xlim(), axes.get_ylim()])
-    scale = np.array([1 / (h or 1), 1 / (h or 1) ** 2])
+    scale = np.array([1 / float(h or 1), 1 / float(h or 1) ** 2])
     arrows = axes.lines[len(regions) :]
     of_boundaries = {line.get_color(): shape for line, shape in zip(axes.lines, regions, strict=False)}
     assert {line.get_color() for line in arrows} == set(list(of_boundaries)[1:])

@@ -9,10 +9,10 @@ import pytest
 from matplotlib.lines import Line2D
 
 from bezstab.methods import lookup
+from bezstab.questions import MapQuestion
 from bezstab.show import FIGURE_FORMS
 from bezstab.show.map_figures import comparison_figure
 from bezstab.show.style import marked_line_at, save, title_lines
-from bezstab.stability import region
 
 NAMES = ["rk45", "hht", "generalized-alpha", "newmark", "radau3", "B3", "B4", "AB4", "RK4@5", "SYM", "SIE", "ABM4"]
 
@@ -24,7 +24,7 @@ def dashes_of(line: Line2D) -> str:
 
 @pytest.mark.slow
 def test_methods_in_a_figure_differ_in_colour_dashes_and_marker() -> None:
-    axes = comparison_figure([region(lookup(name)) for name in NAMES]).axes[0]
+    axes = comparison_figure(MapQuestion(methods=tuple(map(lookup, NAMES)))).axes[0]
     looks = {(str(line.get_color()), dashes_of(line)) for line in axes.lines[: len(NAMES)]}
     assert len(looks) == len(NAMES)
     for key in ("color", "linestyle", "marker", "markersize"):  # of neighbours all
@@ -36,7 +36,7 @@ def test_equal_figures_are_equal_bytes_whatever_the_users_settings(form: str) ->
     outputs = []
     for settings in ({}, {"font.size": 20, "lines.linewidth": 9, "savefig.dpi": 10, "svg.hashsalt": "x"}):
         with mpl.rc_context(settings):  # type: ignore[arg-type,unused-ignore]
-            save(comparison_figure([region(lookup("B4"))]), form, file := io.BytesIO())
+            save(comparison_figure(MapQuestion(methods=(lookup("B4"),))), form, file := io.BytesIO())
         outputs.append(file.getvalue())
     assert outputs[0] == outputs[1]
     assert form != "svg" or b">B4</text>" in outputs[0]  # text stays text
@@ -47,8 +47,8 @@ def test_two_processes_draw_the_same_bytes() -> None:
     code = (
         "import sys; from bezstab.show.map_figures import comparison_figure; from bezstab.show.style import save;"
         "from bezstab.methods import lookup;"
-        "from bezstab.stability import region;"
-        "save(comparison_figure([region(lookup('B4'))]), 'svg', sys.stdout.buffer)"
+        "from bezstab.questions import MapQuestion;"
+        "save(comparison_figure(MapQuestion(methods=(lookup('B4'),))), 'svg', sys.stdout.buffer)"
     )
     first, second = (
         subprocess.run([sys.executable, "-c", code], capture_output=True, check=True, env={"PYTHONHASHSEED": seed})

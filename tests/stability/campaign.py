@@ -2,8 +2,8 @@
 
 Areas are held against integrals over lines of constant alpha_hat (tests/reference/sliced_areas), in a box three times
 as wide as what was found; extents, of regions without end too, against proven verdicts on lines near and far out
-(extents); the least |z_p| against samples of the quadrant up to 1e9 (lower_points). Prints every difference above 1e-6
-of the area, every other contradiction and every refusal; the exit status is 1 if one was silent.
+(extents); the least |z_p| against what descent finds in the quadrant up to 1e9 (least_by_descent). Prints every
+difference above 1e-6 of the area, every other contradiction and every refusal; the exit status is 1 if one was silent.
 """
 
 import sys
@@ -25,7 +25,7 @@ from bezstab.stability import best_point, best_points, falls_towards, region
 from bezstab.stability.boundary_locus import bounds_of
 from tests.reference.companion_poles import closed_loop_tables
 from tests.reference.extents import contradictions as extent_contradictions
-from tests.reference.lower_points import contradictions as best_point_contradictions
+from tests.reference.least_by_descent import contradictions as best_point_contradictions
 from tests.reference.random_methods import other_random_method, random_method
 from tests.reference.sliced_areas import Integral, proven_sliced_integral, sliced_integral, stable
 

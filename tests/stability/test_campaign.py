@@ -8,7 +8,7 @@ import pytest
 from bezstab.methods import lookup
 from bezstab.stability import best_point, region
 from tests.reference.extents import Extent
-from tests.reference.lower_points import contradictions as best_point_contradictions
+from tests.reference.least_by_descent import contradictions as best_point_contradictions
 from tests.reference.one_evaluation_schemes import one_evaluation_schemes
 from tests.reference.random_methods import other_random_method, random_method
 from tests.stability import campaign

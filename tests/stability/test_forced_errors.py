@@ -3,12 +3,11 @@
 from fractions import Fraction
 
 import mpmath
-import numpy as np
 import pytest
 
 from bezstab.errors import InputError
-from bezstab.methods import forced_errors, lookup
-from bezstab.stability import forced_error, turning_response
+from bezstab.methods import forced_errors, lookup, turning_error
+from bezstab.stability import forced_error
 from tests.reference.forced_runs import exact_value
 
 METHODS = ("B4", "AB4", "AB8", "RK4", "dopri5", "SYM", "verlet-half", "hht", "gauss4")
@@ -34,13 +33,7 @@ def test_it_has_ten_digits_of_the_exact_functions(name: str, omega: Fraction) ->
         assert found.total >= found.position * (1 - 1e-12)
 
 
-def test_points_of_a_map_have_the_errors_that_they_have_alone() -> None:
-    """A map's points are looked at in fewer frequencies at a time: the answer is the same."""
-    alpha_hat, beta_hat = np.linspace(0.01, 0.9, 400), np.linspace(0.001, 0.4, 400)[:, np.newaxis]
-    of_map = forced_error(lookup("B4"), alpha_hat, beta_hat, any_frequency=True)
-    for i, j in ((0, 0), (17, 399), (399, 200)):
-        alone = forced_error(lookup("B4"), alpha_hat[j], beta_hat[i, 0], any_frequency=True)
-        assert float(of_map.total[i, j]) == pytest.approx(float(alone.total), rel=1e-12)
+def test_of_no_points_there_are_no_errors() -> None:
     assert forced_error(lookup("B4"), [], []).total.shape == (0,)
 
 
@@ -54,8 +47,8 @@ def test_a_motion_that_no_step_follows_or_that_is_none_is_refused(omega: Fractio
 @pytest.mark.parametrize("multiple", [1, 5])
 def test_normals_that_turn_add_to_gauss_alone(multiple: int) -> None:
     """-b/5184 of the turning normal, b of the method's own step, where methods/test_steady_errors has it as a run."""
-    found = turning_response(lookup(f"gauss4@{multiple}"), 3.0, 12.0)
+    found = turning_error(lookup(f"gauss4@{multiple}"))
     assert found
-    assert found[0] == 3
-    assert found[1] == pytest.approx(-12 * multiple**6 / 5184, rel=1e-14)
-    assert turning_response(lookup("RK4"), 1.0, 1.0) is None
+    assert found.power == 3
+    assert found.at(3.0, 12.0) == pytest.approx(-12 * multiple**6 / 5184, rel=1e-14)
+    assert turning_error(lookup("RK4")) is None

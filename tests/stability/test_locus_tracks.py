@@ -5,7 +5,7 @@ import pytest
 from numpy.polynomial.polynomial import polyroots, polysub
 
 from bezstab.stability import region
-from bezstab.stability.mu_pencils import mu_pencil_of
+from bezstab.stability.mu_pencils import MuPencil
 from tests.reference.made_methods import CLOSE_BRANCHES, FAR_INTERVAL
 from tests.reference.sliced_areas import sliced_area
 
@@ -23,7 +23,7 @@ def test_the_area_of_close_branches_is_that_of_the_slices(level: float) -> None:
 @pytest.mark.parametrize("level", LEVELS)
 def test_a_far_interval_reaches_furthest(level: float) -> None:
     """R is linear across the interval, so both its ends are the zero of R plus or minus level / |R'|."""
-    growth = -mu_pencil_of(FAR_INTERVAL).table[0]
+    growth = -MuPencil(FAR_INTERVAL).table[0]
     crossing = np.concatenate([polyroots(polysub(growth, [side])) for side in (level, -level)])
     furthest = float(crossing[np.abs(crossing + 122) < 1].real.min())
     found = region(FAR_INTERVAL, level).extent

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-from bezstab.evidence.kick_fates import fates, follow
+from bezstab.evidence.kicks import fates, follow
 from bezstab.stability import FloatArray
 
 KICK, RUN = 1e-8, 2000

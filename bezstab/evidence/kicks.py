@@ -1,6 +1,6 @@
-r"""What becomes of the constraint error that a kick has made: it grows, or it dies.
+r"""Runs that are kicked, one up and one down, and what becomes of the constraint error that a kick has made.
 
-Two runs of one mechanism are kicked, one up and one down. Half the difference of their c is the kick's error for as
+It grows, or it dies. Half the difference of their c is the kick's error for as
 long as that lives, and no longer:
 
     log |dc|  *
@@ -30,15 +30,41 @@ growth, too, if without feedback nothing happens to the mechanism in these steps
 not enough: where steps are coarse, feedback may turn truncation errors into millimetres though errors decay.)
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bezstab.evidence.linear_prediction import NEGLIGIBLE
-from bezstab.evidence.measured_poles import APART, AT_ONCE, GROWN, LINEAR
+from bezstab.mechanism import (
+    How,
+    Mechanism,
+    constraint_errors,
+    initial_state,
+    march,
+    perturbed_state,
+    resume,
+    states_needed,
+)
+from bezstab.methods import Method, steps
 from bezstab.stability import BoolArray, FloatArray
+from bezstab.units import feedback_gains
+
+LINEAR = (1e-3, 1e-4, 1e-5)
+"""Largest |c| of a window, SI units: up to here a mechanism of about a metre answers linearly."""
+
+GROWN = 10.0
+"""Times the kick, well before c leaves the linear range; else the mechanism itself broke down."""
+
+AT_ONCE = 10
+"""Steps: growth of tenfold a step, which the linear range may be too small to show, takes fewer to APART."""
+
+APART = 1.0
+"""|c|, SI units, of a mechanism of about a metre that is in pieces."""
+
+CALM = NEGLIGIBLE * LINEAR[0]
+"""Largest |c|, SI units, of a mechanism to which nothing happens in the steps in which feedback has thrown it apart."""
 
 WINDOW = 10
 """Steps: an oscillation so slow that it is below NEGLIGIBLE in all of them passes no zero within thousands of steps."""
@@ -49,6 +75,80 @@ PARTS = 8
 OF_ALL = 0.1
 """What an error that grows accounts for, at least, of all that two runs differ by; two motions differ by a hundredth of
 that in their c."""
+
+
+def steps_before_a_kick(method: Method) -> int:
+    """Return how many steps of its own a run has to have taken until a method has all that it remembers."""
+    return max(steps(method), states_needed(method) - 1)
+
+
+def kicked_states(
+    mechanism: Mechanism,
+    method: Method,
+    step: float,
+    gains: tuple[FloatArray, FloatArray],
+    history: Sequence[FloatArray],
+    directions: FloatArray,
+    kicks: FloatArray,
+    count: int,
+    compiled: bool = False,
+) -> Iterator[FloatArray]:
+    """Yield the states of kicked runs, (2 n, 2 for up and down, kicks, points) each, in blocks; the first is the kick.
+
+    `history` holds the states up to the kick, `step` (s) apart, (2 n, points) each. Each of the `kicks`, that may
+    depend on the points, is along one of the `directions`, (2 n, kicks). What a multistep method remembers of before is
+    left alone, and so is what a second-order scheme remembers of accelerations: its recursion is linear, and its poles
+    are the same from any first values. InputError where runs are to be `compiled` without numba.
+    """
+    undisturbed = history[-1]
+    displaced = directions[:, :, np.newaxis] * kicks
+    kicked = undisturbed[:, np.newaxis, np.newaxis] + np.stack([displaced, -displaced], axis=1)
+    yield kicked[np.newaxis]
+    so_far = [*history[:-1], kicked]
+    for block in resume(mechanism, method, step, gains, so_far, count, How(compiled), undisturbed):
+        yield block.states
+
+
+def kicked_motions(
+    mechanism: Mechanism,
+    method: Method,
+    h: float,
+    alpha_hat: FloatArray,
+    beta_hat: FloatArray,
+    kicks: Sequence[float],
+    count: int,
+    compiled: bool = False,
+) -> Iterator[tuple[FloatArray, FloatArray]]:
+    """Yield c and q (SI units) of kicked runs, from the kick on over `count` steps, in blocks.
+
+    They have the shape (steps, constraints or coordinates, 2 for up and down, kicks, points). The kick of the first
+    constraint (SI units) comes after as many steps as the method has; the first block is the kick itself. h in s,
+    alpha_hat and beta_hat of shape (points,). InputError for a scene that cannot start, else as `kicked_states`.
+    """
+    step, gains = h * float(method.step_multiple), feedback_gains(alpha_hat, beta_hat, h)
+    q, v = initial_state(mechanism)
+    start = np.repeat(np.concatenate([q, v])[:, np.newaxis], alpha_hat.size, axis=1)
+    before = march(mechanism, method, step, gains, start, "rk4", steps_before_a_kick(method))
+    history = [start, *(state for block in before for state in block.states)]
+    displaced = perturbed_state(mechanism, 1.0)[0] - q  # linear in the constraint error
+    directions = np.outer(np.concatenate([displaced, np.zeros_like(v)]), np.ones(len(kicks)))
+    amounts = np.array(kicks)[:, np.newaxis]
+    k = len(history) - 1
+    for states in kicked_states(mechanism, method, step, gains, history, directions, amounts, count, compiled):
+        times = step * np.arange(k, k + len(states), dtype=np.float64)
+        q = states[:, : mechanism.size]
+        c = constraint_errors(mechanism, times.reshape(-1, 1, 1, 1), np.moveaxis(q, 1, 0))
+        yield np.moveaxis(c, 0, 1), q
+        k += len(states)
+
+
+def nothing_happens_without_feedback(mechanism: Mechanism, method: Method, h: float) -> bool:
+    """Return whether without feedback c stays well within the linear range for the first few steps; h in s."""
+    none = np.zeros(1)
+    with np.errstate(all="ignore"):
+        drifting = kicked_motions(mechanism, method, h, none, none, [0.0], AT_ONCE)
+        largest = max(float(np.abs(c).max()) for c, _ in drifting)
+    return largest < CALM  # not so where it is not a number
 
 
 @dataclass(frozen=True)
