@@ -67,15 +67,16 @@ def reference_motion(scene: Scene, h: float, duration: float) -> ReferenceMotion
     step, its interpolation included. InputError for a scene that cannot start, NumericalError if the run fails.
     Duration in s.
     """
-    best: ReferenceMotion | None = None
-    for halving in range(1, HALVINGS + 2):
-        along = motion_over(compiled_mechanism(scene), duration, round(duration / h * 2**halving))
-        error = np.inf if best is None else float(np.abs(best.along.at(along.t)[0] - along.q).max())
-        fine = ReferenceMotion(along, error)
-        if best is not None and error > best.error / ROUNDED:
+    halved = (
+        motion_over(compiled_mechanism(scene), duration, round(duration / h * 2**halving))
+        for halving in range(1, HALVINGS + 2)
+    )
+    best = ReferenceMotion(next(halved), np.inf)
+    for along in halved:
+        fine = ReferenceMotion(along, float(np.abs(best.along.at(along.t)[0] - along.q).max()))
+        if fine.error > best.error / ROUNDED:
             return min(best, fine, key=lambda motion: motion.error)
         best = fine
-    assert best
     return best
 
 

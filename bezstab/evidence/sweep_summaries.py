@@ -102,16 +102,12 @@ def sweep_sentences(runs: Sequence[Run], tolerance: float, held: Held) -> list[s
     """
     methods = dict.fromkeys(run.method for run in runs)
     summaries = [summary([run for run in runs if run.method == method]) for method in methods]
-    bezier = [one for one in summaries if _is_bezier(one.method)]
+    bezier = [one for one in summaries if is_bezier(one.method.scheme) and one.method.step_multiple == 1]
     sentences = [_cheapest_sentence(runs, tolerance), *_order_sentences(summaries, held), *_prediction_sentence(runs)]
     if bezier and held != "no feedback":
         most_steps = max(bezier, key=lambda one: steps(one.method))
         sentences += [_comparison_sentence(most_steps, other) for other in summaries if other not in bezier]
     return sentences
-
-
-def _is_bezier(method: Method) -> bool:
-    return is_bezier(method.scheme) and method.step_multiple == 1
 
 
 def _cheapest_sentence(runs: Sequence[Run], tolerance: float) -> str:
