@@ -60,8 +60,9 @@ def test_single_operations_are_the_text() -> None:
         pivot = function(0.0, np.array([gains, gains]).T, state, found, np.zeros(length), 1)
         expected = state_function(mechanism, name, np)([0.0, *gains, *state[:, 1::2].ravel()])
         *results, least = *expected[: len(code.results)], min(expected[len(code.results) :])
-        assert found[1::2] == pytest.approx(results, rel=1e-12, abs=1e-12 * max(map(abs, results)))
-        assert pivot == pytest.approx(least, rel=1e-12)
+        # sums may be taken in another order: what is left of a small pivot has lost about that factor of its digits
+        assert found[1::2] == pytest.approx(results, abs=1e-14 / least * max(map(abs, results)))
+        assert pivot == pytest.approx(least, rel=1e-14 / least)
         assert not found[::2].any()
 
 
