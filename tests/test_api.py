@@ -81,6 +81,13 @@ def test_python_answers_what_the_command_line_answers(typed: str, asked: dict[st
         assert row == json.loads(render([answer_row(each)], [], "json"))[0]
 
 
+def test_of_several_answers_the_first_that_is_not_safe_is_returned() -> None:
+    """What solimp makes of large errors is a second point of these values."""
+    answer = bezstab.check(engine="mujoco=-135000,-920", h=0.002)
+    assert answer.goal != "as given"  # which is safe, and comes first
+    assert answer.verdict == "diverges"
+
+
 def test_poles_are_measured_at_each_of_the_points() -> None:
     found = bezstab.verify("pendulum", "SYM", h=0.001, alpha_hat=[0.5, 1.0], beta_hat=[0.1, 0.5])
     assert [(each.alpha_hat, each.beta_hat) for each in found] == [(0.5, 0.1), (1.0, 0.5)]

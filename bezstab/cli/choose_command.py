@@ -83,7 +83,7 @@ def choose(goal: Goal | None, equal: str | None, bandwidth: Fraction | None, **t
     drive, settle = typed["drive"], typed["settle"]
     settling = drive is not None and settle is not None and goal is None
     asked_by = "--bandwidth, --settle, --every, --late and --filter"
-    if held := held_asked(typed, asked_by, "--bandwidth", "--settle", always=settling):
+    if held := held_asked(typed, asked_by, always=settling):
         return _choose_held(held, bandwidth, settle)
     goal = goal or questions.usual_goal(typed["engine"], drive)
     question = asked_of_scene(questions.Question, goal=goal, equal=equal is not None, **typed)

@@ -9,18 +9,19 @@ from bezstab import questions, show
 from bezstab.cli.options import OF_A_CONTROLLER, refuse_beside, typed_options
 from bezstab.cli.output import Files, show_rows, show_text
 
-ABOUT_DRIVES = {"--pd", "--h", "--every", "--late", "--filter", "--method", "--format"}
-"""Options that go with a question about a held or late drive."""
+ABOUT_DRIVES = {
+    *("--pd", "--h", "--every", "--late", "--filter", "--method", "--format"),
+    *("--bandwidth", "--settle", "--quality", "--grid", "--output", "--figure"),
+}
+"""Options that go with a question about a held or late drive, of those that its commands have."""
 
 
-def held_asked(
-    typed: dict[str, Any], asked: str, *allowed: str, always: bool = False
-) -> "questions.HeldQuestion | None":
+def held_asked(typed: dict[str, Any], asked: str, *, always: bool = False) -> "questions.HeldQuestion | None":
     """Take the timing options out of `typed`. Return the question about such a drive.
 
     None if no option about a controller was typed, unless `always`: every step then computes its torque and applies it.
     Without --method it is about all four ways of applying a drive. Errors as `HeldQuestion`; UsageError, which says
-    what is `asked`, if an option was typed that is neither about drives nor `allowed`.
+    what is `asked`, if an option was typed that is not about drives.
     """
     timing = {name: typed.pop(name) for name in ("every", "late", "filter_seconds")}
     if not always and typed_options().keys().isdisjoint(OF_A_CONTROLLER.options):
@@ -29,7 +30,7 @@ def held_asked(
         raise click.UsageError("--pd needs --h: the step in s")
     methods = typed_options().get("--method", ())
     question = questions.HeldQuestion(drive=typed["drive"], h=typed["h"], methods=methods, **timing)
-    refuse_beside(asked, typed_options().keys() - {*ABOUT_DRIVES, *allowed}, "this answer is about the drive alone")
+    refuse_beside(asked, typed_options().keys() - ABOUT_DRIVES, "this answer is about the drive alone")
     return question
 
 

@@ -7,9 +7,10 @@ from dataclasses import dataclass, fields
 from fractions import Fraction
 from functools import partial, wraps
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, get_args
+from typing import Any, get_args
 
 import click
+from click.shell_completion import CompletionItem
 
 from bezstab.cli.output import Files, Work
 from bezstab.compiling import COMPILED_CHOICE, check_numba
@@ -20,9 +21,6 @@ from bezstab.rationals import rational
 from bezstab.show import FIGURE_FORMS, TABLE_FORMS, Format
 from bezstab.stabilising import STABILISE
 from bezstab.units import LEAST_STEP, LONGEST_STEP, to_dimensionless
-
-if TYPE_CHECKING:
-    from click.shell_completion import CompletionItem
 
 EngineValues = tuple[Engine, tuple[Fraction, ...]]
 Function = Callable[..., Any]
@@ -60,13 +58,8 @@ class ParsedType(click.ParamType):  # type: ignore[type-arg]  # generic since cl
         """Return the names that begin with the typed text, in upper or lower case; files where none does."""
         if self.names is None:
             return []
-        from click.shell_completion import CompletionItem
-
-        typed = incomplete.lower()
-        fitting: list[CompletionItem[Any]] = [
-            CompletionItem(name) for name in self.names() if name.lower().startswith(typed)
-        ]
-        return fitting or [CompletionItem(incomplete, type="file")]
+        fitting = [name for name in self.names() if name.lower().startswith(incomplete.lower())]
+        return [CompletionItem(name) for name in fitting] or [CompletionItem(incomplete, type="file")]
 
 
 def _scenes() -> Iterable[str]:

@@ -68,8 +68,7 @@ def region(quality: str, grid: int | None, files: Files, **typed: Any) -> int:
     from bezstab import stability
 
     points = grid or stability.QUALITY[quality]
-    drawn = ("--quality", "--grid", "--output", "--figure")
-    if held := held_asked(typed, "--pd", *drawn, always=typed["drive"] is not None):
+    if held := held_asked(typed, "--pd", always=typed["drive"] is not None):
         write_held(held, points, files)
         return 0
     del typed["drive"]

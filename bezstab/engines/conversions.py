@@ -119,7 +119,7 @@ class Engine:
     def values(self, point: Point, h: Fraction) -> tuple[str, ...]:
         """Return the values that mean a point, as they are typed, h in s; InputError where there are none.
 
-        They are read back: so what is pasted is the point, and the engine takes it as it is.
+        They are read back, so that what is pasted is the point.
         """
         try:
             values = self.write(point, h)

@@ -34,7 +34,10 @@ WITNESSES = {
     "chipmunk": "tests/witnesses/test_pymunk.py::test_chipmunks_pole_is_that_of_its_error_bias",
     "box2d-v2": "tests/witnesses/test_box2d.py::test_errors_of_a_chain_shrink_as_predicted",
 }
-"""The test that runs an engine itself and holds its row against that, by the engine's name; add a line for each."""
+"""The test that runs an engine itself and holds its row against that, by the engine's name; add a line for each.
+
+The rows of others rest on their sources alone.
+"""
 
 
 def engine_named(name: str) -> Engine:
@@ -58,8 +61,3 @@ def engine_and_values(text: str) -> tuple[Engine, tuple[Fraction, ...]]:
         return engine, tuple(rational(number) for number in numbers.split(","))
     except InputError as error:
         raise InputError(f"{error}: expected {name}={engine.words()}") from None
-
-
-def witness_of(name: str) -> str | None:
-    """Return the test that runs the engine itself, None where its row rests on its source alone."""
-    return WITNESSES.get(name)

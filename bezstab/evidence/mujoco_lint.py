@@ -30,7 +30,6 @@ from bezstab.evidence.mujoco_models import LEAST_SIZE, Constraint, Feedback, Mod
 from bezstab.methods import Method, Verdict, closed_loop_at, lookup, recursion_verdict
 from bezstab.rationals import exact
 from bezstab.stability import (
-    EPS,
     BoolArray,
     FloatArray,
     Timing,
@@ -135,8 +134,8 @@ def linted_model(model: ModelData, gains: Sequence[MotorGains] = (), timing: Tim
     """Yield what every constraint, spring, damper and drive of a model means, then all that hold both ways together.
 
     `gains` and `timing` are those of a controller that sets the model's motors; a motor without is not judged.
-    InputError for gains of no motor, NumericalError where the mass matrix is singular,
-    and where a pole leaves the range of float64.
+    InputError for gains of no motor, NumericalError where the mass matrix is singular, and where a pole leaves the
+    range of float64.
     """
     plant = _Plant(model)
     groups = _along_one_direction(model.of(Feedback))
@@ -193,8 +192,10 @@ class _Plant:
 
         NumericalError where the mass is singular to rounding.
         """
-        if np.linalg.cond(self.model.mass) * EPS > 1:
-            raise NumericalError("the mass matrix at qpos0 is singular to rounding")
+        try:
+            np.linalg.cholesky(self.model.mass)
+        except np.linalg.LinAlgError:
+            raise NumericalError("the mass matrix at qpos0 is singular to rounding") from None
         return cache(lambda h: np.linalg.inv(self.model.mass + h * self.implicit_damping))
 
     def is_implicit(self, feedback: Feedback) -> bool:

@@ -33,10 +33,10 @@ def recursion_text(method: Method, latex: bool = False) -> str:
     multiple = method.step_multiple
     match method.scheme:
         case LinearMultistep() as scheme:
-            lines = [_multistep("y_{k+1}", scheme, "y", "f", multiple, latex)]
+            lines = [_multistep("y_{k+1}", scheme, multiple, latex)]
         case PredictorCorrector(predictor, corrector):
-            predict = _multistep("p", predictor, "y", "f", multiple, latex)
-            correct = _multistep("y_{k+1}", corrector, "y", "f", multiple, latex, new_slope="f(p)")
+            predict = _multistep("p", predictor, multiple, latex)
+            correct = _multistep("y_{k+1}", corrector, multiple, latex, new_slope="f(p)")
             lines = [predict, correct]
         case SecondOrder() as scheme:
             return second_order_text(scheme, multiple, latex)
@@ -138,20 +138,13 @@ def _written(expression: sp.Expr, latex: bool) -> str:
 def _multistep(
     left: str,
     scheme: LinearMultistep,
-    value: str,
-    slope: str,
     multiple: Fraction,
     latex: bool,
-    new_slope: str | None = None,
+    new_slope: str = "f_{k+1}",
 ) -> str:
-    """Return `left` = one multistep formula in value_k, value_{k-1}, ... and slope_{k+1}, slope_k, ...
-
-    `new_slope` is what the slope at the new point is called, slope_{k+1} unless given.
-    """
-    past = [(-a, f"{value}_{_index(j)}") for j, a in enumerate(scheme.rho[1:])]
-    slopes = [(b, f"{slope}_{_index(j - 1)}") for j, b in enumerate(scheme.sigma)]
-    if new_slope is not None:
-        slopes[0] = scheme.sigma[0], new_slope
+    """Return `left` = one multistep formula in y_k, y_{k-1}, ... and f_{k+1} (or `new_slope`), f_k, ..."""
+    past = [(-a, f"y_{_index(j)}") for j, a in enumerate(scheme.rho[1:])]
+    slopes = [(scheme.sigma[0], new_slope), *((b, f"f_{_index(j)}") for j, b in enumerate(scheme.sigma[1:]))]
     denominator, sum_of_past = _combination(past)
     if denominator > 1:
         sum_of_past = f"\\frac{{1}}{{{denominator}}}({sum_of_past})" if latex else f"({sum_of_past})/{denominator}"
@@ -159,8 +152,8 @@ def _multistep(
 
 
 def _index(j: int) -> str:
-    """Return the index j steps before k: k, {k-1}, {k+1}."""
-    return "k" if j == 0 else f"{{k{-j:+d}}}"
+    """Return the index j steps before k: k, {k-1}, ..."""
+    return "k" if j == 0 else f"{{k-{j}}}"
 
 
 def _combination(terms: Terms) -> tuple[int, str]:

@@ -30,7 +30,7 @@ def bezier(n: int) -> Method:
     (Aghdam et al.'s multistep method, paper Table 1; theory: the curve extended past its end over one step).
     """
     weights = [_bezier_weight(n - 1, j) for j in range(n)] if n > 1 else [ONE]
-    return Method(f"B{n}", _explicit_adams(weights), "paper Table 1 (Bezier)")
+    return Method(f"B{n}", _from_one_step_back([ZERO, *weights]), "paper Table 1 (Bezier)")
 
 
 def is_bezier(scheme: Scheme) -> bool:
@@ -55,12 +55,19 @@ def _bezier_weight(degree: int, j: int) -> Fraction:
 
 def adams_bashforth(n: int) -> Method:
     """Return the n-step Adams-Bashforth method, of order n >= 1 (Hairer, Norsett & Wanner I, section III.1)."""
-    source = "Hairer, Norsett & Wanner I, Eq. III.1.5 (Adams-Bashforth)"
-    return Method(f"AB{n}", _adams_bashforth_scheme(n), source)
+    return Method(f"AB{n}", _adams(n, newest=0), "Hairer, Norsett & Wanner I, Eq. III.1.5 (Adams-Bashforth)")
 
 
-def _adams_bashforth_scheme(n: int) -> LinearMultistep:
-    return _explicit_adams(_interpolatory_weights([-j for j in range(n)]))
+def _adams(n: int, newest: int) -> LinearMultistep:
+    """Return the scheme of the polynomial through n values, the newest at 0 (explicit) or at 1 (implicit)."""
+    nodes = [newest - j for j in range(n)]
+    weights = [lagrange_integral(node, [other for other in nodes if other != node], ONE) for node in nodes]
+    return _from_one_step_back([*[ZERO] * (1 - newest), *weights])
+
+
+def _from_one_step_back(sigma: Sequence[Fraction]) -> LinearMultistep:
+    """Return y_{k+1} = y_k + h sum_j sigma[j] f_{k+1-j}."""
+    return LinearMultistep((ONE, -ONE, *[ZERO] * (len(sigma) - 2)), tuple(sigma))
 
 
 @dataclass(frozen=True)
@@ -85,29 +92,10 @@ def adams_bashforth_moulton(n: int) -> Method:
     Both keep n past values; the corrector gives the oldest the weight 0, as the new value takes its place
     (Hairer, Norsett & Wanner I, section III.1).
     """
-    predictor = _adams_bashforth_scheme(n)
-    corrector = adams_moulton_scheme(n)
+    corrector = _adams(n, newest=1)
     same_steps = LinearMultistep((*corrector.rho, ZERO), (*corrector.sigma, ZERO))
     source = "Hairer, Norsett & Wanner I, section III.1 (Adams-Bashforth-Moulton, PECE)"
-    return Method(f"ABM{n}", PredictorCorrector(predictor, same_steps), source)
-
-
-def adams_moulton_scheme(n: int) -> LinearMultistep:
-    """Return the Adams-Moulton scheme of order n >= 2, of n - 1 steps: the polynomial through n values, one new."""
-    weights = _interpolatory_weights([1 - j for j in range(n)])
-    return LinearMultistep((ONE, -ONE, *[ZERO] * (n - 2)), tuple(weights))
-
-
-def _explicit_adams(weights: Sequence[Fraction]) -> LinearMultistep:
-    """Return y_{k+1} = y_k + h sum_j weights[j] f_{k-j}."""
-    rho = (ONE, -ONE, *[ZERO] * (len(weights) - 1))
-    sigma = (ZERO, *weights)
-    return LinearMultistep(rho, sigma)
-
-
-def _interpolatory_weights(nodes: Sequence[int]) -> list[Fraction]:
-    """Return the integrals over [0, 1] of the Lagrange polynomials on `nodes`, in their order."""
-    return [lagrange_integral(node, [other for other in nodes if other != node], ONE) for node in nodes]
+    return Method(f"ABM{n}", PredictorCorrector(_adams(n, newest=0), same_steps), source)
 
 
 def bdf(n: int) -> Method:
@@ -128,7 +116,7 @@ def bdf(n: int) -> Method:
 
 def adams_moulton(n: int) -> Method:
     """Return the Adams-Moulton method of order n >= 2, of n - 1 steps; am2 is the trapezoidal rule."""
-    return Method(f"am{n}", adams_moulton_scheme(n), "Hairer, Norsett & Wanner I, Eq. III.1.9 (Adams-Moulton)")
+    return Method(f"am{n}", _adams(n, newest=1), "Hairer, Norsett & Wanner I, Eq. III.1.9 (Adams-Moulton)")
 
 
 def implicit_euler() -> Method:

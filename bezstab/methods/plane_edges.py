@@ -9,7 +9,7 @@ coefficients c_k of P(r z), polynomials in alpha_hat and beta_hat, that is where
                   |      c_n   ... c_3 |              |      c_0  c_1   |
                   |            ... c_n |              | c_0  ...  c_n-2 |
 
-Their irreducible factors cross a line of constant beta_hat at places that neither meet nor vanish as long as beta_hat
+Their square-free factors cross a line of constant beta_hat at places that neither meet nor vanish as long as beta_hat
 passes no zero of a leading coefficient, a discriminant or a resultant: those are the levels. Between two levels the
 crossings keep their number and order, so one line there tells all (cylindrical decomposition, G. E. Collins, 1975).
 Where a crossing comes to at a strip's end, a number or an infinite alpha_hat, a line close enough to that end tells.
@@ -45,8 +45,7 @@ from bezstab.rationals import ONE, ZERO
 
 A, B = ALPHA_HAT, BETA_HAT
 
-LONG = 10 * BITS  # of a coefficient: factors are looked for modulo primes of a multiple of that
-HIGH = 8  # degree in alpha_hat: with coefficients so long, discriminants of such curves take minutes
+LONG, HIGH = 10 * BITS, 8  # bits of a coefficient, degree in alpha_hat: discriminants of such curves take minutes
 
 CurveTable = tuple[tuple[Fraction, ...], ...]
 """A polynomial in alpha_hat and beta_hat: table[i][j] belongs to alpha_hat^i beta_hat^j."""
@@ -162,36 +161,22 @@ def crossing_polynomials(coefficients: Sequence[PolyElement], ring: Any, pairs: 
 def _factors(polynomials: Iterable[sp.Poly]) -> list[sp.Poly]:
     """Return polynomials without multiple or common factors whose product has the same zeros, with whole coefficients.
 
-    Irreducible ones but where coefficients are so long, of rationals in place of irrational numbers, that to find them
-    takes longer than all the rest.
+    What beta_hat alone moves is apart. They may be reducible: to find irreducible factors takes longer than all else.
     """
-    long = any(_length(polynomial) > LONG for polynomial in polynomials)
     found: list[sp.Poly] = []
     for polynomial in polynomials:
-        for part in _parts(polynomial, long):
-            new = part
-            for other in list(found):
-                shared = sp.gcd(new, other)
-                if not shared.is_ground:
-                    found.remove(other)
-                    found += [shared, other.exquo(shared)]
-                    new = new.exquo(shared)
-            found.append(new)
+        for part, _ in polynomial.sqf_list()[1]:
+            content, rest = part.eject(B).primitive()  # in alpha_hat
+            for factor in (sp.Poly(content, A, B, domain=sp.QQ), rest.inject()):
+                new = factor
+                for other in list(found):
+                    shared = sp.gcd(new, other)
+                    if not shared.is_ground:
+                        found.remove(other)
+                        found += [shared, other.exquo(shared)]
+                        new = new.exquo(shared)
+                found.append(new)
     return [primitive(each) for each in found if not each.is_ground]
-
-
-def _parts(polynomial: sp.Poly, long: bool) -> list[sp.Poly]:
-    """Return irreducible factors; of long polynomials those of one multiplicity; apart what beta_hat alone moves."""
-    if not long:
-        return [factor for factor, _ in polynomial.factor_list()[1]]
-    parts = []
-    for part, _ in polynomial.sqf_list()[1]:
-        in_alpha = [sp.Poly(c, A, B, domain=sp.QQ) for c in sp.Poly(part.as_expr(), A).all_coeffs()]
-        content = in_alpha[0]
-        for c in in_alpha[1:]:
-            content = sp.gcd(content, c)
-        parts += [each for each in (content, part.exquo(content)) if not each.is_ground]
-    return parts
 
 
 def _refuse_what_takes_minutes(factors: list[sp.Poly], method: Method, level: Fraction) -> None:

@@ -92,7 +92,7 @@ def step_matrix(method: Method, alpha_hat: Fraction, beta_hat: Fraction, hold: b
     )
 
 
-def _ascending(in_s: PolyElement, lowest: int = 0) -> StepPolynomial:
+def _ascending(in_s: PolyElement, lowest: int) -> StepPolynomial:
     """Return a polynomial in s, divided by s^lowest, by its coefficients; (0,) for zero."""
     highest = max((power for power, _, _ in in_s), default=lowest)
     return tuple(as_fraction(in_s.get((power, 0, 0), ZERO)) for power in range(lowest, highest + 1))

@@ -40,11 +40,6 @@ class Constraints:
     inverse_masses: FloatArray
     joints: tuple[int, ...]
 
-    @property
-    def count(self) -> int:
-        """How many they are."""
-        return len(self.joints)
-
 
 ALONE = Constraints("one constraint alone", np.ones((1, 1)), (0,))
 

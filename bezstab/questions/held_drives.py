@@ -173,8 +173,8 @@ def held_answers(question: HeldQuestion) -> Iterator[HeldAnswer]:
             question=question,
             method=method,
             verdict=held_verdict(method.name, *point, question.timing),
-            z_abs=held_spectral_radius(method.name, *point, question.timing),
-            fresh_z_abs=held_spectral_radius(method.name, *point, Timing()),
+            z_abs=float(held_spectral_radius(method.name, *point, question.timing)),
+            fresh_z_abs=float(held_spectral_radius(method.name, *point, Timing())),
         )
 
 
@@ -197,15 +197,12 @@ def held_gains(question: HeldQuestion, *, bandwidth: Fraction | None = None, set
         raise InputError(f"{asked}: expected a positive number")
 
     inertia, h = question.drive.inertia, float(question.h)
-
-    def with_margin(omega: float) -> bool:
-        return _safe_with_margin(question, _critical_drive(omega, inertia))
-
-    if with_margin(wanted):
-        return _critical_drive(wanted, inertia)
+    critical = _critical_drive(wanted, inertia)
+    if _safe_with_margin(question, critical):
+        return critical
 
     def holds(omega_h: FloatArray) -> BoolArray:
-        return np.array([with_margin(each / h) for each in omega_h.tolist()])
+        return np.array([_safe_with_margin(question, _critical_drive(each / h, inertia)) for each in omega_h.tolist()])
 
     found = first_where(holds, OMEGA_H)
     refused = f"{asked}: not safe with a margin of {MARGIN:g}-fold at this rate and delay"
@@ -225,7 +222,7 @@ def _rounded_down(value: float) -> str:
 
 def _critical_drive(omega: float, inertia: Fraction) -> Drive:
     """Return the critically damped gains of a natural frequency (1/s), to DIGITS."""
-    kp, kd = (exact(float(f"{gain:.{DIGITS}g}")) for gain in (float(inertia) * omega**2, 2 * float(inertia) * omega))
+    kp, kd = (Fraction(f"{float(inertia) * gain:.{DIGITS}g}") for gain in (omega**2, 2 * omega))
     return Drive(kp, kd, inertia)
 
 

@@ -178,7 +178,7 @@ class Question:
             return None
         if self.chain is not None:
             found = constraints_of_chain(self.chain, self.mass_ratio)
-        elif self.scene is None or (found := constraints_of(self.scene, self.speed)).count == 1:
+        elif self.scene is None or len((found := constraints_of(self.scene, self.speed)).joints) == 1:
             return None
         return SweptConstraints(self.engine, self.h, found, self.iterations or self.engine.sweeping.iterations)
 

@@ -73,30 +73,20 @@ def trade_words(answer: Answer) -> list[str]:
     """Return what faster decay than a choice's costs, and what slower decay gains, where that is known."""
     if answer.cost is None or answer.cost.total_error is None:
         return []
-    return [line for line in (_faster_words(answer), _slower_words(answer)) if line]
-
-
-def _faster_words(answer: Answer) -> str | None:
-    faster = answer.faster
+    lines = []
+    faster, slower, settle = answer.faster, answer.slower, answer.slower_settle
     if faster is None:
-        return "Faster decay: there is none."
-    times = answer.times_the_errors(faster)
-    if times is None:
-        return None
-    return (
-        f"Faster decay: --goal {faster.goal} takes |z_p| from {abs(answer.pole):.4f} to {abs(faster.pole):.4f} a step, "
-        f"and the feedback forces {_errors_words(times)}."
-    )
-
-
-def _slower_words(answer: Answer) -> str | None:
-    slower, settle = answer.slower, answer.slower_settle
-    times = None if slower is None else answer.times_the_errors(slower)
-    if times is None or settle is None:
-        return None
-    gain = "Slower decay:" if min(times) < GAIN else "Slower decay gains nothing:"
-    goal = "" if answer.goal == "accurate" else "--goal accurate "
-    return f"{gain} with {goal}--settle {typed_number(settle)} the feedback forces {_errors_words(times)}."
+        lines.append("Faster decay: there is none.")
+    elif times := answer.times_the_errors(faster):
+        moduli = f"from {abs(answer.pole):.4f} to {abs(faster.pole):.4f} a step"
+        lines.append(
+            f"Faster decay: --goal {faster.goal} takes |z_p| {moduli}, and the feedback forces {_errors_words(times)}."
+        )
+    if slower and settle and (times := answer.times_the_errors(slower)):
+        gain = "Slower decay:" if min(times) < GAIN else "Slower decay gains nothing:"
+        goal = "" if answer.goal == "accurate" else "--goal accurate "
+        lines.append(f"{gain} with {goal}--settle {typed_number(settle)} the feedback forces {_errors_words(times)}.")
+    return lines
 
 
 def _errors_words(times: tuple[float, float]) -> str:

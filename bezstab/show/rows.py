@@ -8,7 +8,7 @@ from functools import partial
 from types import SimpleNamespace
 from typing import TYPE_CHECKING
 
-from bezstab.engines import witness_of
+from bezstab.engines import WITNESSES
 from bezstab.errors import InputError
 from bezstab.methods import Method, evaluations, implicit, steps
 from bezstab.show.cells import LIMITS
@@ -215,7 +215,7 @@ def engine_row(engine: Engine, point: tuple[Fraction, Fraction] | None, h: Fract
             setting = engine.setting(point, h)
         except InputError as error:
             setting = str(error)
-    return ENGINES_LISTED.row(engine, witness=witness_of(engine.name), setting=setting)
+    return ENGINES_LISTED.row(engine, witness=WITNESSES.get(engine.name), setting=setting)
 
 
 def answer_row(answer: Answer) -> Row:

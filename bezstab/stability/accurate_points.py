@@ -76,10 +76,7 @@ def worst_error(
     """Return the largest combined error with alpha and beta off by the spread; infinite where it decays too slowly."""
     by_alpha, by_beta = 1 + spread * np.array([(0, 0), (-1, -1), (-1, 1), (1, -1), (1, 1)]).T[:, :, np.newaxis]
     worst = np.full(alpha_hat.shape, np.inf)
-    left = np.arange(alpha_hat.size)
-    for some in (slice(0, 1), slice(1, None)):  # the centre first: it leaves out the most
-        alpha, beta = by_alpha[some] * alpha_hat[left], by_beta[some] ** 2 * beta_hat[left]
-        left = left[decays(alpha, beta).all(axis=0)]
+    left = np.flatnonzero(decays(by_alpha * alpha_hat, by_beta**2 * beta_hat).all(axis=0))
     error = combined_error(method, by_alpha * alpha_hat[left], by_beta**2 * beta_hat[left], omega_h)
     worst[left] = error.max(axis=0)
     return worst

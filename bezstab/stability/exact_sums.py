@@ -25,7 +25,10 @@ def feedback_roots(alpha_hat: FloatArray, beta_hat: FloatArray) -> tuple[Complex
         # mu is computed in units of 2^exponent, so that neither alpha_hat^2 nor beta_hat leaves the range of float64
         exponent = np.maximum(np.frexp(alpha_hat)[1], (np.frexp(beta_hat)[1] + 1) // 2)
         half = np.ldexp(alpha_hat, -exponent - 1)
-        discriminant = feedback_discriminant(2 * half, np.ldexp(beta_hat, -2 * exponent))
+        nothing = np.zeros_like(half)
+        square = double_product((half, nothing), (half, nothing))
+        discriminant, rest = double_sum(square, (-np.ldexp(beta_hat, -2 * exponent), nothing))
+        discriminant = discriminant + rest
         root = np.sqrt(np.abs(discriminant))
         real = discriminant >= 0
 
@@ -43,28 +46,27 @@ def feedback_roots(alpha_hat: FloatArray, beta_hat: FloatArray) -> tuple[Complex
     return first, second
 
 
-def feedback_discriminant(alpha_hat: FloatArray, beta_hat: FloatArray) -> FloatArray:
-    """Return alpha_hat^2 / 4 - beta_hat, exact until rounded; for points of ordinary size."""
-    half = 0.5 * alpha_hat
-    square, square_low = two_product(half, half)
-    high, low = two_sum(square, -beta_hat)
-    return high + (low + square_low)
-
-
 Double = tuple[FloatArray, FloatArray]
 """Numbers with twice the digits of float64, as unevaluated sums of two."""
 
 
 def double_product(first: Double, second: Double) -> Double:
-    """Return the product of two doubles, as one."""
-    product, low = two_product(first[0], second[0])
-    return product, low + (first[0] * second[1] + first[1] * second[0])
+    """Return the product of two doubles, as one: rounding errors are exact (T. J. Dekker, Numer. Math. 18, 1971)."""
+    (x, x_rest), (y, y_rest) = first, second
+    product = x * y
+    x_high, x_low = _halves(x)
+    y_high, y_low = _halves(y)
+    lost = x_low * y_low - (((product - x_high * y_high) - x_low * y_high) - x_high * y_low)
+    return product, lost + (x * y_rest + x_rest * y)
 
 
 def double_sum(first: Double, second: Double) -> Double:
-    """Return the sum of two doubles, as one."""
-    total, low = two_sum(first[0], second[0])
-    return total, low + (first[1] + second[1])
+    """Return the sum of two doubles, as one: rounding errors are exact (D. E. Knuth, TAOCP 2, Theorem 4.2.2B)."""
+    (x, x_rest), (y, y_rest) = first, second
+    total = x + y
+    virtual = total - x
+    lost = (x - (total - virtual)) + (y - virtual)
+    return total, lost + (x_rest + y_rest)
 
 
 def double_polynomial(table: Sequence[Sequence[tuple[float, float]]], x: FloatArray, y: FloatArray) -> Double:
@@ -85,22 +87,7 @@ def split(exact: Fraction) -> tuple[float, float]:
     return high, float(exact - Fraction(high))
 
 
-def two_sum(x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return x + y rounded, and its rounding error, exactly (D. E. Knuth, TAOCP 2, Theorem 4.2.2B)."""
-    total = x + y
-    virtual = total - x
-    return total, (x - (total - virtual)) + (y - virtual)
-
-
-def two_product(x: FloatArray | float, y: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return x y rounded, and its rounding error, exactly (T. J. Dekker, Numer. Math. 18, 1971)."""
-    product = x * y
-    x_high, x_low = _halves(x)
-    y_high, y_low = _halves(y)
-    return product, x_low * y_low - (((product - x_high * y_high) - x_low * y_high) - x_high * y_low)
-
-
-def _halves(x: FloatArray | float) -> tuple[FloatArray | float, FloatArray | float]:
+def _halves(x: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return two numbers of at most 26 bits with sum x."""
     shifted = SPLITTER * x
     high = shifted - (shifted - x)

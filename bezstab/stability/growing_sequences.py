@@ -49,8 +49,11 @@ def growing_words(matrix: StepMatrix, shortest: Fraction) -> Iterator[list[Fract
 
 
 def grows(matrix: StepMatrix, word: Sequence[Fraction]) -> bool:
-    """Return whether the product of the steps, first taken first, has a spectral radius of one or more: exact."""
-    return recursion_verdict(characteristic(_product(matrix, word).tolist())) != "converges"
+    """Return whether the product of the steps has a spectral radius of one or more, or one has no solution: exact."""
+    try:
+        return recursion_verdict(characteristic(_product(matrix, word).tolist())) != "converges"
+    except ZeroDivisionError:
+        return True
 
 
 def growth_of(matrix: StepMatrix, word: Sequence[Fraction]) -> float:

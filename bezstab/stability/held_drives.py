@@ -5,32 +5,37 @@
     applied              u0  u0  u0  u0  u1  u1  u1  u1
 
 The drive is u = -kp x - kd v on an inertia, in symplectic Euler: v' = v + h u / inertia, x' = x + h v'. As for any
-drive a = alpha_hat = kd h / inertia and b = beta_hat = kp h^2 / inertia, with h the step of the physics. One matrix
-takes x, h v and the torques that are still to be applied over `every` steps; its characteristic polynomial is exact.
+drive a = alpha_hat = kd h / inertia and b = beta_hat = kp h^2 / inertia, with h the step of the physics. From one
+computation of the torque to the next everything is linear: the drive is a method of its own, with an exact P.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import cache
 from math import ceil, floor
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from bezstab.errors import InputError
-from bezstab.methods import Verdict, recursion_verdict
+from bezstab.methods import Assignment, Combination, Evaluation, Method, Quantity, SecondOrder, Verdict
+from bezstab.rationals import ONE
 from bezstab.stability.arrays import SLOW, BoolArray, FloatArray
+from bezstab.stability.closed_loop import spectral_radius, verdict
 from bezstab.stability.searches import first_where
 
 MOST_STEPS = 100
 """Of `every` and of `late`: the polynomial's degree is theirs, and nobody's controller is slower."""
 
-Number = TypeVar("Number", Fraction, FloatArray)
-"""Exact, or in float64: as many as there are points."""
+Numbers = NDArray[np.object_]
+"""Exact ones."""
 
-Numbers = NDArray[Any]
-"""The same at so many points: in float64 for |z_p|, or Fractions."""
+STRETCH = 20
+"""Steps of a method over which its equations look back, at most."""
+
+X, V = Quantity("x", 0), Quantity("v", 0)
 
 
 @dataclass(frozen=True)
@@ -54,8 +59,6 @@ class Timing:
             raise InputError(f"--every {self.every}: expected a whole number of steps from 1 to {MOST_STEPS}")
         if not 0 <= self.late <= MOST_STEPS:
             raise InputError(f"--late {float(self.late):g}: expected from 0 to {MOST_STEPS} steps")
-        if self.filter_steps < 0:
-            raise InputError(f"--filter {float(self.filter_steps):g} steps: expected 0 or more")
 
     def applied(self, step: int) -> list[tuple[int, Fraction]]:
         """Return what acts in a step after the latest computation: how far back it was computed, and its share.
@@ -99,100 +102,90 @@ RK4 is the explicit way in an engine whose steps move a mass under a constant fo
 """
 
 
-def held_polynomial(way: str, alpha_hat: Fraction, beta_hat: Fraction, timing: Timing) -> list[Fraction]:
-    """Return the characteristic polynomial over `every` steps, exact, in ascending powers.
+@cache
+def held_method(way: str, timing: Timing) -> Method:
+    """Return the drive as a method whose step goes from one computation of the torque to the next.
 
-    `way` is one of SEEN. KeyError for another.
+    `way` is one of SEEN. KeyError for another. Exact. Its equations are in units of its own step, of which a step of
+    the physics is dt.
     """
-    from bezstab.methods import characteristic  # loads sympy in a fifth of a second, for which a Timing need not wait
+    seen, dt = SEEN[way], Fraction(1, timing.every)
+    shares = [timing.applied(step) for step in range(timing.every)]
+    oldest = max(back for of_step in shares for back, _ in of_step)
+    basis = [X, V, *map(_torque, range(oldest + 1))]
+    x, v, *torques = np.eye(len(basis), dtype=object)  # as coefficients of the basis
+    applied = [sum(share * torques[back] for back, share in of_step) for of_step in shares]
+    seen_x = x + dt * seen.x_by_velocity * v + dt**2 * seen.x_by_torque * applied[0]
+    seen_v = v + dt * seen.v_by_torque * applied[0]
+    for torque in applied:
+        v = v + dt * torque
+        x = x + dt * v - (dt**2 / 2 if seen.accelerates else 0) * torque
 
-    matrix = _steps_matrix(SEEN[way], np.array([alpha_hat]), np.array([beta_hat]), timing)
-    return characteristic(matrix[..., 0].tolist())
+    def combination(coefficients: Numbers) -> Combination:
+        return tuple((Fraction(c), quantity) for c, quantity in zip(coefficients, basis, strict=True) if c)
+
+    equations: list[Assignment | Evaluation] = [
+        Assignment(Quantity("v", 1), combination(v)),
+        Assignment(Quantity("x", 1), combination(x)),
+    ]
+    velocity = combination(seen_v)
+    if timing.filter_steps:
+        gain = 1 / (1 + timing.filter_steps * dt)
+        filtered = Quantity("filtered", 1)
+        old = (1 - gain, Quantity("filtered", 0))
+        equations.append(Assignment(filtered, (old, *combination(gain * seen_v))))
+        velocity = ((ONE, filtered),)
+    equations.append(Evaluation(_torque(0), combination(seen_x), velocity))
+    for back in range(STRETCH, oldest + 1, STRETCH):
+        before = Quantity(_torque(back - STRETCH).name, -STRETCH)
+        equations.append(Assignment(_torque(back), ((ONE, before),)))
+    return Method(way, SecondOrder(tuple(equations)), "", Fraction(timing.every))
+
+
+def _torque(back: int) -> Quantity:
+    """Return the torque that was computed so many of the method's steps ago: those long ago by helpers."""
+    return Quantity("a" if back < STRETCH else f"late{back // STRETCH}", -(back % STRETCH))
 
 
 def held_verdict(way: str, alpha_hat: Fraction, beta_hat: Fraction, timing: Timing) -> Verdict:
-    """Return whether the drive converges, proven by Schur's test of `held_polynomial`."""
-    return recursion_verdict(held_polynomial(way, alpha_hat, beta_hat, timing))
+    """Return whether the drive converges, proven by Schur's test."""
+    return verdict(held_method(way, timing), alpha_hat, beta_hat)
 
 
-def held_spectral_radius(way: str, alpha_hat: Fraction, beta_hat: Fraction, timing: Timing) -> float:
+def held_spectral_radius(
+    way: str, alpha_hat: ArrayLike | Fraction, beta_hat: ArrayLike | Fraction, timing: Timing
+) -> FloatArray:
     """Return the factor by which each step of the physics multiplies the error: |z_p| of `every` steps, its root.
 
-    In float64: of a pole near others as many digits are lost as its condition says.
+    Shape of alpha_hat and beta_hat broadcast, in float64: of a pole near others as many digits are lost as its
+    condition says.
     """
-    return float(held_moduli(way, np.array([float(alpha_hat)]), np.array([float(beta_hat)]), timing)[0])
+    return np.asarray(
+        spectral_radius(held_method(way, timing), np.asarray(alpha_hat), np.asarray(beta_hat)) ** (1 / timing.every)
+    )
 
 
-def held_moduli(way: str, alpha_hat: FloatArray, beta_hat: FloatArray, timing: Timing) -> FloatArray:
-    """Return `held_spectral_radius` at many points, shape (points,)."""
-    matrices = np.moveaxis(_steps_matrix(SEEN[way], alpha_hat, beta_hat, timing), -1, 0)
-    moduli: FloatArray = np.abs(np.linalg.eigvals(matrices)).max(axis=-1) ** (1 / timing.every)
-    return moduli
-
-
-def law_bounds(way: str, alpha_hat: Number, timing: Timing) -> tuple[Number, ...]:
+def law_bounds(way: str, alpha_hat: Any, timing: Timing) -> tuple[Any, ...]:
     """Return what beta_hat must be below: with alpha_hat > 0 a drive converges if and only if 0 < beta_hat < each.
+
+    alpha_hat is a number or an array of them, and so is each bound.
 
     The closed forms, by Jury's conditions; an empty tuple where there is none. Held for N steps and not late, with
     A = N alpha_hat and B = N^2 beta_hat: 2 A + B / N < 4 and B (N - 1) / (2 N) < A. One step late, computed in every
     step: P = z (z - 1)^2 + b z + a (z - 1) has b < a (1 - a). Fresh, the limits of `bezstab.engines.drives`.
     """
     a, every = alpha_hat, timing.every
-    if timing.filter_steps:
-        return ()
-    if way == "SYM" and timing.late == 0:
-        fast = (4 - 2 * every * a) / every
-        return (fast, 2 * a / (every - 1)) if every > 1 else (fast,)
-    if every > 1:
-        return ()
-    if way == "SYM" and timing.late == 1:
-        return (a * (1 - a),)
-    fresh = {"imex-euler": (4 + 2 * a,), "stable-pd": ((4 + 2 * a) / 3,)}
-    return fresh.get(way, ()) if timing.late == 0 else ()
-
-
-# The matrix of `every` steps
-
-
-def _steps_matrix(seen: _Seen, alpha_hat: Numbers, beta_hat: Numbers, timing: Timing) -> Numbers:
-    """Return the matrix that takes the state over `every` steps, from one computation of the torque to the next.
-
-    Of shape (size, size, points) for gains of shape (points,), with entries of their kind. The state is x, v, the
-    filtered velocity if there is a filter, then the torques computed before, latest first, as many as are still to be
-    applied. h = 1, and torques are over the inertia. Each is linear in the state at the first step: its coefficients.
-    """
-    number: Callable[[Fraction | int], Any] = Fraction if alpha_hat.dtype == object else float
-    whole = floor(timing.late)
-    left = timing.late - whole  # of a step, which the torque before keeps
-    gain = number(1 / (1 + timing.filter_steps / timing.every))
-    filters = 1 if timing.filter_steps else 0
-    pending: int = ceil(Fraction(whole, timing.every)) + (1 if left else 0)
-    size = 2 + filters + pending
-    state = np.zeros((size, size, alpha_hat.size), alpha_hat.dtype)
-    state[range(size), range(size)] = 1
-    x, v, filtered = state[0], state[1], state[1 + filters]
-    torques: list[Numbers] = [np.zeros_like(x), *state[2 + filters :]]  # latest first; the new one's place is kept
-
-    def applied(step: int) -> Numbers:
-        """Return the torque applied in a step after the latest computation."""
-        return np.asarray(sum(number(share) * torques[back] for back, share in timing.applied(step)))
-
-    # u = -b (x + x_by_velocity v + x_by_torque p) - a w,   w = filtered + gain (v + v_by_torque p - filtered),
-    # p = share u + rest, the torque applied in the step that computes u
-    share = number(1 - left if whole == 0 else 0)
-    rest = applied(0)
-    seen_x = x + seen.x_by_velocity * v + seen.x_by_torque * rest
-    seen_v = v + seen.v_by_torque * rest
-    seen_w = (1 - gain) * filtered + gain * seen_v if filters else seen_v
-    divisor = 1 + share * (beta_hat * seen.x_by_torque + alpha_hat * gain * seen.v_by_torque)
-    torques[0] = -beta_hat / divisor * seen_x - alpha_hat / divisor * seen_w
-
-    for step in range(timing.every):
-        torque = applied(step)
-        v = v + torque
-        x = x + v - number(Fraction(1, 2) if seen.accelerates else 0) * torque
-    w = seen_w + gain * share * seen.v_by_torque * torques[0]
-    return np.stack([x, v, w][: 2 + filters] + torques[:pending])
+    match way, every, timing.late, timing.filter_steps:
+        case "SYM", _, 0, 0:
+            fast = (4 - 2 * every * a) / every
+            return (fast, 2 * a / (every - 1)) if every > 1 else (fast,)
+        case "SYM", 1, 1, 0:
+            return (a * (1 - a),)
+        case "imex-euler", 1, 0, 0:
+            return (4 + 2 * a,)
+        case "stable-pd", 1, 0, 0:
+            return ((4 + 2 * a) / 3,)
+    return ()
 
 
 # What is used up
@@ -230,16 +223,15 @@ SMALL_GAINS = 1e-8 * np.geomspace(1, 1e9, 425)
 def held_limits(way: str, alpha_hat: Fraction, beta_hat: Fraction, timing: Timing) -> HeldLimits:
     """Return how far gains, rate and delay may go each: gains by |z_p| in float64, whole steps by proven verdicts."""
 
-    def stable(every: int, late: Fraction) -> bool:
-        changed = Timing(every, late, timing.filter_steps)
-        return held_verdict(way, alpha_hat, beta_hat, changed) == "converges"
+    def stable(**changed: Any) -> bool:
+        return held_verdict(way, alpha_hat, beta_hat, replace(timing, **changed)) == "converges"
 
     a, b = float(alpha_hat), float(beta_hat)
     return HeldLimits(
-        kp=_stable_stretch(b, lambda gains: held_moduli(way, a + 0 * gains, gains, timing) < 1 - SLOW),
-        kd=_stable_stretch(a, lambda gains: held_moduli(way, gains, b + 0 * gains, timing) < 1 - SLOW),
-        every=_last_stable(lambda every: stable(every, timing.late), least=1),
-        late=_last_stable(lambda late: stable(timing.every, Fraction(late)), least=0),
+        kp=_stable_stretch(b, lambda gains: held_spectral_radius(way, a, gains, timing) < 1 - SLOW),
+        kd=_stable_stretch(a, lambda gains: held_spectral_radius(way, gains, b, timing) < 1 - SLOW),
+        every=_last_stable(lambda every: stable(every=every), least=1),
+        late=_last_stable(lambda late: stable(late=Fraction(late)), least=0),
     )
 
 
@@ -248,11 +240,10 @@ def _stable_stretch(own: float, decays: Callable[[FloatArray], BoolArray]) -> St
     around = np.concatenate([own / FACTORS[:0:-1], own * FACTORS]) if own > 0 else SMALL_GAINS
     start = own
     if own <= 0 or not decays(np.array([own]))[0]:
-        ways = (around[around >= own], around[around <= own][::-1])
-        ends = [found[1] for each in ways if (found := first_where(decays, each))]
-        if not ends:
+        stable = around[decays(around)].tolist()
+        if not stable:
             return None
-        start = min(ends, key=lambda gain: abs(np.log(gain / own)) if own > 0 else gain)
+        start = min(stable, key=lambda gain: abs(np.log(gain / own)) if own > 0 else gain)
     ways = (around[around < start][::-1], around[around > start])
     down, up = (first_where(lambda gains: ~decays(gains), np.append(start, each)) for each in ways)
     return (down[0] if down else 0.0, up[0] if up else np.inf)
@@ -305,8 +296,7 @@ def held_map(way: str, timing: Timing, points: int, own: tuple[float, float]) ->
     """
 
     def moduli(alpha_hat: FloatArray, beta_hat: FloatArray) -> FloatArray:
-        """Row by row: a matrix of a hundred late torques takes 80 kB at each point."""
-        return np.array([held_moduli(way, alpha_hat, b + 0 * alpha_hat, timing) for b in beta_hat])
+        return held_spectral_radius(way, alpha_hat, beta_hat[:, np.newaxis], timing)
 
     alpha_hat, beta_hat = LOOKED_AT
     for count in (FINER, points):

@@ -19,7 +19,6 @@ if and only if (e x f) d(s) + (f - e) x N(s) p > 0, a polynomial in the length s
 
 from collections.abc import Iterator
 from fractions import Fraction
-from itertools import pairwise
 
 import numpy as np
 
@@ -77,32 +76,31 @@ def invariant_polygon(
 
 def proves_decay(corners: list[Corner], matrix: StepMatrix, shortest: Fraction) -> bool:
     """Return whether the corners and their negatives are a convex polygon that all steps to 1 map inside: exact."""
-    ring = [*corners, (-corners[0][0], -corners[0][1])]
-    edges = [(f[0] - e[0], f[1] - e[1]) for e, f in pairwise(ring)]
-    turned = [*edges, (-edges[0][0], -edges[0][1])]
-    once_around = all(_cross(corners[0], corner) > 0 for corner in corners[1:])
-    convex = all(_cross(e, f) > 0 for e, f in pairwise(turned))
-    if not (once_around and convex and all(_cross(e, f) > 0 for e, f in pairwise(ring))):
+    whole, _ = whole_multiples([coordinate for corner in corners for coordinate in corner])
+    half = np.array(whole, object).reshape(-1, 2)
+    ring = np.concatenate([half, -half[:1]])
+    edges = np.diff(ring, axis=0)
+    spans = _cross(ring[:-1], ring[1:])
+    convex = _cross(edges, np.concatenate([edges[1:], -edges[:1]]))
+    once_around = _cross(half[:1], half[1:])
+    if not (np.concatenate([spans, convex, once_around]) > 0).all():
         return False
-    return all(positivity(rows, shortest, Fraction(1)).proven for rows in _polynomials(ring, matrix))
-
-
-def _polynomials(ring: list[Corner], matrix: StepMatrix) -> Iterator[ExactArray]:
-    """Yield the denominator, then edge by edge (e x f) d +- (f - e) x N p for all corners, as rows of whole numbers."""
     numerators, denominator = coefficients_of(matrix)
-    yield denominator[np.newaxis]
-    whole, _ = whole_multiples([coordinate for corner in ring for coordinate in corner])
-    points = np.array(whole, object).reshape(-1, 2)
-    images = np.moveaxis(points[:-1] @ np.swapaxes(numerators, 1, 2), 0, -1)  # (corners, 2, powers of s)
-    for start, end in pairwise(points):
-        (x, y), edge = start, end - start
-        beside = edge[0] * images[:, 1] - edge[1] * images[:, 0]
-        room = (x * end[1] - y * end[0]) * denominator
-        yield np.concatenate([room + beside, room - beside])
+    images = np.moveaxis(half @ np.swapaxes(numerators, 1, 2), 0, -1)  # (corners, 2, powers of s)
+
+    def inside() -> Iterator[ExactArray]:
+        """Yield what must be positive: d, then edge by edge (e x f) d +- (f - e) x N p for all corners."""
+        yield denominator[np.newaxis]
+        for (x, v), span in zip(edges, spans, strict=True):
+            beside, room = x * images[:, 1] - v * images[:, 0], span * denominator
+            yield np.concatenate([room + beside, room - beside])
+
+    return all(positivity(rows, shortest, Fraction(1)) is True for rows in inside())
 
 
-def _cross(a: Corner, b: Corner) -> Fraction:
-    return a[0] * b[1] - a[1] * b[0]
+def _cross(a: ExactArray, b: ExactArray) -> ExactArray:
+    """Return the cross products of rows."""
+    return np.asarray(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
 
 
 def _decays(steps: FloatArray, matrices: FloatArray) -> FloatArray:

@@ -100,7 +100,7 @@ def proves_decay(form: ExactArray, matrix: StepMatrix, shortest: Fraction) -> bo
     for i, j in product(powers, powers):
         lost[i + j] += denominators[i] * denominators[j] * form - numerators[i].T @ form @ numerators[j]
     minors = [determinant(each[:, :n, :n]) for each in (form[np.newaxis], lost) for n in range(1, len(form) + 1)]
-    return positivity(whole_rows([denominators, *minors]), shortest, Fraction(1)).proven
+    return positivity(whole_rows([denominators, *minors]), shortest, Fraction(1)) is True
 
 
 def coefficients_of(matrix: StepMatrix) -> tuple[ExactArray, ExactArray]:

@@ -7,7 +7,6 @@ curve. A polynomial that is not positive somewhere shows it at an end sooner or 
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from math import lcm
 
@@ -22,16 +21,10 @@ ExactArray = NDArray[np.object_]
 """An array of whole numbers of any size."""
 
 
-@dataclass(frozen=True)
-class Positivity:
-    """Whether all polynomials are positive; if not, a place where one is not, None where none was found."""
+def positivity(polynomials: ExactArray, low: Fraction, high: Fraction) -> Fraction | bool:
+    """Return whether every row, a polynomial's coefficients in ascending powers, is proven positive from low to high.
 
-    proven: bool
-    exception: Fraction | None = None
-
-
-def positivity(polynomials: ExactArray, low: Fraction, high: Fraction) -> Positivity:
-    """Return whether every row, a polynomial's coefficients in ascending powers, is positive from low to high.
+    If not, a place where one is not, False where none was found.
 
     Shape (polynomials, degree + 1), whole numbers; low <= high.
     """
@@ -43,7 +36,7 @@ def positivity(polynomials: ExactArray, low: Fraction, high: Fraction) -> Positi
         bernstein = polynomials[rows] @ _to_bernstein(polynomials.shape[1] - 1, left, right)
         for end, place in ((0, left), (-1, right)):
             if (bernstein[:, end] <= 0).any():
-                return Positivity(proven=False, exception=place)
+                return place
         rows = rows[(bernstein <= 0).any(axis=1)]
         if len(rows) == 0:
             continue
@@ -52,7 +45,7 @@ def positivity(polynomials: ExactArray, low: Fraction, high: Fraction) -> Positi
             continue
         middle = (left + right) / 2
         pending += [(left, middle, rows, halvings - 1), (middle, right, rows, halvings - 1)]
-    return Positivity(proven=not undecided)
+    return not undecided
 
 
 def whole_rows(polynomials: Sequence[Sequence[Fraction] | ExactArray]) -> ExactArray:

@@ -204,17 +204,12 @@ def _settled(rows: Rows, p: FloatArray, q: FloatArray, steps: int) -> tuple[Floa
 
 
 def _changed(rows: Rows, p: FloatArray, q: FloatArray, steps: int) -> tuple[FloatArray, FloatArray]:
-    """Return p and q after some steps of Bairstow's method."""
+    """Return p and q after some steps of Bairstow's method: Newton's for z^2 + p z + q to divide the polynomials."""
     for _ in range(steps):
-        dp, dq = _bairstow_step(rows, p, q)
+        b = _divided(rows, p, q)
+        dp, dq = _corrections(b, _slopes(b, p, q))
         p, q = p + dp, q + dq
     return p, q
-
-
-def _bairstow_step(rows: Rows, p: FloatArray, q: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return Newton's corrections of p and q for z^2 + p z + q to divide the polynomials; ascending coefficients."""
-    b = _divided(rows, p, q)
-    return _corrections(b, _slopes(b, p, q))
 
 
 def _slopes(divided: Rows, p: FloatArray, q: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:

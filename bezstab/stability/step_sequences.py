@@ -21,13 +21,7 @@ import numpy as np
 from numpy.polynomial.polynomial import polyadd, polymul, polysub
 
 from bezstab.errors import InputError
-from bezstab.methods import (
-    Method,
-    StepMatrix,
-    characteristic,
-    recursion_verdict,
-    step_matrix,
-)
+from bezstab.methods import Method, StepMatrix, step_matrix
 from bezstab.stability.arrays import FloatArray
 from bezstab.stability.growing_sequences import growing_words, grows, growth_of
 from bezstab.stability.lyapunov_polygons import invariant_polygon
@@ -132,25 +126,18 @@ def _single_step(matrix: StepMatrix, shortest: Fraction) -> Fraction | bool:
     """Return a length whose step does not decay alone; else whether it is proven that every step does.
 
     For a state of two z^2 d^2 - z d t + D, with trace t / d and determinant D / d^2, has its roots inside the unit
-    circle if and only if its values at 1 and -1 and d^2 - D are positive (Jury). A state of three is tested in samples:
-    what proves sequences proves single steps, too.
+    circle if and only if its values at 1 and -1 and d^2 - D are positive (Jury); not all of them are where d = 0 and
+    the step has no solution. A state of three is tested in samples: what proves sequences proves single steps, too.
     """
+    if matrix.size != 2:
+        return next((length for length in _samples(shortest, down=True) if grows(matrix, [length])), True)
     numerators, denominator = coefficients_of(matrix)
     square = polymul(denominator, denominator)
-    without_solution = positivity(square[np.newaxis], shortest, Fraction(1)).exception
-    if without_solution is not None:
-        return without_solution
-    if matrix.size != 2:
-        for length in _samples(shortest, down=True):
-            if recursion_verdict(characteristic(matrix.at(length))) != "converges":
-                return length
-        return True
     trace = polymul(np.trace(numerators, axis1=1, axis2=2), denominator)
     of_roots = determinant(numerators)
     both = polyadd(square, of_roots)
     conditions = [polysub(both, trace), polyadd(both, trace), polysub(square, of_roots)]
-    found = positivity(whole_rows(conditions), shortest, Fraction(1))
-    return found.proven if found.exception is None else found.exception
+    return positivity(whole_rows(conditions), shortest, Fraction(1))
 
 
 def _samples(shortest: Fraction, down: bool) -> list[Fraction]:

@@ -65,10 +65,10 @@ def chain(bodies: int, mass_ratio: float = 1.0) -> FloatArray:
         raise InputError(f"--chain {bodies}: expected 1 to {MOST_BODIES} bodies")
     if not 1 / LARGEST_RATIO <= mass_ratio <= LARGEST_RATIO:
         raise InputError(f"--mass-ratio {mass_ratio:g}: expected {1 / LARGEST_RATIO:g} to {LARGEST_RATIO:g}")
-    inverse_masses = np.ones(bodies)
-    inverse_masses[-1] = 1 / mass_ratio
+    masses = np.ones(bodies)
+    masses[-1] = mass_ratio
     jacobian = np.eye(bodies) - np.eye(bodies, k=-1)  # each link: where its body is, less where the body before is
-    return inverse_effective_masses(np.diag(1 / inverse_masses), jacobian)
+    return inverse_effective_masses(np.diag(masses), jacobian)
 
 
 def inverse_effective_masses(mass: FloatArray, jacobian: FloatArray) -> FloatArray:

@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bezstab.methods import Method
-from bezstab.stability.arrays import ComplexArray, FloatArray
+from bezstab.stability.arrays import ComplexArray
 from bezstab.stability.pencils import pencil_of
 
 
@@ -39,7 +39,8 @@ def turning_sensitivity(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLik
 def turning_shift(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike, z: ArrayLike) -> ComplexArray:
     """Return z chi, by which poles z move for each unit of h eig K; as `turning_sensitivity`, and finite at z = 0."""
     with np.errstate(all="ignore"):
-        return pencil_of(method).turning_shift(*_broadcast(alpha_hat, beta_hat, z))
+        at = np.broadcast_arrays(alpha_hat, beta_hat, np.asarray(z, complex))
+        return pencil_of(method).turning_shift(*at)
 
 
 def own_feedback_root(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike, z: ArrayLike) -> ComplexArray:
@@ -47,11 +48,5 @@ def own_feedback_root(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike,
 
     Of methods that step position and velocity differently poles belong to no mu: zero.
     """
-    return pencil_of(method).own_feedback_root(*_broadcast(alpha_hat, beta_hat, z))
-
-
-def _broadcast(alpha_hat: ArrayLike, beta_hat: ArrayLike, z: ArrayLike) -> tuple[FloatArray, FloatArray, ComplexArray]:
-    first, second, poles = np.broadcast_arrays(
-        np.asarray(alpha_hat, float), np.asarray(beta_hat, float), np.asarray(z, complex)
-    )
-    return first, second, poles
+    at = np.broadcast_arrays(alpha_hat, beta_hat, np.asarray(z, complex))
+    return pencil_of(method).own_feedback_root(*at)

@@ -9,7 +9,7 @@ from fractions import Fraction
 
 import numpy as np
 
-from bezstab.methods import Method, RungeKutta
+from bezstab.methods import Method, RungeKutta, implicit
 from bezstab.stability import BestPoint, FloatArray
 from tests.reference.companion_poles import polynomial_at, radius
 from tests.reference.proven_verdicts import proven_stable
@@ -50,11 +50,11 @@ def contradictions(method: Method, best: BestPoint | None, limit: float | None) 
 
 
 def modulus_of(method: Method) -> Modulus:
-    """Return |z_p|: of a Runge-Kutta method from its tableau, z = 1 + mu b (I - mu A)^-1 e, of any other from P.
+    """Return |z_p|: of an implicit Runge-Kutta method by z = 1 + mu b (I - mu A)^-1 e, of any other from P.
 
     It is infinite where a step has no solution.
     """
-    if isinstance(method.scheme, RungeKutta):
+    if isinstance(method.scheme, RungeKutta) and implicit(method):
         return _of_tableau(method.scheme)
 
     def modulus(alpha_hat: FloatArray, beta_hat: FloatArray) -> FloatArray:
