@@ -85,8 +85,8 @@ def _factors_on_the_circle(
     powers: tuple[int, int],
 ) -> list[Fraction]:
     """Return the factors at which a linear multistep method has a pair of roots on the circle, in steps of its own."""
-    rho_rho, sigma_sigma = (_real_part(each, each) for each in (rho, sigma))
-    rho_sigma = _real_part(rho, sigma)
+    rho_rho, sigma_sigma = (_on_the_circle(each, each)[0] for each in (rho, sigma))
+    rho_sigma, imaginary_part = _on_the_circle(rho, sigma)
     i, j = powers
     if i and j:  # on the path alpha_hat^2 / beta_hat is one number
         on_path = rho_sigma**2 * (4 * beta_hat) - rho_rho * sigma_sigma * alpha_hat**2 if alpha_hat else rho_sigma
@@ -104,7 +104,7 @@ def _factors_on_the_circle(
             found += [_square_root(of_locus[1] / beta_hat)] if beta_hat > 0 else []
         elif alpha_hat:
             found.append(of_locus[0] / alpha_hat)
-    for t in _positive_roots(_imaginary_part(rho, sigma)):
+    for t in _positive_roots(imaginary_part):
         if t <= 2 and _value(sigma_sigma, t):
             mu = _value(rho_sigma, t) / _value(sigma_sigma, t)
             found += _positive_roots(S**i * (mu * alpha_hat) + S**j * beta_hat + mu**2)
@@ -119,26 +119,19 @@ def _square_root(x: Fraction) -> Fraction:
     return Fraction(isqrt((x.numerator << 2 * bits) // x.denominator), 1 << bits)
 
 
-def _real_part(first: Sequence[Fraction], second: Sequence[Fraction]) -> PolyElement:
-    """Return Re(p conj(q)) on the circle as a polynomial in t = 1 - cos theta, of polynomials p and q in z, ascending.
+def _on_the_circle(first: Sequence[Fraction], second: Sequence[Fraction]) -> tuple[PolyElement, PolyElement]:
+    """Return Re(p conj(q)) and Im(p conj(q)) / sin theta on the circle, as polynomials in t = 1 - cos theta.
 
-    It is a sum of cos(k theta), Chebyshev's polynomials T_k of cos theta.
+    p and q are polynomials in z, ascending. The one is a sum of cos(k theta), Chebyshev's polynomials T_k of cos theta,
+    the other of sin(k theta) / sin theta, his U_(k-1).
     """
-    lags = [RING.zero] * len(first)
+    cosines, sines = [RING.zero] * len(first), [RING.zero] * len(first)
     for k, c in enumerate(first):
         for m, d in enumerate(second):
-            lags[abs(k - m)] += c * d
-    last, before = _clenshaw(lags)
-    return last - (1 - S) * before
-
-
-def _imaginary_part(first: Sequence[Fraction], second: Sequence[Fraction]) -> PolyElement:
-    """Return Im(p conj(q)) / sin theta in the same way: of sin(k theta) / sin theta, Chebyshev's U_(k-1)."""
-    lags = [RING.zero] * len(first)
-    for k, c in enumerate(first):
-        for m, d in enumerate(second):
-            lags[abs(k - m)] += c * d if k > m else -c * d if k < m else ZERO
-    return _clenshaw(lags[1:])[0]
+            cosines[abs(k - m)] += c * d
+            sines[abs(k - m)] += c * d if k > m else -c * d
+    last, before = _clenshaw(cosines)
+    return last - (1 - S) * before, _clenshaw(sines[1:])[0]
 
 
 def _clenshaw(lags: Sequence[PolyElement]) -> tuple[PolyElement, PolyElement]:

@@ -161,14 +161,16 @@ def crossing_polynomials(coefficients: Sequence[PolyElement], ring: Any, pairs: 
 def _factors(polynomials: Iterable[sp.Poly]) -> list[sp.Poly]:
     """Return polynomials without multiple or common factors whose product has the same zeros, with whole coefficients.
 
-    What beta_hat alone moves is apart. They may be reducible: to find irreducible factors takes longer than all else.
+    What beta_hat alone moves is apart, and what alpha_hat alone moves, whose edges are vertical. They may be reducible:
+    to find irreducible factors takes longer than all else.
     """
     found: list[sp.Poly] = []
     for polynomial in polynomials:
         for part, _ in polynomial.sqf_list()[1]:
-            content, rest = part.eject(B).primitive()  # in alpha_hat
-            for factor in (sp.Poly(content, A, B, domain=sp.QQ), rest.inject()):
-                new = factor
+            beta_alone, rest = part.eject(B).primitive()
+            alpha_alone, rest = rest.inject().eject(A).primitive()
+            for factor in (beta_alone, alpha_alone, rest.as_expr()):
+                new = sp.Poly(factor, A, B, domain=sp.QQ)
                 for other in list(found):
                     shared = sp.gcd(new, other)
                     if not shared.is_ground:

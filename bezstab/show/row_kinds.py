@@ -83,6 +83,7 @@ Z_ANGLE_DEG = number(
     unit="degrees",
     path="pole.angle_deg",
 )
+# the pole of an answer; `pole_fields` makes those of others from it
 POLE = (Z_REAL, Z_IMAG, Z_ABS, Z_ANGLE_DEG)
 
 
@@ -310,6 +311,7 @@ MEASURED_ERROR = number(
     null="if the run failed",
 )
 
+# what --scene adds: the law of first order on the moving mechanism
 MOVING = (
     KAPPA,
     number(
@@ -352,6 +354,7 @@ MOVING = (
         null="where it diverges at rest, or where nothing turns",
     ),
 )
+# what `region --accuracy` adds: the two points that its figure marks
 ACCURACY = (
     OMEGA_H.of("question.motion.omega_h"),
     number(
@@ -394,6 +397,7 @@ ACCURACY = (
     ),
 )
 APPLIED = text("applied", "What the engine does to its values before it uses them", null="where nothing is known of it")
+# constraints that an engine sweeps over, also of `chains` and `engines`
 SWEPT_ITERATIONS = integer(
     "swept_iterations", "Sweeps that the engine makes in a step", "sweeps", null=NO_SWEEPS, path="swept.iterations"
 )
@@ -430,6 +434,7 @@ SWEPT_OVER = (
     STABLE_ITERATIONS,
 )
 """What an engine that sweeps adds: the first to all, the others to --chain and --scene."""
+# what --pd adds; HELD has some of them too
 DRIVE = (
     text("drive", "How the drive is applied", "applied", null="where the method is no drive's", path="gains.applied"),
     number("kp", "Stiffness of the drive", "kp", ".4g", unit="N m/rad or N/m", path="gains.kp"),
@@ -465,6 +470,7 @@ DRIVE = (
         path="gains.used_up",
     ),
 )
+# what --h-min adds: a proof, or a sequence of steps that refutes it
 VARYING = (
     text(
         "varying",
@@ -491,6 +497,7 @@ VARYING = (
     ),
     text("shown_by", "The line with which simulate shows errors grow", null="where no run shows it"),
 )
+# what `probe --alpha --beta` adds for each method
 LIKENESS = (
     METHOD,
     PREDICTED_Z_ABS,
@@ -506,6 +513,7 @@ LIKENESS = (
         form="NO",
     ),
 )
+# what `probe` adds for each method whose point it finds
 LIKE_POINT = (
     METHOD,
     ALPHA_HAT,
@@ -516,6 +524,7 @@ LIKE_POINT = (
     ALPHA,
     BETA,
 )
+# what `region --scene` adds
 MOVING_REGION = (
     number("speed", "Factor on the scene's own speed at which it moves", "speed", "g", null=LEVEL_ROW),
     KAPPA,
@@ -533,6 +542,7 @@ ENGINE_H_LIMIT = number(
     unit="s",
     null="where the point is not stable, or any step is",
 )
+# printed by `poles`
 POLES = RowKind(
     "a pole of a method",
     fields=(
@@ -563,6 +573,7 @@ POLES = RowKind(
     ),
     sentence=safety_words,
 )
+# printed by `region`, and by `methods NAME` below what else is known of the method
 REGIONS = RowKind(
     "the region of a method",
     fields=(
@@ -655,6 +666,7 @@ REGIONS = RowKind(
     ),
     sentence=region_sentence,
 )
+# printed by `methods`
 LISTED_METHODS = RowKind(
     "a method in the list",
     fields=(
@@ -682,6 +694,7 @@ LISTED_METHODS = RowKind(
     ),
     sentence=method_sentence,
 )
+# printed by `methods NAME`: every field in a line of its own, below its key
 NAMED_METHODS = RowKind(
     "a method that was named",
     fields=tuple(
@@ -708,6 +721,7 @@ NAMED_METHODS = RowKind(
     ),
     sentence=whole_method_sentence,
 )
+# printed by `family`
 MEMBERS = RowKind(
     "a member of a family, or its limit",
     fields=(
@@ -721,6 +735,7 @@ MEMBERS = RowKind(
         ERROR_CONSTANT,
     ),
 )
+# printed by `chains`
 CHAINS = RowKind(
     "a chain of bodies in an engine that sweeps",
     fields=(
@@ -738,6 +753,7 @@ CHAINS = RowKind(
     ),
     sentence=chain_sentence,
 )
+# printed by `choose`
 CHOICES = RowKind(
     "a choice",
     fields=(
@@ -828,6 +844,7 @@ CHOICES = RowKind(
     added=(*MOVING, *VARYING, SWEEPS, *SWEPT_OVER, *DRIVE, ENGINE_H_LIMIT, SETTING),
     sentence=answer_sentence,
 )
+# printed by `check`: a choice with its role
 CHECKED = RowKind(
     "a point, or what to take instead",
     fields=(ROLE, *CHOICES.fields),
@@ -835,6 +852,7 @@ CHECKED = RowKind(
     sometimes=("excludes",),
     sentence=answer_sentence,
 )
+# printed by `check --physical` without --h
 LARGEST_STEPS = RowKind(
     "the largest step of alpha and beta, without a step",
     fields=(
@@ -847,6 +865,7 @@ LARGEST_STEPS = RowKind(
     ),
     sentence=step_sentence,
 )
+# printed by `lint`
 LINTED = RowKind(
     "an element of a model",
     fields=(
@@ -865,6 +884,7 @@ LINTED = RowKind(
     ),
     sometimes=("alpha_hat", "beta_hat", "map", "verdict", "safe", "z_abs"),
 )
+# printed by `engines`
 ENGINES_LISTED = RowKind(
     "an engine",
     fields=(
@@ -897,6 +917,7 @@ ENGINES_LISTED = RowKind(
     ),
     sometimes=("method",),
 )
+# printed by `simulate`
 SIMULATIONS = RowKind(
     "a run",
     fields=(
@@ -946,6 +967,7 @@ SIMULATIONS = RowKind(
     ),
     sentence=run_sentence,
 )
+# printed by `verify`
 MEASUREMENTS = RowKind(
     "a measured pole",
     fields=(
@@ -1035,6 +1057,7 @@ MEASUREMENTS = RowKind(
     ),
     sentence=measurement_sentence,
 )
+# printed by `verify` where people read several points: no program has these columns
 SUMMARIES = RowKind(
     "how well the measured poles of a method agree with the predicted ones",
     fields=(
@@ -1056,6 +1079,7 @@ SUMMARIES = RowKind(
         ),
     ),
 )
+# printed by `verify --map`
 VERDICT_MAPS = RowKind(
     "a map of simulated verdicts",
     fields=(
@@ -1104,6 +1128,7 @@ VERDICT_MAPS = RowKind(
     ),
     sentence=verdict_map_sentence,
 )
+# printed by `verify --accuracy`
 FORCED = RowKind(
     "what a method forces on a mechanism",
     fields=(
@@ -1133,6 +1158,7 @@ FORCED = RowKind(
         REASON,
     ),
 )
+# printed by `verify --witness`
 WITNESSED = RowKind(
     "a run of an engine that is not ours",
     fields=(
@@ -1161,6 +1187,7 @@ WITNESSED = RowKind(
     ),
     sentence=witness_sentence,
 )
+# printed by `probe`: three tables for reading, one list for programs
 PROBED = RowKind(
     "the pole in a column of a log, or a method beside it, or a point at which a method has it",
     fields=(
@@ -1179,6 +1206,7 @@ PROBED = RowKind(
         *(field.key for field in (Z_REAL, Z_IMAG, Z_ABS, Z_ANGLE_DEG, REASON, *LIKENESS, *LIKE_POINT)),
     ),
 )
+# printed by `tradeoff`
 SWEPT = RowKind(
     "a run of a method with a step",
     fields=(
@@ -1232,6 +1260,7 @@ SWEPT = RowKind(
     ),
     sometimes=("z_abs",),
 )
+# printed by `tradeoff --predicted`
 FRONTS = RowKind(
     "the least error that a method can force with |z_p| at most so large",
     fields=(
@@ -1254,6 +1283,7 @@ FRONTS = RowKind(
         ),
     ),
 )
+# printed by `extremes`
 EXTREMES = RowKind(
     "a check",
     fields=(
@@ -1264,6 +1294,7 @@ EXTREMES = RowKind(
         truth("held", "Whether what came out is what was expected", "held", form="NO"),
     ),
 )
+# printed by `paper`
 CLAIMS = RowKind(
     "a claim of the paper",
     fields=(
@@ -1280,6 +1311,7 @@ CLAIMS = RowKind(
     ),
 )
 _APPLIED, KP, KP_MAX, KD, INERTIA, KD_MAX, _ = DRIVE
+# printed by `check`, `choose` and `region` about drives whose controller is slower than the physics
 HELD = RowKind(
     "a drive that is held or late",
     fields=(

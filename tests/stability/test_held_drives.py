@@ -127,6 +127,8 @@ def grown(way: str, a: float, b: float, timing: Timing, steps: int) -> float:
         Timing(every=3),
         Timing(late=Fraction(2)),
         Timing(late=Fraction(1, 2)),
+        Timing(late=Fraction(20)),
+        Timing(late=Fraction(87, 2)),
         Timing(every=4, late=Fraction(3, 2)),
         Timing(every=2, late=Fraction(5)),
         Timing(every=2, late=Fraction(1), filter_steps=Fraction(3)),

@@ -5,7 +5,7 @@ import pytest
 from bezstab.methods import lookup, step_matrix
 from bezstab.stability.lyapunov_polygons import proves_decay
 
-ONE, HALF, NONE = Fraction(1), Fraction(1, 2), Fraction(0)
+ONE, HALF, NONE, FOUR = Fraction(1), Fraction(1, 2), Fraction(0), Fraction(4)
 SQUARE = [(ONE, NONE), (NONE, ONE)]
 
 
@@ -26,11 +26,13 @@ def test_a_polygon_is_proven_exactly_as_far_as_it_holds() -> None:
     "corners",
     [
         [(ONE, NONE), (-ONE, NONE)],  # flat
-        [(NONE, ONE), (ONE, NONE)],  # the wrong way round
-        [(ONE, NONE), (Fraction(1, 9), Fraction(1, 9)), (NONE, ONE)],  # not convex
-        [(ONE, NONE), (NONE, ONE), (-ONE, NONE), (NONE, -ONE), (ONE, NONE), (NONE, ONE)],  # three half turns
+        [(NONE, FOUR), (ONE, NONE)],  # the wrong way round
+        [(ONE, NONE), (Fraction(1, 9), Fraction(4, 9)), (NONE, FOUR)],  # not convex
+        [(ONE, NONE), (NONE, FOUR), (-ONE, NONE), (NONE, -FOUR), (ONE, NONE), (NONE, FOUR)],  # three half turns
     ],
 )
 def test_what_is_no_convex_polygon_proves_nothing(corners: list[tuple[Fraction, Fraction]]) -> None:
-    # deadbeat: every corner goes to where it is inside whatever polygon there is
-    assert not proves_decay(corners, step_matrix(lookup("implicit-euler"), NONE, Fraction(10**6)), HALF)
+    # all but deadbeat: (x, v) goes to about (0, -x / s), which is inside |x| + |v| / 4 < 1 where s is a half and more
+    matrix = step_matrix(lookup("implicit-euler"), NONE, Fraction(10**6))
+    assert proves_decay([(ONE, NONE), (NONE, FOUR)], matrix, HALF)
+    assert not proves_decay(corners, matrix, HALF)
