@@ -253,7 +253,7 @@ def _masses(ratio: float) -> Check:
     seen = observe(mechanism, np.zeros(1), q[np.newaxis], v[np.newaxis], *gains).multipliers[0]
     with mp.workdps(DIGITS):
         precise = [list(map(mp.mpf, each)) for each in (gains, q.tolist(), v.tolist())]
-        found = state_function(mechanism, "observations", mp.mp)(mp.mpf(0), *precise[0], *precise[1:])
+        found = state_function(mechanism, "observations", mp.mp)([mp.mpf(0), *precise[0], *precise[1], *precise[2]])
         exact = found[2 * m : 3 * m]
         error = max(abs(a - b) for a, b in zip(seen.tolist(), exact, strict=True))
         digits = float(-mp.log10(error / max(map(abs, exact)) + mp.mpf(10) ** -17))

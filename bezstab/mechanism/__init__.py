@@ -5,7 +5,7 @@
 Units are SI and rad.
 """
 
-from bezstab.mechanism.compiled import Mechanism, acceleration_function, compiled_mechanism, state_function
+from bezstab.mechanism.compiled import Mechanism, accelerations, compiled_mechanism, state_function
 from bezstab.mechanism.compiled_stepping import runs_compiled
 from bezstab.mechanism.constraint_motions import ConstraintMotion, along_normals, constraint_motion
 from bezstab.mechanism.constraint_normals import TurningNormals, turned_across, turning_normals

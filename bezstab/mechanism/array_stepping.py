@@ -1,6 +1,5 @@
 """How Python reads the loop of `stepping`: with numpy's arrays, in which all runs are taken at once."""
 
-import cmath
 import math
 from collections.abc import Callable
 from typing import Any
@@ -8,8 +7,9 @@ from typing import Any
 import numpy as np
 
 from bezstab.linear_equations import inverses
-from bezstab.mechanism.compiled import IMAGINARY_STEP, Mechanism, StateFunction, state_function
-from bezstab.mechanism.registers import BoolArray, FloatArray, Room, Rows, Steps
+from bezstab.mechanism.compiled import Mechanism, state_function
+from bezstab.mechanism.programs import FloatArray, Program
+from bezstab.mechanism.registers import BoolArray, Room, Steps
 from bezstab.mechanism.stepping import TakeSteps, read
 
 
@@ -27,18 +27,18 @@ def array_steps(mechanism: Mechanism, lanes: int) -> TakeSteps:
     own |= _one_run(mechanism) if lanes == 1 else _many_runs(mechanism, lanes)
     taken = read(own)
 
-    def take_steps(rows: Rows, steps: Steps, room: Room, states: FloatArray, told: FloatArray) -> None:
+    def take_steps(program: Program, steps: Steps, room: Room, states: FloatArray, told: FloatArray) -> None:
         # Python reads numbers of lists faster than those of arrays
-        lists = {name: each.tolist() for name, each in rows._asdict().items() if name in QUICKLY}
+        lists = {name: each.tolist() for name, each in program._asdict().items() if name in QUICKLY}
         listed: Any = {"times": list(steps.times), "lengths": steps.lengths.tolist()}
         with np.errstate(all="ignore"):  # what runs into infinity is judged by its numbers
-            taken(rows._replace(**lists), steps._replace(**listed), room, states, told)
+            taken(program._replace(**lists), steps._replace(**listed), room, states, told)
 
     return take_steps
 
 
 QUICKLY = ("powers", "moments", "guesses", "groups", "moved_from", "moved_to", "state")
-"""Rows that are read number by number."""
+"""What of a program is read number by number."""
 
 
 def every(_count: int) -> tuple[slice]:
@@ -67,53 +67,34 @@ def invert(matrices: FloatArray, size: int, lanes: BoolArray, found: FloatArray)
 
 
 def _one_run(mechanism: Mechanism) -> dict[str, Callable[..., float]]:
-    """Return the functions of one lane: on floats, and on complex numbers for slopes."""
+    """Return the functions of one lane, on floats. What Python refuses is infinite, or no number, as with arrays."""
 
     def writing(name: str) -> Callable[..., float]:
-        real, complex_ = _on_numbers(mechanism, name, math, True), _on_numbers(mechanism, name, cmath, False)
+        of_numbers, of_arrays = (state_function(mechanism, name, library) for library in (math, np))
 
         def write(t: float, gains: FloatArray, state: FloatArray, found: FloatArray, *_others: Any) -> float:
-            ((two_alpha,), (beta_squared,)), (q, v) = gains.tolist(), state.tolist()
-            if state.dtype == np.complex128:
-                found[:] = complex_(float(t), two_alpha, beta_squared, q, v)
-                return 1.0
-            *found[:], pivot = real(float(t), two_alpha, beta_squared, q, v)
-            return float(pivot)
+            given = [float(t), *gains[:, 0].tolist(), *state.ravel().tolist()]
+            try:
+                values = of_numbers(given)
+            except (ArithmeticError, ValueError):
+                values = of_arrays(list(np.array(given)))
+            found[:] = values[: len(found)]
+            return float(min(1.0, *values[len(found) :]))
 
         return write
 
     return {f"{name}_of": writing(name) for name in ("accelerations", "corrections")}
 
 
-def _on_numbers(mechanism: Mechanism, name: str, library: Any, judged: bool) -> StateFunction:
-    """Return a mechanism's function on numbers. What Python refuses is infinite, or no number, as with arrays."""
-    of_numbers, of_arrays = (state_function(mechanism, name, each, judged) for each in (library, np))
-
-    def found(*given: Any) -> tuple[Any, ...]:
-        try:
-            return of_numbers(*given)
-        except (ArithmeticError, ValueError):
-            return of_arrays(*map(np.array, given))
-
-    return found
-
-
 def _many_runs(mechanism: Mechanism, lanes: int) -> dict[str, Callable[..., Any]]:
-    """Return what takes all lanes at once: accelerations, slopes of some, and what tells lanes apart."""
-    function, of_lanes = state_function(mechanism, "accelerations", np), (2, mechanism.size, lanes)
+    """Return what takes all lanes at once: accelerations, and what tells lanes apart."""
+    function, n = state_function(mechanism, "accelerations", np), mechanism.size
 
-    def accelerations(t: Any, gains: FloatArray, room: Room) -> float:
-        into = room.found.reshape(of_lanes[1:])
-        for place, each in enumerate(function(t, *gains, *room.state.reshape(of_lanes))):
-            into[place] = each
+    def accelerations(t: float, gains: FloatArray, room: Room) -> float:
+        values = function([t, *gains, *room.state.reshape(2 * n, lanes)])
+        for into, value in zip(room.found.reshape(n, lanes), values, strict=False):  # pivots are those of a run alone
+            into[:] = value
         return 1.0
-
-    def slope(t: Any, gains: FloatArray, direction: tuple[float, float], coordinate: int, room: Room) -> None:
-        some, into = room.poor, room.found.reshape(of_lanes[1:])
-        ahead = room.state.reshape(of_lanes)[..., some].astype(np.complex128)
-        ahead[:, coordinate] += 1j * IMAGINARY_STEP * np.array(direction)[:, np.newaxis]
-        for place, each in enumerate(function(np.broadcast_to(t, lanes)[some], *gains[:, some], *ahead)):
-            into[place, some] = each.imag / IMAGINARY_STEP
 
     def take(chosen: BoolArray, source: FloatArray, into: FloatArray) -> None:
         np.copyto(into.reshape(-1, lanes), source.reshape(-1, lanes), where=chosen)
@@ -123,7 +104,6 @@ def _many_runs(mechanism: Mechanism, lanes: int) -> dict[str, Callable[..., Any]
 
     return {
         "accelerations": accelerations,
-        "slope": slope,
         "every_lane": every,
         "take": take,
         "add_sizes": add_sizes,

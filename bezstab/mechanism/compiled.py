@@ -1,16 +1,19 @@
 """A mechanism: a scene with its equations of motion, and the functions that are generated and compiled from them."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
 from bezstab.mechanism.equations import Equations, equations_of_motion
-from bezstab.mechanism.generated_code import CODES, compiled_source, state_source
+from bezstab.mechanism.generated_code import code_of, compiled_source, state_source
 from bezstab.mechanism.scenes import Scene
 
-StateFunction = Callable[..., tuple[Any, ...]]
-"""A function of t (s), the gains 2 alpha (1/s) and beta^2 (1/s^2), and q and v, n of each; all in SI units.
+StateFunction = Callable[[Sequence[Any]], tuple[Any, ...]]
+"""A function of t (s), the gains 2 alpha (1/s) and beta^2 (1/s^2), and all q and all v, in one row; in SI units.
 
 The library of its sines says on what numbers it works: floats (math), arrays (numpy) or those of mpmath.
 """
@@ -49,14 +52,19 @@ def compiled_mechanism(scene: Scene) -> Mechanism:
 
 
 @cache
-def state_function(mechanism: Mechanism, name: str, library: Any, judged: bool = False) -> StateFunction:
-    """Return the function of that name in CODES; if `judged`, its last result is the least relative pivot of S."""
-    code = CODES[name](mechanism.equations)
-    results = (*code.results, code.least_pivot) if judged else code.results
-    found: StateFunction = compiled_source(state_source(code, results), library)["found"]
-    return found
+def state_function(mechanism: Mechanism, name: str, library: Any) -> StateFunction:
+    """Return the function of that name: accelerations, observations (c, cdot, multipliers) or corrections (dq, dv).
+
+    Behind these it returns the m relative pivots of S.
+    """
+    function: StateFunction = compiled_source(state_source(code_of(mechanism.equations, name)), library)
+    return function
 
 
-def acceleration_function(mechanism: Mechanism, library: Any) -> StateFunction:
-    """Return the function that gives all of qddot, paper Eq. 9."""
-    return state_function(mechanism, "accelerations", library)
+def accelerations(
+    mechanism: Mechanism, t: ArrayLike, two_alpha: ArrayLike, beta_squared: ArrayLike, q: ArrayLike, v: ArrayLike
+) -> NDArray[Any]:
+    """Return all of qddot, paper Eq. 9, shape (n, *batch) as of q and v, floats or complex numbers; SI units."""
+    function = state_function(mechanism, "accelerations", np)
+    values = function([t, two_alpha, beta_squared, *np.asarray(q), *np.asarray(v)])
+    return np.stack(np.broadcast_arrays(*values[: mechanism.size]))

@@ -7,7 +7,6 @@ numba makes of a scene is kept in the user's cache folder, under a name that is 
 import hashlib
 import os
 import sys
-from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 from types import FunctionType
@@ -18,8 +17,7 @@ import numpy as np
 from bezstab import compiling, stabilising
 from bezstab.compiling import INNER, check_numba, compiled_choice, compiler, numba_is_installed
 from bezstab.mechanism.compiled import Mechanism
-from bezstab.mechanism.generated_code import CODES, TAKE, compiled_source, function_of_a_lane
-from bezstab.mechanism.registers import FloatArray
+from bezstab.mechanism.generated_code import LONG, code_of, compiled_source, function_by_operations, machine_source
 from bezstab.mechanism.stepping import TakeSteps, read
 
 WORTH_COMPILING = 3 * 10**5
@@ -34,70 +32,84 @@ LANES = 32
 """Runs side by side: what they remember stays in the fastest memory."""
 
 
-def runs_compiled(evaluations: int, together: bool = False) -> bool:
+def runs_compiled(evaluations: int, together: bool = False, made: bool = False) -> bool:
     """Return whether a run, or runs together, of so many evaluations are to be compiled. InputError if that cannot be.
 
-    That is without numba. By default where numba is there and the run is long enough to pay. `evaluations` do not
-    include what iterations and projections take. InputError, too, where BEZSTAB_COMPILED says neither auto nor yes nor
-    no.
+    That is without numba. By default where numba is there and the run is long enough to pay, or the machine code is
+    `made` already. `evaluations` do not include what iterations and projections take. InputError, too, where
+    BEZSTAB_COMPILED says neither auto nor yes nor no.
     """
     choice = compiled_choice()
     if choice == "yes":
         check_numba()
     if choice != "auto":
         return choice == "yes"
-    return numba_is_installed() and evaluations >= WORTH_COMPILING * (CHEAPER_TOGETHER if together else 1)
+    long_enough = evaluations >= WORTH_COMPILING * (CHEAPER_TOGETHER if together else 1)
+    return numba_is_installed() and (made or long_enough)
 
 
-CALLED_OFTEN = (
-    "accelerations",
-    "arguments",
-    "combine",
-    "copy",
-    "take",
-    "add_sizes",
-    "correct",
-    "guess",
-    "residual",
-    "scale",
-    "shift",
-)
-"""What the loop calls from several places; what it calls from one becomes a part of what calls it."""
+MADE: dict[tuple[Mechanism, bool, bool, int], tuple[TakeSteps, int]] = {}
+"""The machine code of this process, by what `machine_steps` makes it for."""
 
 
-@cache
-def machine_steps(mechanism: Mechanism, solving: bool, projecting: bool, stride: int) -> tuple[TakeSteps, FloatArray]:
-    """Return the function that takes a mechanism's steps as machine code, and the variables that it begins with.
+def machine_steps(mechanism: Mechanism, solving: bool, projecting: bool, stride: int = 1) -> tuple[TakeSteps, int]:
+    """Return what has been made of the mechanism, or make it: as `_made_steps`."""
+    key = mechanism, solving, projecting, stride
+    if key not in MADE:
+        MADE[key] = _made_steps(*key)
+    return MADE[key]
+
+
+def _made_steps(mechanism: Mechanism, solving: bool, projecting: bool, stride: int) -> tuple[TakeSteps, int]:
+    """Return the function that takes a mechanism's steps as machine code, and how long its row is.
 
     `solving` and `projecting` say what it can do besides explicit steps, `stride` for how many runs side by side. What
     is compiled is kept for the next process. InputError without numba.
     """
     numba = compiler()
     n = mechanism.size
-    codes = {name: CODES[name](mechanism.equations) for name in ("accelerations", "corrections")[: 1 + projecting]}
+    codes = {name: code_of(mechanism.equations, name) for name in ("accelerations", "corrections")[: 1 + projecting]}
+    texts = {name: machine_source(code, name, stride) for name, code in codes.items()}
     own: dict[str, Any] = {"N": n, "STRIDE": stride, "WIDTH": n * stride, "SOLVING": solving, "PROJECTING": projecting}
-    file = _kept_file((*own.values(), *(code.lines for code in codes.values())))
+    file = _kept_file((*own.values(), *texts.values()))
 
     def made(function: Any) -> Any:
         """Return a function as machine code that other machine code calls, under a name of the scene's own.
 
         Code from disk is linked by its names: two scenes must not share any.
         """
-        inline = "never" if function.__name__ in CALLED_OFTEN else "always"
+        inline = "always" if function.__name__ in PARTS else "never"
         name = f"{function.__name__}_{file.parent.name}"
         named = FunctionType(function.__code__, function.__globals__, name, None, function.__closure__)
         named.__qualname__ = name
         # where nothing allocates, nothing need count references to arrays: that takes longer than most operations
         return numba.njit(error_model="numpy", _nrt=False, inline=inline, **INNER)(named)
 
-    places: dict[str | float, int] = {}
+    row = 0
     for name, code in codes.items():
-        own[f"{name}_of"] = made(function_of_a_lane(name, code, stride, places, made))
+        if len(code.assignments) > LONG:
+            function, length = function_by_operations(code, stride, made)
+            row = max(row, length)
+        else:
+            function = compiled_source(texts[name], np)
+        own[f"{name}_of"] = made(function)
     # numba keeps what is called from a text with a file, if it has nothing but that text from around it
-    take = compiled_source(TAKE, np, {"take_steps": read(own, made)}, str(file))["take"]
+    take = compiled_source(TAKE, np, {"take_steps": read(own, made)}, str(file))
     take.__name__ = take.__qualname__ = f"take_{file.parent.name}"
     steps = numba.njit(error_model="numpy", _nrt=False, no_cfunc_wrapper=True, cache=_keep(file))(take)
-    return steps, np.array([key if isinstance(key, float) else 0.0 for key in places])
+    return steps, row
+
+
+PARTS = (
+    *("accelerations_of", "corrections_of", "accelerations_at", "evaluate", "finish"),
+    *("solve", "residual", "correct", "renew", "advance"),
+)
+"""What becomes a part of what calls it: to hand over all the arrays of a program and its room takes a while."""
+
+TAKE = """def take(program, steps, room, states, told):
+ take_steps(program, steps, room, states, told)
+"""
+"""A function of the scene's own name in front of the loop that takes steps: what numba keeps on disk goes by it."""
 
 
 def _kept_file(made_of: object) -> Path:

@@ -61,7 +61,7 @@ def variable_names(prefix: str, count: int) -> list[str]:
 def equations_of_motion(scene: Scene) -> Equations:
     """Return the scene's equations of motion, paper Eqs 1 to 5; shapes and units as in `Equations`.
 
-    Differentiating c(q, t) = 0 twice gives C_q qddot = gamma = -((C_q v)_q v + 2 C_qt v + c_tt).
+    Differentiating c(q, t) = 0 twice gives C_q qddot = gamma = -(cdot_q v + cdot_t), cdot = C_q v + c_t.
     """
     # Symbols are numbered, not called after the bodies: a scene's names must never get into generated code.
     q = [sp.Symbol(name) for name in variable_names("q", len(scene.coordinates))]
@@ -75,10 +75,11 @@ def equations_of_motion(scene: Scene) -> Equations:
     jacobian = _jacobian(c, q)
     c_t = c.diff(T)
     velocity = sp.Matrix(v)
-    gamma = -(_jacobian(jacobian * velocity, q) * velocity + 2 * jacobian.diff(T) * velocity + c_t.diff(T))
+    cdot = jacobian * velocity + c_t
+    gamma = -(_jacobian(cdot, q) * velocity + cdot.diff(T))
     lengths = [_distance(spring, frames) for spring in scene.springs]
     potential = _potential_energy(scene, frames, lengths)
-    applied = _constant_forces(scene, frames, q) + _damper_forces(scene, lengths, q, v)
+    applied = _gradient(_work(scene, frames), q) - _gradient(_dissipation(scene, lengths, q, velocity), v)
     forces = applied - _gradient(potential, q)
     return Equations(
         q=tuple(q),
@@ -157,25 +158,22 @@ def _potential_energy(scene: Scene, frames: dict[str, Frame], lengths: Sequence[
     return potential
 
 
-def _constant_forces(scene: Scene, frames: dict[str, Frame], q: Sequence[sp.Symbol]) -> sp.Matrix:
-    """Return what the constant forces and torques are along each coordinate: the gradient of their work."""
+def _work(scene: Scene, frames: dict[str, Frame]) -> sp.Expr:
+    """Return the work (J) of the constant forces and torques from the origin on: its gradient by q is what they are."""
     work = sp.Integer(0)
     for force in scene.forces:
         x, y = _position(frames[force.body], force.point)
         work += force.force[0] * x + force.force[1] * y + force.torque * frames[force.body].theta
-    return _gradient(work, q)
+    return work
 
 
-def _damper_forces(
-    scene: Scene, lengths: Sequence[sp.Expr], q: Sequence[sp.Symbol], v: Sequence[sp.Symbol]
-) -> sp.Matrix:
-    """Return what the dampers are along each coordinate: -damping dL/dt times the gradient of the length L."""
-    total = sp.zeros(len(q), 1)
+def _dissipation(scene: Scene, lengths: Sequence[sp.Expr], q: Sequence[sp.Symbol], velocity: sp.Matrix) -> sp.Expr:
+    """Return Rayleigh's function (W) of the dampers, damping (dL/dt)^2 / 2: they are minus its gradient by qdot."""
+    dissipation = sp.Integer(0)
     for spring, length in zip(scene.springs, lengths, strict=True):
         if spring.damping:
-            slopes = _gradient(length, q)
-            total -= spring.damping * slopes.dot(sp.Matrix(v)) * slopes
-    return total
+            dissipation += spring.damping * _gradient(length, q).dot(velocity) ** 2 / 2
+    return dissipation
 
 
 def _constraints(joint: Joint, frames: dict[str, Frame], symbol_of: dict[str, sp.Symbol]) -> list[sp.Expr]:

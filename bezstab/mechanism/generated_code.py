@@ -1,21 +1,19 @@
-"""Generated source: accelerations, multipliers and observations as Python text, and its compilation.
+"""Generated code: accelerations, multipliers and corrections as assignments, and the functions that are made of them.
 
 Only this file writes source, and only here it is executed; others hand it equations and take functions. What a method
-does with them is no text: `programs` and `stepping` have it. From its top to its end, each part under a comment:
+does with them is no text: `programs` and `stepping` have it.
 
-    compiled_source                        text becomes functions
-    accelerations and multipliers          the assignments that solve paper Eq. 9
-    corrections                            what brings a state back to its constraints, by the same factors
-    functions of a state                   all of these by name, each as a function of one state or of many
-    machine code                           the same for a lane, and as single operations where they are long
+    assignments          all that solves paper Eq. 9, and brings a state back to its constraints, one after the other
+    Code                 those of them that some results need
+    function_of          a code as text that becomes a function, of one state or of many
+    operations           a long code as a table of single operations, for machine code
 
-All of it is plain arithmetic on numbered variables, one assignment a line, with `sin`, `cos`, `sqrt` and `least` as the
-only functions. What they are is decided when the text is compiled, so one source
-serves four kinds of numbers:
+All of it is plain arithmetic, one assignment a line, with `sin`, `cos` and `sqrt` as the only functions. What they are
+is decided when the text is compiled, so one source serves four kinds of numbers:
 
-- floats with `math`: a single run, without the overhead of arrays of four or five entries;
+- floats with `math`: a single run, without the overhead of arrays of four or five entries; so does machine code;
 - numpy arrays: a batch of runs, each variable one array over the batch, each line one operation on all of it;
-- complex numbers, or arrays of them: a state that is moved by a tiny imaginary step gives the slope in that direction;
+- arrays of complex numbers: a state that is moved by a tiny imaginary step gives the slope in that direction;
 - mpmath numbers: references of as many digits as asked for.
 
 The names: q0, q1, ... coordinates, v0, ... their rates, a0, ... their accelerations, l0, ... multipliers; C1_2, the
@@ -23,48 +21,34 @@ entry of C_q in row 1 and column 2; two_alpha and beta_squared, the gains. The t
 and these names; least of all the names that a user gave to bodies.
 """
 
-import ast
-import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
 import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
-from sympy.printing.precedence import PRECEDENCE
 from sympy.printing.pycode import PythonCodePrinter
 
-from bezstab.mechanism.equations import Equations, variable_names
+from bezstab.mechanism.equations import Equations, T
 
-TAKE = """
-def take(rows, steps, room, states, told):
- take_steps(rows, steps, room, states, told)
-"""
-"""A function of the scene's own name in front of the loop that takes steps: what numba keeps on disk goes by it."""
+Row = dict[int, sp.Expr]
+"""Entries of a matrix that are not zero, by their columns."""
 
 
-def compiled_source(
-    source: str, library: Any, others: Mapping[str, Any] | None = None, file: str = "<generated>"
-) -> dict[str, Any]:
-    """Return what generated source defines, its elementary functions those of `library`: math, numpy or mpmath.
-
-    `others` are functions that it calls, by their names; `file` is where it is said to come from.
-    """
-    least = min if library is math else _least_of_arrays
-    namespace = {"sin": library.sin, "cos": library.cos, "sqrt": library.sqrt, "least": least}
-    namespace |= {"__name__": __name__} | dict(others or {})
-    exec(compile(source, file, "exec"), namespace)
-    return namespace
+TWO_ALPHA, BETA_SQUARED = sp.symbols("two_alpha beta_squared")
 
 
-def _least_of_arrays(*values: Any) -> Any:
-    """Return the least value entry by entry, of arrays and numbers of any broadcastable shapes."""
-    return np.minimum.reduce(np.broadcast_arrays(*values))
+class Assignments(list[tuple[sp.Symbol, sp.Expr]]):
+    """Assignments to variables, one after the other."""
+
+    def variable(self, name: str, value: sp.Expr) -> sp.Symbol:
+        """Return the variable of that name, which gets this value."""
+        self.append((sp.Symbol(name), sp.Float(value) if value.is_Integer else value))
+        return self[-1][0]
 
 
-# Accelerations and multipliers
 #
 # M is diagonal, so paper Eq. 9, [M C_q^T; C_q 0] [qddot; lambda] = [g; gamma - 2 alpha cdot - beta^2 c], reduces to
 #
@@ -78,7 +62,7 @@ def _least_of_arrays(*values: Any) -> Any:
 #     W_ij = S_ij - sum_{p<j} L_ip W_jp    (i > j)      S =  | L10 1       |    D1          |   1   L21 |
 #     L_ij = W_ij / D_j                                      | L20 L21 1   |       D2       |       1   |
 #
-# Then L y = r forwards, y / D, and L^T lambda = y / D backwards, all in the variables r_i and l_i. The loops over i, j
+# Then L y = r forwards, y / D, and L^T lambda = y / D backwards, all in the variables y_i and l_i. The loops over i, j
 # and p run here, once: what is generated is the list of assignments they would execute ("unrolled").
 #
 # A constraint involves few coordinates and a body few constraints, so most entries of C_q are zero whatever q is, and
@@ -86,367 +70,270 @@ def _least_of_arrays(*values: Any) -> Any:
 # A chain of N bodies costs N times as much as one, where a full elimination would cost N^3.
 
 
-@dataclass(frozen=True)
-class StateCode:
-    """Assignments that compute the variables `results` from t, two_alpha, beta_squared, q_i and v_i."""
-
-    coordinates: int
-    constraints: int
-    lines: tuple[str, ...]
-    results: tuple[str, ...]
-
-    @property
-    def pivots(self) -> list[str]:
-        """The texts of the pivots D_j relative to S_jj; where the least of these is small, S is nearly singular."""
-        return [f"D{j} / S{j}" for j in range(self.constraints)]
-
-    @property
-    def least_pivot(self) -> str:
-        """The text of the least relative pivot, or 1 without any."""
-        return f"least(1.0, {', '.join(self.pivots)})" if self.constraints else "1.0"
+TWO_ALPHA, BETA_SQUARED = sp.symbols("two_alpha beta_squared")
 
 
 @cache
-def acceleration_code(equations: Equations) -> StateCode:
-    """Return what solves paper Eq. 9 for a_i = qddot_i, by an unrolled L D L^T without its structural zeros.
+def assignments(equations: Equations) -> tuple[Assignments, dict[str, list[sp.Symbol]]]:
+    """Return what computes accelerations a, observations c, cdot and l, and corrections dq and dv; and these by name.
 
-    On the way l_j = lambda_j, c_j and cdot_j get their values.
+    Multipliers l are in N along a constraint whose c is in m.
     """
-    coordinates = len(equations.q)
-    constraints = len(equations.constraints)
-    entries = _nonzero_entries(equations)
-    columns_of_row = _columns_of_row(equations)
-    inverse_masses = _inverse_masses(equations)
-    factors = _nonzero_factors(columns_of_row)
-    lines = [
-        *_entry_lines(entries),
-        *_right_side_lines(columns_of_row, inverse_masses, entries),
-        *_factorization_lines(columns_of_row, inverse_masses, factors),
-        *_substitution_lines(constraints, factors),
-        *_acceleration_lines(columns_of_row, inverse_masses, entries),
-    ]
-    results = tuple(variable_names("a", coordinates))
-    return StateCode(coordinates, constraints, tuple(lines), results)
+    found = Assignments()
+    n, m = len(equations.q), len(equations.constraints)
+    matrices = (equations.jacobian, equations.constraints, equations.constraints_t, equations.gamma, equations.forces)
+    common, (jacobian, c, c_t, gamma, forces) = sp.cse(matrices, symbols=sp.numbered_symbols("x"))
+    found += common
+
+    def entry(name: str, value: sp.Expr) -> sp.Expr:
+        """Return an entry: a number as it is, all else by its variable."""
+        return value if value.is_number else found.variable(name, value)
+
+    rows = [{k: entry(f"C{i}_{k}", jacobian[i, k]) for k in range(n) if jacobian[i, k] != 0} for i in range(m)]
+    applied = [entry(f"g{k}", force) for k, force in enumerate(forces)]
+    inverse_masses = [sp.Float(1 / float(mass)) for mass in equations.mass]
+    pivots, solve = _factored(found, rows, inverse_masses)
+
+    def accelerated(name: str, pulls: Sequence[sp.Expr], multipliers: Sequence[sp.Expr]) -> list[sp.Symbol]:
+        """Assign M^-1 (pulls - C_q^T multipliers)."""
+        reactions = [sp.Add(*(rows[i][k] * multipliers[i] for i in range(m) if k in rows[i])) for k in range(n)]
+        # not evaluated: else the product of a number and a sum becomes a sum of products, which takes longer
+        scaled = [
+            sp.Mul(w, pull - r, evaluate=False) for w, pull, r in zip(inverse_masses, pulls, reactions, strict=True)
+        ]
+        return [found.variable(f"{name}{k}", value) for k, value in enumerate(scaled)]
+
+    errors, rates, right_sides = [], [], []
+    for i, row in enumerate(rows):
+        errors.append(found.variable(f"c{i}", c[i]))
+        speeds = (each * equations.v[k] for k, each in row.items())
+        rates.append(found.variable(f"cdot{i}", sp.Add(*speeds, entry(f"ct{i}", c_t[i]))))
+        by_forces = (each * inverse_masses[k] * applied[k] for k, each in row.items())
+        feedback = TWO_ALPHA * rates[i] + BETA_SQUARED * errors[i]
+        right_sides.append(sp.Add(*by_forces, -entry(f"gamma{i}", gamma[i]), feedback))
+    multipliers, nothing = solve("l", right_sides), [sp.Integer(0)] * n
+    accelerations = accelerated("a", applied, multipliers)
+    corrections = accelerated("dq", nothing, solve("lq", errors)) + accelerated("dv", nothing, solve("lv", rates))
+    return found, {
+        "accelerations": accelerations,
+        "observations": errors + rates + multipliers,
+        "corrections": corrections,
+        "pivots": pivots,
+    }
 
 
-def _columns_of_row(equations: Equations) -> list[list[int]]:
-    """Return for each constraint the coordinates on which it depends: the columns of C_q where its row is not zero."""
-    jacobian = equations.jacobian
-    return [[k for k in range(jacobian.cols) if jacobian[i, k] != 0] for i in range(jacobian.rows)]
+def _factored(
+    found: Assignments, rows: Sequence[Row], inverse_masses: Sequence[sp.Expr]
+) -> tuple[list[sp.Symbol], Callable[[str, Sequence[sp.Expr]], list[sp.Symbol]]]:
+    """Assign what factors S; return its relative pivots, and the function that assigns what solves for a right side."""
+
+    def entry_of_s(i: int, j: int) -> sp.Expr:
+        shared = rows[i].keys() & rows[j].keys()
+        return sp.Add(*(rows[i][k] * rows[j][k] * inverse_masses[k] for k in shared))
+
+    m = len(rows)
+    pivots: list[sp.Symbol] = []
+    diagonal: list[sp.Symbol] = []
+    factors: list[Row] = [{} for _ in rows]  # L, and W = L D
+    left: list[Row] = [{} for _ in rows]
+    for j in range(m):
+        size = found.variable(f"S{j}", entry_of_s(j, j))
+        taken_off = sp.Add(*(factors[j][p] * left[j][p] for p in factors[j]))
+        diagonal.append(found.variable(f"D{j}", size - taken_off))
+        pivots.append(found.variable(f"pivot{j}", diagonal[j] / size))
+        for i in range(j + 1, m):
+            earlier = factors[i].keys() & factors[j].keys()
+            value = entry_of_s(i, j) - sp.Add(*(factors[i][p] * left[j][p] for p in earlier))
+            if value != 0:
+                left[i][j] = found.variable(f"W{i}_{j}", value)
+                factors[i][j] = found.variable(f"L{i}_{j}", left[i][j] / diagonal[j])
+
+    def solve(name: str, right_sides: Sequence[sp.Expr]) -> list[sp.Symbol]:
+        forwards: list[sp.Symbol] = []
+        for i, right_side in enumerate(right_sides):
+            known = sp.Add(*(factor * forwards[p] for p, factor in factors[i].items()))
+            forwards.append(found.variable(f"y_{name}{i}", right_side - known))
+        backwards: Row = {}
+        for i in reversed(range(m)):
+            known = sp.Add(*(factors[p][i] * backwards[p] for p in range(i + 1, m) if i in factors[p]))
+            backwards[i] = found.variable(f"{name}{i}", forwards[i] / diagonal[i] - known)
+        return [backwards[i] for i in range(m)]
+
+    return pivots, solve
 
 
-def _inverse_masses(equations: Equations) -> list[str]:
-    """Return the texts of the numbers 1 / M_k."""
-    return [repr(1 / float(mass)) for mass in equations.mass]
+# Functions
 
 
-def _nonzero_entries(equations: Equations) -> dict[str, sp.Expr]:
-    """Return the entries of C_q, gamma, c, c_t and g that are not identically zero, by the names of their variables."""
-    coordinates = range(len(equations.q))
-    constraints = range(len(equations.constraints))
-    entries = {f"C{i}_{k}": equations.jacobian[i, k] for i in constraints for k in coordinates}
-    entries |= {f"gamma{i}": equations.gamma[i] for i in constraints}
-    entries |= {f"c{i}": equations.constraints[i] for i in constraints}
-    entries |= {f"ct{i}": equations.constraints_t[i] for i in constraints}
-    entries |= {f"g{k}": equations.forces[k] for k in coordinates}
-    return {name: expression for name, expression in entries.items() if expression != 0}
+@dataclass(frozen=True, eq=False)
+class Code:
+    """The assignments that results need, from what is given on: t, two_alpha, beta_squared, all q_i and all v_i.
 
-
-def _entry_lines(entries: dict[str, sp.Expr]) -> list[str]:
-    """Return the assignments to the entries, after those to x0, x1, ...: what several of them have in common."""
-    common, remaining = sp.cse(list(entries.values()), symbols=sp.numbered_symbols("x"))
-    assigned = [(str(symbol), expression) for symbol, expression in common]
-    assigned += zip(entries, remaining, strict=True)
-    printer = _Arithmetic({"fully_qualified_modules": False})
-    return [f"{name} = {printer.doprint(expression)}" for name, expression in assigned]
-
-
-class _Arithmetic(PythonCodePrinter):  # type: ignore[misc]  # sympy has no types
-    """Prints whole powers as products: x**2 is rounded otherwise for floats than for arrays, x*x alike for all."""
-
-    def _print_Pow(self, expr: sp.Pow, rational: bool = False) -> str:  # noqa: N802  # the name by which sympy calls it
-        if not expr.exp.is_Integer or expr.exp == -1:
-            return str(super()._print_Pow(expr, rational=rational))
-        base = self.parenthesize(expr.base, PRECEDENCE["Pow"])
-        product = f"({'*'.join([base] * abs(int(expr.exp)))})"
-        return product if expr.exp > 0 else f"(1/{product})"
-
-
-def _right_side_lines(
-    columns_of_row: Sequence[Sequence[int]], inverse_masses: Sequence[str], entries: Iterable[str]
-) -> list[str]:
-    """Return the assignments to cdot = C_q v + c_t and r = C_q M^-1 g - gamma + 2 alpha cdot + beta^2 c."""
-    lines = []
-    for i, columns in enumerate(columns_of_row):
-        right_side = [f"C{i}_{k} * {inverse_masses[k]} * g{k}" for k in columns if f"g{k}" in entries]
-        if f"gamma{i}" in entries:
-            right_side.append(f"(-gamma{i})")
-        right_side += [f"two_alpha * cdot{i}", f"beta_squared * c{i}"]
-        lines.append(_rate_line(i, columns, entries))
-        lines.append(f"r{i} = {' + '.join(right_side)}")
-    return lines
-
-
-def _rate_line(i: int, columns: Sequence[int], entries: Iterable[str]) -> str:
-    """Return the assignment to cdot_i = (C_q v + c_t)_i."""
-    parts = [f"C{i}_{k} * v{k}" for k in columns]
-    if f"ct{i}" in entries:
-        parts.append(f"ct{i}")
-    return f"cdot{i} = {' + '.join(parts)}"
-
-
-def _nonzero_factors(columns_of_row: Sequence[Sequence[int]]) -> set[tuple[int, int]]:
-    """Return the places (i, j), i > j, of L that are not structurally zero.
-
-    L_ij is there where constraints i and j share a coordinate, and where an earlier column p fills the place in:
-    L_ip and L_jp both there.
+    `pivots` are the D_j relative to S_jj: where the least of these is small, S is nearly singular.
     """
-    factors: set[tuple[int, int]] = set()
-    constraints = len(columns_of_row)
-    for j in range(constraints):
-        for i in range(j + 1, constraints):
-            shared = set(columns_of_row[i]) & set(columns_of_row[j])
-            filled_in = any((i, p) in factors and (j, p) in factors for p in range(j))
-            if shared or filled_in:
-                factors.add((i, j))
-    return factors
 
-
-def _factorization_lines(
-    columns_of_row: Sequence[Sequence[int]], inverse_masses: Sequence[str], factors: set[tuple[int, int]]
-) -> list[str]:
-    """Return the assignments to S_j (the diagonal of S), D_j, W_ij and L_ij, column by column."""
-
-    def entry_of_s(i: int, j: int) -> str:
-        shared = [k for k in columns_of_row[i] if k in columns_of_row[j]]
-        return " + ".join(f"C{i}_{k} * C{j}_{k} * {inverse_masses[k]}" for k in shared) or "0.0"
-
-    def eliminated(i: int, j: int) -> str:
-        """Return what the columns before j take off from the entry (i, j)."""
-        earlier = [p for p in range(j) if (i, p) in factors and (j, p) in factors]
-        return "".join(f" - L{i}_{p} * W{j}_{p}" for p in earlier)
-
-    lines = []
-    constraints = len(columns_of_row)
-    for j in range(constraints):
-        lines.append(f"S{j} = {entry_of_s(j, j)}")
-        lines.append(f"D{j} = S{j}{eliminated(j, j)}")
-        for i in range(j + 1, constraints):
-            if (i, j) in factors:
-                lines.append(f"W{i}_{j} = {entry_of_s(i, j)}{eliminated(i, j)}")
-                lines.append(f"L{i}_{j} = W{i}_{j} / D{j}")
-    return lines
-
-
-def _substitution_lines(constraints: int, factors: set[tuple[int, int]]) -> list[str]:
-    """Return the assignments that solve L D L^T l = r: forwards, by the diagonal, backwards."""
-    lines = []
-    for i in range(constraints):
-        lines += [f"r{i} = r{i} - L{i}_{p} * r{p}" for p in range(i) if (i, p) in factors]
-    lines += [f"l{i} = r{i} / D{i}" for i in range(constraints)]
-    for i in reversed(range(constraints)):
-        lines += [f"l{i} = l{i} - L{p}_{i} * l{p}" for p in range(i + 1, constraints) if (p, i) in factors]
-    return lines
-
-
-def _acceleration_lines(
-    columns_of_row: Sequence[Sequence[int]], inverse_masses: Sequence[str], entries: Iterable[str]
-) -> list[str]:
-    """Return the assignments to a = M^-1 (g - C_q^T l)."""
-    lines = []
-    for k, inverse_mass in enumerate(inverse_masses):
-        force = f"g{k}" if f"g{k}" in entries else "0.0"
-        reactions = "".join(f" - C{i}_{k} * l{i}" for i, columns in enumerate(columns_of_row) if k in columns)
-        lines.append(f"a{k} = ({force}{reactions}) * {inverse_mass}")
-    return lines
-
-
-def observation_code(equations: Equations) -> StateCode:
-    """Return the same for all c, all cdot, then all l: multipliers in N along a constraint whose c is in m."""
-    code = acceleration_code(equations)
-    names = [name for prefix in ("c", "cdot", "l") for name in variable_names(prefix, code.constraints)]
-    return replace(code, results=tuple(names))
-
-
-# Corrections
-#
-# What brings a state back to its constraints, in the metric of the masses (`stabilising`), takes the same S:
-#
-#     dq = -M^-1 C_q^T S^-1 c,      dv = -M^-1 C_q^T S^-1 cdot
+    given: Sequence[sp.Symbol]
+    assignments: Sequence[tuple[sp.Symbol, sp.Expr]]
+    results: Sequence[sp.Symbol]
+    pivots: Sequence[sp.Symbol]
 
 
 @cache
-def correction_code(equations: Equations) -> StateCode:
-    """Return the assignments that compute dq_i and dv_i from t, q_i and v_i; S is factored as for accelerations."""
-    coordinates, constraints = len(equations.q), len(equations.constraints)
-    entries = {name: entry for name, entry in _nonzero_entries(equations).items() if name.startswith(("C", "c"))}
-    columns_of_row, inverse_masses = _columns_of_row(equations), _inverse_masses(equations)
-    factors = _nonzero_factors(columns_of_row)
-    lines = [
-        *_entry_lines(entries),
-        *(_rate_line(i, columns, entries) for i, columns in enumerate(columns_of_row)),
-        *_factorization_lines(columns_of_row, inverse_masses, factors),
-    ]
-    for error, correction in (("c", "dq"), ("cdot", "dv")):
-        lines += [f"r{i} = {error}{i}" for i in range(constraints)]
-        lines += _substitution_lines(constraints, factors)
-        lines += _acceleration_lines(columns_of_row, inverse_masses, ())  # without forces, what l alone accelerates
-        lines += [f"{correction}{k} = a{k}" for k in range(coordinates)]
-    results = (*variable_names("dq", coordinates), *variable_names("dv", coordinates))
-    return StateCode(coordinates, constraints, tuple(lines), results)
+def code_of(equations: Equations, name: str) -> Code:
+    """Return the code of accelerations, observations or corrections."""
+    known, by_name = assignments(equations)
+    results, pivots = by_name[name], by_name["pivots"]
+    needed, kept = {*results, *pivots}, []
+    for symbol, value in reversed(known):
+        if symbol in needed:
+            kept.append((symbol, value))
+            needed |= value.free_symbols
+    return Code((T, TWO_ALPHA, BETA_SQUARED, *equations.q, *equations.v), kept[::-1], results, pivots)
 
 
-# Functions of a state
+class _EveryDigit(PythonCodePrinter):  # type: ignore[misc]  # sympy has no types
+    """Prints a number as Python does, where sympy leaves its last digits out; and of sums what is added first."""
 
-CODES: Mapping[str, Callable[[Equations], StateCode]] = {
-    "accelerations": acceleration_code,
-    "observations": observation_code,
-    "corrections": correction_code,
-}
-"""All that is generated of a scene, by name. Whoever asks for a name gets it in Python or as machine code."""
+    def _print_Float(self, expr: sp.Float) -> str:  # noqa: N802  # the name by which sympy calls it
+        return repr(float(expr))
 
-
-def state_source(code: StateCode, results: Iterable[str]) -> str:
-    """Return the source of found(t, two_alpha, beta_squared, q, v): some of the variables that a code assigns."""
-    lines = [f"{_tuple_text(variable_names(name, code.coordinates))} = {name}" for name in ("q", "v")]
-    lines += [*code.lines, f"return {_tuple_text(results)}"]
-    return "\n".join(["def found(t, two_alpha, beta_squared, q, v):", *(f" {line}" for line in lines)])
+    def _as_ordered_terms(self, expr: sp.Add, order: str | None = None) -> list[sp.Expr]:
+        return sorted(expr.args, key=lambda term: bool(term.could_extract_minus_sign()))
 
 
-def _tuple_text(entries: Iterable[str]) -> str:
-    """Return the text of a tuple."""
-    return f"({', '.join(entries)},)"
+def source(code: Code, head: str, given: Sequence[str], end: Sequence[str]) -> str:
+    """Return the source of the function with this head, from the texts of what is given to its last lines."""
+    printer = _EveryDigit({"fully_qualified_modules": False})
+    used = set().union(*(value.free_symbols for _, value in code.assignments))
+    lines = [f"{symbol} = {text}" for symbol, text in zip(code.given, given, strict=True) if symbol in used]
+    lines += [f"{symbol} = {printer.doprint(value)}" for symbol, value in code.assignments]
+    return "\n".join([f"def {head}:", *(f" {line}" for line in (*lines, *end))])
+
+
+def state_source(code: Code) -> str:
+    """Return the source of the function of all that is given, in one row: results, then pivots."""
+    given = [f"given[{place}]" for place in range(len(code.given))]
+    results = ", ".join(map(str, (*code.results, *code.pivots)))
+    return source(code, "found(given)", given, [f"return ({results},)"])
+
+
+def compiled_source(text: str, library: Any, others: Mapping[str, Any] | None = None, file: str = "<generated>") -> Any:
+    """Return the function that generated source defines, its elementary functions those of math, numpy or mpmath.
+
+    `others` are functions that it calls, by their names; `file` is where it is said to come from.
+    """
+    namespace = {"sin": library.sin, "cos": library.cos, "sqrt": library.sqrt, "__name__": __name__} | dict(
+        others or {}
+    )
+    exec(compile(text, file, "exec"), namespace)
+    return namespace[text.partition("(")[0].removeprefix("def ")]
 
 
 # Machine code
 #
 # Machine code takes runs side by side, each in a lane: arrays have room for `stride` lanes of each coordinate. Each
-# function is NAME_of(t, gains, state, found, variables, lane): it writes the results of the code of that name for a
-# lane, and returns the least relative pivot of S. gains (2, lanes); state (2, n stride), q and v; found (n stride,), or
-# as much for each of the results.
+# function is NAME_of(t, gains, state, found, row, lane): it writes the results of the code of that name for a lane, and
+# returns the least relative pivot of S. gains (2, lanes); state (2, n stride), q and v; found (n stride,), or as much
+# for each of the results.
 #
 # What turning text into machine code costs grows faster than the text. So thousands of lines, as of a long mechanism,
-# become a table of single operations on an array of all variables and numbers, which one short loop takes:
+# become a table of single operations on a row of all variables and numbers, which one short loop takes:
 #
-#     W6_5 = C6_46 * 12.0 - W5_4        variables[t] = variables[a] * variables[b]      (TIMES, t, a, b)
-#                                       variables[w] = variables[t] - variables[c]      (MINUS, w, t, c)
+#     W6_5 = C6_46 * 12.0 - W5_4        12.0                          (NUMBER, 1, its place among the numbers)
+#                                       C6_46 * 12.0                  (TIMES, 2, place of C6_46, 1)
+#                                       that - W5_4                   (PLUS, 4, 2, 3), 3 the place of -1 W5_4
 
 LONG = 1000
 """Lines above which a code becomes a table of operations; a shorter one runs faster as it is."""
 
-PLUS, MINUS, TIMES, OVER, SINE, COSINE, ROOT = range(7)
-KINDS = {ast.Add: PLUS, ast.Sub: MINUS, ast.Mult: TIMES, ast.Div: OVER, "sin": SINE, "cos": COSINE, "sqrt": ROOT}
-"""The kinds of operations, by what the text has for them."""
+NUMBER, PLUS, TIMES, POWER, SINE, COSINE = range(6)
+KINDS = {sp.Add: PLUS, sp.Mul: TIMES, sp.Pow: POWER, sp.sin: SINE, sp.cos: COSINE}
 
 
-def function_of_a_lane(
-    name: str, code: StateCode, stride: int, places: dict[str | float, int], made: Callable[[Any], Any]
-) -> Callable[..., float]:
-    """Return the function of that name for a lane of so many, to be made machine code as `made` does.
-
-    `places` gets those of its variables and numbers, where it is long.
-    """
-    if len(code.lines) > LONG:
-        return by_operations(operations(code, places), code.coordinates, stride, made(take_operations))
-    lines = ["two_alpha, beta_squared = gains[0, lane], gains[1, lane]"]
-    for half, given in enumerate(("q", "v")):
-        lines += [f"{given}{i} = state[{half}, {i * stride} + lane]" for i in range(code.coordinates)]
-    lines += code.lines
-    lines += [f"found[{place * stride} + lane] = {result}" for place, result in enumerate(code.results)]
-    lines += ["pivot = 1.0", *(f"pivot = min(pivot, ({each}).real)" for each in code.pivots), "return pivot"]
-    source = "\n".join([f"def {name}_of(t, gains, state, found, variables, lane):", *(f" {line}" for line in lines)])
-    function: Callable[..., float] = compiled_source(source, np)[f"{name}_of"]
-    return function
+def machine_source(code: Code, name: str, stride: int) -> str:
+    """Return the source of the function of that name for a lane."""
+    n = (len(code.given) - 3) // 2
+    given = ["t", "gains[0, lane]", "gains[1, lane]"]
+    given += [f"state[{half}, {i * stride} + lane]" for half in range(2) for i in range(n)]
+    end = [f"found[{place * stride} + lane] = {result}" for place, result in enumerate(code.results)]
+    end += ["least = 1.0", *(f"least = min(least, {pivot})" for pivot in code.pivots), "return least"]
+    return source(code, f"{name}_of(t, gains, state, found, row, lane)", given, end)
 
 
-@dataclass(frozen=True)
-class Operations:
-    """A code as single operations: rows of kind, place of the result, places of one or two operands (twice the one).
+def function_by_operations(code: Code, stride: int, made: Callable[[Any], Any]) -> tuple[Callable[..., float], int]:
+    """Return the same function by single operations, which `made` makes machine code of; and how long the row is."""
+    rows, numbers = operations(code)
+    n, first, take = (len(code.given) - 3) // 2, len(code.given), made(take_operations)
+    last = first + len(rows)
+    pivots = last - len(code.pivots)
+    results = pivots - len(code.results)
 
-    `results` are the places of the code's own, `pivots` those of each D_j and S_j.
-    """
-
-    rows: NDArray[np.uint32]
-    results: NDArray[np.uint32]
-    pivots: NDArray[np.uint32]
-
-
-def operations(code: StateCode, places: dict[str | float, int]) -> Operations:
-    """Return a code as single operations, and enter the places of its variables and numbers.
-
-    t, two_alpha, beta_squared, q_i and v_i are the first, in this order.
-    """
-    for name in ("t", "two_alpha", "beta_squared", *(f"{name}{i}" for name in "qv" for i in range(code.coordinates))):
-        places.setdefault(name, len(places))
-    rows: list[tuple[int, ...]] = []
-
-    def place_of(key: str | float) -> int:
-        return places.setdefault(key, len(places))
-
-    def computed(node: ast.expr, name: str) -> int:
-        """Return the place of what an expression comes to; if it is more than a variable or a number, that name's."""
-        match node:
-            case ast.Name(id=variable):
-                return place_of(variable)
-            case ast.Constant(value=int() | float() as number):
-                return place_of(float(number))
-            case ast.UnaryOp(operand=operand):
-                kind, operands = MINUS, [place_of(0.0), computed(operand, f"{name}-")]
-            case ast.BinOp(left=left, op=operator, right=right):
-                kind, operands = KINDS[type(operator)], [computed(left, f"{name}<"), computed(right, f"{name}>")]
-            case ast.Call(func=ast.Name(id=function), args=[argument]):
-                kind, operands = KINDS[function], 2 * [computed(argument, f"{name}()")]
-            case _:
-                raise TypeError(ast.dump(node))
-        rows.append((kind, place_of(name), *operands))
-        return place_of(name)
-
-    for line in code.lines:
-        target, expression = line.split(" = ")
-        found = computed(ast.parse(expression, mode="eval").body, target)
-        if found != place_of(target):
-            rows.append((PLUS, place_of(target), found, place_of(0.0)))
-    pivots = [[places[f"D{j}"], places[f"S{j}"]] for j in range(code.constraints)]
-    # without a sign: numba need not ask whether they count from the end
-    return Operations(*(np.array(each, np.uint32) for each in (rows, [places[each] for each in code.results], pivots)))
-
-
-def by_operations(code: Operations, n: int, stride: int, take: Callable[..., None]) -> Callable[..., float]:
-    """Return the function of a lane that takes single operations, by `take_operations` or what is made of it."""
-    rows, results, pivots = code.rows, code.results, code.pivots
-
-    def of_a_lane(t: float, gains: Any, state: Any, found: Any, variables: Any, lane: int) -> float:
-        variables[0], variables[1], variables[2] = t, gains[0, lane], gains[1, lane]
+    def of_a_lane(t: float, gains: Any, state: Any, found: Any, row: Any, lane: int) -> float:
+        row[0], row[1], row[2] = t, gains[0, lane], gains[1, lane]
         for i in range(n):
-            variables[3 + i] = state[0, i * stride + lane]
-            variables[3 + n + i] = state[1, i * stride + lane]
-        take(rows, variables)
-        for i in range(len(results)):
-            found[i * stride + lane] = variables[results[i]]
-        pivot = 1.0
-        for j in range(len(pivots)):
-            pivot = min(pivot, (variables[pivots[j, 0]] / variables[pivots[j, 1]]).real)
-        return pivot
+            row[3 + i] = state[0, i * stride + lane]
+            row[3 + n + i] = state[1, i * stride + lane]
+        take(rows, numbers, row)
+        for place in range(results, pivots):
+            found[(place - results) * stride + lane] = row[place]
+        least = 1.0
+        for place in range(pivots, last):
+            least = min(least, row[place])
+        return least
 
-    return of_a_lane
+    return of_a_lane, last
 
 
-def take_operations(rows: Any, variables: Any) -> None:
+def operations(code: Code) -> tuple[NDArray[np.uint32], NDArray[np.float64]]:
+    """Return a code as single operations, and the numbers in it.
+
+    An operation is its kind, the place of its result, and those of two operands. The last ones give all results, then
+    the pivots.
+    """
+    places: dict[sp.Expr, int] = {symbol: place for place, symbol in enumerate(code.given)}
+    rows: list[tuple[int, int, int, int]] = []
+    numbers: list[float] = []
+
+    def operation(kind: int, left: int, right: int) -> int:
+        rows.append((kind, len(code.given) + len(rows), left, right))
+        return rows[-1][1]
+
+    def place_of(value: sp.Expr) -> int:
+        """Return the place of what a value comes to, each computed once."""
+        if value not in places and value.is_number:
+            numbers.append(float(value))
+            places[value] = operation(NUMBER, len(numbers) - 1, 0)
+        if value not in places:
+            place, *others = map(place_of, value.args)
+            for other in others or [place]:  # sines have one operand
+                place = operation(KINDS[value.func], place, other)
+            places[value] = place
+        return places[value]
+
+    for symbol, value in code.assignments:
+        places[symbol] = place_of(value)
+    zero = place_of(sp.Integer(0))
+    for result in (*code.results, *code.pivots):
+        operation(PLUS, places[result], zero)
+    # without a sign: numba need not ask whether they count from the end
+    return np.array(rows, np.uint32), np.array(numbers)
+
+
+def take_operations(rows: Any, numbers: Any, variables: Any) -> None:
     """Take single operations on variables, one after the other."""
     for k in range(len(rows)):
         kind, result = rows[k, 0], rows[k, 1]
+        if kind == NUMBER:
+            variables[result] = numbers[rows[k, 2]]
+            continue
         left, right = variables[rows[k, 2]], variables[rows[k, 3]]
         if kind == TIMES:
             variables[result] = left * right
-        elif kind == MINUS:
-            variables[result] = left - right
         elif kind == PLUS:
             variables[result] = left + right
-        elif kind == OVER:
-            variables[result] = left / right
+        elif kind == POWER:
+            variables[result] = left**right
         elif kind == SINE:
             variables[result] = np.sin(left)
-        elif kind == COSINE:
+        else:
             variables[result] = np.cos(left)
-        elif kind == ROOT:
-            variables[result] = np.sqrt(left)

@@ -15,9 +15,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from bezstab.mechanism.array_stepping import array_steps
-from bezstab.mechanism.compiled import IMAGINARY_STEP, Mechanism, acceleration_function
+from bezstab.mechanism.compiled import IMAGINARY_STEP, Mechanism, accelerations
 from bezstab.mechanism.programs import program_of
-from bezstab.mechanism.registers import Steps, room_of, rows_of
+from bezstab.mechanism.registers import Steps, room_of
 from bezstab.methods import Method, second_order_form
 
 FloatArray = NDArray[np.float64]
@@ -45,19 +45,19 @@ def steps_taken(
     `carried` is what each starts with, in units in which h = 1, (steps, quantities, n) in the order of `memory`. What
     Newton's method does not solve is no number.
     """
-    rows = rows_of(program_of(second_order_form(method.scheme)))
+    program = program_of(second_order_form(method.scheme))
     by_step = np.ascontiguousarray(np.moveaxis(carried, 0, 2))
-    room = room_of(rows, by_step, h, len(carried))
+    room = room_of(program, by_step, h, len(carried))
     found, told = np.empty((1, 2, by_step[0].size)), np.zeros((1, 6))
     array_steps(mechanism, len(carried))(
-        rows, Steps(np.array([t]), np.array([h]), gains[np.newaxis]), room, found, told
+        program, Steps(np.array([t]), np.array([h]), gains[np.newaxis]), room, found, told
     )
     registers, states = room.registers.reshape(-1, *by_step.shape[1:]), found.reshape(2, *by_step.shape[1:])
-    evaluations, quantities = len(rows.moments), len(by_step)
+    evaluations, quantities = len(program.moments), len(by_step)
     with np.errstate(all="ignore"):  # what runs into infinity shows in the numbers
         known = np.concatenate([by_step, registers[quantities : quantities + evaluations]])
-        places = np.moveaxis(np.tensordot(rows.table[: 2 * evaluations], known, 1), 2, 0)
-        moments = t + h * rows.moments
+        places = np.moveaxis(np.tensordot(program.table[: 2 * evaluations], known, 1), 2, 0)
+        moments = t + h * program.moments
         two_alpha, beta_squared = gains[:, :, np.newaxis]
         jacobians = acceleration_jacobians(
             mechanism, moments, two_alpha, beta_squared, places[:, ::2], places[:, 1::2] / h
@@ -72,14 +72,14 @@ def changes_handed_on(method: Method, jacobians: FloatArray, changes: FloatArray
 
     `jacobians` are those of this step, (points, evaluations, n, 2n).
     """
-    rows = rows_of(program_of(second_order_form(method.scheme)))
+    program = program_of(second_order_form(method.scheme))
     points, quantities, n, columns = changes.shape
-    evaluations = len(rows.moments)
+    evaluations = len(program.moments)
     found_from = quantities + np.arange(evaluations + 1)
     registers = np.zeros((points, quantities + evaluations, n * columns))
     registers[:, :quantities] = changes.reshape(points, quantities, -1)
-    for first, last, waiting in rows.groups:
-        of_group, count = rows.table[2 * first : 2 * last], last - first
+    for first, last, waiting in program.groups:
+        of_group, count = program.table[2 * first : 2 * last], last - first
         answers = jacobians[:, first:last]
         known = (of_group @ registers).reshape(points, count, 2 * n, columns)
         found = (answers @ known).reshape(points, count * n, columns)
@@ -88,8 +88,8 @@ def changes_handed_on(method: Method, jacobians: FloatArray, changes: FloatArray
             by_sought = np.einsum("peixj,exf->peifj", answers.reshape(points, count, n, 2, n), shares)
             found = np.linalg.solve(np.eye(count * n) - by_sought.reshape(points, count * n, count * n), found)
         registers[:, found_from[first] : found_from[last]] = found.reshape(points, count, -1)
-    every = np.concatenate([registers, rows.table[2 * evaluations :] @ registers], axis=1)
-    return every[:, rows.moved_from].reshape(changes.shape)
+    every = np.concatenate([registers, program.table[2 * evaluations :] @ registers], axis=1)
+    return every[:, program.moved_from].reshape(changes.shape)
 
 
 def acceleration_jacobians(
@@ -100,7 +100,7 @@ def acceleration_jacobians(
     q and v have shape (..., n); t (s) and the gains 2 alpha (1/s) and beta^2 (1/s^2; paper Eqs 6 and 9) broadcast
     against (...).
     """
-    size, acceleration = mechanism.size, acceleration_function(mechanism, np)
+    size = mechanism.size
     directions = 1j * IMAGINARY_STEP * np.eye(2 * size)[:, :, np.newaxis]
     shape = q.shape[:-1]
     scalars = [np.broadcast_to(each, shape).ravel() for each in (t, two_alpha, beta_squared)]
@@ -109,6 +109,6 @@ def acceleration_jacobians(
     for first in range(0, len(states), AT_A_TIME):
         some = slice(first, first + AT_A_TIME)
         ahead = states[some].T[:, np.newaxis] + directions
-        for k, changed in enumerate(acceleration(*(each[some] for each in scalars), *np.split(ahead, 2))):
-            jacobians[some, k] = np.transpose(changed).imag / IMAGINARY_STEP
+        changed = accelerations(mechanism, *(each[some] for each in scalars), *np.split(ahead, 2))
+        jacobians[some] = np.moveaxis(changed, 2, 0).imag / IMAGINARY_STEP
     return jacobians.reshape(*shape, size, 2 * size)

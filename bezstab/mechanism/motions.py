@@ -6,10 +6,11 @@ from functools import cache
 from math import lcm
 
 import numpy as np
+from numpy.polynomial.polynomial import polyder, polyval
 from numpy.typing import NDArray
 
 from bezstab.errors import InputError, NumericalError
-from bezstab.mechanism.compiled import Mechanism, acceleration_function
+from bezstab.mechanism.compiled import Mechanism, accelerations
 from bezstab.mechanism.observation import observe, singular_passages
 from bezstab.mechanism.runner import simulate
 from bezstab.mechanism.scenes import Driver
@@ -56,15 +57,18 @@ class Motion(ReadOnlyArrays):
         s = (t / step - k)[:, np.newaxis]
         q0, v0, a0 = self.q[k], step * self.v[k], step**2 * self.a[k]
         q1, v1, a1 = self.q[k + 1], step * self.v[k + 1], step**2 * self.a[k + 1]
-        # q0 + v0 s + a0 s^2 / 2 + what makes it end in q1, v1, a1: s^3 (c0 + c1 s + c2 s^2)
+        # q0 + v0 s + a0 s^2 / 2 + what makes it end in q1, v1, a1: three powers more
         position, velocity, acceleration = q1 - q0 - v0 - a0 / 2, v1 - v0 - a0, a1 - a0
-        c0 = 10 * position - 4 * velocity + acceleration / 2
-        c1 = -15 * position + 7 * velocity - acceleration
-        c2 = 6 * position - 3 * velocity + acceleration / 2
-        q = q0 + s * (v0 + s * (a0 / 2 + s * (c0 + s * (c1 + s * c2))))
-        v = v0 + s * (a0 + s * (3 * c0 + s * (4 * c1 + s * 5 * c2)))
-        a = a0 + s * (6 * c0 + s * (12 * c1 + s * 20 * c2))
-        return q, v / step, a / step**2
+        quintic = np.stack(
+            [
+                *(q0, v0, a0 / 2),
+                10 * position - 4 * velocity + acceleration / 2,
+                -15 * position + 7 * velocity - acceleration,
+                6 * position - 3 * velocity + acceleration / 2,
+            ]
+        )
+        q, v, a = (polyval(s, polyder(quintic, order), tensor=False) / step**order for order in range(3))
+        return q, v, a
 
     def __repr__(self) -> str:
         return f"Motion({'a revolution' if self.closed else 'a run'} of {self.duration:.6g} s)"
@@ -100,8 +104,7 @@ def motion_over(mechanism: Mechanism, span: float, steps: int) -> Motion:
     if run.failure:
         raise NumericalError(f"the motion of {mechanism.scene.name} breaks down {run.failure}")
     q, v = np.ascontiguousarray(run.q.T), np.ascontiguousarray(run.v.T)
-    a = np.stack(np.broadcast_arrays(*acceleration_function(mechanism, np)(run.t, *FREE, q, v)), axis=-1)
-    return Motion(run.t, run.q, run.v, a, closed=False)
+    return Motion(run.t, run.q, run.v, accelerations(mechanism, run.t, *FREE, q, v).T, closed=False)
 
 
 @cache

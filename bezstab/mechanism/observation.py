@@ -71,14 +71,11 @@ def observe(
     q_columns = np.ascontiguousarray(q.T)
     v_columns = np.ascontiguousarray(v.T)
     with np.errstate(all="ignore"):  # of a broken-down run's last states
-        observed = state_function(mechanism, "observations", np, judged=True)
-        values = observed(t, two_alpha, beta_squared, q_columns, v_columns)
+        observed = state_function(mechanism, "observations", np)
+        values = observed([t, two_alpha, beta_squared, *q_columns, *v_columns])
     # what depends on nothing that varies is a number: it holds at every time
-    *columns, pivots = [np.broadcast_to(value, t.shape) for value in values]
-    c, cdot, multipliers = (
-        np.stack(columns[first : first + mechanism.constraints], axis=-1)
-        for first in range(0, len(columns), mechanism.constraints)
-    )
+    columns = np.stack([np.broadcast_to(value, t.shape) for value in values], axis=-1)
+    c, cdot, multipliers, pivots = np.split(columns, 4, axis=1)
     kinetic = v**2 @ np.array(mechanism.equations.mass, float) / 2
     potential, applied_power = _energy_terms(mechanism)(q_columns, v_columns)
     return Observation(
@@ -88,7 +85,7 @@ def observe(
         energy=kinetic + potential,
         driver_power=_driver_power(mechanism, t, multipliers),
         applied_power=np.zeros(t.shape) + applied_power,  # a number where nothing is applied
-        pivots=np.array(pivots),
+        pivots=pivots.min(axis=1),
     )
 
 

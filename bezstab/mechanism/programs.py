@@ -20,14 +20,20 @@ each other: a group of evaluations is solved together, each from the guess that 
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
 
 from bezstab.linear_equations import solution
 from bezstab.mechanism.second_order_memory import ACCELERATION, POSITION, VELOCITY, is_solved_together, memory
-from bezstab.methods import Assignment, Combination, Quantity, SecondOrder
-from bezstab.methods import Evaluation as EvaluationEquation
+from bezstab.methods import Assignment, Combination, Evaluation, Quantity, SecondOrder, evaluation_times
+from bezstab.stabilising import NOTHING, AfterStep
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
 
 Row = tuple[Fraction, ...]
 """A coefficient for each register that is carried or found."""
@@ -37,80 +43,79 @@ ZERO = Fraction(0)
 POWERS_OF_STEP = {POSITION: 0, VELOCITY: 1, ACCELERATION: 2}
 
 
-@dataclass(frozen=True)
-class Evaluation:
-    """Where and when an acceleration is found, `moment` in steps after step 0 of the turn; `guess` is a register."""
+class Program(NamedTuple):
+    """A turn of a scheme in float64: registers are numbered through what is carried, found and combined.
 
-    position: Row
-    velocity: Row
-    moment: Fraction
-    guess: int
-
-
-@dataclass(frozen=True)
-class Program:
-    """A turn of a scheme: registers are numbered through what is carried, found and combined.
-
-    `powers` are those of h in what is carried. `groups` has the evaluations that belong together, from the first to
-    before the last, and whether they wait for each other. `moves` lead, in this order, from a register to one that is
-    carried; `state` are the registers of position and velocity at the end of the turn, before the moves. `corrected`
-    says for each that is carried what share it has, after the moves, in a change of that position, and of that
-    velocity: none for what is older than they are.
+    `powers` are those of h in what is carried. `table` has the rows of position and velocity of each evaluation, then
+    the combined ones; `moments` are the times of evaluations, in steps after step 0 of the turn, `guesses` registers.
+    `groups` has the evaluations that belong together, from the first to before the last, and whether they wait for each
+    other. The moves lead, in this order, from a register to one that is carried; `state` are the registers of position
+    and velocity at the end of the turn, before the moves. `corrected` says for each that is carried what share it has,
+    after the moves, in a change of that position, and of that velocity: none for what is older than they are. `after`
+    is what is done to the new state.
     """
 
-    powers: tuple[int, ...]
-    evaluations: tuple[Evaluation, ...]
-    groups: tuple[tuple[int, int, bool], ...]
-    combined: tuple[Row, ...]
-    moves: tuple[tuple[int, int], ...]
-    state: tuple[int, int]
-    corrected: tuple[tuple[Fraction, Fraction], ...]
+    powers: IntArray
+    table: FloatArray
+    moments: FloatArray
+    guesses: IntArray
+    groups: IntArray
+    moved_from: IntArray
+    moved_to: IntArray
+    state: IntArray
+    corrected: FloatArray
+    after: AfterStep
 
     @property
     def implicit(self) -> bool:
         """Whether there are equations to solve."""
-        return any(waiting for _, _, waiting in self.groups)
+        return bool(self.groups[:, 2].any())
 
 
 @cache
-def program_of(scheme: SecondOrder) -> Program:
-    """Return the program of a second-order scheme, exactly."""
-    remembered = memory(scheme)
+def program_of(scheme: SecondOrder, after: AfterStep = NOTHING) -> Program:
+    """Return the program of a second-order scheme: computed exactly, then rounded once."""
+    remembered, moments = memory(scheme), evaluation_times(scheme)
     carried = remembered.carried
-    of_groups = [[each for each in group if isinstance(each, EvaluationEquation)] for group in scheme.groups]
-    registers = [*carried, *(each.result for group in of_groups for each in group)]
-    columns = {quantity: column for column, quantity in enumerate(registers)}
+    found = [each.result for group in scheme.groups for each in group if isinstance(each, Evaluation)]
+    places = {quantity: place for place, quantity in enumerate([*carried, *found])}
     values: dict[Quantity, Row] = {
-        quantity: tuple(Fraction(int(column == own)) for column in range(len(registers)))
-        for quantity, own in columns.items()
+        quantity: tuple(Fraction(int(place == own)) for place in range(len(places))) for quantity, own in places.items()
     }
-    evaluations: list[Evaluation] = []
+    table: list[Row] = []
+    guesses: list[int] = []
     groups = []
-    for group, found in zip(scheme.groups, of_groups, strict=True):
+    for group in scheme.groups:
         values |= _assigned([each for each in group if isinstance(each, Assignment)], values)
-        waiting, first = is_solved_together(group), len(evaluations)
-        for each in found:
-            guess = columns[Quantity(each.result.name, each.result.step - 1)] if waiting else 0
-            moment = remembered.moments[each.result]
-            evaluations.append(Evaluation(_row(each.position, values), _row(each.velocity, values), moment, guess))
-        if found:
-            groups.append((first, len(evaluations), waiting))
+        waiting, first = is_solved_together(group), len(guesses)
+        for each in group:
+            if isinstance(each, Evaluation):
+                table += [_row(each.position, values), _row(each.velocity, values)]
+                guesses.append(places[Quantity(each.result.name, each.result.step - 1)] if waiting else 0)
+        if len(guesses) > first:
+            groups.append((first, len(guesses), waiting))
 
     state = (Quantity(POSITION, 1), Quantity(VELOCITY, 1))
     newer = [Quantity(quantity.name, quantity.step + 1) for quantity in carried]
-    combined = [quantity for quantity in dict.fromkeys((*state, *newer)) if quantity not in columns]
-    register = {quantity: number for number, quantity in enumerate([*registers, *combined])}
+    combined = [quantity for quantity in dict.fromkeys((*state, *newer)) if quantity not in places]
+    register = {quantity: number for number, quantity in enumerate([*places, *combined])}
     return Program(
-        powers=tuple(POWERS_OF_STEP.get(quantity.name, 2) for quantity in carried),
-        evaluations=tuple(evaluations),
-        groups=tuple(groups),
-        combined=tuple(values[quantity] for quantity in combined),
-        moves=tuple((register[new], register[old]) for old, new in zip(carried, newer, strict=True)),
-        state=(register[state[0]], register[state[1]]),
-        corrected=tuple(
-            shares[:2] if step == 0 else (ZERO, ZERO)
-            for shares, step in zip(remembered.shares, remembered.state_steps, strict=True)
+        powers=np.array([POWERS_OF_STEP.get(quantity.name, 2) for quantity in carried]),
+        table=np.array([*table, *(values[quantity] for quantity in combined)], np.float64),
+        moments=np.array([moments[quantity] for quantity in found], np.float64),
+        guesses=np.array(guesses),
+        groups=np.array(groups, np.int64),
+        moved_from=np.array([register[quantity] for quantity in newer]),
+        moved_to=np.array([register[quantity] for quantity in carried]),
+        state=np.array([register[quantity] for quantity in state]),
+        corrected=np.array(
+            [
+                shares[:2] if step == 0 else (ZERO, ZERO)
+                for shares, step in zip(remembered.shares, remembered.state_steps, strict=True)
+            ],
+            np.float64,
         ),
+        after=after,
     )
 
 

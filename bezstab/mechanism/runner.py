@@ -11,16 +11,17 @@ from numpy.typing import ArrayLike, NDArray
 
 from bezstab.errors import InputError
 from bezstab.mechanism.array_stepping import array_steps
-from bezstab.mechanism.compiled import SINGULAR, Mechanism, acceleration_function
-from bezstab.mechanism.compiled_stepping import LANES, machine_steps, runs_compiled
+from bezstab.mechanism.compiled import SINGULAR, Mechanism, accelerations
+from bezstab.mechanism.compiled_stepping import LANES, MADE, machine_steps, runs_compiled
 from bezstab.mechanism.programs import program_of
-from bezstab.mechanism.registers import MOST_ITERATIONS, Steps, room_of, rows_of
+from bezstab.mechanism.registers import Steps, room_of
 from bezstab.mechanism.second_order_memory import memory
 from bezstab.mechanism.start import initial_state
 from bezstab.mechanism.stepping import (
     BLOWN_UP,
     EVALUATIONS,
     ITERATIONS,
+    MOST_ITERATIONS,
     PIVOT,
     PROJECTIONS,
     UNSETTLED,
@@ -142,7 +143,7 @@ def simulate(
     count = round(duration / whole_step)
     first = checked_start(initial_state(mechanism) if state is None else state)
     if compiled is None:
-        compiled = runs_compiled(count * evaluations(method))
+        compiled = _pays(mechanism, method, count, after)
     how = How(compiled, True, after)
     times = np.arange(count + 1, dtype=np.float64) * whole_step
     return recorded(
@@ -160,11 +161,17 @@ def simulate_steps(
     times that h v and r^2 times that h^2 a. The acceleration itself is what it was, whatever the gains do.
     """
     first, length = checked_start(state), float(steps.lengths[0])
-    how = How(runs_compiled(len(steps.lengths) * evaluations(method)), judged=True, after=after)
+    how = How(_pays(mechanism, method, len(steps.lengths), after), judged=True, after=after)
     two_alpha, beta_squared = steps.gains[0, :, 0].tolist()
     carried = carried_quantities(mechanism, method, length, (two_alpha, beta_squared), [first], first, how.counts)
     times = np.append(steps.times, steps.times[-1] + steps.lengths[-1])
     return recorded(mechanism, method, first, times, steps_in_blocks(mechanism, method, steps, carried, (), how), how)
+
+
+def _pays(mechanism: Mechanism, method: Method, count: int, after: AfterStep) -> bool:
+    """Return whether a run of so many steps is to be compiled: where this process has its code, or as that pays."""
+    made = (mechanism, implicit(method), after.projecting, 1) in MADE
+    return runs_compiled(count * evaluations(method), made=made)
 
 
 def checked_start(state: tuple[FloatArray, FloatArray]) -> FloatArray:
@@ -274,9 +281,8 @@ def steps_in_blocks(
 
     It is in units of the first step's length. The lanes are those of the batch, one after the other.
     """
-    program = program_of(second_order_form(method.scheme))
-    rows, n, lanes = rows_of(program, how.after), mechanism.size, math.prod(batch)
-    variables = None
+    program = program_of(second_order_form(method.scheme), how.after)
+    n, lanes, variables = mechanism.size, math.prod(batch), 0
     if how.compiled:
         stride = 1 if lanes == 1 else LANES
         take_steps, variables = machine_steps(mechanism, program.implicit, how.after.projecting, stride)
@@ -284,7 +290,7 @@ def steps_in_blocks(
         stride, take_steps = lanes, array_steps(mechanism, lanes)
     by_lanes = carried.reshape(-1, n, lanes)
     groups = [slice(first, first + stride) for first in range(0, lanes, stride)]
-    rooms = [room_of(rows, by_lanes[:, :, group], float(steps.lengths[0]), stride, variables) for group in groups]
+    rooms = [room_of(program, by_lanes[:, :, group], float(steps.lengths[0]), stride, variables) for group in groups]
     at_once = max(1, NUMBERS_OF_A_BLOCK // (2 * n * stride))
     for first in range(0, len(steps.times), at_once):
         some = slice(first, first + at_once)
@@ -292,7 +298,7 @@ def steps_in_blocks(
         parts, told = [], np.zeros((len(times), 6))
         for group, room in zip(groups, rooms, strict=True):
             found = np.empty((len(times), 2, n * stride), carried.dtype)
-            take_steps(rows, Steps(times, lengths, np.ascontiguousarray(gains[:, :, group])), room, found, told)
+            take_steps(program, Steps(times, lengths, np.ascontiguousarray(gains[:, :, group])), room, found, told)
             parts.append(found.reshape(len(times), 2 * n, stride)[:, :, : len(room.poor)])
         states = np.concatenate(parts, axis=2).reshape(len(times), 2 * n, *batch)
         cause = None
@@ -333,17 +339,16 @@ def carried_quantities(
     scheme = second_order_form(method.scheme)
     remembered = memory(scheme)
     n = mechanism.size
-    acceleration = acceleration_function(mechanism, np)
     newest = len(history) - 1
     # those of a method with steps of its own have been evaluated by the steps before
     counted = implicit(method) or isinstance(method.scheme, SecondOrder)
 
     @cache
-    def accelerations(place: int) -> FloatArray:
+    def at(place: int) -> FloatArray:
         """Return qddot at a place of the history."""
         counts[EVALUATIONS] += counted
         state = undisturbed if place == newest else history[place]
-        return np.stack(np.broadcast_arrays(*acceleration(place * h, *gains, state[:n], state[n:])))
+        return accelerations(mechanism, place * h, *gains, state[:n], state[n:])
 
     carried = []
     for shares, step in zip(remembered.shares, remembered.state_steps, strict=True):
@@ -351,7 +356,7 @@ def carried_quantities(
         state = history[newest + step]
         entries = by_q * state[:n] + by_v * state[n:]
         if by_a:
-            entries = entries + by_a * accelerations(newest + step)
+            entries = entries + by_a * at(newest + step)
         carried.append(np.broadcast_to(entries, (n, *history[-1].shape[1:])).reshape(-1))
     return np.array(carried)
 
@@ -376,7 +381,7 @@ def breakdown(state: FloatArray, pivot: float = 1.0, unsolved: float = 0.0, unse
 
 def states_needed(method: Method) -> int:
     """Return the number of states that a run of the method starts from, the newest included."""
-    return 1 + memory(second_order_form(method.scheme)).past
+    return 1 - second_order_form(method.scheme).oldest
 
 
 def _starters(method: Method, start: Start) -> list[tuple[Method, int]]:

@@ -147,15 +147,8 @@ def _driver(table: TomlTable, coordinates: Sequence[str]) -> Driver:
     coordinate = table.text("coordinate")
     if coordinate not in coordinates:
         raise table.mistake(f"coordinate {coordinate!r} is not among {', '.join(coordinates)}")
-    driver = Driver(
-        coordinate,
-        offset=table.number("offset", default=0.0),
-        rate=table.number("rate", default=0.0),
-        acceleration=table.number("acceleration", default=0.0),
-        amplitude=table.number("amplitude", default=0.0),
-        frequency=table.number("frequency", default=0.0),
-        phase=table.number("phase", default=0.0),
-    )
+    numbers = ("offset", "rate", "acceleration", "amplitude", "frequency", "phase")
+    driver = Driver(coordinate, **{name: table.number(name, default=0.0) for name in numbers})
     table.refuse_unknown_keys(IN_PLACE_OF)
     if not driver.moves:
         raise table.mistake(f"it never moves {coordinate}: expected a rate, an acceleration or an oscillation")

@@ -1,4 +1,4 @@
-"""What a second-order scheme carries from step to step, when it evaluates, and how it starts.
+"""What a second-order scheme carries from step to step and how it starts.
 
 A turn of its equations gives x1, v1, accelerations and helpers at their latest steps. What the next turn needs of them,
 one step further back, is carried. All of it is read off the three exact motions of the scheme: a helper that starts has
@@ -19,7 +19,6 @@ from bezstab.methods import (
     Motions,
     Quantity,
     SecondOrder,
-    evaluation_times,
     exact_motions,
     value_at_start,
 )
@@ -34,24 +33,21 @@ Shares = tuple[Fraction, Fraction, Fraction]
 
 @dataclass(frozen=True)
 class Memory:
-    """What a scheme carries from turn to turn, and when it evaluates.
+    """What a scheme carries from turn to turn.
 
-    `carried` names the quantities by their step as a turn begins, each name's oldest first. The newest state has step 0
-    then, and `past` states before it are needed. `shares` say what a carried quantity starts with, in terms
-    of the state at step `state_steps`, in the same order. `moments` are the times of the evaluations from step 0 on, in
-    steps, by their results.
+    `carried` names the quantities by their step as a turn begins, each name's oldest first; the newest state has step 0
+    then. `shares` say what a carried quantity starts with, in terms of the state at step `state_steps`, in the same
+    order.
     """
 
     carried: tuple[Quantity, ...]
-    past: int
     shares: tuple[Shares, ...]
     state_steps: tuple[int, ...]
-    moments: dict[Quantity, Fraction]
 
 
 @cache
 def memory(scheme: SecondOrder) -> Memory:
-    """Return what the scheme carries, and when it evaluates. InputError where its turn ends with no state."""
+    """Return what the scheme carries. InputError where its turn ends with no state."""
     carried = tuple(_carried(scheme))
     for equation in scheme.equations:
         if equation.result.name in (POSITION, VELOCITY) and equation.result.step > 1:
@@ -59,16 +55,11 @@ def memory(scheme: SecondOrder) -> Memory:
     motions = exact_motions(scheme)
     # a quantity starts from the state of its own step, where the history of the scheme has it
     state_steps = tuple(max(min(quantity.step, 0), scheme.oldest) for quantity in carried)
-    return Memory(
-        carried=carried,
-        past=-scheme.oldest,
-        shares=tuple(
-            _shares(motions, quantity, quantity.step - state_step)
-            for quantity, state_step in zip(carried, state_steps, strict=True)
-        ),
-        state_steps=state_steps,
-        moments=evaluation_times(scheme),
+    shares = (
+        _shares(motions, quantity, quantity.step - state_step)
+        for quantity, state_step in zip(carried, state_steps, strict=True)
     )
+    return Memory(carried, tuple(shares), state_steps)
 
 
 def _carried(scheme: SecondOrder) -> list[Quantity]:

@@ -8,7 +8,7 @@ comparison or `take`, not a branch.
 
 The equations of an implicit step are solved by Newton's method, in all lanes at a time. The unknowns are accelerations,
 and the residual of each is r(A) = A - h^2 acceleration(X(A), V(A)). Its Jacobian is taken along one unknown after the
-other, exactly, by complex steps (`slope`).
+other, from what a small change of it does.
 
 Jacobians are kept, from one iteration to the next and from step to step, as long as each correction is at most a
 thirtieth of the one before; one that is more is not made, but computed anew with the Jacobian there. Where that is the
@@ -25,25 +25,33 @@ from collections.abc import Callable, Mapping
 from types import FunctionType
 from typing import Any
 
-from bezstab.mechanism.compiled import IMAGINARY_STEP, SINGULAR
-from bezstab.mechanism.registers import MOST_ITERATIONS, BoolArray, FloatArray, IntArray, Room, Rows, Steps
+import numpy as np
+
+from bezstab.mechanism.compiled import SINGULAR
+from bezstab.mechanism.programs import FloatArray, IntArray, Program
+from bezstab.mechanism.registers import BoolArray, Room, Steps
 from bezstab.mechanism.start import CLOSED
 
 BLOWN_UP = 1e9  # SI units, sum of all coordinates and velocities: far beyond any mechanism, far below overflow
 
+MOST_ITERATIONS = 25  # of Newton's method: three are usual; from far away it may first wander
 TOLERANCE = 500 * 2.0**-52  # of X, V and A together: what h^2 acceleration cannot be relied upon
 FALL = 1 / 30  # of a correction to the next, with a Jacobian good enough to keep: each gains a digit and a half
+
+CHANGE = (
+    1e-6  # of X, V and A together, at most 1 (m, rad), for a slope: ten digits of it, as good as one kept for a step
+)
 
 PIVOT, UNSOLVED, UNSETTLED, ITERATIONS, EVALUATIONS, PROJECTIONS = range(6)
 """Places in what is told of each step of a run alone.
 
 The least relative pivot on the way; the size of the last correction of equations that were not solved, and of a
 position that its projection did not bring back to the constraints, 0 where all was; and how often it has iterated,
-evaluated, a slope counted as one evaluation, and computed how a state has to be corrected.
+evaluated, for slopes too, and computed how a state has to be corrected.
 """
 
-TakeSteps = Callable[[Rows, Steps, Room, FloatArray, FloatArray], None]
-"""take_steps(rows, steps, room, states, told), below."""
+TakeSteps = Callable[[Program, Steps, Room, FloatArray, FloatArray], None]
+"""take_steps(program, steps, room, states, told), below."""
 
 # What each way of reading gives its own meaning
 
@@ -60,12 +68,12 @@ every, every_lane = range, range
 """The places of a register, or the lanes, so many: one after the other or, of numpy's arrays, all at once."""
 
 
-def accelerations_of(t: float, gains: FloatArray, state: Any, found: Any, variables: Any, lane: int) -> float:
-    """Stand for the generated function that writes a lane's accelerations, real or complex; return the least pivot."""
+def accelerations_of(t: float, gains: FloatArray, state: Any, found: Any, row: Any, lane: int) -> float:
+    """Stand for the generated function that writes a lane's accelerations, and returns the least pivot."""
     raise NotImplementedError
 
 
-def corrections_of(t: float, gains: FloatArray, state: Any, found: Any, variables: Any, lane: int) -> float:
+def corrections_of(t: float, gains: FloatArray, state: Any, found: Any, row: Any, lane: int) -> float:
     """Stand for the generated function that writes corrections of a lane's state, and returns the least pivot."""
     raise NotImplementedError
 
@@ -74,25 +82,8 @@ def accelerations(t: float, gains: FloatArray, room: Room) -> float:
     """Write all accelerations at a state; return the least pivot, of a run alone."""
     pivot = 1.0
     for lane in range(gains.shape[1]):
-        pivot = accelerations_of(t, gains, room.state, room.found, room.variables, lane)
+        pivot = accelerations_of(t, gains, room.state, room.found, room.row, lane)
     return pivot
-
-
-def slope(t: float, gains: FloatArray, direction: tuple[float, float], coordinate: int, room: Room) -> None:
-    """Write how accelerations of some lanes change as one coordinate does, and its velocity, by a complex step."""
-    first, lanes = coordinate * STRIDE, len(room.poor)
-    for half in range(2):
-        at, ahead = room.state[half], room.ahead[half]
-        for place in every(WIDTH):
-            ahead[place] = at[place]
-        of_coordinate = ahead[first : first + lanes]
-        for lane in every_lane(lanes):
-            of_coordinate[lane] += 1j * IMAGINARY_STEP * direction[half]
-    for lane in range(lanes):
-        if room.poor[lane]:
-            accelerations_of(t, gains, room.ahead, room.found_ahead, room.variables_ahead, lane)
-    for place in every(WIDTH):
-        room.found[place] = room.found_ahead[place].imag / IMAGINARY_STEP
 
 
 # What numpy does faster as a whole
@@ -190,59 +181,61 @@ def invert_one(matrix: FloatArray, size: int, found: FloatArray) -> None:
 # A step
 
 
-def arguments(rows: Rows, number: int, h: float, room: Room) -> None:
-    """Write position and velocity of an evaluation."""
-    combine(rows.table[2 * number], room.registers, room.state[0])
-    combine(rows.table[2 * number + 1], room.registers, room.state[1])
+def accelerations_at(program: Program, number: int, time: float, h: float, gains: FloatArray, room: Room) -> float:
+    """Write the state of an evaluation, and its accelerations; return the least pivot."""
+    combine(program.table[2 * number], room.registers, room.state[0])
+    combine(program.table[2 * number + 1], room.registers, room.state[1])
     scale(1 / h, room.state[1], room.state[1])
+    return accelerations(time + program.moments[number] * h, gains, room)
 
 
-def evaluate(rows: Rows, number: int, time: float, h: float, gains: FloatArray, room: Room, told: FloatArray) -> None:
+def evaluate(
+    program: Program, number: int, time: float, h: float, gains: FloatArray, room: Room, told: FloatArray
+) -> None:
     """Take an explicit evaluation."""
-    arguments(rows, number, h, room)
-    pivot = accelerations(time + rows.moments[number] * h, gains, room)
-    scale(h * h, room.found, room.registers[len(rows.powers) + number])
+    pivot = accelerations_at(program, number, time, h, gains, room)
+    scale(h * h, room.found, room.registers[len(program.powers) + number])
     told[PIVOT] = min(told[PIVOT], pivot)
     told[EVALUATIONS] += 1
 
 
-def finish(rows: Rows, h: float, room: Room, state: FloatArray) -> None:
+def finish(program: Program, h: float, room: Room, state: FloatArray) -> None:
     """Combine, write the new state, and move on."""
-    first, columns = 2 * len(rows.moments), rows.table.shape[1]
-    for number in range(len(rows.table) - first):
-        combine(rows.table[first + number], room.registers, room.registers[columns + number])
-    copy(room.registers[rows.state[0]], state[0])
-    scale(1 / h, room.registers[rows.state[1]], state[1])
-    for move in range(len(rows.moved_from)):
-        copy(room.registers[rows.moved_from[move]], room.registers[rows.moved_to[move]])
+    first, columns = 2 * len(program.moments), program.table.shape[1]
+    for number in range(len(program.table) - first):
+        combine(program.table[first + number], room.registers, room.registers[columns + number])
+    copy(room.registers[program.state[0]], state[0])
+    scale(1 / h, room.registers[program.state[1]], state[1])
+    for move in range(len(program.moved_from)):
+        copy(room.registers[program.moved_from[move]], room.registers[program.moved_to[move]])
 
 
-def take_steps(rows: Rows, steps: Steps, room: Room, states: FloatArray, told: FloatArray) -> None:
+def take_steps(program: Program, steps: Steps, room: Room, states: FloatArray, told: FloatArray) -> None:
     """Take steps. `states` (steps, 2, width) get q and v after each, `told` (steps, 6) what is told of each."""
     for k in range(len(steps.times)):
         time, h, gains = steps.times[k], steps.lengths[k], steps.gains[k]
         if h != room.step[0]:
-            for number in range(len(rows.powers)):
+            for number in range(len(program.powers)):
                 register = room.registers[number]
-                scale((h / room.step[0]) ** rows.powers[number], register, register)
+                scale((h / room.step[0]) ** program.powers[number], register, register)
             room.step[0] = h
         told[k, PIVOT] = 1.0
-        for number in range(len(rows.groups)):
-            group = rows.groups[number]
+        for number in range(len(program.groups)):
+            group = program.groups[number]
             if SOLVING and group[2]:
-                solve(rows, group, time, h, gains, room.inverses[number], room, told[k])
+                solve(program, group, time, h, gains, room.inverses[number], room, told[k])
             else:
-                evaluate(rows, group[0], time, h, gains, room, told[k])
-        finish(rows, h, room, states[k])
-        if PROJECTING and rows.after.projecting:
-            project(rows, time + h, h, gains, room, states[k], told[k])
+                evaluate(program, group[0], time, h, gains, room, told[k])
+        finish(program, h, room, states[k])
+        if PROJECTING and program.after.projecting:
+            project(program, time + h, h, gains, room, states[k], told[k])
 
 
 # Newton's method
 
 
 def solve(
-    rows: Rows,
+    program: Program,
     group: IntArray,
     time: float,
     h: float,
@@ -252,54 +245,63 @@ def solve(
     told: FloatArray,
 ) -> None:
     """Find what makes the residuals of a group of evaluations zero, from its guesses on; nan where that fails."""
+    count = group[1] - group[0]
     for lane in every_lane(len(room.moved)):
         room.sizes[lane], room.poor[lane] = 0.0, True
         room.moved_before[lane] = math.inf
-    guess(rows, group, room)
+    guess(program, group, room)
     for iteration in range(MOST_ITERATIONS):
-        residual(rows, group, time, h, gains, room, iteration == 0, told)
+        residual(program, group, time, h, gains, room, room.residuals, told)
+        told[ITERATIONS] += 1
+        if iteration == 0:
+            # of the last evaluation, for all of them
+            add_sizes(count, room.state[0], room.sizes)
+            add_sizes(count * h, room.state[1], room.sizes)
+            add_sizes(count, room.registers[len(program.powers) + group[1] - 1], room.sizes)
+            for lane in every_lane(len(room.sizes)):
+                room.running[lane] = room.sizes[lane] < math.inf
         if correct(group, inverse, room):
             if iteration == 1:
-                guess(rows, group, room)
-                residual(rows, group, time, h, gains, room, False, told)
-            renew(rows, group, time, h, gains, inverse, room, told)
+                guess(program, group, room)
+                residual(program, group, time, h, gains, room, room.residuals, told)
+                told[ITERATIONS] += 1
+            renew(program, group, time, h, gains, inverse, room, told)
             correct(group, inverse, room)
-        if not advance(rows, group, room):
+        if not advance(program, group, room):
             break
     if any_of(room.running):
         for number in range(group[0], group[1]):
             nothing = room.corrections[number - group[0]]
             scale(math.nan, nothing, nothing)
-            take(room.running, nothing, room.registers[len(rows.powers) + number])
+            take(room.running, nothing, room.registers[len(program.powers) + number])
         told[UNSOLVED] = room.moved[0]
     if not room.moved[0] < math.inf:
         told[UNSOLVED] = math.inf
 
 
-def guess(rows: Rows, group: IntArray, room: Room) -> None:
+def guess(program: Program, group: IntArray, room: Room) -> None:
     """Begin lanes with their guesses: all, or those that a Jacobian of an earlier step has led astray."""
     for number in range(group[0], group[1]):
-        take(room.poor, room.registers[rows.guesses[number]], room.registers[len(rows.powers) + number])
+        take(room.poor, room.registers[program.guesses[number]], room.registers[len(program.powers) + number])
 
 
 def residual(
-    rows: Rows, group: IntArray, time: float, h: float, gains: FloatArray, room: Room, first: bool, told: FloatArray
+    program: Program,
+    group: IntArray,
+    time: float,
+    h: float,
+    gains: FloatArray,
+    room: Room,
+    into: FloatArray,
+    told: FloatArray,
 ) -> None:
-    """Write the residuals of a group and, the first time, which lanes can be solved: those whose sizes are finite."""
+    """Write the residuals of a group."""
     for number in range(group[0], group[1]):
-        unknown, left = room.registers[len(rows.powers) + number], room.residuals[number - group[0]]
-        arguments(rows, number, h, room)
-        told[PIVOT] = min(told[PIVOT], accelerations(time + rows.moments[number] * h, gains, room))
+        unknown, left = room.registers[len(program.powers) + number], into[number - group[0]]
+        pivot = accelerations_at(program, number, time, h, gains, room)
+        told[PIVOT] = min(told[PIVOT], pivot)
         for place in every(WIDTH):
             left[place] = unknown[place] - h * h * room.found[place]
-        if first:
-            add_sizes(1.0, room.state[0], room.sizes)
-            add_sizes(h, room.state[1], room.sizes)
-            add_sizes(1.0, unknown, room.sizes)
-    if first:
-        for lane in every_lane(len(room.sizes)):
-            room.running[lane] = room.sizes[lane] < math.inf
-    told[ITERATIONS] += 1
     told[EVALUATIONS] += group[1] - group[0]
 
 
@@ -319,7 +321,7 @@ def correct(group: IntArray, inverse: FloatArray, room: Room) -> bool:
 
 
 def renew(
-    rows: Rows,
+    program: Program,
     group: IntArray,
     time: float,
     h: float,
@@ -329,28 +331,30 @@ def renew(
     told: FloatArray,
 ) -> None:
     """Compute those lanes' inverse Jacobians anew."""
-    carried, lanes, size = len(rows.powers), len(room.moved), (group[1] - group[0]) * N
-    for number in range(group[0], group[1]):
-        arguments(rows, number, h, room)
-        moment = time + rows.moments[number] * h
-        for column in range(size):
-            source = carried + group[0] + column // N
-            direction = (rows.table[2 * number, source], rows.table[2 * number + 1, source] / h)
-            slope(moment, gains, direction, column % N, room)
-            for i in range(N):
-                row = (number - group[0]) * N + i
-                change, entry = room.found[i * STRIDE : i * STRIDE + lanes], room.jacobian[row, column]
-                unit = 1.0 if row == column else 0.0
-                for lane in every_lane(lanes):
-                    entry[lane] = unit - h * h * change[lane]
+    lanes, size, pivot = len(room.moved), (group[1] - group[0]) * N, told[PIVOT]
+    for column in range(size):
+        first = column % N * STRIDE
+        unknown = room.registers[len(program.powers) + group[0] + column // N][first : first + lanes]
+        for lane in every_lane(lanes):
+            room.moved[lane] = unknown[lane]
+            unknown[lane] += CHANGE * np.minimum(room.sizes[lane], 1.0)
+        residual(program, group, time, h, gains, room, room.corrections, told)
+        for row in range(size):
+            first = row % N * STRIDE
+            before = room.residuals[row // N][first : first + lanes]
+            after = room.corrections[row // N][first : first + lanes]
+            for lane in every_lane(lanes):
+                room.jacobian[row, column, lane] = (after[lane] - before[lane]) / (unknown[lane] - room.moved[lane])
+        for lane in every_lane(lanes):
+            unknown[lane] = room.moved[lane]
     invert(room.jacobian, size, room.poor, inverse)
-    told[EVALUATIONS] += (group[1] - group[0]) * size
+    told[PIVOT] = pivot  # of states that are met, not of those beside them
 
 
-def advance(rows: Rows, group: IntArray, room: Room) -> bool:
+def advance(program: Program, group: IntArray, room: Room) -> bool:
     """Apply the corrections; return whether lanes are running still."""
     for number in range(group[0], group[1]):
-        unknown, corrected = room.registers[len(rows.powers) + number], room.corrections[number - group[0]]
+        unknown, corrected = room.registers[len(program.powers) + number], room.corrections[number - group[0]]
         for place in every(WIDTH):
             corrected[place] = unknown[place] - corrected[place]
         take(room.running, corrected, unknown)
@@ -363,13 +367,13 @@ def advance(rows: Rows, group: IntArray, room: Room) -> bool:
 # Projection, of a run alone
 
 
-def shift(rows: Rows, half: int, h: float, state: FloatArray, room: Room) -> None:
+def shift(program: Program, half: int, h: float, state: FloatArray, room: Room) -> None:
     """Correct the position (half 0) or the velocity (1) of a new state, and what is carried of it."""
     correction, moved = room.off[half * N : (half + 1) * N], state[half]
     for place in every(WIDTH):
         moved[place] += correction[place]
-    for number in range(len(rows.powers)):
-        share = rows.corrected[number, half] if half == 0 else rows.corrected[number, half] * h
+    for number in range(len(program.powers)):
+        share = program.corrected[number, half] if half == 0 else program.corrected[number, half] * h
         if share != 0:
             register = room.registers[number]
             for place in every(WIDTH):
@@ -377,18 +381,18 @@ def shift(rows: Rows, half: int, h: float, state: FloatArray, room: Room) -> Non
 
 
 def project(
-    rows: Rows, time: float, h: float, gains: FloatArray, room: Room, state: FloatArray, told: FloatArray
+    program: Program, time: float, h: float, gains: FloatArray, room: Room, state: FloatArray, told: FloatArray
 ) -> None:
     """Bring a new state back to the constraints, first its position, then its velocity."""
-    settling = rows.after.iterations == 0
-    most = MOST_ITERATIONS if settling else rows.after.iterations
+    settling = program.after.iterations == 0
+    most = MOST_ITERATIONS if settling else program.after.iterations
     for iteration in range(most + 1):
         room.moved[0], room.sizes[0] = 0.0, 0.0
         add_sizes(1.0, state[0], room.sizes)
         add_sizes(1.0, state[1], room.sizes)
         if not room.sizes[0] < BLOWN_UP:
             return
-        told[PIVOT] = min(told[PIVOT], corrections_of(time, gains, state, room.off, room.variables, 0))
+        told[PIVOT] = min(told[PIVOT], corrections_of(time, gains, state, room.off, room.row, 0))
         told[PROJECTIONS] += 1
         add_sizes(1.0, room.off[:N], room.moved)
         moved = room.moved[0]
@@ -396,15 +400,15 @@ def project(
         # the velocity takes what was found last: at a position that needs no correction, or gets none any more
         if iteration == most or settled or told[PIVOT] <= SINGULAR:
             break
-        shift(rows, 0, h, state, room)
-    shift(rows, 1, h, state, room)
+        shift(program, 0, h, state, room)
+    shift(program, 1, h, state, room)
     if settling and not settled and told[PIVOT] > SINGULAR:
         told[UNSETTLED] = moved
 
 
 TEXT = (
-    *(accelerations, slope, combine, take, add_sizes, any_of, multiply, invert, invert_one, scale, copy),
-    *(arguments, evaluate, finish, solve, guess, residual, correct, renew, advance, shift, project, take_steps),
+    *(accelerations, combine, take, add_sizes, any_of, multiply, invert, invert_one, scale, copy),
+    *(accelerations_at, evaluate, finish, solve, guess, residual, correct, renew, advance, shift, project, take_steps),
 )
 """What is read in two ways."""
 

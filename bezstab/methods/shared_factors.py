@@ -22,9 +22,10 @@ def shared_factor(method: Method) -> tuple[Fraction, ...]:
     common divisor of the coefficients of the powers of mu, or of those of alpha_hat and beta_hat, by Euclid's
     algorithm, exact. A root of it at zero, an unused past value, is left out: it never decides.
     """
-    of_plane = (tuple(c for row in in_plane for c in row) for in_plane in method.scheme.table)
+    scheme = method.scheme
+    coefficients = scheme.mu_table or [[c for row in in_plane for c in row] for in_plane in scheme.table]
     shared: list[Fraction] = []
-    for polynomial in zip(*(method.scheme.mu_table or of_plane), strict=True):
+    for polynomial in zip(*coefficients, strict=True):
         if any(polynomial):
             shared = polynomial_gcd(shared, polynomial) if shared else trimmed(polynomial)
     while len(shared) > 1 and shared[0] == 0:

@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 from bezstab.mechanism import (
     Scene,
-    acceleration_function,
+    accelerations,
     compiled_mechanism,
     constraint_errors,
     equations_of_motion,
@@ -230,11 +230,11 @@ def unique_accelerations(terms: Terms) -> Outcome:
 )
 def constraint_accelerations(terms: Terms) -> Outcome:
     """Return what c̈ = C_q q̈ - γ is at a state off the constraints: with no gains 0, with some what Eq. 6 asks for."""
-    acceleration = acceleration_function(compiled_mechanism(load_scene("slider_crank")), np)
+    mechanism = compiled_mechanism(load_scene("slider_crank"))
     holds = []
     for two_alpha, beta_squared in ((0.0, 0.0), GAINS):
         asked = -two_alpha * (terms.jacobian @ terms.v) - beta_squared * terms.constraints
-        qddot = np.array(acceleration(0.0, two_alpha, beta_squared, terms.q, terms.v))
+        qddot = accelerations(mechanism, 0.0, two_alpha, beta_squared, terms.q, terms.v)
         largest_term = max(1.0, np.abs(asked).max(), np.abs(qddot).max())
         holds.append(bool(np.abs(terms.jacobian @ qddot - terms.gamma - asked).max() < SAME * largest_term))
     free, stabilised = ("holds to rounding" if same else "does not hold" for same in holds)
@@ -249,7 +249,7 @@ def derivatives_of_the_constraints(_terms: Terms) -> Outcome:
     """
     mechanism = compiled_mechanism(load_scene("driven_four_bar"))
     q, v = initial_state(mechanism)
-    qddot = np.array(acceleration_function(mechanism, np)(0.0, 0.0, 0.0, q, v))
+    qddot = accelerations(mechanism, 0.0, 0.0, 0.0, q, v)
     before, now, after = (
         constraint_errors(mechanism, t, list(q + v * t + qddot * t**2 / 2)) for t in (-DIFFERENCE, 0.0, DIFFERENCE)
     )

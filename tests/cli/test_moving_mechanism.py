@@ -27,7 +27,7 @@ def test_a_scenes_own_motion_is_taken_and_omega_instead_of_it() -> None:
     assert own["omega_h"] == pytest.approx(0.002 * motion.omega, rel=1e-12)
     assert rows(asked, "--omega 5")[0]["omega_h"] == 0.01
     in_units = float(str(own["total_error"])) * motion.amplitude
-    assert f"of the motion's amplitude, {in_units:.1e} m or rad" in run(asked).stdout
+    assert f"of the motion's amplitude ({in_units:.1e} m or rad)" in run(asked).stdout.replace("\n", " ")
 
 
 @pytest.mark.slow

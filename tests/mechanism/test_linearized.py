@@ -8,12 +8,12 @@ import pytest
 
 from bezstab.mechanism import (
     Mechanism,
-    acceleration_function,
     changes_handed_on,
     compiled_mechanism,
     load_scene,
     memory,
     motion,
+    state_function,
     steps_taken,
 )
 from bezstab.mechanism.linearized import AT_A_TIME, acceleration_jacobians
@@ -23,12 +23,12 @@ from bezstab.stability import FloatArray
 
 def exact_slopes(mechanism: Mechanism, gains: tuple[float, float], state: FloatArray) -> FloatArray:
     """Return the derivatives of qddot by q and v, shape (n, 2n), from differences over 1e-25 in fifty digits."""
-    acceleration, columns = acceleration_function(mechanism, mp), []
+    acceleration, columns = state_function(mechanism, "accelerations", mp), []
     with mp.workdps(50):
         small, exact = mp.mpf("1e-25"), [mp.mpf(number) for number in state.tolist()]
 
         def at(moved: list[Any]) -> list[Any]:
-            return list(acceleration(mp.mpf(0.3), *gains, moved[: mechanism.size], moved[mechanism.size :]))
+            return list(acceleration([mp.mpf(0.3), *gains, *moved])[: mechanism.size])
 
         here = at(exact)
         for k in range(len(exact)):

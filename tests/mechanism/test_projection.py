@@ -118,10 +118,10 @@ def test_corrections_are_the_least_ones_in_the_metric_of_the_masses(name: str) -
     n = mechanism.size
     state = np.concatenate(initial_state(mechanism))
     q, v = np.split(state + np.repeat([1e-3, 1.0], n) * generator.standard_normal(2 * n), 2)
-    found = state_function(mechanism, "corrections", math)(t, 0.0, 0.0, q.tolist(), v.tolist())
+    found = state_function(mechanism, "corrections", math)([t, 0.0, 0.0, *q.tolist(), *v.tolist()])
     seen = observe(mechanism, np.array([t]), q[np.newaxis], v[np.newaxis], 0.0, 0.0)
     jacobian = constraint_jacobian(mechanism, t, q)
-    for correction, error in ((np.array(found[:n]), seen.c[0]), (np.array(found[n:]), seen.cdot[0])):
+    for correction, error in ((np.array(found[:n]), seen.c[0]), (np.array(found[n : 2 * n]), seen.cdot[0])):
         expected = saddle_solution(mechanism, jacobian, error)
         assert correction == pytest.approx(expected, rel=1e-9, abs=1e-11 * abs(expected).max())
 

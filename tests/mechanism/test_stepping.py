@@ -20,7 +20,7 @@ from bezstab.mechanism import (
     simulate,
     states_needed,
 )
-from bezstab.mechanism.registers import MOST_ITERATIONS
+from bezstab.mechanism.stepping import MOST_ITERATIONS
 from bezstab.methods import REGISTRY, implicit, lookup
 from bezstab.units import feedback_gains
 from tests.evidence.samples import of_campaign

@@ -5,7 +5,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from bezstab.mechanism import Mechanism, acceleration_function
+from bezstab.mechanism import Mechanism, state_function
 from bezstab.methods import Method, SecondOrder, implicit, second_order_form, steps
 from tests.reference.plain_projection import projected
 from tests.reference.plain_second_order import plain_second_order_run
@@ -27,21 +27,21 @@ def plain_run(
 
     Each is projected by so many iterations, if any: then the method must remember no acceleration.
     """
-    n, acceleration = mechanism.size, acceleration_function(mechanism, math)
+    n, function = mechanism.size, state_function(mechanism, "accelerations", math)
 
-    def accelerations(q: FloatArray, v: FloatArray) -> FloatArray:
-        return np.array(acceleration(0.0, *gains, q.tolist(), v.tolist()))
+    def acceleration(q: FloatArray, v: FloatArray) -> FloatArray:
+        return np.array(function([0.0, *gains, *q.tolist(), *v.tolist()])[:n])
 
     def slope(y: FloatArray) -> FloatArray:
-        return np.concatenate([y[n:], accelerations(y[:n], y[n:])])
+        return np.concatenate([y[n:], acceleration(y[:n], y[n:])])
 
     of_second_order = implicit(method) or isinstance(method.scheme, SecondOrder)
     if of_second_order and not iterations:
-        return np.array(plain_second_order_run(second_order_form(method.scheme), accelerations, h, list(states), count))
+        return np.array(plain_second_order_run(second_order_form(method.scheme), acceleration, h, list(states), count))
     history = list(states)
     for _ in range(count):
         if of_second_order:
-            (new,) = plain_second_order_run(second_order_form(method.scheme), accelerations, h, history[-1:], 1)
+            (new,) = plain_second_order_run(second_order_form(method.scheme), acceleration, h, history[-1:], 1)
         else:
             new = one_step(method, slope, history[-steps(method) :], h, float)
         history.append(projected(mechanism, 0.0, new, iterations) if iterations else new)
