@@ -7,6 +7,7 @@ numba makes of a scene is kept in the user's cache folder, under a name that is 
 import hashlib
 import os
 import sys
+from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 from types import FunctionType
@@ -21,7 +22,7 @@ from bezstab.mechanism.generated_code import LONG, code_of, compiled_source, fun
 from bezstab.mechanism.stepping import TakeSteps, read
 
 WORTH_COMPILING = 3 * 10**5
-"""Evaluations of a run: Python takes as long for so many as numba takes to be loaded and to compile the scene.
+"""Evaluations: Python takes as long for so many as numba takes to be loaded and to compile the scene.
 
 Both grow with the mechanism alike."""
 
@@ -32,35 +33,22 @@ LANES = 32
 """Runs side by side: what they remember stays in the fastest memory."""
 
 
-def runs_compiled(evaluations: int, together: bool = False, made: bool = False) -> bool:
-    """Return whether a run, or runs together, of so many evaluations are to be compiled. InputError if that cannot be.
+def runs_compiled(evaluations: int, together: bool = False) -> bool:
+    """Return whether runs, or runs together, of so many evaluations are to be compiled. InputError if that cannot be.
 
-    That is without numba. By default where numba is there and the run is long enough to pay, or the machine code is
-    `made` already. `evaluations` do not include what iterations and projections take. InputError, too, where
-    BEZSTAB_COMPILED says neither auto nor yes nor no.
+    That is without numba. By default where numba is there and they are long enough to pay. `evaluations` do not include
+    what iterations and projections take. InputError, too, where BEZSTAB_COMPILED says neither auto nor yes nor no.
     """
     choice = compiled_choice()
     if choice == "yes":
         check_numba()
     if choice != "auto":
         return choice == "yes"
-    long_enough = evaluations >= WORTH_COMPILING * (CHEAPER_TOGETHER if together else 1)
-    return numba_is_installed() and (made or long_enough)
+    return numba_is_installed() and evaluations >= WORTH_COMPILING * (CHEAPER_TOGETHER if together else 1)
 
 
-MADE: dict[tuple[Mechanism, bool, bool, int], tuple[TakeSteps, int]] = {}
-"""The machine code of this process, by what `machine_steps` makes it for."""
-
-
+@cache
 def machine_steps(mechanism: Mechanism, solving: bool, projecting: bool, stride: int = 1) -> tuple[TakeSteps, int]:
-    """Return what has been made of the mechanism, or make it: as `_made_steps`."""
-    key = mechanism, solving, projecting, stride
-    if key not in MADE:
-        MADE[key] = _made_steps(*key)
-    return MADE[key]
-
-
-def _made_steps(mechanism: Mechanism, solving: bool, projecting: bool, stride: int) -> tuple[TakeSteps, int]:
     """Return the function that takes a mechanism's steps as machine code, and how long its row is.
 
     `solving` and `projecting` say what it can do besides explicit steps, `stride` for how many runs side by side. What

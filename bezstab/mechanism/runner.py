@@ -1,6 +1,7 @@
 """Runs of a mechanism with feedback or projection: a method's start, its steps in blocks, and what ends a run early."""
 
 import math
+from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache
@@ -12,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from bezstab.errors import InputError
 from bezstab.mechanism.array_stepping import array_steps
 from bezstab.mechanism.compiled import SINGULAR, Mechanism, accelerations
-from bezstab.mechanism.compiled_stepping import LANES, MADE, machine_steps, runs_compiled
+from bezstab.mechanism.compiled_stepping import LANES, machine_steps, runs_compiled
 from bezstab.mechanism.programs import program_of
 from bezstab.mechanism.registers import Steps, room_of
 from bezstab.mechanism.second_order_memory import memory
@@ -53,6 +54,9 @@ Gains = tuple[Any, Any]
 
 NUMBERS_OF_A_BLOCK = 2**16
 """Of runs side by side, between two looks at what the user wants (Ctrl-C): some tenths of a second in Python."""
+
+ASKED: Counter[tuple[Mechanism, bool, bool]] = Counter()
+"""Evaluations that runs of this process were asked for, by their mechanism and what its machine code has to do."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -169,9 +173,10 @@ def simulate_steps(
 
 
 def _pays(mechanism: Mechanism, method: Method, count: int, after: AfterStep) -> bool:
-    """Return whether a run of so many steps is to be compiled: where this process has its code, or as that pays."""
-    made = (mechanism, implicit(method), after.projecting, 1) in MADE
-    return runs_compiled(count * evaluations(method), made=made)
+    """Return whether a run of so many steps is to be compiled: as that pays for all that this process was asked for."""
+    code = mechanism, implicit(method), after.projecting
+    ASKED[code] += count * evaluations(method)
+    return runs_compiled(ASKED[code])
 
 
 def checked_start(state: tuple[FloatArray, FloatArray]) -> FloatArray:

@@ -35,7 +35,6 @@ def test_runs_are_compiled_where_that_pays_or_is_asked_for(monkeypatch: pytest.M
         assert runs_compiled(count) is expected
     monkeypatch.delenv(COMPILED_CHOICE)
     assert not runs_compiled(10**6, together=True)
-    assert runs_compiled(10, made=True)
     monkeypatch.setenv(COMPILED_CHOICE, "maybe")
     with pytest.raises(InputError, match="BEZSTAB_COMPILED=maybe: expected auto, yes or no"):
         runs_compiled(10)
