@@ -47,14 +47,14 @@ from bezstab.stability import BoolArray, FloatArray
 from bezstab.units import feedback_gains
 
 FIRST_SHARE = 1 / 3  # of the steps in which errors stand out: there the lesser poles still count
-STANDS_OUT = 1e-7  # of the change of the coordinates: the free motion of a method has a constraint error of this size
+VISIBLE = 1e-7  # of the change of the coordinates: the free motion of a method has a constraint error of this size
 ITERATIONS = 12  # of Newton's method: each squares the error, more only find nothing
 SOLVED = 1e-8  # m, rad: the last correction of a motion, grown over a revolution; the next would be about its square
 BESIDE = 1.0  # m, rad, from the motion of the mechanism: weak feedback drifts by 0.3, other closures lie further off
 
 
 @dataclass(frozen=True)
-class Course:
+class SteppedMotion:
     """A method's steps along a motion: `steps` of `step` (s) fill it."""
 
     mechanism: Mechanism
@@ -125,22 +125,22 @@ class Revolution(NamedTuple):
         return np.asarray(np.exp((self.log_scale[some] + np.log(multiplier)) / len(self.states)))
 
 
-def course_of_steps(mechanism: Mechanism, method: Method, h: float, duration: float) -> Course:
-    """Return the course of a method with steps of about h (s) of the user's; errors as `regular_motion`."""
+def stepped_motion(mechanism: Mechanism, method: Method, h: float, duration: float) -> SteppedMotion:
+    """Return the motion in steps of about h (s) of the user's; errors as `regular_motion`."""
     along = regular_motion(mechanism, duration)
     steps = max(1, round(along.duration / (h * float(method.step_multiple))))
-    return Course(mechanism, method, along, steps, along.duration / steps)
+    return SteppedMotion(mechanism, method, along, steps, along.duration / steps)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class OwnMotions:
-    """The method's own motions at a row of points, along a course, with 2 alpha and beta^2, `gains`, shape (2, points).
+    """The method's own motions at a row of points, in its steps, with 2 alpha and beta^2, `gains`, shape (2, points).
 
     `rates` are |z| per step, on the mechanism's motion where there is none of the method's own; shape (points,).
     `states` hold q and v (SI units) as steps begin, shape (steps, points, 2, n), not a number where there is none.
     """
 
-    course: Course
+    stepped: SteppedMotion
     gains: FloatArray
     rates: FloatArray
     states: FloatArray
@@ -156,42 +156,42 @@ def find_own_motions(
     number of steps fills it, at most half a step in all from h. A motion that is no revolution lasts `duration` (s).
     InputError and NumericalError as `regular_motion`.
     """
-    course = course_of_steps(mechanism, method, h, duration)
-    gains = course.gains(alpha_hat, beta_hat)
-    rates = rates_on_the_motion(course, gains)
-    states = np.full((course.steps, alpha_hat.size, 2, mechanism.size), np.nan)
-    if course.along.closed:
-        _find_motions(course, gains, rates, states)
-    return OwnMotions(course, gains, rates, states)
+    stepped = stepped_motion(mechanism, method, h, duration)
+    gains = stepped.gains(alpha_hat, beta_hat)
+    rates = rates_on_the_motion(stepped, gains)
+    states = np.full((stepped.steps, alpha_hat.size, 2, mechanism.size), np.nan)
+    if stepped.along.closed:
+        _find_motions(stepped, gains, rates, states)
+    return OwnMotions(stepped, gains, rates, states)
 
 
-def rates_on_the_motion(course: Course, gains: FloatArray) -> FloatArray:
+def rates_on_the_motion(stepped: SteppedMotion, gains: FloatArray) -> FloatArray:
     """Return |z| per step over the motion of the mechanism at points with these gains, (2, points); shape (points,)."""
-    return revolution(course, gains).rates() if course.along.closed else _rates_of_errors(course, gains)
+    return revolution(stepped, gains).rates() if stepped.along.closed else _rates_of_errors(stepped, gains)
 
 
-def revolution(course: Course, gains: FloatArray, first: FloatArray | None = None) -> Revolution:
-    """Return what the steps of a revolution make of changes at points with these gains; `first` as `Course.taken`."""
-    points, (quantities, n) = gains.shape[1], course.starts()[0].shape
+def revolution(stepped: SteppedMotion, gains: FloatArray, first: FloatArray | None = None) -> Revolution:
+    """Return what a revolution's steps make of changes at points with these gains; `first` as `SteppedMotion.taken`."""
+    points, (quantities, n) = gains.shape[1], stepped.starts()[0].shape
     changes = np.tile(np.eye(quantities * n).reshape(quantities, n, -1), (points, 1, 1, 1))
     log_scale = np.zeros(points)
     states = []
-    for taken in course.taken(gains, first):
-        changes = changes_handed_on(course.method, taken.jacobians, changes)
+    for taken in stepped.taken(gains, first):
+        changes = changes_handed_on(stepped.method, taken.jacobians, changes)
         log_scale += _rescaled(changes)
         states.append(taken.states)
     return Revolution(changes.reshape(points, quantities * n, -1), log_scale, taken.handed_on, np.array(states))
 
 
-def _find_motions(course: Course, gains: FloatArray, rates: FloatArray, states: FloatArray) -> None:
+def _find_motions(stepped: SteppedMotion, gains: FloatArray, rates: FloatArray, states: FloatArray) -> None:
     """Fill in rates and states of the points with these gains, shape (2, points), that have a motion of their own."""
-    along = course.starts()[0]
-    turn = np.multiply.outer(np.array([shares[0] for shares in course.memory.shares], float), course.whole_turn)
+    along = stepped.starts()[0]
+    turn = np.multiply.outer(np.array([shares[0] for shares in stepped.memory.shares], float), stepped.whole_turn)
     starts = np.repeat(along[np.newaxis], gains.shape[1], axis=0)
     left = np.arange(gains.shape[1])
     for _ in range(ITERATIONS):
         with np.errstate(all="ignore"):  # of what runs into infinity; what is not a number is not less
-            around = revolution(course, gains[:, left], starts)
+            around = revolution(stepped, gains[:, left], starts)
             correction = _closing(around, around.handed_on - starts - turn)
             starts = starts + correction
             amplified = np.maximum(1, np.abs(around.product).max(axis=(1, 2)) * np.exp(around.log_scale))
@@ -200,8 +200,8 @@ def _find_motions(course: Course, gains: FloatArray, rates: FloatArray, states: 
             closed = ended & (amplified * beside < BESIDE)
         rates[left[closed]] = around.rates(closed)
         as_steps_begin = np.roll(around.states[:, closed], 1, axis=0)
-        as_steps_begin[0, :, 0] -= course.whole_turn
-        states[:, left[closed]] = as_steps_begin / [[1], [course.step]]
+        as_steps_begin[0, :, 0] -= stepped.whole_turn
+        states[:, left[closed]] = as_steps_begin / [[1], [stepped.step]]
         going_on = ~ended & (beside < BESIDE)
         left, starts = left[going_on], starts[going_on]
         if not left.size:
@@ -223,35 +223,35 @@ def _rescaled(changes: FloatArray) -> FloatArray:
     return np.asarray(np.log(largest))
 
 
-def _rates_of_errors(course: Course, gains: FloatArray) -> FloatArray:
+def _rates_of_errors(stepped: SteppedMotion, gains: FloatArray) -> FloatArray:
     """Return |z| per step at points with these gains by constraint errors after a kick; shape (points,).
 
     All positions that are carried are kicked, by unit errors. An error w has the size of the displacement
     M^-1 C_q^T S^-1 w that it stands for, in the metric of the masses: that of L^-1 w with S = C_q M^-1 C_q^T = L L^T.
     """
-    mechanism, positions = course.mechanism, course.positions
+    mechanism, positions = stepped.mechanism, stepped.positions
     mass = np.array(mechanism.equations.mass, float)
-    first = course.memory.carried[positions[-1]].step
-    t = course.step * np.arange(first, first + course.steps + 1, dtype=np.float64)
+    first = stepped.memory.carried[positions[-1]].step
+    t = stepped.step * np.arange(first, first + stepped.steps + 1, dtype=np.float64)
     sizes = []
-    for time, q in zip(t, course.along.at(t)[0], strict=True):
+    for time, q in zip(t, stepped.along.at(t)[0], strict=True):
         jacobian = constraint_jacobian(mechanism, float(time), q)
         sizes.append(np.linalg.solve(np.linalg.cholesky((jacobian / mass) @ jacobian.T), jacobian))
     points = gains.shape[1]
-    changes = np.zeros((points, len(course.memory.carried), mechanism.size, mechanism.constraints))
+    changes = np.zeros((points, len(stepped.memory.carried), mechanism.size, mechanism.constraints))
     changes[:, positions] = (sizes[0] / mass).T
     log_scale = np.zeros(points)
-    log_errors = np.empty((course.steps, points))
-    stands_out = np.empty((course.steps, points), bool)
-    for k, taken in enumerate(course.taken(gains)):
-        changes = changes_handed_on(course.method, taken.jacobians, changes)
+    log_errors = np.empty((stepped.steps, points))
+    visible = np.empty((stepped.steps, points), bool)
+    for k, taken in enumerate(stepped.taken(gains)):
+        changes = changes_handed_on(stepped.method, taken.jacobians, changes)
         moved = changes[:, positions[-1]]
         error = np.sqrt(((sizes[k + 1] @ moved) ** 2).sum(axis=(1, 2)))
         with np.errstate(divide="ignore"):
             log_errors[k] = np.log(error) + log_scale
-        stands_out[k] = error > STANDS_OUT * np.sqrt((mass @ moved**2).sum(axis=1))
+        visible[k] = error > VISIBLE * np.sqrt((mass @ moved**2).sum(axis=1))
         log_scale += _rescaled(changes)
-    lost = np.where(stands_out.all(axis=0), course.steps, np.argmin(stands_out, axis=0))
+    lost = np.where(visible.all(axis=0), stepped.steps, np.argmin(visible, axis=0))
     growth = np.empty(points)
     for point, end in enumerate(np.maximum(lost, 2)):
         first = int(FIRST_SHARE * end)

@@ -34,10 +34,10 @@ def rates_of_kicked_revolutions(motions: OwnMotions) -> FloatArray:
     Not a number where there is no such motion, and where after two revolutions the differences are no longer linear, or
     nearly lost in rounding.
     """
-    rates, course = np.full(motions.rates.size, np.nan), motions.course
+    rates, stepped = np.full(motions.rates.size, np.nan), motions.stepped
     there = np.flatnonzero(np.isfinite(motions.states).all(axis=(0, 2, 3)))
-    known = 1 + steps_before_a_kick(course.method)
-    if known > course.steps or not there.size:
+    known = 1 + steps_before_a_kick(stepped.method)
+    if known > stepped.steps or not there.size:
         return rates
     following = np.full(there.size, True)
     with np.errstate(all="ignore"):  # of runs that run into infinity
@@ -46,7 +46,7 @@ def rates_of_kicked_revolutions(motions: OwnMotions) -> FloatArray:
             if not following.any():
                 break
             multipliers = _largest_multipliers(before[following], after[following])
-            rates[there[following]] = multipliers ** (1 / course.steps)
+            rates[there[following]] = multipliers ** (1 / stepped.steps)
     return rates
 
 
@@ -67,12 +67,12 @@ def _differences(motions: OwnMotions, there: NDArray[np.intp], known: int) -> It
 
     They begin with so many states of the own motion, of which the newest is kicked, q or h v, a coordinate each.
     """
-    course, size = motions.course, 2 * motions.course.mechanism.size
-    units = np.repeat([1, course.step], size // 2)
+    stepped, size = motions.stepped, 2 * motions.stepped.mechanism.size
+    units = np.repeat([1, stepped.step], size // 2)
     history = [state.reshape(-1, size).T for state in motions.states[:known, there]]
     kicks = np.where(motions.rates[there] > 1, KICK_OF_GROWTH, KICK_OF_DECAY)
     gains = motions.gains[0, there], motions.gains[1, there]
-    directions, count = np.eye(size) / units, REVOLUTIONS * course.steps
-    blocks = kicked_states(course.mechanism, course.method, course.step, gains, history, directions, kicks, count)
-    for state in islice(chain.from_iterable(blocks), course.steps, None, course.steps):
+    directions, count = np.eye(size) / units, REVOLUTIONS * stepped.steps
+    blocks = kicked_states(stepped.mechanism, stepped.method, stepped.step, gains, history, directions, kicks, count)
+    for state in islice(chain.from_iterable(blocks), stepped.steps, None, stepped.steps):
         yield np.moveaxis(state[:, 0] - state[:, 1], 2, 0) * units[:, np.newaxis]

@@ -179,7 +179,7 @@ def _dissipation(scene: Scene, lengths: Sequence[sp.Expr], q: Sequence[sp.Symbol
 def _constraints(joint: Joint, frames: dict[str, Frame], symbol_of: dict[str, sp.Symbol]) -> list[sp.Expr]:
     """Return the joint's entries of c."""
     if isinstance(joint, Driver):
-        return [symbol_of[joint.coordinate] - _course(joint)]
+        return [symbol_of[joint.coordinate] - _driven_value(joint)]
     first, second = (frames[name] for name in joint.bodies)
     ax, ay = _position(first, joint.points[0])
     bx, by = _position(second, joint.points[1])
@@ -195,7 +195,7 @@ def _constraints(joint: Joint, frames: dict[str, Frame], symbol_of: dict[str, sp
             return [along_x * (by - ay) - along_y * (bx - ax)]
 
 
-def _course(driver: Driver) -> sp.Expr:
+def _driven_value(driver: Driver) -> sp.Expr:
     """Return the driven coordinate as a function of time."""
     phase = driver.frequency * T + driver.phase
     return driver.offset + driver.rate * T + driver.acceleration * T**2 / 2 + driver.amplitude * sp.sin(phase)

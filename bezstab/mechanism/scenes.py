@@ -115,7 +115,7 @@ class Scene:
     """A planar mechanism; coordinates are called body.x, body.y and body.theta, in the order of the bodies.
 
     `gravity` in m/s2. `position` (m, rad) and `velocity` (m/s, rad/s) hold the coordinates that are given at the
-    start, and the others follow from the constraints, sought from `guess`. `duration` (s) is how long a motion that no
+    start, and the others follow from the constraints, found from `guess`. `duration` (s) is how long a motion that no
     driver closes is worth looking at.
     """
 

@@ -1,7 +1,7 @@
 """One quadratic form that every step of a range makes smaller: proof that any sequence of such steps decays.
 
 X > 0 with X - M(s)^T X M(s) > 0 for all lengths s of a step: the form x^T X x falls with each step, whatever the order.
-X is sought in float64 for a sample of steps, by a barrier method, and rounded. It is proven in exact arithmetic: with
+X is found in float64 for a sample of steps, by a barrier method, and rounded. It is proven in exact arithmetic: with
 M = N / d the leading minors of X d^2 - N^T X N are polynomials in s, which must be positive on the range (Sylvester).
 """
 

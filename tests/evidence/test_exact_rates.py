@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bezstab.evidence.exact_rates import course_of_steps, find_own_motions
+from bezstab.evidence.exact_rates import find_own_motions, stepped_motion
 from bezstab.mechanism import Mechanism, compiled_mechanism, load_scene
 from bezstab.methods import lookup
 from bezstab.stability import spectral_radius
@@ -125,14 +125,14 @@ def test_a_run_without_a_driver_has_the_rate_of_its_constraint_errors() -> None:
 
 def test_a_step_before_the_revolution_is_its_last_but_for_a_turn() -> None:
     """The crank has turned by 2 pi, nothing else has moved; the motion is known to 1e-11 of a turn."""
-    course = course_of_steps(four_bar(), lookup("bdf2"), 0.01, 1.0)
-    older, newest = course.positions[-2:]
-    moved = course.starts()[-1, newest] - course.starts()[0, older]
+    stepped = stepped_motion(four_bar(), lookup("bdf2"), 0.01, 1.0)
+    older, newest = stepped.positions[-2:]
+    moved = stepped.starts()[-1, newest] - stepped.starts()[0, older]
     assert moved == pytest.approx([2 * np.pi, *np.zeros(len(moved) - 1)], abs=1e-10)
 
 
 def test_an_own_motion_is_beside_that_of_the_mechanism_as_each_step_begins() -> None:
     """A step later the crank has turned by a tenth of a radian."""
     motions = find_own_motions(four_bar(), lookup("B4"), 1 / 60, np.array([0.25]), np.array([0.27]), 1.0)
-    q, _, _ = motions.course.along.at(np.linspace(0, 1, 60, endpoint=False))
+    q, _, _ = motions.stepped.along.at(np.linspace(0, 1, 60, endpoint=False))
     assert motions.states[:, 0, 0] == pytest.approx(q, abs=0.02)
