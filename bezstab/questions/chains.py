@@ -40,6 +40,11 @@ class Constraints:
     inverse_masses: FloatArray
     joints: tuple[int, ...]
 
+    @property
+    def count(self) -> int:
+        """How many there are."""
+        return len(self.joints)
+
 
 ALONE = Constraints("one constraint alone", np.ones((1, 1)), (0,))
 

@@ -224,7 +224,7 @@ def maps_of_other_kinds() -> Iterator[Line]:
 
 
 def moving_mechanisms() -> Iterator[Line]:
-    """Yield how much faster the rates on a method's own motions come in batch than by the runner on complex numbers.
+    """Yield how much faster the rates on a method's own motions come in batch than by the runner.
 
     Of points where errors decay: there is such a motion to be found at each. Matrices of all rows are multiplied, so
     that a method that carries much gains least: B8, with 80 numbers on this mechanism, eight times.
@@ -247,7 +247,7 @@ def moving_mechanisms() -> Iterator[Line]:
         for count, (ours, _) in zip(FLOQUET_POINTS, times, strict=True):
             each = ours / count
             note = f"{1e3 * each:.2f} ms a point, {STEPS_A_TURN} steps a revolution"
-            yield Line("moving", f"{name}: {count} own motions by the runner, complex", theirs / each, 7.0, note)
+            yield Line("moving", f"{name}: {count} own motions by the runner", theirs / each, 7.0, note)
 
 
 def self_checks() -> Iterator[Line]:

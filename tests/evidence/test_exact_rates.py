@@ -35,7 +35,7 @@ NEAR_ONE = {
 @pytest.mark.parametrize("swinging", [False, True])
 @pytest.mark.slow_except("AB4")
 def test_the_runner_finds_the_same_motion_and_the_same_rate(name: str, swinging: bool) -> None:
-    """Both by Newton's method; the runner's by a revolution of its own steps, complex. The mechanism's is another."""
+    """Both by Newton's method; the runner's by differences of runs over a revolution. The mechanism's is another."""
     at = NEAR_ONE[name]
     mechanism = swinging_four_bar(2 * np.pi, 4 * np.pi) if swinging else four_bar()
     expected = runner_motion(mechanism, lookup(name), 60, *at)

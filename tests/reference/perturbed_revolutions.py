@@ -1,4 +1,4 @@
-"""Floquet multipliers and periodic motions from the runner itself, by steps on complex numbers."""
+"""Floquet multipliers and periodic motions from the runner itself, by differences of runs."""
 
 from itertools import islice
 
@@ -9,7 +9,6 @@ from bezstab.methods import Method, steps
 from bezstab.stability import FloatArray
 from bezstab.units import feedback_gains
 
-EPSILON = 1e-30
 CORRECTIONS = 12  # of Newton's method
 PERIODIC = 1e-10  # m, rad: what a revolution may leave
 REVOLUTIONS, SETTLED = 30, 1e-9  # m, rad: what the last of so many may still change
@@ -78,7 +77,9 @@ def _revolution(
     """Return the last states after a revolution, and their derivatives by those before it."""
     h = motion(mechanism, 1.0).duration / count
     gains = feedback_gains(alpha_hat, beta_hat, h / float(method.step_multiple))
-    past = np.split(start[:, np.newaxis] + 1j * EPSILON * np.eye(start.size), steps(method))
+    shifts = REACH * np.eye(start.size)
+    past = np.split(start[:, np.newaxis] + np.hstack([np.zeros((start.size, 1)), shifts, -shifts]), steps(method))
     later = (state for block in resume(mechanism, method, h, gains, past, count) for state in block.states)
     after = np.concatenate([*past, *islice(later, count)][-len(past) :])
-    return after.real[:, 0], after.imag / EPSILON
+    forwards, backwards = np.split(after[:, 1:], 2, axis=1)
+    return after[:, 0], (forwards - backwards) / (2 * REACH)
