@@ -35,6 +35,7 @@ STARTS = 8  # of a grid's local minima, the lowest
 HOPEFUL = 0.01  # above the least solution: the zoom on another minimum has not stopped so far short
 AS_LARGE = 0.9  # of the largest |z|: what else may be as large at the least value near a start
 NEWTON_STEPS = 16  # from a narrowed minimum three to ten lead to its kink; most sets have none there
+LONGEST_STEP = 1.0  # of the larger parameter's size: what asks for a longer one has no kink nearby
 NEARBY = 0.5  # of the parameters' size, and of the largest |z|: poles so near may be one multiple pole, which float64
 # and the zoom's end part
 RADII = (1e-2, 1e-3, 1e-4, 1e-5)  # of circles, of the parameters' size: the first beyond which no poles meet nearby
@@ -123,7 +124,7 @@ def _without_slope(least: FloatArray, conditions: FloatArray) -> FloatArray:
 
 
 def newton(equations: Callable[[FloatArray], FloatArray], start: Place, scale: FloatArray) -> Place | None:
-    """Return where equations hold; None if the way from the start does not lead there.
+    """Return where equations hold; None if the way from the start does not lead there, or leads far.
 
     They are given by rows: what is to vanish at a place, and its slopes by both parameters, in units of the scale.
     """
@@ -136,6 +137,8 @@ def newton(equations: Callable[[FloatArray], FloatArray], start: Place, scale: F
         if settled:
             return (float(place[0]), float(place[1])) if np.abs(rows[:, 0]).max() <= SAME else None
         step = np.linalg.lstsq(rows[:, 1:], rows[:, 0], rcond=SAME)[0]
+        if np.abs(step * scale).max() > LONGEST_STEP * scale.max():
+            return None
         place = place - step * scale
         settled = bool(np.abs(step).max() <= SAME)
     return None
