@@ -4,11 +4,9 @@ Its operations are loops over entries, innermost those over lanes, of which a pr
 numba makes of a scene is kept in the user's cache folder, under a name that is the hash of all that it is made from.
 """
 
-import hashlib
 import os
 import sys
 from functools import cache
-from importlib.metadata import version
 from pathlib import Path
 from types import FunctionType
 from typing import Any
@@ -102,6 +100,9 @@ TAKE = """def take(program, steps, room, states, told):
 
 def _kept_file(made_of: object) -> Path:
     """Return the file beside which numba keeps a scene's code: its name stands for all that makes it."""
+    import hashlib  # which takes time that a command without compiled runs need not wait
+    from importlib.metadata import version
+
     # every file of this room, so that no number that one of them lends can be forgotten, and the options of numba
     room = sorted(Path(__file__).parent.glob("*.py"))
     made_from = [file.read_bytes() for file in (*room, Path(compiling.__file__), Path(stabilising.__file__))]
