@@ -36,7 +36,7 @@ SCOUTS = 16  # of the points one in so many is looked at first, for a value that
 FIRST_GRID = 52  # points per axis of the first grid over the region's box: every valley is seen
 GRID = 49  # points per axis of a zoom: few fine grids take less time than many coarse ones, and lose no valley
 ZOOM = 0.32  # from one grid to the next: eight spacings to either side of its best point
-ZOOMS = 23  # 0.32^22 = 1e-11 of the region at least, where the objective is flat to rounding
+ZOOMS = 22  # 0.32^21 = 4e-11 of the region at least, where Schur's recursion tells values apart no more
 SHARES = 8  # of the largest step, and of the spread, among which the worst is looked for: in practice it is an end
 AT_DEADBEAT = 0.01  # of alpha_hat, beta_hat: a double pole that is so near to zero may be followed no further
 SEARCHED = 4.0  # alpha h and beta h: there e^-4, a fiftieth, is left after a step, and nobody asks for faster decay
