@@ -27,6 +27,7 @@ which does not decay, makes of it.
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -82,8 +83,9 @@ class SteppedMotion:
         """Return 2 alpha (1/s) and beta^2 (1/s^2) of points, by the user's step; shape (2, points)."""
         return np.array(feedback_gains(alpha_hat, beta_hat, self.step / float(self.method.step_multiple)))
 
+    @cached_property  # each revolution asks for it
     def starts(self) -> FloatArray:
-        """Return what each step starts with on the motion of the mechanism, shape (steps, quantities, n)."""
+        """What each step starts with on the motion of the mechanism, shape (steps, quantities, n)."""
         place = np.add.outer(np.arange(self.steps), self.memory.state_steps)
         turns = place // self.steps if self.along.closed else 0 * place
         times = self.step * (place - turns * self.steps)
@@ -98,7 +100,7 @@ class SteppedMotion:
         A run goes on from `first`, (points, quantities, n); without it each step starts on the motion of the mechanism.
         """
         start = first
-        for k, along in enumerate(self.starts()):
+        for k, along in enumerate(self.starts):
             if first is None:
                 start = np.repeat(along[np.newaxis], gains.shape[1], axis=0)
             assert start is not None
@@ -172,7 +174,7 @@ def rates_on_the_motion(stepped: SteppedMotion, gains: FloatArray) -> FloatArray
 
 def revolution(stepped: SteppedMotion, gains: FloatArray, first: FloatArray | None = None) -> Revolution:
     """Return what a revolution's steps make of changes at points with these gains; `first` as `SteppedMotion.taken`."""
-    points, (quantities, n) = gains.shape[1], stepped.starts()[0].shape
+    points, (quantities, n) = gains.shape[1], stepped.starts[0].shape
     changes = np.tile(np.eye(quantities * n).reshape(quantities, n, -1), (points, 1, 1, 1))
     log_scale = np.zeros(points)
     states = []
@@ -185,7 +187,7 @@ def revolution(stepped: SteppedMotion, gains: FloatArray, first: FloatArray | No
 
 def _find_motions(stepped: SteppedMotion, gains: FloatArray, rates: FloatArray, states: FloatArray) -> None:
     """Fill in rates and states of the points with these gains, shape (2, points), that have a motion of their own."""
-    along = stepped.starts()[0]
+    along = stepped.starts[0]
     turn = np.multiply.outer(np.array([shares[0] for shares in stepped.memory.shares], float), stepped.whole_turn)
     starts = np.repeat(along[np.newaxis], gains.shape[1], axis=0)
     left = np.arange(gains.shape[1])

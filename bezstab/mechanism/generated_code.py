@@ -37,9 +37,6 @@ Row = dict[int, sp.Expr]
 """Entries of a matrix that are not zero, by their columns."""
 
 
-TWO_ALPHA, BETA_SQUARED = sp.symbols("two_alpha beta_squared")
-
-
 class Assignments(list[tuple[sp.Symbol, sp.Expr]]):
     """Assignments to variables, one after the other."""
 

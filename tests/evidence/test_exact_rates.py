@@ -127,7 +127,7 @@ def test_a_step_before_the_revolution_is_its_last_but_for_a_turn() -> None:
     """The crank has turned by 2 pi, nothing else has moved; the motion is known to 1e-11 of a turn."""
     stepped = stepped_motion(four_bar(), lookup("bdf2"), 0.01, 1.0)
     older, newest = stepped.positions[-2:]
-    moved = stepped.starts()[-1, newest] - stepped.starts()[0, older]
+    moved = stepped.starts[-1, newest] - stepped.starts[0, older]
     assert moved == pytest.approx([2 * np.pi, *np.zeros(len(moved) - 1)], abs=1e-10)
 
 
