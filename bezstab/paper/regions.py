@@ -289,8 +289,6 @@ def counterexample(*, stable: Method, unstable: Method) -> Point | None:
     plane = alpha_hat, beta_hat[:, np.newaxis]
     gap = np.minimum(1 - spectral_radius(stable, *plane), spectral_radius(unstable, *plane) - 1)
     row, column = np.unravel_index(np.argmax(gap), gap.shape)
-    if gap[row, column] <= 0:
-        return None
     point = round(float(alpha_hat[column]), 2), round(float(beta_hat[row]), 2)
     at = exact(point[0]), exact(point[1])
     proven = verdict(stable, *at) == "converges" and verdict(unstable, *at) == "diverges"

@@ -1,12 +1,7 @@
 import pytest
 
-from bezstab.paper.ledger import SUBJECTS, ledger_text
-from bezstab.paper.printed import PARTS
+from bezstab.paper.ledger import ledger_text
 from bezstab.paper.reports import Agreement, Finding
-
-
-def test_every_part_is_made_by_one_subject() -> None:
-    assert sorted(part for parts in SUBJECTS for part in parts) == sorted(PARTS)
 
 
 @pytest.mark.parametrize(
