@@ -9,8 +9,8 @@ none of the three does, the whole quadrant is as stable as any point of it:
                | o             what is stable at one o is stable at the other
                +------- alpha_hat
 
-A sum over powers of alpha_hat has no zero there if its factors, polynomials in beta_hat, are nowhere negative by Sturm's
-theorem, and one has no negative coefficient.
+A sum over powers of alpha_hat has no zero there if its factors, polynomials in beta_hat, are nowhere negative by
+Sturm's theorem, and one has no negative coefficient.
 """
 
 from fractions import Fraction
