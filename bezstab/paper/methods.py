@@ -16,7 +16,6 @@ from bezstab.methods import (
     steps,
 )
 from bezstab.paper.reports import Claims, Outcome, Progress, Report, captioned_table
-from bezstab.show import column
 from bezstab.stability import verdict
 from bezstab.units import to_dimensionless
 
@@ -50,7 +49,7 @@ def method_table(caption: str, texts: Mapping[str, Callable[[Method, bool], str]
         {"method": name, **{heading: text(lookup(name), False) for heading, text in texts.items()}}
         for name in TABULATED
     ]
-    return captioned_table(caption, rows, [column(heading, heading) for heading in ("method", *texts)])
+    return captioned_table(caption, rows)
 
 
 @claims.claim("Eq. 12", "B2: y' = y + h/2 (3 f - f')", "3/2, -1/2")
