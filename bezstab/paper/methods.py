@@ -9,7 +9,6 @@ from bezstab.methods import (
     accuracy,
     characteristic_text,
     closed_loop_at,
-    coefficient_table,
     evaluations,
     lookup,
     mapping_text,
@@ -189,7 +188,7 @@ def positive_parameters_are_not_enough() -> Finding:
 
 def second_order_is_one_method() -> Finding:
     """Return whether B2 and AB2 have the same coefficients."""
-    same = coefficient_table(lookup("B2")) == coefficient_table(lookup("AB2"))
+    same = lookup("B2").scheme.mu_table == lookup("AB2").scheme.mu_table
     return Finding(
         "Section 5.1",
         "second order of both families is the same method",
@@ -229,5 +228,5 @@ def kinds_of_methods() -> Finding:
 
 def _rho_and_sigma(name: str) -> tuple[tuple[Fraction, ...], tuple[Fraction, ...]]:
     """Return the coefficients of rho and of sigma, highest power of z first."""
-    rho, minus_sigma = zip(*reversed(coefficient_table(lookup(name))), strict=True)
+    rho, minus_sigma = zip(*reversed(lookup(name).scheme.mu_table), strict=True)
     return rho, tuple(-c for c in minus_sigma)
