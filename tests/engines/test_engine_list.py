@@ -76,7 +76,7 @@ def test_an_engines_step_has_the_poles_of_its_point(name: str, data: st.DataObje
     engine, h = ENGINES[name], Fraction(data.draw(H))
     numbers = data.draw(likely_values(engine))
     alpha_hat, beta_hat = map(float, engine.applied(numbers, h).point)
-    theirs = np.poly(matrix(STEPS[name](float(h), *map(float, numbers))))
+    theirs = np.poly(matrix(STEPS[name], float(h), *map(float, numbers)))
     ours = np.poly(poles(lookup(integrator(engine)), alpha_hat, beta_hat)).real
     assert ours == pytest.approx(theirs, rel=1e-7, abs=1e-7 * max(1, np.abs(theirs).max()))  # a double pole: half
 
