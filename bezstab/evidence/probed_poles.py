@@ -28,7 +28,7 @@ from numpy.typing import ArrayLike
 
 from bezstab.errors import InputError, NumericalError
 from bezstab.evidence.linear_prediction import NEGLIGIBLE, SAMPLES, SPREAD, Fit, fit_dominant_pole
-from bezstab.evidence.logs import UNEVEN, decimal_place
+from bezstab.evidence.logs import decimal_place
 from bezstab.evidence.measured_poles import CLOSE, GROWN
 from bezstab.evidence.noisy_prediction import ITERATIONS, RESOLVED, VISIBLE, NoisyFit, fit_in_noise
 from bezstab.methods import Method, closed_loop_at, closed_loop_table
@@ -321,18 +321,6 @@ def likenesses(
             point = float(alpha_hat), float(beta_hat)
             found.append(_likeness(probed, method, own_steps[method], point, turned, alike))
     return sorted(found, key=lambda one: one.distance)
-
-
-def steps_between_rows(method: Method, h: float | None, row: float | None, every: int = 1) -> int | None:
-    """Return how many of a method's own steps lie between two rows of a log; None if the rows are no multiple of one.
-
-    `h` is the user's step and `row` the time between two rows, both in s; without either it is `every`, as it was said.
-    """
-    if h is None or row is None:
-        return every
-    ratio = row / (h * float(method.step_multiple))
-    nearest = round(ratio)
-    return nearest if nearest >= 1 and abs(ratio - nearest) <= UNEVEN else None
 
 
 def kicked_responses(
