@@ -96,10 +96,6 @@ class Engine:
             for label, typed in self.marks
         }
 
-    def point(self, values: tuple[Fraction, ...], h: Fraction) -> Point:
-        """Return (alpha_hat, beta_hat) for values as typed; InputError as for `applied`."""
-        return self.applied(values, h, as_typed=True).point
-
     def applied(self, values: tuple[Fraction, ...], h: Fraction, *, as_typed: bool = False) -> Applied:
         """Return what the engine makes of values, in their order and the engine's units, at a step of h (s).
 

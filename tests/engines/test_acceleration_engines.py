@@ -26,9 +26,9 @@ def test_rules_of_thumb_are_where_they_are_known_to_be() -> None:
 
 def test_refsafe_raises_a_time_constant_below_two_steps() -> None:
     raised = MUJOCO.applied((Fraction(1, 1000), Fraction(1), Fraction("0.9"), Fraction("0.9")), H)
-    assert raised.point == MUJOCO.point((2 * H, Fraction(1)), H) == (Fraction(1), Fraction(1, 4))
+    assert raised.point == MUJOCO.read(H, 2 * H, Fraction(1)) == (Fraction(1), Fraction(1, 4))
     assert raised.notes == ("refsafe raises timeconst 0.001 s to 2h = 0.004 s",)
-    assert MUJOCO.point((Fraction(1, 1000), Fraction(1)), H) == (Fraction(4), Fraction(4))  # as typed
+    assert MUJOCO.read(H, Fraction(1, 1000), Fraction(1)) == (Fraction(4), Fraction(4))  # as typed
 
 
 def test_the_default_solimp_scales_small_errors_and_large_ones_are_told_too() -> None:
@@ -42,7 +42,7 @@ def test_the_default_solimp_scales_small_errors_and_large_ones_are_told_too() ->
 def test_impedances_are_clamped() -> None:
     direct = (Fraction(-100), Fraction(-20))
     hard = MUJOCO.applied((*direct, Fraction(2), Fraction(3)), H)
-    assert hard.point == MUJOCO.point(direct, H)
+    assert hard.point == MUJOCO.read(H, *direct)
     assert hard.also == ()
 
 
