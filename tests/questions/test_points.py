@@ -1,11 +1,12 @@
 from fractions import Fraction
 
+import numpy as np
 import pytest
 
 from bezstab.engines import engine_and_values
 from bezstab.errors import InputError
 from bezstab.methods import lookup
-from bezstab.questions.points import engine_holds, meant_in_seconds
+from bezstab.questions.points import engine_holds, kick_response, meant_in_seconds
 
 H = Fraction(1, 500)
 
@@ -40,3 +41,20 @@ def test_an_engine_holds_alpha_hat_and_beta_hat_or_alpha_and_beta_or_is_refused(
 def test_large_numbers_that_are_not_stable_are_meant_in_one_over_seconds(alpha: str, beta: str, meant: bool) -> None:
     assert meant_in_seconds([lookup("SYM")], (Fraction(alpha), Fraction(beta))) == meant
     assert not meant_in_seconds([lookup("implicit-euler")], (Fraction(alpha), Fraction(beta)))  # stable as typed
+
+
+STEPS = 100
+
+
+def test_the_decay_is_the_linear_recursion() -> None:
+    assert kick_response(np.array([0.5 + 0j]), STEPS) == pytest.approx(0.5 ** np.arange(STEPS + 1))
+    two = kick_response(np.array([0.4 + 0j, 0.5 + 0j]), STEPS)
+    k = np.arange(STEPS + 1)
+    assert two == pytest.approx(5 * 0.5**k - 4 * 0.4**k)
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_decay_that_grows_beyond_float64_ends_there_in_silence() -> None:
+    grown = kick_response(np.array([1e5 + 0j]), STEPS)
+    assert grown[:60] == pytest.approx(1e5 ** np.arange(60.0))
+    assert not np.isfinite(grown[-1])
