@@ -28,6 +28,7 @@ from bezstab.stability.regions import Region, chart_of, pole_place, region
 from bezstab.stability.root_finding import TOLD
 from bezstab.stability.searches import checked, zoom_from_grid
 
+SCOUTS = 64  # of the points one in so many is looked at first, for a value that the others must be below
 THOUSANDFOLD = 1e-3  # what "settled" means for the constraint error
 Within = Callable[[FloatArray, FloatArray, float], BoolArray]
 """Whether |z_p| is below a level, over arrays of alpha_hat and beta_hat."""
@@ -125,8 +126,8 @@ def choose(
     pencil = pencil_of(method, free=True)  # a pole that no parameters move must not hide the others
     at_rest = modulus is None
     modulus = modulus or partial(largest_modulus, pencil)
+    within = pencil.all_within if at_rest else partial(_below, modulus)
     if goal == "accurate":
-        within = pencil.all_within if at_rest else partial(_below, modulus)
         point = _accurate(method, box, modulus, within, omega_h, rate, spread, equal, curve)
     elif goal == "gentle":
         of_all = partial(largest_modulus, pencil_of(method)) if at_rest else modulus
@@ -147,7 +148,7 @@ def choose(
     elif goal == "fastest" and at_rest and not curve and (best := best_point(method)):
         point, cut = (best.alpha_hat, best.beta_hat), False
     elif goal == "robust" or goal == "fastest":  # noqa: PLR1714 (what the type checker follows)
-        objective = _slowest(method, modulus, spread) if goal == "robust" else modulus
+        objective = _slowest(method, modulus, within, spread) if goal == "robust" else modulus
         # without a curve of the fastest where |z_p| falls on as the feedback grows, or for a mechanism that moves
         point = least_along(curve, objective) if curve else checked(partial(_least, method, box, objective, cut))
     else:
@@ -286,32 +287,36 @@ def describe_point(
     )
 
 
-def _slowest(method: Method, modulus: Modulus, spread: float) -> Modulus:
+def _slowest(method: Method, modulus: Modulus, within: Within, spread: float) -> Modulus:
     """Return the objective of `robust`: the largest decay factor per largest step, over smaller steps and the spread.
 
     A step of share s of the largest turns (alpha_hat, beta_hat) into (s alpha_hat, s^2 beta_hat) and takes 1/s steps;
     in the limit of small steps what remains is exp(Re mu), the continuous decay. Of the spread the corners and the
-    centre are taken. The least of all values is exact. A point that is slower than another one with the largest and
-    with small steps alone may have infinity, as nothing more is asked of it.
+    centre are taken. The least of all values is exact. A point that is slower than some other with small or with the
+    largest steps alone, which takes no poles to tell, has infinity.
     """
     of_alpha, of_beta = np.array([(-1, -1), (-1, 1), (0, 0), (1, -1), (1, 1)]).T[:, :, np.newaxis] * spread + 1
     shares = np.linspace(1, 0, SHARES + 1)[:-1, np.newaxis, np.newaxis]
     multiple = float(method.step_multiple)
 
-    def of_steps(some: FloatArray, alpha_hat: FloatArray, beta_hat: FloatArray) -> FloatArray:
-        """Return the largest factor with steps of some shares."""
-        z_abs = modulus(some * of_alpha * alpha_hat, some**2 * (of_beta**2 * beta_hat))  # (shares, spreads, points)
-        return np.asarray((z_abs ** (1 / some)).max(axis=(0, 1)))
+    def of_small_steps(a: FloatArray, b: FloatArray) -> FloatArray:
+        slower_mu = -a / 2 + np.sqrt(np.maximum(0, a**2 / 4 - b))
+        return np.asarray(np.exp(multiple * slower_mu).max(axis=0))
+
+    def of_all_steps(a: FloatArray, b: FloatArray) -> FloatArray:
+        decay = modulus(shares * a, shares**2 * b) ** (1 / shares)
+        return np.asarray(np.maximum(of_small_steps(a, b), decay.max(axis=(0, 1))))
 
     def objective(alpha_hat: FloatArray, beta_hat: FloatArray) -> FloatArray:
-        a, b = of_alpha * alpha_hat, of_beta**2 * beta_hat
-        slower_mu = -a / 2 + np.sqrt(np.maximum(0, a**2 / 4 - b))
-        worst = np.maximum(np.exp(multiple * slower_mu).max(axis=0), of_steps(shares[:1], alpha_hat, beta_hat))
-        first = [np.argmin(worst)]
-        reached = np.maximum(worst[first], of_steps(shares, alpha_hat[first], beta_hat[first]))
-        left = worst <= reached * (1 + TOLD)
-        worst[left] = np.maximum(worst[left], of_steps(shares[1:], alpha_hat[left], beta_hat[left]))
-        return np.where(left, worst, np.inf)
+        a, b = of_alpha * alpha_hat, of_beta**2 * beta_hat  # (spreads, points)
+        of_scouts = of_all_steps(a[:, ::SCOUTS], b[:, ::SCOUTS])
+        reached = float(of_scouts.min()) * (1 + TOLD)
+        left = np.flatnonzero(of_small_steps(a, b) <= reached)
+        left = left[within(a[:, left], b[:, left], reached).all(axis=0)]
+        worst = np.full(alpha_hat.shape, np.inf)
+        worst[left] = of_all_steps(a[:, left], b[:, left])
+        worst[::SCOUTS] = of_scouts  # next to a double pole even the point that was reached may seem larger
+        return worst
 
     return objective
 
