@@ -14,7 +14,7 @@ from bezstab.paper.experiments import DURATION, STEP, experiment, largest, pole
 from bezstab.paper.printed import COMPARED, TABLE_5, PrintedPole
 from bezstab.paper.reports import Claims, Outcome, Progress, Report, captioned_table
 from bezstab.rationals import bisected_integers, exact
-from bezstab.show import Field, Row, column, column_figure, line_at, pole_cells, pole_text, styled, with_legend
+from bezstab.show import column_figure, line_at, pole_cells, pole_text, styled, with_legend
 from bezstab.stability import feedback_cost, verdict
 
 ROUNDED = 1e-13  # m: below, c_1 is rounding amplified by beta^2 h^2 / |1 - z|, and differs between machines
@@ -23,18 +23,6 @@ ANGLE_ROUNDED = 1e-10  # rad: what rounding may add up to in 10 s, with room
 EDGE_DIGITS = Fraction(1, 1000000)  # of β̂: how well the edge between two points is found
 IRREGULAR = 0.01  # of c_1: less is left beside one wave where others have died out
 FAST = 0.25  # turns a step: beyond a quarter a wave is no longer seen as one
-
-PRINTED_POLES = [
-    column("α̂", "alpha_hat", "g"),
-    column("β̂", "beta_hat", "g"),
-    column("method", "method"),
-    Field("z_real", "", "dominant pole", text=pole_text),
-    column("|z_p|", "z_abs", ".4f"),
-    column("∠z_p (deg)", "z_angle_deg", ".3f"),
-    column("as printed (*: not ours)", "printed"),
-    column("largest |c₁| of 6 to 8 s (m)", "before", ".0e"),
-    column("of 8 to 10 s", "after", ".0e"),
-]
 
 Runs = Mapping[tuple[int, str], Simulation]
 """The runs of Table 5, by the number of their case and the name of their method."""
@@ -66,25 +54,27 @@ def pole_table(runs: Runs) -> str:
         "initial state; 0: below 1e-13 m, which is rounding)."
     )
     rows = [pole_row(name, run, TABLE_5[case].poles[name]) for (case, name), run in runs.items()]
-    return captioned_table(caption, rows, PRINTED_POLES)
+    return captioned_table(caption, rows)
 
 
-def pole_row(method: str, run: Simulation, printed: PrintedPole) -> Row:
+def pole_row(method: str, run: Simulation, printed: PrintedPole) -> dict[str, str]:
     """Return a line of Table 5: a dominant pole, the paper's beside it, and how large c_1 still is, 0 if rounding.
 
     A printed number that is not the pole's is marked.
     """
     z = pole(run)
     marked = [text if wrong is None else f"{text}*" for text, wrong in zip(printed, misprints(printed, z), strict=True)]
-    before, after = largest(run, 6, 8), largest(run, 8, 10)
+    before, after = (left if left > ROUNDED else 0.0 for left in (largest(run, 6, 8), largest(run, 8, 10)))
     return {
-        "alpha_hat": run.alpha_hat,
-        "beta_hat": run.beta_hat,
+        "α̂": f"{run.alpha_hat:g}",
+        "β̂": f"{run.beta_hat:g}",
         "method": method,
-        **pole_cells(z),
-        "printed": " ".join(marked),
-        "before": before if before > ROUNDED else 0.0,
-        "after": after if after > ROUNDED else 0.0,
+        "dominant pole": pole_text(pole_cells(z)),
+        "|z_p|": f"{abs(z):.4f}",
+        "∠z_p (deg)": f"{np.degrees(np.angle(z)):.3f}",
+        "as printed (*: not ours)": " ".join(marked),
+        "largest |c₁| of 6 to 8 s (m)": f"{before:.0e}",
+        "of 8 to 10 s": f"{after:.0e}",
     }
 
 

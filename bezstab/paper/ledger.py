@@ -26,4 +26,4 @@ def ledger_text(findings: Sequence[Finding]) -> str:
     counts = Counter(finding.agreement for finding in findings)
     total = ", ".join(f"{counts[agreement]} {agreement}" for agreement in get_args(Agreement))
     caption = f"# What the paper claims, and what came out\n\nWritten by `bezstab paper`: {total}."
-    return captioned_table(caption, [CLAIMS.row(finding) for finding in findings], CLAIMS.fields)
+    return captioned_table(caption, [CLAIMS.row(finding) for finding in findings])

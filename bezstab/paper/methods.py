@@ -9,7 +9,6 @@ from bezstab.methods import (
     accuracy,
     characteristic_text,
     closed_loop_at,
-    coefficient_table,
     evaluations,
     lookup,
     mapping_text,
@@ -17,7 +16,6 @@ from bezstab.methods import (
     steps,
 )
 from bezstab.paper.reports import Claims, Outcome, Progress, Report, captioned_table
-from bezstab.show import column
 from bezstab.stability import verdict
 from bezstab.units import to_dimensionless
 
@@ -51,7 +49,7 @@ def method_table(caption: str, texts: Mapping[str, Callable[[Method, bool], str]
         {"method": name, **{heading: text(lookup(name), False) for heading, text in texts.items()}}
         for name in TABULATED
     ]
-    return captioned_table(caption, rows, [column(heading, heading) for heading in ("method", *texts)])
+    return captioned_table(caption, rows)
 
 
 @claims.claim("Eq. 12", "B2: y' = y + h/2 (3 f - f')", "3/2, -1/2")
@@ -167,7 +165,7 @@ def positive_parameters_are_not_enough() -> Outcome:
 )
 def second_order_is_one_method() -> Outcome:
     """Return whether B2 and AB2 have the same coefficients."""
-    same = coefficient_table(lookup("B2")) == coefficient_table(lookup("AB2"))
+    same = lookup("B2").scheme.mu_table == lookup("AB2").scheme.mu_table
     return "same weights" if same else "differ", [same]
 
 
@@ -197,5 +195,5 @@ def kinds_of_methods() -> Outcome:
 
 def _rho_and_sigma(name: str) -> tuple[tuple[Fraction, ...], tuple[Fraction, ...]]:
     """Return the coefficients of rho and of sigma, highest power of z first."""
-    rho, minus_sigma = zip(*reversed(coefficient_table(lookup(name))), strict=True)
+    rho, minus_sigma = zip(*reversed(lookup(name).scheme.mu_table), strict=True)
     return rho, tuple(-c for c in minus_sigma)

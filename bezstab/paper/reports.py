@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from functools import wraps
 from typing import TYPE_CHECKING, Any, Literal
 
-from bezstab.show import Field, Row, render
+from bezstab.show import Row, column, render
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -74,6 +74,7 @@ class Report:
     findings: Sequence[Finding] = ()
 
 
-def captioned_table(caption: str, rows: Sequence[Row], columns: Sequence[Field]) -> str:
-    """Return a table as Markdown below its caption."""
+def captioned_table(caption: str, rows: Sequence[Row]) -> str:
+    """Return rows, their values by heading, as Markdown below a caption."""
+    columns = [column(heading, heading) for heading in rows[0]]
     return f"{caption}\n\n{render(rows, columns, 'markdown')}\n"

@@ -15,10 +15,9 @@ from bezstab.mechanism import (
     load_scene,
 )
 from bezstab.paper.experiments import DURATION, STEP, experiment, largest
-from bezstab.paper.lost import UNTESTED
-from bezstab.paper.printed import TABLE_3
-from bezstab.paper.reports import Claims, Outcome, Progress, Report, captioned_table
-from bezstab.show import Row, column, plot, styled
+from bezstab.paper.printed import LOST, NOT_HERE, TABLE_3
+from bezstab.paper.reports import Claims, Finding, Outcome, Progress, Report, captioned_table
+from bezstab.show import formatted, plot, styled
 from bezstab.stability import FloatArray
 
 SAME = 1e-12  # SI: rounding of sums of a few terms near one
@@ -33,13 +32,6 @@ DIFFERENCE = 1e-4  # s, between the times of a second difference: its error is a
 SEEN_BY_DIFFERENCES = 1e-6  # of the largest term
 KICK = 1e-3  # m
 
-BODIES = [
-    column("body", "body"),
-    column("length (m)", "length", "g"),
-    column("mass (kg)", "mass", "g"),
-    column("moment of inertia (kg m²)", "inertia", "g"),
-]
-
 ENTERING = ("J1", "m2", "J2", "m3")
 """Of Table 3's masses and moments of inertia, those that enter the equations."""
 
@@ -48,10 +40,12 @@ claims = Claims()
 
 def report(_progress: Progress) -> Report:
     """Return Fig. 4 and Table 3, what the equations come to, and what of the whole paper cannot be tested."""
+    missing = [("Introduction", name, f"“{sentence}”", "not in bezstab: nothing to run") for name, sentence in NOT_HERE]
+    untested = [Finding(*claim, holds=[]) for claim in (*LOST, *missing)]
     return Report(
         tables={"table3": body_table(load_scene("slider_crank"))},
         figures={"fig4": mechanism_figure},
-        findings=[*claims.findings(compared_terms()), *UNTESTED],
+        findings=[*claims.findings(compared_terms()), *untested],
     )
 
 
@@ -70,13 +64,13 @@ def body_table(scene: Scene) -> str:
     caption = (
         "Table 3: the slider-crank. m1 and J3 do not enter: the crank turns about its pivot, the slider not at all."
     )
-    return captioned_table(caption, body_rows(scene), BODIES)
+    return captioned_table(caption, body_rows(scene))
 
 
-def body_rows(scene: Scene) -> list[Row]:
+def body_rows(scene: Scene) -> list[dict[str, str]]:
     """Return each body's length between its joints (m), mass (kg) and moment of inertia (kg m²).
 
-    None where a body has none, or where it does not enter.
+    A dash where a body has none, or where it does not enter.
     """
     joints_along = {body.name: [0.0] for body in scene.bodies}
     for name, (x, _) in scene.attachments:
@@ -84,9 +78,9 @@ def body_rows(scene: Scene) -> list[Row]:
     return [
         {
             "body": body.name,
-            "length": max(joints_along[body.name]) - min(joints_along[body.name]) or None,
-            "mass": body.mass or None,
-            "inertia": body.inertia or None,
+            "length (m)": formatted(max(joints_along[body.name]) - min(joints_along[body.name]) or None, "g"),
+            "mass (kg)": formatted(body.mass or None, "g"),
+            "moment of inertia (kg m²)": formatted(body.inertia or None, "g"),
         }
         for body in scene.bodies
     ]

@@ -292,21 +292,15 @@ def answers(question: Question, *, margins: bool = True) -> Iterator[Answer]:
     for method in question.methods:
         if question.goal:
             found = _chosen(question, "chosen", method, question.goal, question.settle, margins=margins)
-            yield _expressible(found)
+            try:
+                _ = found.setting
+            except InputError as error:
+                asked = f"{question.engine.name}={question.engine.words()}" if question.engine else ""
+                raise InputError(f"{error}: ask `check --engine {asked}` about values of yours") from None
+            yield found
             continue
         for label, point in (("as given", question.given.point), *question.given.also):
             yield _answer(question, "given", describe_point(method, label, *point, question.spread, margins), point)
-
-
-def _expressible(chosen: Answer) -> Answer:
-    """Return a choice; InputError, with a question to ask instead, if the engine cannot express it."""
-    try:
-        _ = chosen.setting
-    except InputError as error:
-        engine = chosen.question.engine
-        asked = f"{engine.name}={engine.words()}" if engine else ""
-        raise InputError(f"{error}: ask `check --engine {asked}` about values of yours") from None
-    return chosen
 
 
 def _answer(question: Question, role: Role, choice: Choice, point: Point | None = None) -> Answer:

@@ -105,4 +105,4 @@ def test_fig_9_keeps_the_papers_panels() -> None:
 def test_rounding_is_zero_in_the_table() -> None:
     run = compared()[1, "AB4"]
     assert 0 < largest(run, 8, 10) < ROUNDED
-    assert pole_row("AB4", run, TABLE_5[1].poles["AB4"])["after"] == 0
+    assert pole_row("AB4", run, TABLE_5[1].poles["AB4"])["of 8 to 10 s"] == "0e+00"

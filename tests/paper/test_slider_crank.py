@@ -76,7 +76,5 @@ def test_the_weight_of_the_rod_has_its_sign_and_its_size(weight: float, agreemen
 
 
 def test_table_3_leaves_out_what_does_not_enter() -> None:
-    crank, rod, slider = slider_crank.body_rows(load_scene("slider_crank"))
-    assert crank == {"body": "crank", "length": 0.2, "mass": None, "inertia": 45.0}
-    assert rod == {"body": "rod", "length": 0.35, "mass": 3.5, "inertia": 3.5}
-    assert slider == {"body": "slider", "length": None, "mass": 2.5, "inertia": None}
+    rows = [list(row.values()) for row in slider_crank.body_rows(load_scene("slider_crank"))]
+    assert rows == [["crank", "0.2", "-", "45"], ["rod", "0.35", "3.5", "3.5"], ["slider", "-", "2.5", "-"]]
