@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import wraps
 from typing import TYPE_CHECKING, Any, Literal
 
 from bezstab.show import Row, column, render
@@ -35,31 +34,6 @@ class Finding:
 
 Outcome = tuple[str, Sequence[bool]]
 """What came out of a claim, in words, and whether each of its conditions holds."""
-
-
-@dataclass(frozen=True)
-class Claims:
-    """Claims of the paper in the order of the ledger, each with its test: a function of what they are all about."""
-
-    tests: list[Callable[..., Finding]] = field(default_factory=list)
-
-    def claim(self, where: str, claim: str, paper: str) -> Callable[[Callable[..., Outcome]], Callable[..., Finding]]:
-        """Return a decorator that adds a claim: of what tests it, it makes a function that returns the finding."""
-
-        def added(outcome: Callable[..., Outcome]) -> Callable[..., Finding]:
-            @wraps(outcome)
-            def test(*about: Any) -> Finding:
-                return Finding(where, claim, paper, *outcome(*about))
-
-            self.tests.append(test)
-            return test
-
-        return added
-
-    def findings(self, *about: Any) -> list[Finding]:
-        """Return what came of every claim."""
-        return [test(*about) for test in self.tests]
-
 
 Progress = Callable[[Sequence[Any], str], Iterable[Any]]
 """Passes on what says which run is next, and may show how far it is: it is told all of them, and their label."""

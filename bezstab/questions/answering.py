@@ -222,14 +222,14 @@ class Answer(Choice):
         factors: dict[Gain, float | None] = {"kd": kd_factor, "kp": kp_factor}
         # the distance is the ratio of the gain and its limit, whichever is larger
         ratios = {gain: max(each, 1 / each) for gain, each in factors.items() if each and math.isfinite(each)}
-        nearest_first = sorted(ratios, key=lambda gain: ratios[gain])
+        nearest = min(ratios, key=lambda gain: ratios[gain], default=None)
         return Gains(
             applied=DRIVE_METHODS.get(self.method.name),
             kp=float(kp),
             kd=float(kd),
             kp_max=None if kp_factor is None else kp_factor * float(kp),
             kd_max=None if kd_factor is None else kd_factor * float(kd),
-            used_up=nearest_first[0] if nearest_first else None,
+            used_up=nearest,
         )
 
     @cached_property

@@ -53,21 +53,6 @@ def test_the_usual_goal_is_accurate_and_along_a_curve_or_of_a_drive_robust() -> 
 H_OF_2_MS = Fraction(1, 500)
 
 
-def test_an_engines_clamps_are_noted_and_may_be_left_out() -> None:
-    engine, values = engine_and_values("mujoco=0.0001,1")
-    applied = engine.applied(values, H_OF_2_MS)
-    assert applied.notes
-    assert "refsafe raises timeconst" in applied.notes[0]
-    typed = engine.applied(values, H_OF_2_MS, as_typed=True)
-    assert typed.point == (Fraction(40), Fraction(400))
-    assert typed.notes is None
-
-
-def test_an_engine_may_take_further_points() -> None:
-    engine, values = engine_and_values(f"mujoco={-0.54 / 0.002**2!r},{-1.84 / 0.002!r}")
-    assert len(engine.applied(values, H_OF_2_MS).points) == 2
-
-
 def test_an_engine_holds_alpha_hat_and_beta_hat_or_alpha_and_beta_or_is_refused() -> None:
     bullet, spring = engine_and_values("bullet=0.2"), engine_and_values("brax-spring=5000,20,1")
     assert engine_holds(*bullet, H_OF_2_MS, 2 * H_OF_2_MS, as_typed=False)
