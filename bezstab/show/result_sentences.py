@@ -193,20 +193,19 @@ def best_point_words(best: BestPoint) -> str:
 
 
 def falling_words(limit: FarLimit) -> str:
-    """Return what |z_p| falls towards without a least value, and along which way of alpha_hat and beta_hat."""
-    return f"|z_p| falls towards {limit.z_abs:.6g} as {_way(limit)}"
+    """Return what |z_p| falls towards without a least value, and along which way of alpha_hat and beta_hat.
 
-
-def _way(limit: FarLimit) -> str:
-    """Return "β̂ grows at α̂ = 2", or "α̂ and β̂ grow, α̂² = 3 β̂"."""
+    The way is "β̂ grows at α̂ = 2", or "α̂ and β̂ grow, α̂² = 3 β̂".
+    """
     (p, q), ratio = limit.direction, limit.ratio
+    falls = f"|z_p| falls towards {limit.z_abs:.6g} as"
     if p == 0 or q == 0:
         grows, stays = ("α̂", "β̂") if q == 0 else ("β̂", "α̂")
-        return f"{grows} grows" + ("" if ratio is None else f" at {stays} = {limit.point(1.0)[q == 0]:.6g}")
+        return f"{falls} {grows} grows" + ("" if ratio is None else f" at {stays} = {limit.point(1.0)[q == 0]:.6g}")
     times = "" if ratio is None or f"{ratio:.6g}" == "1" else f"{ratio:.6g} "
     equal = "like" if ratio is None else "="
     grow = "α̂ and β̂ grow" if p > 0 and q > 0 else "β̂ grows and α̂ falls" if q > 0 else "α̂ grows and β̂ falls"
-    return f"{grow}, {_power('α̂', q)} {equal} {times}{_power('β̂', p)}"
+    return f"{falls} {grow}, {_power('α̂', q)} {equal} {times}{_power('β̂', p)}"
 
 
 def _power(name: str, exponent: int) -> str:

@@ -133,18 +133,16 @@ def region_row(answer: RegionAnswer) -> Row:
 
 def map_rows(answer: MapAnswer) -> list[Row]:
     """Return a row for the stable region, or for it at each speed of the scene, and one for each level below 1."""
-    stable, *faster = [region_row(each) for each in answer.regions]
+    stable, *faster = rows = [region_row(each) for each in answer.regions]
     if answer.question.motion:
         forced = cells(ACCURACY, answer)
-        return [{**row, **forced} for row in (stable, *faster)]
-    if not answer.moving:
-        return [stable, *faster]
-    kappas = [turning.kappa for turning in answer.question.turnings.values()]
-    at_speeds = [
-        {**stable, "speed": speed, "kappa": kappa, "area_moving": moving.area}
-        for (speed, moving), kappa in zip(answer.moving.items(), kappas, strict=True)
+        return [{**row, **forced} for row in rows]
+    turnings = answer.question.turnings.values()
+    at_speeds: list[Row] = [
+        {**stable, "speed": speed, "kappa": turning.kappa, "area_moving": moving.area}
+        for (speed, moving), turning in zip(answer.moving.items(), turnings, strict=True)
     ]
-    return [*at_speeds, *faster]
+    return [*(at_speeds or [stable]), *faster]
 
 
 def _approached(region: Region) -> str | None:
