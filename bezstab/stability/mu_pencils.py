@@ -15,7 +15,7 @@ from numpy.polynomial.polynomial import polyder, polyval, polyval2d
 from numpy.typing import NDArray
 
 from bezstab.errors import NumericalError
-from bezstab.methods import Method, coefficient_table
+from bezstab.methods import Method
 from bezstab.stability.arrays import DOUBLE, EPS, SAME, BoolArray, ComplexArray, FloatArray
 from bezstab.stability.exact_sums import feedback_roots
 from bezstab.stability.low_degrees import largest_quadratic_root, polynomial_of_pair
@@ -44,7 +44,7 @@ class MuPencil:
     def table(self) -> FloatArray:
         """The coefficients: pi = sum_kj table[k, j] z^k mu^j; NumericalError if they leave float64's range."""
         try:
-            return np.array(coefficient_table(self.method), float)
+            return np.array(self.method.scheme.mu_table, float)
         except OverflowError:
             raise out_of_range(self.method) from None
 

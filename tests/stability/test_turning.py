@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bezstab.methods import Method, lookup, second_order_form
+from bezstab.methods import Method, lookup
 from bezstab.stability import poles, turning_sensitivity
 
 POINTS = [(0.31, 0.13), (0.9, 0.05), (0.2, 0.3)]
@@ -36,7 +36,7 @@ def test_a_method_and_its_second_order_form_have_the_same_sensitivity(
     name: str, alpha_hat: float, beta_hat: float
 ) -> None:
     method = lookup(name)
-    written_out = Method(name, second_order_form(method.scheme), "", method.step_multiple)
+    written_out = Method(name, method.scheme.second_order, "", method.step_multiple)
     z = poles(method, alpha_hat, beta_hat)[:2]
     assert np.allclose(
         turning_sensitivity(method, alpha_hat, beta_hat, z),
