@@ -69,8 +69,8 @@ class PlanePencil:
         self._check_finite(z, alpha_hat, beta_hat)
         return z
 
-    def all_within(self, alpha_hat: FloatArray, beta_hat: FloatArray, level: FloatArray) -> BoolArray:
-        """Return whether every pole has |z| < level at each point, by Schur's recursion; arrays of one shape.
+    def all_within(self, alpha_hat: FloatArray, beta_hat: FloatArray, level: float) -> BoolArray:
+        """Return whether every pole has |z| < level at each point, by Schur's recursion.
 
         False where an implicit step has no solution.
         """
