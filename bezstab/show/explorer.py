@@ -12,11 +12,11 @@ from matplotlib.patches import Circle
 
 from bezstab.errors import InputError
 from bezstab.methods import Method
-from bezstab.questions import PlanePoint
+from bezstab.questions import kick_response
 from bezstab.show import plot
 from bezstab.show.fields import formatted
 from bezstab.show.style import ABOVE_THE_AXES, ACCENT, COLOURS, styled
-from bezstab.stability import region, useful_window
+from bezstab.stability import poles, region, useful_window, verdict
 from bezstab.units import alpha_and_beta
 
 POINTS = 150  # per axis of the map: it appears at once
@@ -69,16 +69,16 @@ class Explorer:
         self.typed = f"{alpha_hat:.6g}", f"{beta_hat:.6g}"
         point = Fraction(self.typed[0]), Fraction(self.typed[1])
         alpha, beta = alpha_and_beta(*point, self.h)
-        found = PlanePoint(self.method, point)
-        largest = found.poles[0]
-        judgement = f"{found.verdict} (proven)" if prove else "stable" if found.stable else "unstable"
-        self.poles.set_data(found.poles.real, found.poles.imag)
-        self.decay.set_data(range(STEPS + 1), found.after_a_kick(STEPS))
+        z = poles(self.method, *map(float, point))
+        unproven = "stable" if abs(z[0]) < 1 else "unstable"
+        judgement = f"{verdict(self.method, *point)} (proven)" if prove else unproven
+        self.poles.set_data(z.real, z.imag)
+        self.decay.set_data(range(STEPS + 1), abs(kick_response(z, STEPS)))
         self.cross.set_data([[float(number)] for number in point])
         self.text.set_text(
             rf"$\hat\alpha$ = {self.typed[0]}   $\hat\beta$ = {self.typed[1]}   "
             f"α = {alpha:.6g}   β = {formatted(beta, '.6g')} 1/s at h = {self.h:g} s\n"
-            f"$|z_p|$ = {abs(largest):.6f}   ∠$z_p$ = {np.angle(largest, deg=True):.2f}°   {judgement}"
+            f"$|z_p|$ = {abs(z[0]):.6f}   ∠$z_p$ = {np.angle(z[0], deg=True):.2f}°   {judgement}"
         )
         self.figure.canvas.draw_idle()
 
