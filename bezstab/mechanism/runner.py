@@ -200,7 +200,7 @@ def recorded(
     states, least = np.concatenate(parts), np.concatenate(pivots)
     # the step that failed is not in the history, but was computed
     failure = f"at t = {times[len(states)]:.6g} s: {cause}" if cause else None
-    lowest = int(least.argmin()) if least.min(initial=1.0) < 1.0 else None
+    lowest = int(least.argmin())
     return Trajectory(
         mechanism=mechanism,
         method=method,
@@ -209,8 +209,8 @@ def recorded(
         v=states[:, mechanism.size :],
         evaluations=int(how.counts[EVALUATIONS]),
         failure=failure,
-        least_pivot=1.0 if lowest is None else float(least[lowest]),
-        pivot_time=0.0 if lowest is None else float(times[lowest]),
+        least_pivot=float(least[lowest]),
+        pivot_time=float(times[lowest]),
         iterations=int(how.counts[ITERATIONS]) if implicit(method) else None,
         projections=int(how.counts[PROJECTIONS]),
         after=how.after,
