@@ -192,12 +192,12 @@ def recorded(
     mechanism: Mechanism, method: Method, first: FloatArray, times: FloatArray, blocks: Iterable[Block], how: How
 ) -> Trajectory:
     """Return a run from its blocks, the times (s) of whose states are given, the first state's included."""
-    parts, pivots, cause = [first[np.newaxis]], [np.ones(0)], None
+    parts, pivots, cause = [first[np.newaxis]], [], None
     for block in blocks:
         parts.append(block.states)
         pivots.append(block.pivots)
         cause = block.cause
-    states, least = np.concatenate(parts), np.concatenate(pivots)
+    states, least = np.concatenate(parts), np.concatenate([*pivots, np.ones(1)])  # 1.0 where no step was taken
     # the step that failed is not in the history, but was computed
     failure = f"at t = {times[len(states)]:.6g} s: {cause}" if cause else None
     lowest = int(least.argmin())
