@@ -32,7 +32,7 @@ from bezstab.evidence.logs import UNEVEN, decimal_place
 from bezstab.evidence.measured_poles import CLOSE, GROWN
 from bezstab.evidence.noisy_prediction import ITERATIONS, RESOLVED, VISIBLE, NoisyFit, fit_in_noise
 from bezstab.methods import Method, closed_loop_at, closed_loop_table
-from bezstab.stability import EPS, ComplexArray, FloatArray, poles, region, spectral_radius, turning_sensitivity, window
+from bezstab.stability import EPS, ComplexArray, FloatArray, poles, region, spectral_radius, turning_shift, window
 
 ORDER = 8
 """Poles that are looked for: as many as four-step methods have. Of longer ones the lesser poles die out first."""
@@ -404,7 +404,7 @@ def _motion_shift(
 ) -> float:
     """Return by which share of itself, a step, the motion may shift one of a method's poles z; `turned` as above."""
     angle = (TURNED if turned is None else turned) * float(method.step_multiple)
-    chi = float(np.abs(turning_sensitivity(method, *point, z[which])))
+    chi = float(np.abs(turning_shift(method, *point, z[which]) / z[which]))
     others = np.delete(z, which)
     apart = np.abs(others - z[which])[others != z[which].conj()]
     # The square of the angle is the size of the law's next order.
