@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from bezstab.evidence.forced_runs import SHARES, HalvedStep, forced_sentence, halved_steps
     from bezstab.evidence.kicks import LINEAR, kicked_motions
     from bezstab.evidence.linear_prediction import SPREAD, Fit, fit_dominant_pole
-    from bezstab.evidence.logs import Log, error_columns, log_from, parse_log, read_log, row_step, time_column
+    from bezstab.evidence.logs import UNEVEN, Log, error_columns, log_from, parse_log, read_log, row_step, time_column
     from bezstab.evidence.measured_poles import (
         MeasuredVerdict,
         Measurement,
@@ -57,7 +57,6 @@ if TYPE_CHECKING:
         likenesses,
         points_like,
         probed_pole,
-        steps_between_rows,
     )
     from bezstab.evidence.projection_costs import projection_sentences
     from bezstab.evidence.sweep_summaries import Held, summary, sweep_sentences
