@@ -93,29 +93,24 @@ def _empty(directory: Path) -> None:
 @contextmanager
 def _locked(directory: Path) -> Iterator[None]:
     """Hold the lock of a directory, made if need be; InputError that names the holder where that is another process."""
+    output_directory(directory)
     path = directory / LOCK
-    while True:
-        output_directory(directory)
-        try:
-            file = path.open("a+b", buffering=0)
-        except FileNotFoundError:
-            continue  # the run that had the directory has just removed it
-        except OSError as error:
-            raise InputError(f"cannot write {path}: {error.strerror}") from None
-        with file:  # and with it goes the lock
-            if not _try_to_lock(file):
-                file.seek(0)
-                holder = file.read(100).decode(errors="replace") or "another process"
-                raise InputError(
-                    f"{directory} is in use by another run ({holder}): wait for it, or choose another --output"
-                )
-            if not os.fstat(file.fileno()).st_nlink:
-                continue  # the run that had the lock removed the file between opening and locking
-            with suppress(OSError):  # on a full disk: then the holder has no name
-                file.truncate(0)
-                file.write(f"process {os.getpid()}".encode())
-            yield
-            return
+    try:
+        file = path.open("a+b", buffering=0)
+    except OSError as error:
+        raise InputError(f"cannot write {path}: {error.strerror}") from None
+    with file:  # and with it goes the lock
+        # the run that had the lock may have removed the file before it could be locked
+        if not _try_to_lock(file) or not os.fstat(file.fileno()).st_nlink:
+            file.seek(0)
+            holder = file.read(100).decode(errors="replace") or "another process"
+            raise InputError(
+                f"{directory} is in use by another run ({holder}): wait for it, or choose another --output"
+            )
+        with suppress(OSError):  # on a full disk: then the holder has no name
+            file.truncate(0)
+            file.write(f"process {os.getpid()}".encode())
+        yield
 
 
 def _try_to_lock(file: BinaryIO) -> bool:
