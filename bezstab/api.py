@@ -9,7 +9,6 @@ of a TOML file, or what `scene` returns.
 from __future__ import annotations  # so that help() shows annotations as they are written
 
 import inspect
-import math
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -25,7 +24,7 @@ from bezstab.errors import InputError, shown
 from bezstab.goals import Goal
 from bezstab.mechanism import Scene, Simulation
 from bezstab.methods import Method, Verdict, lookup
-from bezstab.rationals import exact, rational, within_float64
+from bezstab.rationals import rational
 from bezstab.stabilising import Stabilise
 from bezstab.units import check_step, to_dimensionless
 
@@ -583,19 +582,15 @@ def _scene(scene_or_name: str | Scene) -> Scene:
 
 
 def _exact(value: Number, name: str) -> Fraction:
-    """Return one number exactly: a text as it reads, a float as the decimal it shows; InputError for what is none."""
+    """Return one number exactly as it is written, a float as the decimal it shows; InputError for what is none."""
     if isinstance(value, np.ndarray | np.generic) and value.ndim == 0 and not isinstance(value, np.ma.MaskedArray):
         value = value.item()
     if isinstance(value, bool) or not isinstance(value, int | float | str | Fraction):
         raise InputError(f"{name} = {shown(value)}: expected one real number")
-    if isinstance(value, str):
-        try:
-            return rational(value)
-        except InputError as error:
-            raise InputError(f"{name}: {error}") from None
-    if isinstance(value, float) and not math.isfinite(value):
-        raise InputError(f"{name} = {value} is not a finite number")
-    return exact(value) if isinstance(value, float) else within_float64(Fraction(value), name)
+    try:
+        return rational(str(value))
+    except ValueError as error:  # InputError, and what Python says of whole numbers with thousands of digits
+        raise InputError(f"{name}: {error}") from None
 
 
 def _drive(gains: Sequence[Number] | None) -> Drive | None:

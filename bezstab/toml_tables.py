@@ -17,13 +17,13 @@ SIZE = "0 or of size 1e-100 to 1e100"
 
 Kind = TypeVar("Kind")
 Read = TypeVar("Read")
-"""What a reader makes of an entry; a reader raises TypeError or ValueError for what it does not take."""
+"""What a reader makes of an entry; a reader raises ValueError for what it does not take."""
 
 
 def a_number(value: object) -> float:
     """Return a number, not a truth value, that is 0 or of size 1e-100 to 1e100 (so not nan)."""
     if isinstance(value, bool) or not isinstance(value, int | float):
-        raise TypeError
+        raise ValueError
     if value != 0 and not LEAST <= abs(value) <= 1 / LEAST:
         raise ValueError
     return float(value)
@@ -40,7 +40,7 @@ def a_positive_number(value: object) -> float:
 def of_type(kind: type[Kind], value: object) -> Kind:
     """Return a value of that type."""
     if not isinstance(value, kind):
-        raise TypeError
+        raise ValueError
     return value
 
 
@@ -65,16 +65,6 @@ def pair_of(read: Callable[[Any], Read]) -> Callable[[object], tuple[Read, Read]
         return first, second
 
     return read_pair
-
-
-def table_of(read: Callable[[Any], Read]) -> Callable[[object], dict[str, Read]]:
-    """Return the reader of a table, each entry of which `read` reads."""
-    return lambda value: {key: read(entry) for key, entry in of_type(dict, value).items()}
-
-
-def as_it_is(value: Any) -> Any:
-    """Return an entry of any kind."""
-    return value
 
 
 class TomlTable:
@@ -108,7 +98,7 @@ class TomlTable:
             return read(self.data[key])
         except InputError as error:  # whose words are better
             raise self.mistake(f"{key}: {error}") from None
-        except (TypeError, ValueError):
+        except ValueError:
             raise self.mistake(f"{key} = {self.data[key]!r}: expected {expected}") from None
 
     def text(self, key: str, default: str | None = None) -> str:
@@ -133,23 +123,26 @@ class TomlTable:
 
     def numbers(self, key: str, allowed: Sequence[str]) -> dict[str, float]:
         """Return a table of numbers, none if absent, with keys among the allowed ones."""
-        entries: dict[str, float] = self.entry(key, table_of(a_number), f"a table of numbers, {SIZE}", {})
-        for name in entries:
+
+        def read(value: object) -> dict[str, float]:
+            return {name: a_number(number) for name, number in of_type(dict, value).items()}
+
+        found: dict[str, float] = self.entry(key, read, f"a table of numbers, {SIZE}", {})
+        for name in found:
             if name not in allowed:
                 raise self.mistake(f"{key} names {name!r}, which is not among {', '.join(allowed)}")
-        return entries
+        return found
 
     def tables(self, key: str) -> list["TomlTable"]:
         """Return an array of tables, none if absent."""
-        entries: list[object] = self.entry(key, list_of(as_it_is), "an array of tables", [])
+        entries: list[object] = self.entry(key, partial(of_type, list), "an array of tables", [])
         tables = [TomlTable(entry, f"{key} {number}") for number, entry in enumerate(entries, start=1)]
         self.inner += tables
         return tables
 
     def table(self, key: str) -> "TomlTable":
         """Return a table, an empty one if absent."""
-        entries: dict[str, object] = self.entry(key, table_of(as_it_is), "a table", {})
-        table = TomlTable(entries, key)
+        table = TomlTable(self.entry(key, partial(of_type, dict), "a table", {}), key)
         self.inner.append(table)
         return table
 

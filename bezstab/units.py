@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any, TypeVar, overload
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from bezstab.errors import InputError, shown
 from bezstab.rationals import within_float64
@@ -46,11 +46,7 @@ def _check_real(**values: object) -> None:
             )
 
 
-@overload
-def to_dimensionless(alpha: Fraction, beta: Fraction, h: Fraction) -> tuple[Fraction, Fraction]: ...
-@overload
-def to_dimensionless(alpha: FloatOrArray, beta: FloatOrArray, h: float) -> tuple[FloatOrArray, FloatOrArray]: ...
-def to_dimensionless(alpha: Any, beta: Any, h: Any) -> tuple[Any, Any]:
+def to_dimensionless(alpha: Number, beta: Number, h: Any) -> tuple[Number, Number]:
     """Return (alpha_hat, beta_hat) = (2 alpha h, beta^2 h^2), for alpha and beta in 1/s and a step of h seconds.
 
     Returns dimensionless numbers or arrays, as alpha and beta are. They are exact if all three are Fractions, else
@@ -62,7 +58,7 @@ def to_dimensionless(alpha: Any, beta: Any, h: Any) -> tuple[Any, Any]:
     check_step(h)
     if not (isinstance(alpha, Fraction) and isinstance(beta, Fraction)):
         h = float(h)
-    alpha_hat, beta_hat = 2 * alpha * h, beta * beta * h * h
+    alpha_hat, beta_hat = from_feedback_gains(2 * alpha, beta * beta, h)
     if isinstance(alpha_hat, Fraction) and isinstance(beta_hat, Fraction):
         return within_float64(alpha_hat, "α̂ = 2αh"), within_float64(beta_hat, "β̂ = β²h²")
     import numpy as np  # exact numbers do without, and --help
@@ -124,6 +120,9 @@ def _as_float(number: Fraction) -> float:
         return math.inf if number > 0 else -math.inf
 
 
-def from_feedback_gains(two_alpha: Fraction, beta_squared: Fraction, h: Fraction) -> tuple[Fraction, Fraction]:
-    """Return (alpha_hat, beta_hat) for the coefficients 2 alpha (1/s) and beta^2 (1/s^2) of paper Eq. 6, exact."""
+def from_feedback_gains(two_alpha: Number, beta_squared: Number, h: Any) -> tuple[Number, Number]:
+    """Return (alpha_hat, beta_hat) for the coefficients 2 alpha (1/s) and beta^2 (1/s^2) of paper Eq. 6.
+
+    As `feedback_gains`: exact numbers stay exact, for which h is exact too.
+    """
     return two_alpha * h, beta_squared * h * h

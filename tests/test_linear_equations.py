@@ -32,16 +32,6 @@ def test_unknowns_that_are_not_determined_raise() -> None:
         solution([[Fraction(1), Fraction(2)], [Fraction(2), Fraction(4)]], [[Fraction(1)], [Fraction(2)]])
 
 
-def test_a_batch_is_inverted_matrix_by_matrix() -> None:
-    random = np.random.default_rng(3)
-    matrices = random.normal(size=(4, 4, 50))
-    matrices[0, 0, :10] = 0  # a pivot that only exchanging rows avoids
-    found = inverses(matrices)
-    expected = np.moveaxis(np.linalg.inv(np.moveaxis(matrices, -1, 0)), 0, -1)
-    # rounding, times the condition numbers of random matrices, some hundred and in rare cases thousands
-    assert found == pytest.approx(expected, rel=1e-9, abs=1e-9)
-
-
 def test_a_matrix_without_inverse_spoils_no_other() -> None:
     matrices = np.stack([np.eye(2), np.ones((2, 2)), np.array([[0.0, 2.0], [4.0, 0.0]])], axis=-1)
     with np.errstate(all="ignore"):

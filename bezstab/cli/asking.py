@@ -1,16 +1,24 @@
-"""The question that was typed, and the sentences below its answers."""
+"""The question that was typed, and how answers are shown that several commands give."""
 
 from collections.abc import Callable, Iterable, Sequence
+from functools import partial
 from typing import Any, TypeVar
 
-from bezstab import questions
+import click
+
+from bezstab import questions, show
 from bezstab.cli.command_group import NUMERICAL_TROUBLE
-from bezstab.cli.options import TypedPoint, typed_options
-from bezstab.cli.output import for_reading, say, show_command, show_text, worked_out
+from bezstab.cli.options import OF_A_CONTROLLER, TypedPoint, refuse_beside, typed_options
+from bezstab.cli.output import Files, for_reading, say, show_command, show_rows, show_text, worked_out
 from bezstab.engines import Engine
 from bezstab.errors import NumericalError
 from bezstab.methods import Method, lookup
-from bezstab.show import Row, motion_words, varying_words
+
+ABOUT_DRIVES = {
+    *("--pd", "--h", "--every", "--late", "--filter", "--method", "--format"),
+    *("--bandwidth", "--settle", "--quality", "--grid", "--output", "--figure"),
+}
+"""Options that go with a question about a held or late drive, of those that its commands have."""
 
 Asked = TypeVar("Asked")
 OfScene = TypeVar("OfScene", "questions.Question", "questions.MapQuestion")
@@ -49,16 +57,16 @@ def say_each(reasons: Iterable[str | None]) -> None:
             say(f"bezstab: {reason}")
 
 
-def of_each(methods: Iterable[Method], show: Callable[[Method], Iterable[Row]]) -> tuple[list[Row], int]:
+def of_each(methods: Iterable[Method], rows_of: Callable[[Method], Iterable[show.Row]]) -> tuple[list[show.Row], int]:
     """Return the rows of all methods, and an exit status: what cannot be found of one withholds no other's.
 
     Why it cannot be found is said on standard error. NumericalError where that is so of all.
     """
-    rows: list[Row] = []
+    rows: list[show.Row] = []
     failed: list[NumericalError] = []
     for method in methods:
         try:
-            rows += show(method)
+            rows += rows_of(method)
         except NumericalError as error:
             failed.append(error)
     if failed and not rows:
@@ -82,7 +90,7 @@ def show_below(question: "questions.Question", found: "Sequence[questions.Answer
     if not for_reading():
         return
     if motion and not question.drive:
-        show_text(f"\n{motion_words(question.motion)}")
+        show_text(f"\n{show.motion_words(question.motion)}")
     if question.engine:
         for note in () if question.goal else question.given.notes or ():
             say(f"{question.engine.name}: {note} (--as-typed leaves that out)")
@@ -102,7 +110,7 @@ def say_varying(answers: "Iterable[questions.Answer]") -> None:
     """Print a sentence about steps that vary, and the command of a run in which errors grow."""
     for answer in answers:
         if answer.varying:
-            show_text("\n" + varying_words(answer.method.name, answer.varying))
+            show_text("\n" + show.varying_words(answer.method.name, answer.varying))
             if line := questions.growing_run(answer):
                 show_text("\nThis shows errors grow:\n")
                 show_command(line)
@@ -117,3 +125,37 @@ def say_if_units_were_mistaken(methods: Sequence[Method], point: TypedPoint) -> 
         needed = "" if "--h" in typed_options() else " and your --h"
         note = "--alpha and --beta were taken as α̂ and β̂, without unit; if they are in 1/s, add --physical"
         say(f"note: {note}{needed}")
+
+
+def held_asked(typed: dict[str, Any], asked: str, *, always: bool = False) -> "questions.HeldQuestion | None":
+    """Take the timing options out of `typed`. Return the question about such a drive.
+
+    None if no option about a controller was typed, unless `always`: every step then computes its torque and applies it.
+    Without --method it is about all four ways of applying a drive. Errors as `HeldQuestion`; UsageError, which says
+    what is `asked`, if an option was typed that is not about drives.
+    """
+    timing = {name: typed.pop(name) for name in ("every", "late", "filter_seconds")}
+    if not always and typed_options().keys().isdisjoint(OF_A_CONTROLLER.options):
+        return None
+    if typed["h"] is None:
+        raise click.UsageError("--pd needs --h: the step in s")
+    methods = typed_options().get("--method", ())
+    question = questions.HeldQuestion(drive=typed["drive"], h=typed["h"], methods=methods, **timing)
+    refuse_beside(asked, typed_options().keys() - ABOUT_DRIVES, "this answer is about the drive alone")
+    return question
+
+
+def write_held(question: "questions.HeldQuestion", points: int, files: Files) -> None:
+    """Print the answers, and write for each way of applying the drive |z_p| over kd and kp, at points x points."""
+    files.check_output()
+    for answer in show_held(question):
+        files.write(files.path("region", answer.method.name, "held"), partial(show.held_figure, answer, points))
+
+
+def show_held(question: "questions.HeldQuestion") -> "list[questions.HeldAnswer]":
+    """Print and return the answer for each way of applying a held or late drive; print what is not judged."""
+    found = list(questions.held_answers(question))
+    heading = show.timing_words(question.timing, float(question.h))
+    show_rows(show.HELD, map(show.HELD.row, found), heading=heading)
+    show_text(f"\n{show.LATE_COMMANDS}")
+    return found

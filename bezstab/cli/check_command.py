@@ -5,8 +5,7 @@ from itertools import groupby
 from typing import Any
 
 from bezstab import questions
-from bezstab.cli.asking import asked_of_scene, say_varying, show_below, show_sentences
-from bezstab.cli.held_drives import held_asked, show_held
+from bezstab.cli.asking import asked_of_scene, held_asked, say_varying, show_below, show_held, show_sentences
 from bezstab.cli.options import TypedPoint, changed, command, typed_options
 from bezstab.cli.output import for_reading, say, show_rows, show_text
 from bezstab.errors import InputError, NumericalError

@@ -8,8 +8,7 @@ from typing import Any
 import click
 
 from bezstab import questions
-from bezstab.cli.asking import asked_of_scene, say_varying, show_below, show_sentences
-from bezstab.cli.held_drives import held_asked, show_held
+from bezstab.cli.asking import asked_of_scene, held_asked, say_varying, show_below, show_held, show_sentences
 from bezstab.cli.options import INERTIA, NUMBER, SECONDS, SHARE, changed, command, option, typed_options
 from bezstab.cli.output import for_reading, progress, show_rows, show_text
 from bezstab.goals import GOALS, Goal

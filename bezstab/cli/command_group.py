@@ -1,6 +1,7 @@
-"""The group of all commands: how they are listed, found and ended."""
+"""The group of all commands: how they are listed, found and ended; and the streams that they answer on."""
 
 import importlib
+import io
 import os
 import sys
 import traceback
@@ -94,6 +95,28 @@ class BezstabGroup(click.Group):
         if isinstance(status, bool):  # whether what a command judges is safe
             sys.exit(0 if status else 1)
         sys.exit(status or 0)
+
+
+def prepare_streams() -> None:
+    """Make the standard streams of this process fit for any text: what their encoding lacks is a question mark.
+
+    A closed standard error is silent. With a closed standard output there is nowhere to answer: one line, exit
+    status 2. The descriptor of a closed stream is taken, or the next file that is opened would get it, and with it
+    what libraries print there.
+    """
+    for descriptor in (0, 1, 2):
+        try:
+            os.fstat(descriptor)
+        except OSError:
+            os.open(os.devnull, os.O_RDWR)  # it gets the lowest number that is free, which is this one
+    if sys.stderr is None:
+        sys.stderr = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115
+    if sys.stdout is None:
+        sys.stderr.write("bezstab: standard output is closed: there is nowhere to answer\n")
+        sys.exit(2)
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="replace")
 
 
 def _loaded(name: str) -> click.Command:

@@ -186,23 +186,20 @@ OPTIONS = {
     "every": option(
         "--every",
         int,
-        "With --pd: the torque is computed every so many steps and held in between [1].",
+        "With --pd: the torque is computed every so many steps and held in between.",
         default=1,
-        show_default=False,
     ),
     "late": option(
         "--late",
         NUMBER,
-        "With --pd: the torque is applied so many steps late. Fractions are allowed [0].",
+        "With --pd: the torque is applied so many steps late. Fractions are allowed.",
         default="0",
-        show_default=False,
     ),
     "filter_seconds": option(
         "--filter filter_seconds",
         NUMBER,
-        "With --pd: the time constant in s of a first-order filter of the measured velocity [0].",
+        "With --pd: the time constant in s of a first-order filter of the measured velocity.",
         default="0",
-        show_default=False,
     ),
     "chain": option("--chain", int, "With --engine: ask about a straight chain of so many bodies."),
     "mass_ratio": option(

@@ -1,6 +1,7 @@
 """How commands answer: rows on standard output; files; messages and progress on standard error."""
 
 import re
+import shutil
 import sys
 import textwrap
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
@@ -12,7 +13,6 @@ from typing import TYPE_CHECKING, Any, BinaryIO, TypeVar
 
 import click
 
-from bezstab.cli.terminal import text_width
 from bezstab.files import output_directory, write_whole
 from bezstab.show import (
     Format,
@@ -37,6 +37,15 @@ INDENT = " " * 4
 
 CONTINUED = " \\"
 """Ends a line of a command that goes on in the next."""
+
+
+UNLIMITED = sys.maxsize
+"""Characters of a line of text where no terminal limits it, as on a pipe: there nothing wraps."""
+
+
+def text_width() -> int:
+    """Return how many characters a line on standard output can have: COLUMNS, else as many as the terminal has."""
+    return shutil.get_terminal_size((UNLIMITED, 1)).columns
 
 
 def chosen_format() -> Format:

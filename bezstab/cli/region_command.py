@@ -6,9 +6,8 @@ from typing import Any
 import click
 
 from bezstab import questions, show
-from bezstab.cli.asking import asked_of_scene, of_each, say_each
+from bezstab.cli.asking import asked_of_scene, held_asked, of_each, say_each, write_held
 from bezstab.cli.command_group import NUMERICAL_TROUBLE
-from bezstab.cli.held_drives import held_asked, write_held
 from bezstab.cli.options import NUMBER, POSITIVE, SPEED, Rule, changed, command, flag, option
 from bezstab.cli.output import Files, progress, show_rows, show_text
 from bezstab.methods import Method

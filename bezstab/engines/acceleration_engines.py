@@ -12,6 +12,7 @@ from bezstab.engines.conversions import (
     in_words,
 )
 from bezstab.errors import InputError
+from bezstab.rationals import ONE
 from bezstab.units import feedback_gains, from_dimensionless, from_feedback_gains, to_dimensionless
 
 
@@ -259,7 +260,7 @@ BRAX_SPRING = Engine(
     optional=("mass",),
     above_zero=("mass",),
     units=("N/m", "N s/m", "kg"),
-    read=lambda h, stiffness, damping, mass=Fraction(1): _read_gains(h, stiffness / mass, damping / mass),
+    read=lambda h, stiffness, damping, mass=ONE: _read_gains(h, stiffness / mass, damping / mass),
     write=lambda point, h: (*gains_in_words(point, h), "1"),
     source="Brax source, spring/joints.py, spring/pipeline.py, spring/integrator.py; io/mjcf.py (2000, 0 unless set)",
     excludes="angles (constraint_ang_damping); vel_damping and ang_damping; spring_mass_scale; contacts: brax-contact",

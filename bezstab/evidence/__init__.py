@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from bezstab.evidence.forced_runs import SHARES, HalvedStep, forced_sentence, halved_steps
     from bezstab.evidence.kicks import LINEAR, kicked_motions
     from bezstab.evidence.linear_prediction import SPREAD, Fit, fit_dominant_pole
-    from bezstab.evidence.logs import Log, error_columns, log_from, parse_log, read_log, row_step, time_column
+    from bezstab.evidence.logs import UNEVEN, Log, error_columns, log_from, parse_log, read_log, row_step, time_column
     from bezstab.evidence.measured_poles import (
         MeasuredVerdict,
         Measurement,
@@ -56,7 +56,6 @@ if TYPE_CHECKING:
         likenesses,
         points_like,
         probed_pole,
-        steps_between_rows,
     )
     from bezstab.evidence.sweep_summaries import Held, projection_sentences, summary, sweep_sentences
     from bezstab.evidence.verdict_maps import MapRows, VerdictMap, map_rows, simulated_verdicts, verdict_map

@@ -43,7 +43,7 @@ from bezstab.mechanism import (
     regular_motion,
     steps_taken,
 )
-from bezstab.methods import Method, second_order_form
+from bezstab.methods import Method
 from bezstab.stability import BoolArray, FloatArray
 from bezstab.units import feedback_gains
 
@@ -67,7 +67,7 @@ class SteppedMotion:
     @property
     def memory(self) -> Memory:
         """What a step starts with."""
-        return memory(second_order_form(self.method.scheme))
+        return memory(self.method.scheme.second_order)
 
     @property
     def whole_turn(self) -> FloatArray:

@@ -28,7 +28,7 @@ from bezstab.mechanism import (
     simulate,
     state_function,
 )
-from bezstab.methods import LinearMultistep, Method, coefficient_table, evaluations, lookup, rho_and_sigma, steps
+from bezstab.methods import LinearMultistep, Method, evaluations, lookup, rho_and_sigma, steps
 from bezstab.stability import critical_damping_limit, poles
 from bezstab.units import feedback_gains
 
@@ -88,7 +88,7 @@ def extreme_checks(full: bool) -> Iterator[Callable[[], Check]]:
     """Yield every check, to be called; without `full` fewer methods and shorter runs."""
     sizes = ALL_SIZES if full else SHORT_SIZES
     for method in map(lookup, ALL_METHODS if full else SHORT_METHODS):
-        if coefficient_table(method):  # whose poles are judged by pi(z, mu)
+        if method.scheme.mu_table:  # whose poles are judged by pi(z, mu)
             yield partial(_sizes, method, sizes)
             # there both mu are one, and so are the poles of each, pair by pair
             yield partial(_root_check, "double μ: α̂² = 4β̂", method, (0.25, 0.015625), 12.0)

@@ -23,7 +23,7 @@ from fractions import Fraction
 import mpmath as mp
 
 from bezstab.errors import NumericalError
-from bezstab.methods import Method, coefficient_table
+from bezstab.methods import Method
 from bezstab.stability import poles
 
 DIGITS = 100
@@ -56,7 +56,7 @@ def pole_digits(method: Method, alpha_hat: float, beta_hat: float) -> PoleDigits
     """
     found = [mp.mpc(z) for z in poles(method, alpha_hat, beta_hat).tolist()]
     with mp.workdps(DIGITS):
-        table = [[_exact(entry) for entry in row] for row in coefficient_table(method)]
+        table = [[_exact(entry) for entry in row] for row in method.scheme.mu_table]
         judged = [pole for mu in _mus(method, alpha_hat, beta_hat) for pole in _judged_poles(table, mu, found)]
         return PoleDigits(min(pole.digits for pole in judged), min(pole.margin for pole in judged))
 

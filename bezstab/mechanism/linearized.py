@@ -18,7 +18,7 @@ from bezstab.mechanism.array_stepping import array_steps
 from bezstab.mechanism.compiled import IMAGINARY_STEP, Mechanism, accelerations
 from bezstab.mechanism.programs import program_of
 from bezstab.mechanism.registers import Steps, room_of
-from bezstab.methods import Method, second_order_form
+from bezstab.methods import Method
 
 FloatArray = NDArray[np.float64]
 
@@ -45,7 +45,7 @@ def steps_taken(
     `carried` is what each starts with, in units in which h = 1, (steps, quantities, n) in the order of `memory`. What
     Newton's method does not solve is no number.
     """
-    program = program_of(second_order_form(method.scheme))
+    program = program_of(method.scheme.second_order)
     by_step = np.ascontiguousarray(np.moveaxis(carried, 0, 2))
     room = room_of(program, by_step, h, len(carried))
     found, told = np.empty((1, 2, by_step[0].size)), np.zeros((1, 6))
@@ -72,7 +72,7 @@ def changes_handed_on(method: Method, jacobians: FloatArray, changes: FloatArray
 
     `jacobians` are those of this step, (points, evaluations, n, 2n).
     """
-    program = program_of(second_order_form(method.scheme))
+    program = program_of(method.scheme.second_order)
     points, quantities, n, columns = changes.shape
     evaluations = len(program.moments)
     found_from = quantities + np.arange(evaluations + 1)

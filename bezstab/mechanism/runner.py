@@ -37,7 +37,6 @@ from bezstab.methods import (
     implicit,
     is_bezier,
     lookup,
-    second_order_form,
 )
 from bezstab.read_only import ReadOnlyArrays
 from bezstab.stabilising import NOTHING, AfterStep
@@ -286,7 +285,7 @@ def steps_in_blocks(
 
     It is in units of the first step's length. The lanes are those of the batch, one after the other.
     """
-    program = program_of(second_order_form(method.scheme), how.after)
+    program = program_of(method.scheme.second_order, how.after)
     n, lanes, variables = mechanism.size, math.prod(batch), 0
     if how.compiled:
         stride = 1 if lanes == 1 else LANES
@@ -341,7 +340,7 @@ def carried_quantities(
     Helpers are what belongs to position, velocity and acceleration, and accelerations those of the states. Shape
     (quantities, n lanes), in units in which h = 1.
     """
-    scheme = second_order_form(method.scheme)
+    scheme = method.scheme.second_order
     remembered = memory(scheme)
     n = mechanism.size
     newest = len(history) - 1
@@ -386,7 +385,7 @@ def breakdown(state: FloatArray, pivot: float = 1.0, unsolved: float = 0.0, unse
 
 def states_needed(method: Method) -> int:
     """Return the number of states that a run of the method starts from, the newest included."""
-    return 1 - second_order_form(method.scheme).oldest
+    return 1 - method.scheme.second_order.oldest
 
 
 def _starters(method: Method, start: Start) -> list[tuple[Method, int]]:

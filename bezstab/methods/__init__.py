@@ -28,7 +28,6 @@ from bezstab.methods.schemes import (
     check_one_step,
     evaluations,
     implicit,
-    second_order_form,
     steps,
 )
 from bezstab.methods.schur import Verdict, is_schur, recursion_verdict
@@ -46,7 +45,6 @@ if TYPE_CHECKING:
         closed_loop_at,
         closed_loop_polynomial,
         closed_loop_table,
-        coefficient_table,
         mapping_equations,
         rational_feedback_roots,
         rho_and_sigma,

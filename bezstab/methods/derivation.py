@@ -10,20 +10,11 @@ from functools import cache
 import sympy as sp
 from sympy.polys.rings import PolyElement
 
-from bezstab.methods.polynomials import MuTable, PlaneTable, horner
+from bezstab.methods.polynomials import PlaneTable, horner
 from bezstab.methods.schemes import Method
 
 Z, MU, ALPHA_HAT, BETA_HAT, S, H = sp.symbols("z mu alpha_hat beta_hat s h")
 PLANE = sp.QQ[ALPHA_HAT, BETA_HAT]
-
-
-def coefficient_table(method: Method) -> MuTable:
-    """Return C with pi(z, mu) = sum_kj C[k][j] z^k mu^j of one step of h on y' = lambda y, mu = h lambda; exact.
-
-    `steps` + 1 rows, one column for each power of mu. Monic in z for mu = 0; for every mu unless implicit.
-    () of a second-order scheme, which treats position and velocity differently and has no mu.
-    """
-    return method.scheme.mu_table
 
 
 def rho_and_sigma(method: Method) -> tuple[Sequence[Fraction], Sequence[Fraction]] | None:
@@ -31,7 +22,7 @@ def rho_and_sigma(method: Method) -> tuple[Sequence[Fraction], Sequence[Fraction
 
     None of other methods.
     """
-    by_power_of_mu = list(zip(*coefficient_table(method), strict=True))
+    by_power_of_mu = list(zip(*method.scheme.mu_table, strict=True))
     if len(by_power_of_mu) != 2:
         return None
     rho, minus_sigma = by_power_of_mu
@@ -40,9 +31,8 @@ def rho_and_sigma(method: Method) -> tuple[Sequence[Fraction], Sequence[Fraction
 
 @cache
 def characteristic_polynomial(method: Method) -> sp.Poly:
-    """Return pi(z, mu); zero of a second-order scheme, as `coefficient_table`."""
-    table = coefficient_table(method)
-    terms = {(k, j): c for k, row in enumerate(table) for j, c in enumerate(row) if c}
+    """Return pi(z, mu); zero of a second-order scheme, which has none."""
+    terms = {(k, j): c for k, row in enumerate(method.scheme.mu_table) for j, c in enumerate(row) if c}
     return sp.Poly.from_dict(terms, Z, MU, domain=sp.QQ)
 
 

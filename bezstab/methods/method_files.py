@@ -1,5 +1,6 @@
 """Methods in TOML files; configs/methods/README.md documents the format."""
 
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -7,7 +8,7 @@ from bezstab.errors import InputError, shown
 from bezstab.files import read_toml
 from bezstab.methods.algebraic_numbers import DIGITS
 from bezstab.methods.schemes import LinearMultistep, Method, RungeKutta, Scheme
-from bezstab.toml_tables import TomlTable, as_it_is, list_of, of_type, table_of
+from bezstab.toml_tables import TomlTable, list_of, of_type
 
 EXAMPLE = "x0 + v0 + 1/2 a0"
 EQUATIONS = f"a table of equations like x1 = {EXAMPLE!r}"
@@ -42,7 +43,7 @@ def _parse_scheme(table: TomlTable, keys: list[str]) -> Scheme:
     row = list_of(lambda text: exact_number(of_type(str, text)))
     match keys:
         case ["update"]:
-            equations = table.entry("update", table_of(as_it_is), EQUATIONS)
+            equations = table.entry("update", partial(of_type, dict), EQUATIONS)
             for result, text in equations.items():
                 if not isinstance(text, str):
                     raise InputError(f"update: {shown(result)} = {shown(text)}: expected a text like {EXAMPLE!r}")

@@ -14,7 +14,6 @@ mu = rho / sigma on the circle z = e^(i theta). With t = 1 - cos theta all of th
 
 from collections.abc import Sequence
 from fractions import Fraction
-from math import isqrt
 
 import sympy as sp
 from sympy.polys.rings import PolyElement
@@ -22,7 +21,7 @@ from sympy.polys.rings import PolyElement
 from bezstab.methods.derivation import rho_and_sigma
 from bezstab.methods.determinants import as_fraction
 from bezstab.methods.plane_edges import crossing_polynomials
-from bezstab.methods.root_isolation import BITS, real_roots
+from bezstab.methods.root_isolation import real_roots
 from bezstab.methods.schemes import Method
 from bezstab.methods.shared_factors import reduced_table, without_shared_factor
 from bezstab.rationals import ZERO
@@ -36,7 +35,7 @@ def turning_factors(method: Method, alpha_hat: Fraction, beta_hat: Fraction, pow
     """Return, ascending, every factor s > 0 at which a root may pass |z| = 1 on the path (s^i alpha_hat, s^j beta_hat).
 
     (i, j) are the powers, each 0, 1 or 2; everything is dimensionless. Rational places with a short denominator are
-    exact, others good to 70 bits bits. Poles that no parameters move are left out.
+    exact, others good to 70 bits. Poles that no parameters move are left out.
     """
     method = without_shared_factor(method)
     coefficients = _along_path(method, alpha_hat, beta_hat, powers)
@@ -97,26 +96,15 @@ def _factors_on_the_circle(
         size = _value(sigma_sigma, t)
         if t > 2 or not size:
             continue
-        of_locus = -2 * _value(rho_sigma, t) / size, _value(rho_rho, t) / size
-        if i and of_locus[0] * alpha_hat < 0:
+        alpha_of_locus, beta_of_locus = -2 * _value(rho_sigma, t) / size, _value(rho_rho, t) / size
+        if i and alpha_of_locus * alpha_hat < 0:
             continue  # on the path of a negative s
-        if j:
-            found += [_square_root(of_locus[1] / beta_hat)] if beta_hat > 0 else []
-        elif alpha_hat:
-            found.append(of_locus[0] / alpha_hat)
+        found += _positive_roots(S**j * beta_hat - beta_of_locus if j else S**i * alpha_hat - alpha_of_locus)
     for t in _positive_roots(imaginary_part):
         if t <= 2 and _value(sigma_sigma, t):
             mu = _value(rho_sigma, t) / _value(sigma_sigma, t)
             found += _positive_roots(S**i * (mu * alpha_hat) + S**j * beta_hat + mu**2)
     return found
-
-
-def _square_root(x: Fraction) -> Fraction:
-    """Return the square root of a number >= 0: exact where it is rational, else to 70 bits bits."""
-    if isqrt(x.numerator) ** 2 == x.numerator and isqrt(x.denominator) ** 2 == x.denominator:
-        return Fraction(isqrt(x.numerator), isqrt(x.denominator))
-    bits = max(0, BITS + (x.denominator.bit_length() - x.numerator.bit_length()) // 2)
-    return Fraction(isqrt((x.numerator << 2 * bits) // x.denominator), 1 << bits)
 
 
 def _on_the_circle(first: Sequence[Fraction], second: Sequence[Fraction]) -> tuple[PolyElement, PolyElement]:

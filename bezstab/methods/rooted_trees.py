@@ -16,7 +16,7 @@ trees, which is why R(mu) alone does not tell the order.
 
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
-from itertools import combinations_with_replacement
+from functools import cache
 from math import prod
 
 from bezstab.methods.polynomials import Polynomial
@@ -25,7 +25,7 @@ from bezstab.rationals import ONE, ZERO
 Tableau = Sequence[Polynomial]
 
 Tree = tuple["Tree", ...]
-"""A rooted tree: the subtrees of its root, in a fixed order. () is a single vertex, ((),) one with a leaf on it."""
+"""A rooted tree: the subtrees of its root, sorted. () is a single vertex, ((),) one with a leaf on it."""
 
 
 def tree_errors(tableau: Tableau, weights: Polynomial, vertices: int) -> Iterator[Fraction]:
@@ -54,20 +54,17 @@ def _density(tree: Tree) -> int:
     return _vertices(tree) * prod(_density(subtree) for subtree in tree)
 
 
-def _trees(order: int) -> Iterator[Tree]:
-    """Yield the rooted trees with `order` vertices, each once: 1, 1, 2, 4, 9, 20, ... of them."""
-    yield from _forests(order - 1, order - 1)
+@cache
+def _trees(order: int) -> frozenset[Tree]:
+    """Return the rooted trees with `order` vertices: 1, 1, 2, 4, 9, 20, ... of them."""
+    if order == 1:
+        return frozenset({()})
+    return frozenset(larger for tree in _trees(order - 1) for larger in _with_another_leaf(tree))
 
 
-def _forests(vertices: int, largest: int) -> Iterator[Tree]:
-    """Yield the unordered collections of trees with so many vertices together, none of more than `largest`.
-
-    Those of the largest size are chosen first, then what remains is filled with smaller ones: so each comes once.
-    """
-    if vertices == 0:
-        yield ()
-    for size in range(min(vertices, largest), 0, -1):
-        for copies in range(1, vertices // size + 1):
-            for chosen in combinations_with_replacement(list(_trees(size)), copies):
-                for rest in _forests(vertices - size * copies, size - 1):
-                    yield chosen + rest
+def _with_another_leaf(tree: Tree) -> Iterator[Tree]:
+    """Yield the trees that a leaf makes of a tree, at its root or anywhere above; subtrees are sorted."""
+    yield ((), *tree)
+    for i, subtree in enumerate(tree):
+        for larger in _with_another_leaf(subtree):
+            yield tuple(sorted([*tree[:i], larger, *tree[i + 1 :]]))

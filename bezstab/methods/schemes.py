@@ -70,12 +70,15 @@ class FirstOrder(ABC):
     @property
     @abstractmethod
     def mu_table(self) -> MuTable:
-        """pi(z, mu)."""
+        """C with pi(z, mu) = sum_kj C[k][j] z^k mu^j of one step of h on y' = lambda y, mu = h lambda; exact.
+
+        `steps` + 1 rows, one column for each power of mu. Monic in z for mu = 0; for every mu unless implicit.
+        """
 
     @property
     @abstractmethod
     def second_order(self) -> SecondOrder:
-        """The equations of a step."""
+        """The step as equations for x, v and a, with h = 1."""
 
     @property
     def table(self) -> PlaneTable:
@@ -136,7 +139,7 @@ class LinearMultistep(FirstOrder):
     def second_order(self) -> SecondOrder:
         """The equations of a step, which evaluates the acceleration at the newest point that it needs."""
         step = 1 if self.implicit else 0
-        evaluation = Evaluation(_at(ACCELERATION, step), _one(POSITION, step), _one(VELOCITY, step))
+        evaluation = Evaluation(Quantity(ACCELERATION, step), _one(POSITION, step), _one(VELOCITY, step))
         updates = self.updates("")
         return SecondOrder((*updates, evaluation) if self.implicit else (evaluation, *updates))
 
@@ -147,9 +150,9 @@ class LinearMultistep(FirstOrder):
         """
         equations: list[Equation] = []
         for part, slope in ((POSITION, VELOCITY), (VELOCITY, ACCELERATION)):
-            past = [(-a, _at(part, -j)) for j, a in enumerate(self.rho[1:])]
-            weighted = [(b, _at(slope if j else slopes + slope, 1 - j)) for j, b in enumerate(self.sigma)]
-            equations.append(Assignment(_at(new + part, 1), _sum([*past, *weighted])))
+            past = [(-a, Quantity(part, -j)) for j, a in enumerate(self.rho[1:])]
+            weighted = [(b, Quantity(slope if j else slopes + slope, 1 - j)) for j, b in enumerate(self.sigma)]
+            equations.append(Assignment(Quantity(new + part, 1), _sum([*past, *weighted])))
         return equations
 
 
@@ -185,9 +188,9 @@ class PredictorCorrector(FirstOrder):
     @cached_property
     def second_order(self) -> SecondOrder:
         """The equations of a step: evaluate, predict, evaluate, correct."""
-        evaluation = Evaluation(_at(ACCELERATION, 0), _one(POSITION, 0), _one(VELOCITY, 0))
+        evaluation = Evaluation(Quantity(ACCELERATION, 0), _one(POSITION, 0), _one(VELOCITY, 0))
         at_predicted = Evaluation(
-            _at(PREDICTED + ACCELERATION, 1), _one(PREDICTED + POSITION, 1), _one(PREDICTED + VELOCITY, 1)
+            Quantity(PREDICTED + ACCELERATION, 1), _one(PREDICTED + POSITION, 1), _one(PREDICTED + VELOCITY, 1)
         )
         predicted, corrected = self.predictor.updates(PREDICTED), self.corrector.updates("", slopes=PREDICTED)
         return SecondOrder((evaluation, *predicted, at_predicted, *corrected))
@@ -251,18 +254,18 @@ class RungeKutta(FirstOrder):
     def second_order(self) -> SecondOrder:
         """The equations of the stages, V_i = v + sum_j a_ij A_j and X_i = x + sum_j a_ij V_j, and of the step."""
         stages = range(len(self.weights))
-        velocity = [_at(f"stage_v_{i + 1}", 1) for i in stages]
-        acceleration = [_at(f"stage_a_{i + 1}", 1) for i in stages]
+        velocity = [Quantity(f"stage_v_{i + 1}", 1) for i in stages]
+        acceleration = [Quantity(f"stage_a_{i + 1}", 1) for i in stages]
 
         def moved(part: str, weights: Coefficients, slopes: list[Quantity]) -> Combination:
-            return _sum([(ONE, _at(part, 0)), *zip(weights, slopes, strict=True)])
+            return _sum([(ONE, Quantity(part, 0)), *zip(weights, slopes, strict=True)])
 
         equations: list[Equation] = []
         for i, row in enumerate(self.tableau):
             equations.append(Assignment(velocity[i], moved(VELOCITY, row, acceleration)))
             equations.append(Evaluation(acceleration[i], moved(POSITION, row, velocity), ((ONE, velocity[i]),)))
-        equations.append(Assignment(_at(POSITION, 1), moved(POSITION, self.weights, velocity)))
-        equations.append(Assignment(_at(VELOCITY, 1), moved(VELOCITY, self.weights, acceleration)))
+        equations.append(Assignment(Quantity(POSITION, 1), moved(POSITION, self.weights, velocity)))
+        equations.append(Assignment(Quantity(VELOCITY, 1), moved(VELOCITY, self.weights, acceleration)))
         return SecondOrder(tuple(equations))
 
     def left_over(self, power: int) -> Iterator[Polynomial]:
@@ -273,10 +276,6 @@ class RungeKutta(FirstOrder):
 
 
 PREDICTED = "predicted_"
-
-
-def _at(name: str, step: int) -> Quantity:
-    return Quantity(name, step)
 
 
 def _one(name: str, step: int) -> Combination:
@@ -334,11 +333,6 @@ def evaluations(method: Method) -> int:
     Of an implicit method: for one iteration.
     """
     return method.scheme.evaluations
-
-
-def second_order_form(scheme: Scheme) -> SecondOrder:
-    """Return the step of a scheme as equations for x, v and a, with h = 1."""
-    return scheme.second_order
 
 
 STATE = (POSITION, VELOCITY, ACCELERATION)

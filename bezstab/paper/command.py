@@ -15,10 +15,13 @@ if TYPE_CHECKING:  # so that `bezstab --help`, which lists this command, loads n
     from bezstab.paper.reports import Finding, Report
 
 
+EVERY_PART = [part for parts in PARTS for part in parts]
+
+
 @command(
     option(
         "--only",
-        click.Choice(PARTS),
+        click.Choice(EVERY_PART),
         "One of table1 to table6 and fig1 to fig9. Repeatable.",
         metavar="PART",
         multiple=True,
@@ -35,7 +38,7 @@ def paper(only: tuple[str, ...], files: Files) -> None:
     """
     from bezstab.paper.ledger import SUBJECTS, ledger_text
 
-    wanted = set(only or PARTS)
+    wanted = set(only or EVERY_PART)
     output_directory(files.output)
     findings: list[Finding] = []
     for parts, made_by in SUBJECTS.items():

@@ -1,7 +1,7 @@
 """Figs. 5 and 6: without stabilisation the constraint error grows until the run collapses (section 5.2.1)."""
 
 from collections.abc import Callable, Mapping, Sequence
-from functools import partial, wraps
+from functools import partial
 from itertools import product
 from typing import Any
 
@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from bezstab.mechanism import Simulation, Start
 from bezstab.paper.experiments import START_NAMES, experiment, largest
 from bezstab.paper.printed import TABLE_3
-from bezstab.paper.reports import Claims, Outcome, Progress, Report
+from bezstab.paper.reports import Finding, Outcome, Progress, Report
 from bezstab.show import DASHES, column_figure, line_at, styled, with_legend
 from bezstab.stability import FloatArray
 
@@ -33,19 +33,26 @@ DRAWN = 300  # points of a long curve of one sign of slope: more than its pixels
 Runs = Mapping[tuple[Start, str, float], Simulation]
 """Runs without feedback, by their start, method and step (s)."""
 
-collapse, growth = Claims(), Claims()
-
 
 def collapse_report(progress: Progress) -> Report:
     """Return Fig. 5 and what it claims."""
     runs = unstabilized(COLLAPSE_STEPS, COLLAPSE_DURATION, "fig5", progress)
-    return Report(figures={"fig5": partial(drift_figure, runs)}, findings=collapse.findings(runs))
+    of_collapse = (b4_collapses_later, large_steps_last_longer, collapse_is_sudden)
+    return Report(figures={"fig5": partial(drift_figure, runs)}, findings=[claim(runs) for claim in of_collapse])
 
 
 def growth_report(progress: Progress) -> Report:
     """Return Fig. 6 and what it claims."""
     runs = unstabilized(GROWTH_STEPS, GROWTH_DURATION, "fig6", progress)
-    return Report(figures={"fig6": partial(drift_figure, runs)}, findings=growth.findings(runs))
+    of_growth = (
+        growth_is_linear,
+        both_levels_are_violated,
+        first_constraint_represents_all,
+        errors_are_of_one_order,
+        b4_errs_less,
+        large_steps_favour_b4,
+    )
+    return Report(figures={"fig6": partial(drift_figure, runs)}, findings=[claim(runs) for claim in of_growth])
 
 
 def unstabilized(steps: Sequence[float], duration: float, label: str, progress: Progress) -> Runs:
@@ -56,52 +63,46 @@ def unstabilized(steps: Sequence[float], duration: float, label: str, progress: 
     }
 
 
-def from_either_start(judged: Callable[[Runs, Start], tuple[str, bool]]) -> Callable[[Runs], Outcome]:
-    """Return what tests a claim from either start, given what tests it from one."""
-
-    @wraps(judged)
-    def outcome(runs: Runs) -> Outcome:
-        texts, holds = zip(*(judged(runs, start) for start in START_NAMES), strict=True)
-        named = zip(START_NAMES.values(), texts, strict=True)
-        return "; ".join(f"{name} start: {text}" for name, text in named), holds
-
-    return outcome
+def from_either_start(judged: Callable[[Start], tuple[str, bool]]) -> Outcome:
+    """Return what came out of a claim from either start, given what comes out of it from one."""
+    texts, holds = zip(*map(judged, START_NAMES), strict=True)
+    named = zip(START_NAMES.values(), texts, strict=True)
+    return "; ".join(f"{name} start: {text}" for name, text in named), holds
 
 
-@collapse.claim(
-    "Fig. 5",
-    "B4 collapses later than AB4",
-    "“for all step sizes considered, the collapse point for the Bézier method occurs later than the Adams–Bashforth "
-    "method”",
-)
-@from_either_start
-def b4_collapses_later(runs: Runs, start: Start) -> tuple[str, bool]:
+def b4_collapses_later(runs: Runs) -> Finding:
     """Return when both methods collapse at each step."""
-    ends = [[_end(runs[start, name, h]) for name in METHODS] for h in COLLAPSE_STEPS]
-    shown = ", ".join(" / ".join(map(_time, pair)) for pair in ends)
     steps = ", ".join(f"{1e3 * h:g}" for h in COLLAPSE_STEPS)
-    return f"B4 / AB4 after {shown} s at {steps} ms", all(b4 > ab4 for b4, ab4 in ends)
+
+    def judged(start: Start) -> tuple[str, bool]:
+        ends = [[_end(runs[start, name, h]) for name in METHODS] for h in COLLAPSE_STEPS]
+        shown = ", ".join(" / ".join(map(_time, pair)) for pair in ends)
+        return f"B4 / AB4 after {shown} s at {steps} ms", all(b4 > ab4 for b4, ab4 in ends)
+
+    return Finding(
+        "Fig. 5",
+        "B4 collapses later than AB4",
+        "“for all step sizes considered, the collapse point for the Bézier method occurs later than the "
+        "Adams–Bashforth method”",
+        *from_either_start(judged),
+    )
 
 
-@collapse.claim("Fig. 5", "B4 is more stable in particular for large steps", FOR_LARGE_STEPS)
-def large_steps_last_longer(runs: Runs) -> Outcome:
+def large_steps_last_longer(runs: Runs) -> Finding:
     """Return whether B4 outlasts AB4 by more where steps are larger, from either start."""
     ratios = [_end(runs["euler", "B4", h]) / _end(runs["euler", "AB4", h]) for h in COLLAPSE_STEPS]
     b4, ab4 = (_end(runs["rk4", name, COLLAPSE_STEPS[-1]]) for name in METHODS)
-    return (
+    return Finding(
+        "Fig. 5",
+        "B4 is more stable in particular for large steps",
+        FOR_LARGE_STEPS,
         f"explicit Euler start: one ratio at every step, B4 / AB4 = {_each(ratios)} in time; RK4 start: AB4 outlasts "
         "B4",
         [ratios[-1] > MORE * ratios[0], b4 > ab4],
     )
 
 
-@collapse.claim(
-    "Fig. 5",
-    "the collapse is sudden",
-    "“after some time, either the amount of error reaches a point that causes serious problems for the system "
-    "simulation or collapses where the error suddenly increases too much”",
-)
-def collapse_is_sudden(runs: Runs) -> Outcome:
+def collapse_is_sudden(runs: Runs) -> Finding:
     """Return how large c_1 is shortly before the runs that blow up do."""
     before, sudden = [], []
     for run in runs.values():
@@ -109,7 +110,11 @@ def collapse_is_sudden(runs: Runs) -> Outcome:
             shortly_before = 0.99 * float(run.t[-1])
             before.append(largest(run, 0.0, shortly_before))
             sudden.append(largest(run, shortly_before, np.inf) > SUDDENLY * before[-1])
-    return (
+    return Finding(
+        "Fig. 5",
+        "the collapse is sudden",
+        "“after some time, either the amount of error reaches a point that causes serious problems for the system "
+        "simulation or collapses where the error suddenly increases too much”",
         f"{len(sudden)} runs blow up within the last 1 % of their time; before, |c_1| is at most {min(before):.2f} to "
         f"{max(before):.2f} m; the crank is {TABLE_3['l1']:g} m long",
         [bool(sudden) and all(sudden)],
@@ -121,12 +126,7 @@ def _end(run: Simulation) -> float:
     return float(run.t[-1]) if run.failure else np.inf
 
 
-@growth.claim(
-    "Fig. 6",
-    "without stabilisation the violation grows linearly with time",
-    "“the constraint violation increases linearly with time”",
-)
-def growth_is_linear(runs: Runs) -> Outcome:
+def growth_is_linear(runs: Runs) -> Finding:
     """Return to which power of time the largest |c_1| so far grows, over the last nine tenths of each run.
 
     Runs whose |c_1| stays so small that rounding has its part in it are left out.
@@ -134,16 +134,16 @@ def growth_is_linear(runs: Runs) -> Outcome:
     times = np.linspace(GROWTH_DURATION / 10, GROWTH_DURATION, 40)
     powers = [_power(times, [largest(run, 0, time) for time in times.tolist()]) for run in _above_rounding(runs)]
     here = f"|c_1| like t to the power of {min(powers):.1f} to {max(powers):.1f}"
-    return here, [0.7 < power < 1.3 for power in powers]
+    return Finding(
+        "Fig. 6",
+        "without stabilisation the violation grows linearly with time",
+        "“the constraint violation increases linearly with time”",
+        here,
+        [0.7 < power < 1.3 for power in powers],
+    )
 
 
-@growth.claim(
-    "Introduction",
-    "positions and velocities violate the constraints",
-    "“violation of constraints occurs at position and velocity levels due to numerical errors associated with the "
-    "integration process”",
-)
-def both_levels_are_violated(runs: Runs) -> Outcome:
+def both_levels_are_violated(runs: Runs) -> Finding:
     """Return how c_1 and its derivative of B4 compare at the end of each run and over its first half.
 
     What grows linearly has doubled since; what stays has not grown.
@@ -155,63 +155,73 @@ def both_levels_are_violated(runs: Runs) -> Outcome:
         for rate in (False, True)
     )
     least = min(largest(run, half, GROWTH_DURATION, rate=True) for run in of_b4)
-    return (
+    return Finding(
+        "Introduction",
+        "positions and velocities violate the constraints",
+        "“violation of constraints occurs at position and velocity levels due to numerical errors associated with the "
+        "integration process”",
         f"B4, second half of the run over the first: |c_1| {min(of_c):.2f} to {max(of_c):.2f} times, its derivative, "
         f"of {least:.0e} m/s and more, {min(of_cdot):.2f} to {max(of_cdot):.2f}",
         [min(of_c) > 1 and least > ROUNDING],
     )
 
 
-@growth.claim(
-    "Section 5.2.1",
-    "c_1 stands for all constraints",
-    "“This constraint can be considered as representative of all of the constraints in Eq. (19)”",
-)
-def first_constraint_represents_all(runs: Runs) -> Outcome:
+def first_constraint_represents_all(runs: Runs) -> Finding:
     """Return whether c_1 is the largest of the four constraint errors in each run, and how small the others are."""
     largest_of_each = np.array([np.abs(run.c).max(axis=0) for run in _above_rounding(runs)])
     is_first = largest_of_each.argmax(axis=1) == 0
     ratios = largest_of_each[:, 0] / largest_of_each[:, 3]
-    return (
+    return Finding(
+        "Section 5.2.1",
+        "c_1 stands for all constraints",
+        "“This constraint can be considered as representative of all of the constraints in Eq. (19)”",
         f"it is the largest in {np.count_nonzero(is_first)} of {len(is_first)} runs, {ratios.min():.0f} to "
         f"{ratios.max():.0f} times c_4",
         [bool(is_first.all()), bool(ratios.max() < ALIKE)],
     )
 
 
-@growth.claim(
-    "Fig. 6",
-    "both methods have the same order of error",
-    "“both methods have the same order of error by considering the same step sizes”",
-)
-@from_either_start
-def errors_are_of_one_order(runs: Runs, start: Start) -> tuple[str, bool]:
+def errors_are_of_one_order(runs: Runs) -> Finding:
     """Return to which power of h the final |c_1| of both methods grows."""
-    b4, ab4 = (_power(GROWTH_STEPS, _final_errors(runs, start, name)) for name in METHODS)
-    return f"B4 {b4:.0f}, AB4 {ab4:.0f}", abs(b4 - ab4) < 0.25
+
+    def judged(start: Start) -> tuple[str, bool]:
+        b4, ab4 = (_power(GROWTH_STEPS, _final_errors(runs, start, name)) for name in METHODS)
+        return f"B4 {b4:.0f}, AB4 {ab4:.0f}", abs(b4 - ab4) < 0.25
+
+    return Finding(
+        "Fig. 6",
+        "both methods have the same order of error",
+        "“both methods have the same order of error by considering the same step sizes”",
+        *from_either_start(judged),
+    )
 
 
-@growth.claim(
-    "Fig. 6",
-    "B4's error is slightly below AB4's",
-    "“the constraint error for 4th order Bézier is slightly less than 4th order Adams–Bashforth in different step "
-    "sizes”",
-)
-@from_either_start
-def b4_errs_less(runs: Runs, start: Start) -> tuple[str, bool]:
+def b4_errs_less(runs: Runs) -> Finding:
     """Return how the final |c_1| of B4 compares with AB4's at the same step.
 
     Steps at which AB4's is so small that rounding has its part in it are left out.
     """
-    ratios = _final_ratios(runs, start)[_final_errors(runs, start, "AB4") > ROUNDING]
-    return f"B4 / AB4 = {_ratio(ratios.min())} to {_ratio(ratios.max())}", bool(ratios.max() < 1)
+
+    def judged(start: Start) -> tuple[str, bool]:
+        ratios = _final_ratios(runs, start)[_final_errors(runs, start, "AB4") > ROUNDING]
+        return f"B4 / AB4 = {_ratio(ratios.min())} to {_ratio(ratios.max())}", bool(ratios.max() < 1)
+
+    return Finding(
+        "Fig. 6",
+        "B4's error is slightly below AB4's",
+        "“the constraint error for 4th order Bézier is slightly less than 4th order Adams–Bashforth in different step "
+        "sizes”",
+        *from_either_start(judged),
+    )
 
 
-@growth.claim("Fig. 6", "B4 is more accurate in particular for large steps", FOR_LARGE_STEPS)
-def large_steps_favour_b4(runs: Runs) -> Outcome:
+def large_steps_favour_b4(runs: Runs) -> Finding:
     """Return how the final |c_1| of B4 compares with AB4's at each step, from either start."""
     after_euler, after_rk4 = (_final_ratios(runs, start).tolist() for start in START_NAMES)
-    return (
+    return Finding(
+        "Fig. 6",
+        "B4 is more accurate in particular for large steps",
+        FOR_LARGE_STEPS,
         f"explicit Euler start: one ratio at every step, B4 / AB4 = {_each(after_euler)}; RK4 start: "
         f"{_ratio(after_rk4[-1])} at {1e3 * GROWTH_STEPS[-1]:g} ms, the largest",
         [MORE * after_euler[-1] < after_euler[0], after_rk4[-1] < 1],

@@ -1,23 +1,26 @@
 """All subjects of the paper in order, and the ledger: a row for every claim that can be tested."""
 
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from typing import get_args
 
 from bezstab.paper import comparison, cost, drift, influence, methods, regions, slider_crank
+from bezstab.paper.printed import PARTS
 from bezstab.paper.reports import Agreement, Finding, Progress, Report, captioned_table
 from bezstab.show import CLAIMS
 
-SUBJECTS: Mapping[tuple[str, ...], Callable[[Progress], Report]] = {
-    ("table1", "table2"): methods.report,
-    ("fig1", "fig2", "fig3"): regions.report,
-    ("table3", "fig4"): slider_crank.report,
-    ("fig5",): drift.collapse_report,
-    ("fig6",): drift.growth_report,
-    ("table4", "fig7", "fig8"): influence.report,
-    ("table5", "fig9"): comparison.report,
-    ("table6",): cost.report,
-}
+MAKERS: Sequence[Callable[[Progress], Report]] = (
+    methods.report,
+    regions.report,
+    slider_crank.report,
+    drift.collapse_report,
+    drift.growth_report,
+    influence.report,
+    comparison.report,
+    cost.report,
+)
+
+SUBJECTS = dict(zip(PARTS, MAKERS, strict=True))
 """Tables and figures that come together, and what makes them, in the order of the ledger."""
 
 
@@ -26,4 +29,4 @@ def ledger_text(findings: Sequence[Finding]) -> str:
     counts = Counter(finding.agreement for finding in findings)
     total = ", ".join(f"{counts[agreement]} {agreement}" for agreement in get_args(Agreement))
     caption = f"# What the paper claims, and what came out\n\nWritten by `bezstab paper`: {total}."
-    return captioned_table(caption, [CLAIMS.row(finding) for finding in findings], CLAIMS.fields)
+    return captioned_table(caption, [CLAIMS.row(finding) for finding in findings])

@@ -2,10 +2,9 @@
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import wraps
 from typing import TYPE_CHECKING, Any, Literal
 
-from bezstab.show import Field, Row, render
+from bezstab.show import Row, column, render
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -36,31 +35,6 @@ class Finding:
 Outcome = tuple[str, Sequence[bool]]
 """What came out of a claim, in words, and whether each of its conditions holds."""
 
-
-@dataclass(frozen=True)
-class Claims:
-    """Claims of the paper in the order of the ledger, each with its test: a function of what they are all about."""
-
-    tests: list[Callable[..., Finding]] = field(default_factory=list)
-
-    def claim(self, where: str, claim: str, paper: str) -> Callable[[Callable[..., Outcome]], Callable[..., Finding]]:
-        """Return a decorator that adds a claim: of what tests it, it makes a function that returns the finding."""
-
-        def added(outcome: Callable[..., Outcome]) -> Callable[..., Finding]:
-            @wraps(outcome)
-            def test(*about: Any) -> Finding:
-                return Finding(where, claim, paper, *outcome(*about))
-
-            self.tests.append(test)
-            return test
-
-        return added
-
-    def findings(self, *about: Any) -> list[Finding]:
-        """Return what came of every claim."""
-        return [test(*about) for test in self.tests]
-
-
 Progress = Callable[[Sequence[Any], str], Iterable[Any]]
 """Passes on what says which run is next, and may show how far it is: it is told all of them, and their label."""
 
@@ -74,6 +48,7 @@ class Report:
     findings: Sequence[Finding] = ()
 
 
-def captioned_table(caption: str, rows: Sequence[Row], columns: Sequence[Field]) -> str:
-    """Return a table as Markdown below its caption."""
+def captioned_table(caption: str, rows: Sequence[Row]) -> str:
+    """Return rows, their values by heading, as Markdown below a caption."""
+    columns = [column(heading, heading) for heading in rows[0]]
     return f"{caption}\n\n{render(rows, columns, 'markdown')}\n"

@@ -15,10 +15,9 @@ from bezstab.mechanism import (
     load_scene,
 )
 from bezstab.paper.experiments import DURATION, STEP, experiment, largest
-from bezstab.paper.lost import UNTESTED
-from bezstab.paper.printed import TABLE_3
-from bezstab.paper.reports import Claims, Outcome, Progress, Report, captioned_table
-from bezstab.show import Row, column, plot, styled
+from bezstab.paper.printed import LOST, NOT_HERE, TABLE_3
+from bezstab.paper.reports import Finding, Progress, Report, captioned_table
+from bezstab.show import formatted, plot, styled
 from bezstab.stability import FloatArray
 
 SAME = 1e-12  # SI: rounding of sums of a few terms near one
@@ -33,25 +32,21 @@ DIFFERENCE = 1e-4  # s, between the times of a second difference: its error is a
 SEEN_BY_DIFFERENCES = 1e-6  # of the largest term
 KICK = 1e-3  # m
 
-BODIES = [
-    column("body", "body"),
-    column("length (m)", "length", "g"),
-    column("mass (kg)", "mass", "g"),
-    column("moment of inertia (kg m²)", "inertia", "g"),
-]
-
 ENTERING = ("J1", "m2", "J2", "m3")
 """Of Table 3's masses and moments of inertia, those that enter the equations."""
-
-claims = Claims()
 
 
 def report(_progress: Progress) -> Report:
     """Return Fig. 4 and Table 3, what the equations come to, and what of the whole paper cannot be tested."""
+    caption = (
+        "Table 3: the slider-crank. m1 and J3 do not enter: the crank turns about its pivot, the slider not at all."
+    )
+    missing = [("Introduction", name, f"“{sentence}”", "not in bezstab: nothing to run") for name, sentence in NOT_HERE]
+    untested = [Finding(*claim, holds=[]) for claim in (*LOST, *missing)]
     return Report(
-        tables={"table3": body_table(load_scene("slider_crank"))},
+        tables={"table3": captioned_table(caption, body_rows(load_scene("slider_crank")))},
         figures={"fig4": mechanism_figure},
-        findings=[*claims.findings(compared_terms()), *UNTESTED],
+        findings=[*findings(compared_terms()), *untested],
     )
 
 
@@ -65,18 +60,10 @@ def mechanism_figure() -> Figure:
     return figure
 
 
-def body_table(scene: Scene) -> str:
-    """Return Table 3 as Markdown."""
-    caption = (
-        "Table 3: the slider-crank. m1 and J3 do not enter: the crank turns about its pivot, the slider not at all."
-    )
-    return captioned_table(caption, body_rows(scene), BODIES)
-
-
-def body_rows(scene: Scene) -> list[Row]:
+def body_rows(scene: Scene) -> list[dict[str, str]]:
     """Return each body's length between its joints (m), mass (kg) and moment of inertia (kg m²).
 
-    None where a body has none, or where it does not enter.
+    A dash where a body has none, or where it does not enter.
     """
     joints_along = {body.name: [0.0] for body in scene.bodies}
     for name, (x, _) in scene.attachments:
@@ -84,9 +71,9 @@ def body_rows(scene: Scene) -> list[Row]:
     return [
         {
             "body": body.name,
-            "length": max(joints_along[body.name]) - min(joints_along[body.name]) or None,
-            "mass": body.mass or None,
-            "inertia": body.inertia or None,
+            "length (m)": formatted(max(joints_along[body.name]) - min(joints_along[body.name]) or None, "g"),
+            "mass (kg)": formatted(body.mass or None, "g"),
+            "moment of inertia (kg m²)": formatted(body.inertia or None, "g"),
         }
         for body in scene.bodies
     ]
@@ -146,70 +133,77 @@ def compared_terms() -> Terms:
     return scene_terms(q + DISPLACED, v + FASTER)
 
 
-@claims.claim("Table 3", ", ".join(ENTERING), ", ".join(f"{TABLE_3[name]:g}" for name in ENTERING))
-def body_data(_terms: Terms) -> Outcome:
+def findings(terms: Terms) -> list[Finding]:
+    """Return what came of every claim; the terms are those at one state."""
+    return [
+        body_data(),
+        mass_matrix(terms),
+        *equations_as_printed(terms),
+        generalised_forces(terms),
+        unique_accelerations(terms),
+        constraint_accelerations(terms),
+        derivatives_of_the_constraints(),
+        consistent_start(),
+        inconsistent_start(),
+    ]
+
+
+def body_data() -> Finding:
     """Return whether the scene has the masses and moments of inertia of Table 3."""
     crank, rod, slider = load_scene("slider_crank").bodies
     ours = crank.inertia, rod.mass, rod.inertia, slider.mass
     here = ", ".join(f"{value:g}" for value in ours) + "; m1 and J3 do not enter"
-    return here, [ours == tuple(TABLE_3[name] for name in ENTERING)]
+    return Finding(
+        "Table 3",
+        ", ".join(ENTERING),
+        ", ".join(f"{TABLE_3[name]:g}" for name in ENTERING),
+        here,
+        [ours == tuple(TABLE_3[name] for name in ENTERING)],
+    )
 
 
-@claims.claim("Eq. 20", "M = diag(J1, m2, m2, J2, m3)", "diagonal")
-def mass_matrix(terms: Terms) -> Outcome:
+def mass_matrix(terms: Terms) -> Finding:
     """Return whether the scene's mass matrix is that of Eq. 20."""
     printed = [TABLE_3[name] for name in ("J1", "m2", "m2", "J2", "m3")]
-    return ", ".join(f"{entry:g}" for entry in terms.mass), [terms.mass == printed]
+    return Finding(
+        "Eq. 20",
+        "M = diag(J1, m2, m2, J2, m3)",
+        "diagonal",
+        ", ".join(f"{entry:g}" for entry in terms.mass),
+        [terms.mass == printed],
+    )
 
 
-@claims.claim("Eq. 19", "constraints c of the slider-crank", "as printed")
-def constraints_as_printed(terms: Terms) -> Outcome:
-    """Return whether Eq. 19 is the scene's, each row perhaps negated."""
-    return _as_printed(terms, 0)
-
-
-@claims.claim("Eq. 21", "Jacobian C_q of the slider-crank", "as printed")
-def jacobian_as_printed(terms: Terms) -> Outcome:
-    """Return whether Eq. 21 is the scene's, with the rows negated that are in Eq. 19."""
-    return _as_printed(terms, 1)
-
-
-@claims.claim("Eq. 22", "vector γ of the slider-crank", "as printed")
-def gamma_as_printed(terms: Terms) -> Outcome:
-    """Return whether Eq. 22 is the scene's, with the rows negated that are in Eq. 19."""
-    return _as_printed(terms, 2)
-
-
-def _as_printed(terms: Terms, which: int) -> Outcome:
-    """Return whether Eq. 19, 21 or 22 is the scene's.
+def equations_as_printed(terms: Terms) -> list[Finding]:
+    """Return whether Eqs 19, 21 and 22 are the scene's.
 
     c = 0 and -c = 0 say the same, so a row of Eq. 19 may have either sign; but then the same row of Eqs 21 and 22,
     its derivatives, must have that sign too.
     """
+    names = {"Eq. 19": "constraints c", "Eq. 21": "Jacobian C_q", "Eq. 22": "vector γ"}
     ours, printed = (terms.constraints, terms.jacobian, terms.gamma), printed_equations(terms.q, terms.v)
     signs = np.where(ours[0] * printed[0] < 0, -1.0, 1.0)
-    same = bool(np.abs(ours[which].T - signs * printed[which].T).max() < SAME)
-    return "same to rounding" if same else "differs", [same]
+    found = []
+    for (where, name), here, there in zip(names.items(), ours, printed, strict=True):
+        same = bool(np.abs(here.T - signs * there.T).max() < SAME)
+        outcome = "same to rounding" if same else "differs"
+        found.append(Finding(where, f"{name} of the slider-crank", "as printed", outcome, [same]))
+    return found
 
 
-@claims.claim("Eq. 23", "g = [0 0 m2 g 0 0]", "plus sign")
-def generalised_forces(terms: Terms) -> Outcome:
+def generalised_forces(terms: Terms) -> Finding:
     """Return whether g is as printed in Eq. 23; corrected, the weight of the rod acts on y₂ alone, and downwards."""
     weight_of_the_rod = np.array([0, 0, TABLE_3["m2"] * GRAVITY, 0, 0])
     as_printed = bool(np.abs(terms.forces - weight_of_the_rod).max() < SAME)
     corrected = bool(np.abs(terms.forces + weight_of_the_rod).max() < SAME)
     entries = ", ".join(f"{force:g}" for force in terms.forces)
     sign = "minus" if terms.forces[2] < 0 else "plus"
-    return f"[{entries}]: {sign} with y up", [as_printed, corrected]
+    return Finding(
+        "Eq. 23", "g = [0 0 m2 g 0 0]", "plus sign", f"[{entries}]: {sign} with y up", [as_printed, corrected]
+    )
 
 
-@claims.claim(
-    "Section 2",
-    "accelerations and multipliers are unique",
-    "“Assuming that the mass matrix is positive definite and the Jacobian matrix has a full row rank, a unique "
-    "solution for accelerations q̈ and Lagrange multipliers λ will be obtained”",
-)
-def unique_accelerations(terms: Terms) -> Outcome:
+def unique_accelerations(terms: Terms) -> Finding:
     """Return the rank of the matrix of Eq. 5, as the mechanism has it and with its last constraint written twice."""
     texts, full = [], []
     for jacobian in (terms.jacobian, np.vstack([terms.jacobian, terms.jacobian[-1]])):
@@ -219,16 +213,17 @@ def unique_accelerations(terms: Terms) -> Outcome:
         texts.append(f"{rank} of {len(matrix)}")
         full.append(bool(rank == len(matrix)))
     here = f"slider-crank: rank {texts[0]}; with a constraint written twice {texts[1]}"
-    return here, [full == [True, False]]
+    return Finding(
+        "Section 2",
+        "accelerations and multipliers are unique",
+        "“Assuming that the mass matrix is positive definite and the Jacobian matrix has a full row rank, a unique "
+        "solution for accelerations q̈ and Lagrange multipliers λ will be obtained”",
+        here,
+        [full == [True, False]],
+    )
 
 
-@claims.claim(
-    "Eqs 5, 6, 8, 9",
-    "the accelerations keep c̈ = 0, or c̈ + 2αċ + β²c = 0",
-    "“it is guaranteed that the constraint equations at the acceleration level, c̈ = 0, are satisfied at every "
-    "integration step”",
-)
-def constraint_accelerations(terms: Terms) -> Outcome:
+def constraint_accelerations(terms: Terms) -> Finding:
     """Return what c̈ = C_q q̈ - γ is at a state off the constraints: with no gains 0, with some what Eq. 6 asks for."""
     mechanism = compiled_mechanism(load_scene("slider_crank"))
     holds = []
@@ -238,11 +233,17 @@ def constraint_accelerations(terms: Terms) -> Outcome:
         largest_term = max(1.0, np.abs(asked).max(), np.abs(qddot).max())
         holds.append(bool(np.abs(terms.jacobian @ qddot - terms.gamma - asked).max() < SAME * largest_term))
     free, stabilised = ("holds to rounding" if same else "does not hold" for same in holds)
-    return f"at a state far off the constraints: Eq. 5 {free}, Eq. 9 {stabilised}", holds
+    return Finding(
+        "Eqs 5, 6, 8, 9",
+        "the accelerations keep c̈ = 0, or c̈ + 2αċ + β²c = 0",
+        "“it is guaranteed that the constraint equations at the acceleration level, c̈ = 0, are satisfied at every "
+        "integration step”",
+        f"at a state far off the constraints: Eq. 5 {free}, Eq. 9 {stabilised}",
+        holds,
+    )
 
 
-@claims.claim("Eqs 3, 4", "derivatives of c(q, t)", "as printed")
-def derivatives_of_the_constraints(_terms: Terms) -> Outcome:
+def derivatives_of_the_constraints() -> Finding:
     """Return whether c of a driven mechanism, which has all terms of Eqs 3 and 4, has the second derivative of Eq. 9.
 
     The second difference of c along q + v t + q̈ t²/2 is c̈, whatever formulas q̈ comes from.
@@ -257,33 +258,33 @@ def derivatives_of_the_constraints(_terms: Terms) -> Outcome:
     error = float(np.abs(cddot).max() / np.abs(qddot).max())
     is_zero = error < SEEN_BY_DIFFERENCES
     found = "c̈ = 0 by differences of c" if is_zero else f"c̈ is not 0 by differences of c, but {error:.0e} of q̈"
-    return f"a driven four-bar: {found}", [is_zero]
+    return Finding("Eqs 3, 4", "derivatives of c(q, t)", "as printed", f"a driven four-bar: {found}", [is_zero])
 
 
-@claims.claim(
-    "Section 5.2",
-    "the initial state is consistent",
-    "“The initial conditions at the position and velocity levels are consistent with the physics of the problem, in "
-    "order to prevent violation of constraints at the initial instant”",
-)
-def consistent_start(_terms: Terms) -> Outcome:
+def consistent_start() -> Finding:
     """Return whether c and ċ are zero in the scene's initial state."""
     started = experiment("B4", duration=STEP)
     consistent = bool(max(np.abs(started.c[0]).max(), np.abs(started.cdot[0]).max()) < SAME)
-    return "c = 0 and ċ = 0 to rounding" if consistent else "c or ċ is not 0", [consistent]
+    return Finding(
+        "Section 5.2",
+        "the initial state is consistent",
+        "“The initial conditions at the position and velocity levels are consistent with the physics of the problem, "
+        "in order to prevent violation of constraints at the initial instant”",
+        "c = 0 and ċ = 0 to rounding" if consistent else "c or ċ is not 0",
+        [consistent],
+    )
 
 
-@claims.claim(
-    "Section 5.2",
-    "an inconsistent one leads to errors",
-    "“violation of constraints at the initial instant of analysis, which, eventually, can lead to erroneous results”",
-)
-def inconsistent_start(_terms: Terms) -> Outcome:
+def inconsistent_start() -> Finding:
     """Return what becomes of 1 mm in c_1 at the start, without feedback: of c_1 itself, and of the crank's angle."""
     right, wrong = (experiment("AB4", kick=kick) for kick in (0.0, KICK))
     left = largest(wrong, 0.9 * DURATION, DURATION)
     angle = abs(float(wrong.q[-1, 0] - right.q[-1, 0]))
-    return (
+    return Finding(
+        "Section 5.2",
+        "an inconsistent one leads to errors",
+        "“violation of constraints at the initial instant of analysis, which, eventually, can lead to erroneous "
+        "results”",
         f"c_1 = {1e3 * KICK:g} mm at the start, no feedback: {1e3 * left:.2f} mm after {DURATION:g} s, the crank off "
         f"by {angle:.0e} rad; consistent: below 1e-10 m",
         [left > 0.5 * KICK and largest(right, 0, DURATION) < 1e-10],

@@ -222,14 +222,14 @@ class Answer(Choice):
         factors: dict[Gain, float | None] = {"kd": kd_factor, "kp": kp_factor}
         # the distance is the ratio of the gain and its limit, whichever is larger
         ratios = {gain: max(each, 1 / each) for gain, each in factors.items() if each and math.isfinite(each)}
-        nearest_first = sorted(ratios, key=lambda gain: ratios[gain])
+        nearest = min(ratios, key=lambda gain: ratios[gain], default=None)
         return Gains(
             applied=DRIVE_METHODS.get(self.method.name),
             kp=float(kp),
             kd=float(kd),
             kp_max=None if kp_factor is None else kp_factor * float(kp),
             kd_max=None if kd_factor is None else kd_factor * float(kd),
-            used_up=nearest_first[0] if nearest_first else None,
+            used_up=nearest,
         )
 
     @cached_property
@@ -292,21 +292,15 @@ def answers(question: Question, *, margins: bool = True) -> Iterator[Answer]:
     for method in question.methods:
         if question.goal:
             found = _chosen(question, "chosen", method, question.goal, question.settle, margins=margins)
-            yield _expressible(found)
+            try:
+                _ = found.setting
+            except InputError as error:
+                asked = f"{question.engine.name}={question.engine.words()}" if question.engine else ""
+                raise InputError(f"{error}: ask `check --engine {asked}` about values of yours") from None
+            yield found
             continue
         for label, point in (("as given", question.given.point), *question.given.also):
             yield _answer(question, "given", describe_point(method, label, *point, question.spread, margins), point)
-
-
-def _expressible(chosen: Answer) -> Answer:
-    """Return a choice; InputError, with a question to ask instead, if the engine cannot express it."""
-    try:
-        _ = chosen.setting
-    except InputError as error:
-        engine = chosen.question.engine
-        asked = f"{engine.name}={engine.words()}" if engine else ""
-        raise InputError(f"{error}: ask `check --engine {asked}` about values of yours") from None
-    return chosen
 
 
 def _answer(question: Question, role: Role, choice: Choice, point: Point | None = None) -> Answer:

@@ -13,7 +13,6 @@ from bezstab.mechanism import Revolute, Scene, compiled_mechanism, constraint_ja
 from bezstab.questions.motions import name_of, scene_at_speed
 from bezstab.rationals import rational
 from bezstab.stability import (
-    BoolArray,
     FloatArray,
     Growth,
     chain,
@@ -163,16 +162,13 @@ class SweptConstraints:
         A point (alpha_hat, beta_hat); None where no feedback on the curve is stable.
         """
 
-        def allowed(share: float) -> bool:
+        def refused(share: float) -> bool:
             try:
-                return self.growth(self._values_at(share, spread)).decays
+                return not self.growth(self._values_at(share, spread)).decays
             except InputError:  # the engine cannot express it
-                return False
+                return True
 
-        def refused(shares: FloatArray) -> BoolArray:
-            return np.array([not allowed(float(share)) for share in shares])
-
-        turn = first_where(refused, SHARES)
+        turn = first_where(np.vectorize(refused, otypes=[bool]), SHARES)
         if turn and turn[0] == turn[1]:  # already the weakest
             return None
         return self._point_at(turn[0] if turn else SHARES[-1])
@@ -180,10 +176,10 @@ class SweptConstraints:
     def sweeps_to_spare(self, point: Point, spread: float) -> int | None:
         """Return from how many sweeps a point on the engine's curve is stable even if it were `spread` stronger."""
 
-        def as_strong(shares: FloatArray) -> BoolArray:
-            return np.array([self._point_at(float(share))[1] >= point[1] for share in shares])
+        def as_strong(share: float) -> bool:
+            return self._point_at(share)[1] >= point[1]
 
-        turn = first_where(as_strong, SHARES)
+        turn = first_where(np.vectorize(as_strong, otypes=[bool]), SHARES)
         return self.fewest(self._values_at(float(turn[1] if turn else SHARES[-1]), spread))
 
     def _point_at(self, share: float) -> Point:

@@ -18,8 +18,6 @@ from bezstab.errors import InputError
 from bezstab.methods import Method, Verdict, lookup
 from bezstab.rationals import exact
 from bezstab.stability import (
-    BoolArray,
-    FloatArray,
     HeldLimits,
     HeldMap,
     Timing,
@@ -201,10 +199,10 @@ def held_gains(question: HeldQuestion, *, bandwidth: Fraction | None = None, set
     if _safe_with_margin(question, critical):
         return critical
 
-    def holds(omega_h: FloatArray) -> BoolArray:
-        return np.array([_safe_with_margin(question, _critical_drive(each / h, inertia)) for each in omega_h.tolist()])
+    def holds(omega_h: float) -> bool:
+        return _safe_with_margin(question, _critical_drive(omega_h / h, inertia))
 
-    found = first_where(holds, OMEGA_H)
+    found = first_where(np.vectorize(holds, otypes=[bool]), OMEGA_H)
     refused = f"{asked}: not safe with a margin of {MARGIN:g}-fold at this rate and delay"
     if found is None:
         raise InputError(f"{refused}, nor is any that is slower")

@@ -3,6 +3,8 @@
 Messages name options as the command line has them (--h-max); `bezstab.api` turns them into keywords (h_max).
 """
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -14,8 +16,14 @@ from bezstab.mechanism import Scene, TurningNormals
 from bezstab.methods import Method, check_one_step, lookup
 from bezstab.questions.chains import SweptConstraints, check_sweeps, constraints_of, constraints_of_chain
 from bezstab.questions.motions import ReferenceMotion, check_speed, motion_of, turn_too_far, turning_of
-from bezstab.questions.points import engine_holds
-from bezstab.units import check_step
+from bezstab.stability import verdict
+from bezstab.units import check_step, feedback_gains
+
+LARGE = 10
+"""From this alpha_hat or beta_hat on, 1/s was probably meant: as alpha_hat it leaves e^-5 of an error after a step."""
+
+SAME_GAINS = 1e-9
+"""Of gains in 1/s and 1/s^2: roots and powers that engines take are rounded to float64."""
 
 WHICH_METHOD = (
     "which integrator? --method SYM (semi-implicit Euler, as most engines have), RK4, rk45 (solve_ivp's), AB4, "
@@ -193,6 +201,38 @@ class Question:
     def turning(self) -> TurningNormals | None:
         """How the normals of the scene's constraints turn; None without a scene; errors as `turning_of`."""
         return turning_of(self.scene, self.speed, self.h)
+
+
+def engine_holds(
+    engine: Engine, values: tuple[Fraction, ...], shorter: Fraction, longer: Fraction, *, as_typed: bool
+) -> bool:
+    """Return whether an engine's values mean the same alpha_hat and beta_hat at both steps (s), or alpha and beta.
+
+    InputError where they mean neither, as those do that are clamped to the step.
+    """
+    at_both = [engine.applied(values, step, as_typed=as_typed).points for step in (shorter, longer)]
+    if at_both[0] == at_both[1]:
+        return True
+    of_shorter, of_longer = (
+        [float(gain) for point in points for gain in feedback_gains(*point, step)]
+        for points, step in zip(at_both, (shorter, longer), strict=True)
+    )
+    if all(math.isclose(*gains, rel_tol=SAME_GAINS) for gains in zip(of_shorter, of_longer, strict=True)):
+        return False
+    raise InputError(
+        f"--h-min: {engine.name} makes of these values neither the same α and β nor the same α̂ and β̂ at steps of "
+        f"{float(shorter):g} and {float(longer):g} s; with --hold, what it makes of them at --h is asked about"
+    )
+
+
+def meant_in_seconds(methods: Sequence[Method], point: Point | None) -> bool:
+    """Return whether numbers that were given as alpha_hat and beta_hat look like alpha and beta in 1/s.
+
+    They do if no method is stable there and one of the numbers is LARGE.
+    """
+    if point is None or max(point) <= LARGE:
+        return False
+    return not any(verdict(method, *point) == "converges" for method in methods)
 
 
 def methods_for(methods: tuple[Method, ...], engine: Engine | None, drive: Drive | None) -> tuple[Method, ...]:

@@ -11,7 +11,7 @@ from bezstab.stability.accurate_points import default_rate
 from bezstab.stability.answer_checks import Modulus
 from bezstab.stability.arrays import EPS, BoolArray, ComplexArray, Extent, FloatArray, plane_arrays, real_array
 from bezstab.stability.best_points import BestPoint, best_point, best_point_or_reason, falls_towards
-from bezstab.stability.choices import Choice, choose, choose_at_step, describe_point
+from bezstab.stability.choices import Choice, choose, choose_at_step, describe_point, gain_factors
 from bezstab.stability.closed_loop import dominant_pole, poles, spectral_radius, verdict
 from bezstab.stability.error_fronts import RATES, FrontPoint, error_front
 from bezstab.stability.far_limits import FarLimit
@@ -24,16 +24,14 @@ from bezstab.stability.forced_errors import (
     forced_error,
     forced_response,
 )
-from bezstab.stability.gain_margins import gain_factors
 from bezstab.stability.grid_maps import QUALITY, pole_map
-from bezstab.stability.kick_responses import kick_response
 from bezstab.stability.margins import Margins, largest_stable_step, stability_margins, stable_up_to
 from bezstab.stability.regions import Region, pole_place, region, useful_window, window
 from bezstab.stability.searches import bisected, first_where
 from bezstab.stability.step_families import Limit, Member, bezier_limit, family_members
 from bezstab.stability.step_sequences import Varying, VaryingSteps, varying_steps
 from bezstab.stability.sweeps import Growth, chain, fewest_sweeps, inverse_effective_masses, swept_growth
-from bezstab.stability.turning import own_feedback_root, turning_sensitivity, turning_shift
+from bezstab.stability.turning import own_feedback_root, turning_shift
 
 if TYPE_CHECKING:
     from bezstab.stability.damping_limits import (
@@ -47,6 +45,7 @@ if TYPE_CHECKING:
         Timing,
         held_limits,
         held_map,
+        held_method,
         held_spectral_radius,
         held_verdict,
     )

@@ -1,6 +1,6 @@
 """Best points, choices and margins held against sampled points and proven verdicts before they are given."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from fractions import Fraction
 
 import numpy as np
@@ -20,7 +20,6 @@ from bezstab.stability.arrays import (
     FloatArray,
     even_points,
 )
-from bezstab.stability.charts import NEAR
 from bezstab.stability.closed_loop import largest_modulus, largest_pole
 from bezstab.stability.path_crossings import Path
 from bezstab.stability.pencils import Pencil
@@ -55,48 +54,32 @@ def sampled_points(extent: Extent, alpha_hat: float, beta_hat: float) -> tuple[F
     )
 
 
-def check_best_point(
-    pencil: Pencil, z_abs: float, alpha_hat: float, beta_hat: float, view: Extent, anywhere: bool
-) -> None:
-    """Raise NumericalError unless |z_p| at the point is as said, and smaller at no sampled point.
-
-    Sampled is where alpha_hat, beta_hat >= 0, or `anywhere`.
-    """
-    name = pencil.method.name
-    here = float(largest_modulus(pencil, alpha_hat, beta_hat))
-    if abs(here - z_abs) > MULTIPLE:
-        raise NumericalError(f"{name}: |z_p| is {here:.9g} at the best point, not {z_abs:.9g}")
-    near = [(0.0, min(high, strongest)) for (_, high), strongest in zip(view, NEAR, strict=True)]
-    samples = [sampled_points(extent, alpha_hat, beta_hat) for extent in (view, (near[0], near[1]))]
-    alpha_hats, beta_hats = (np.concatenate([each[axis] for each in samples]) for axis in (0, 1))
-    sampled = anywhere | ((alpha_hats >= 0) & (beta_hats >= 0))
-    values = largest_modulus(pencil, alpha_hats[sampled], beta_hats[sampled])
-    if values.min(initial=np.inf) < z_abs * (1 - DOUBLE) - ROOT_OF_ROUNDING:
-        raise NumericalError(f"{name}: |z_p| = {values.min():.9g} was sampled below the best point's {z_abs:.9g}")
-
-
 def check_least(
     method: Method,
     objective: Modulus,
-    alpha_hat: float,
-    beta_hat: float,
-    extent: Extent,
+    point: tuple[float, float],
+    least: float,
+    extents: Sequence[Extent],
     cut: bool = False,
+    anywhere: bool = False,
 ) -> None:
-    """Raise NumericalError if an objective is smaller at a sampled point with alpha, beta > 0 than at the answer.
+    """Raise NumericalError unless an objective is as said at a point, and smaller at none sampled over the extents.
 
-    cut: only points within the extent are answers.
+    Only points with alpha, beta > 0 are answers, or those `anywhere`; cut: only those within the first extent.
     """
-    alpha_hats, beta_hats = sampled_points(extent, alpha_hat, beta_hat)
-    kept = (alpha_hats > 0) & (beta_hats > 0)
+    here = float(objective(*np.reshape(point, (2, 1)))[0])
+    if abs(here - least) > MULTIPLE:
+        raise NumericalError(f"{method.name}: the point chosen has {here:.9g}, not {least:.9g}")
+    alpha_hat, beta_hat = np.concatenate([sampled_points(extent, *point) for extent in extents], axis=1)
+    answers = anywhere | ((alpha_hat > 0) & (beta_hat > 0))
     if cut:
-        kept &= (alpha_hats <= extent[0][1]) & (beta_hats <= extent[1][1])
-    values = objective(alpha_hats[kept], beta_hats[kept])
-    here = float(objective(np.array([alpha_hat]), np.array([beta_hat]))[0])
-    least = int(np.argmin(values))
-    if values[least] < here * (1 - DOUBLE) - SAME:
-        place = f"({alpha_hats[kept][least]:.6g}, {beta_hats[kept][least]:.6g})"
-        raise NumericalError(f"{method.name}: the point chosen has {here:.9g}, but {place} has {values[least]:.9g}")
+        answers &= (alpha_hat <= extents[0][0][1]) & (beta_hat <= extents[0][1][1])
+    alpha_hat, beta_hat = alpha_hat[answers], beta_hat[answers]
+    values = objective(alpha_hat, beta_hat)
+    k = int(np.argmin(values))
+    if values[k] < least * (1 - DOUBLE) - ROOT_OF_ROUNDING:
+        place = f"({alpha_hat[k]:.6g}, {beta_hat[k]:.6g})"
+        raise NumericalError(f"{method.name}: the point chosen has {least:.9g}, but {place} has {values[k]:.9g}")
 
 
 def check_critical(pencil: Pencil, alpha_hat: float, beta_hat: float, extent: Extent, cut: bool = False) -> None:

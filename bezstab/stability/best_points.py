@@ -9,15 +9,16 @@ and then no point has the least value; and a pole that no parameters move may be
 
 import math
 from dataclasses import dataclass, replace
-from functools import cache
+from functools import cache, partial
 from itertools import count
 
 import numpy as np
 
 from bezstab.errors import NumericalError
 from bezstab.methods import Method, fixed_poles
-from bezstab.stability.answer_checks import check_best_point
+from bezstab.stability.answer_checks import check_least
 from bezstab.stability.arrays import DOUBLE, EPS, SAME, ComplexArray
+from bezstab.stability.charts import NEAR
 from bezstab.stability.closed_loop import largest_modulus
 from bezstab.stability.far_limits import FarLimit
 from bezstab.stability.least_modulus import least_on
@@ -118,7 +119,15 @@ def _from_grid(pencil: Pencil, stable: Region, limit: FarLimit, finer: int) -> B
     alpha_hat, beta_hat = chart.user_point(least.place)
     end = chart.other_end(least.z_abs, least.place)
     assert stable.view
-    check_best_point(pencil, least.z_abs, alpha_hat, beta_hat, stable.view, chart.anywhere)
+    near = [(0.0, min(high, strongest)) for (_, high), strongest in zip(stable.view, NEAR, strict=True)]
+    check_least(
+        pencil.method,
+        partial(largest_modulus, pencil),
+        (alpha_hat, beta_hat),
+        least.z_abs,
+        [stable.view, (near[0], near[1])],
+        anywhere=chart.anywhere,
+    )
     return BestPoint(
         method=stable.method,
         z_abs=least.z_abs,

@@ -22,17 +22,17 @@ from bezstab.stability.critical_points import critical_place
 from bezstab.stability.curve_choices import Curve, least_along, mildest_along, of_equal
 from bezstab.stability.forced_errors import OMEGA_H
 from bezstab.stability.margins import Margins, stability_margins
-from bezstab.stability.path_crossings import ONE
-from bezstab.stability.pencils import Pencil, pencil_of
+from bezstab.stability.path_crossings import ONE, Path, verdict_end
+from bezstab.stability.pencils import pencil_of
 from bezstab.stability.regions import Region, chart_of, pole_place, region
 from bezstab.stability.root_finding import TOLD
 from bezstab.stability.searches import checked, zoom_from_grid
 
+SCOUTS = 64  # of the points one in so many is looked at first, for a value that the others must be below
 THOUSANDFOLD = 1e-3  # what "settled" means for the constraint error
-Within = Callable[[FloatArray, FloatArray, FloatArray], BoolArray]
-"""Whether |z_p| is below a bound, over arrays of alpha_hat, beta_hat and bounds."""
+Within = Callable[[FloatArray, FloatArray, float], BoolArray]
+"""Whether |z_p| is below a level, over arrays of alpha_hat and beta_hat."""
 
-SCOUTS = 16  # of the points one in so many is looked at first, for a value that the others must be below
 FIRST_GRID = 52  # points per axis of the first grid over the region's box: every valley is seen
 GRID = 49  # points per axis of a zoom: few fine grids take less time than many coarse ones, and lose no valley
 ZOOM = 0.32  # from one grid to the next: eight spacings to either side of its best point
@@ -150,7 +150,7 @@ def choose(
     elif goal == "robust" or goal == "fastest":  # noqa: PLR1714 (what the type checker follows)
         objective = _slowest(method, modulus, within, spread) if goal == "robust" else modulus
         # without a curve of the fastest where |z_p| falls on as the feedback grows, or for a mechanism that moves
-        point = least_along(curve, objective) if curve else _checked_least(pencil, box, objective, cut)
+        point = least_along(curve, objective) if curve else checked(partial(_least, method, box, objective, cut))
     else:
         assert_never(goal)
     alpha_hat, beta_hat = (exact(each) for each in point)
@@ -177,8 +177,7 @@ def _accurate(
     """
 
     def found(rate: float) -> tuple[float, float]:
-        decays = partial(_decays, within, rate)
-        error = partial(worst_error, method, decays, omega_h=omega_h, spread=spread)
+        error = partial(worst_error, method, lambda a, b: within(a, b, rate), omega_h=omega_h, spread=spread)
         point = least_along(curve, error) if curve else accurate_point(method, box, error, omega_h=omega_h)
         if np.isinf(error(*(np.array([each]) for each in point))).any():
             what = "setting of the engine" if curve and not equal else "feedback"
@@ -288,82 +287,46 @@ def describe_point(
     )
 
 
-# `robust` asks for the least of a largest value among SHARES * 5 + 5. Most of them need not be looked at: a point at
-# which one is above what another point has at all cannot be the least, and whether a value is below a line needs no
-# pole: Schur's recursion tells whether all are within a circle.
-#
-#     largest          x
-#        |  x       x     x    - - - - - - - - reached: the largest of all, at the point that is best so far
-#        |       x             poles are asked for at the points below that line alone
-#        +--------------------
-
-
 def _slowest(method: Method, modulus: Modulus, within: Within, spread: float) -> Modulus:
     """Return the objective of `robust`: the largest decay factor per largest step, over smaller steps and the spread.
 
     A step of share s of the largest turns (alpha_hat, beta_hat) into (s alpha_hat, s^2 beta_hat) and takes 1/s steps;
     in the limit of small steps what remains is exp(Re mu), the continuous decay. Of the spread the corners and the
-    centre are taken. The least of all values is exact; of a point that some other is below, which `within` tells faster
-    than poles do, it may say infinite.
+    centre are taken. The least of all values is exact. A point that is slower than some other with small or with the
+    largest steps alone, which takes no poles to tell, has infinity.
     """
     of_alpha, of_beta = np.array([(-1, -1), (-1, 1), (0, 0), (1, -1), (1, 1)]).T[:, :, np.newaxis] * spread + 1
     shares = np.linspace(1, 0, SHARES + 1)[:-1, np.newaxis, np.newaxis]
     multiple = float(method.step_multiple)
 
-    def steps_at(some: FloatArray, alpha_hat: FloatArray, beta_hat: FloatArray) -> tuple[FloatArray, ...]:
-        """Return some shares, and alpha_hat and beta_hat at them with every spread; shape (shares, spreads, points)."""
-        return np.broadcast_arrays(some, some * of_alpha * alpha_hat, some**2 * (of_beta**2 * beta_hat))
-
-    def of_small_steps(alpha_hat: FloatArray, beta_hat: FloatArray) -> FloatArray:
-        a, b = of_alpha * alpha_hat, of_beta**2 * beta_hat
+    def of_small_steps(a: FloatArray, b: FloatArray) -> FloatArray:
         slower_mu = -a / 2 + np.sqrt(np.maximum(0, a**2 / 4 - b))
         return np.asarray(np.exp(multiple * slower_mu).max(axis=0))
 
-    def of_all_steps(alpha_hat: FloatArray, beta_hat: FloatArray) -> FloatArray:
-        share, alphas, betas = steps_at(shares, alpha_hat, beta_hat)
-        decay = (modulus(alphas, betas) ** (1 / share)).max(axis=(0, 1))
-        return np.asarray(np.maximum(of_small_steps(alpha_hat, beta_hat), decay))
-
-    reached = math.inf  # by any point so far
+    def of_all_steps(a: FloatArray, b: FloatArray) -> FloatArray:
+        decay = modulus(shares * a, shares**2 * b) ** (1 / shares)
+        return np.asarray(np.maximum(of_small_steps(a, b), decay.max(axis=(0, 1))))
 
     def objective(alpha_hat: FloatArray, beta_hat: FloatArray) -> FloatArray:
-        nonlocal reached
-        if math.isinf(reached):
-            reached = float(of_all_steps(alpha_hat[::SCOUTS], beta_hat[::SCOUTS]).min())
-        left = kept = np.flatnonzero(of_small_steps(alpha_hat, beta_hat) <= reached)
-        for some in (shares[:1], shares[1:]):  # most points fail with whole steps
-            share, alphas, betas = steps_at(some, alpha_hat[kept], beta_hat[kept])
-            kept = kept[within(alphas, betas, (reached * (1 + TOLD)) ** share).all(axis=(0, 1))]
-        left = kept if kept.size else left  # next to a double pole even the point that was reached may seem larger
+        a, b = of_alpha * alpha_hat, of_beta**2 * beta_hat  # (spreads, points)
+        of_scouts = of_all_steps(a[:, ::SCOUTS], b[:, ::SCOUTS])
+        reached = float(of_scouts.min()) * (1 + TOLD)
+        left = np.flatnonzero(of_small_steps(a, b) <= reached)
+        left = left[within(a[:, left], b[:, left], reached).all(axis=0)]
         worst = np.full(alpha_hat.shape, np.inf)
-        worst[left] = of_all_steps(alpha_hat[left], beta_hat[left])
-        reached = min(reached, float(worst.min()))
+        worst[left] = of_all_steps(a[:, left], b[:, left])
+        worst[::SCOUTS] = of_scouts  # next to a double pole even the point that was reached may seem larger
         return worst
 
     return objective
 
 
-def _decays(within: Within, rate: float, alpha_hat: FloatArray, beta_hat: FloatArray) -> BoolArray:
-    return within(alpha_hat, beta_hat, np.full(alpha_hat.shape, rate))
+def _below(modulus: Modulus, alpha_hat: FloatArray, beta_hat: FloatArray, level: float) -> BoolArray:
+    return np.asarray(modulus(alpha_hat, beta_hat) < level)
 
 
-def _below(modulus: Modulus, alpha_hat: FloatArray, beta_hat: FloatArray, bound: FloatArray) -> BoolArray:
-    return np.asarray(modulus(alpha_hat, beta_hat) < bound)
-
-
-def _checked_least(pencil: Pencil, extent: Extent, objective: Modulus, cut: bool) -> tuple[float, float]:
-    """Return where the objective is least; NumericalError if after a finer search, too, a sampled point is better."""
-
-    def found(finer: int) -> tuple[float, float]:
-        alpha_hat, beta_hat = _least(extent, objective, cut, finer)
-        check_least(pencil.method, objective, alpha_hat, beta_hat, extent, cut)
-        return alpha_hat, beta_hat
-
-    return checked(found)
-
-
-def _least(extent: Extent, objective: Modulus, cut: bool, finer: int) -> tuple[float, float]:
-    """Return where the objective is least over the region's box.
+def _least(method: Method, extent: Extent, objective: Modulus, cut: bool, finer: int) -> tuple[float, float]:
+    """Return where the objective is least over the region's box; NumericalError if a sampled point is better.
 
     `finer`: so many times the points along an axis of the first grid, and so many times the zooms, each by a lesser
     factor. Its valleys are narrow, curved and have kinks for beds: the grids wait where a valley leads on, but out of a
@@ -378,7 +341,7 @@ def _least(extent: Extent, objective: Modulus, cut: bool, finer: int) -> tuple[f
         values[positive] = objective(2 * alpha, beta**2)
         return values
 
-    best, _ = zoom_from_grid(
+    best, least = zoom_from_grid(
         over_positive_points,
         largest / 2,
         largest / 2,
@@ -389,7 +352,9 @@ def _least(extent: Extent, objective: Modulus, cut: bool, finer: int) -> tuple[f
         patient=True,
         fold=(lambda points: np.minimum(points, largest)) if cut else None,
     )
-    return 2 * float(best[0]), float(best[1]) ** 2
+    point = 2 * float(best[0]), float(best[1]) ** 2
+    check_least(method, objective, point, float(least), [extent], cut)
+    return point
 
 
 def _critical_point(method: Method, box: Extent) -> tuple[float, float]:
@@ -403,3 +368,24 @@ def _critical_point(method: Method, box: Extent) -> tuple[float, float]:
     if best and not best.z_abs and math.dist(found, (best.alpha_hat, best.beta_hat)) < AT_DEADBEAT:
         return best.alpha_hat, best.beta_hat
     return found
+
+
+def gain_factors(choice: Choice) -> tuple[float | None, float | None]:
+    r"""Return by which factors alpha_hat alone and beta_hat alone are at the edge of what is stable.
+
+    beta_hat                      x a stable point: each gain may grow up to the edge
+       |  \    edge               o an unstable one: each gain alone is lowered until it is stable again, if ever
+       |---x--->\   o
+       |        |\ <--
+       +------------ alpha_hat
+
+    To where the proven verdict turns. A factor is infinite where there is no edge, None where lowering that gain alone
+    does not help.
+    """
+    if choice.margins:
+        return choice.margins.alpha[1], choice.margins.beta[1] ** 2
+    point = Fraction(choice.alpha_hat), Fraction(choice.beta_hat)
+    by_alpha, by_beta = (
+        verdict_end(Path(choice.method, *point, powers), downwards=True, stable=False) for powers in ((1, 0), (0, 2))
+    )
+    return None if by_alpha is None else float(by_alpha), None if by_beta is None else float(by_beta**2)

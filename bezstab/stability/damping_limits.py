@@ -16,8 +16,8 @@ from functools import cache
 import numpy as np
 
 from bezstab.methods import Method, rational_feedback_roots, without_shared_factor
-from bezstab.stability.arrays import BoolArray, FloatArray
-from bezstab.stability.path_crossings import ONE, ZERO, Path, crossing_factors, stable_end
+from bezstab.stability.arrays import FloatArray
+from bezstab.stability.path_crossings import ONE, ZERO, Path, crossing_factors, verdict_end
 from bezstab.stability.quadrant_proofs import stable_for_all
 from bezstab.stability.searches import first_where
 
@@ -64,11 +64,10 @@ def unconditional_damping_ratio(method: Method) -> float | None:
     if stable_for_all(method) == "proven":
         return 0.0
 
-    def is_limited(ratios: FloatArray) -> BoolArray:
-        limited = [_limit_at(method, Fraction(ratio)) is not None for ratio in ratios.ravel().tolist()]
-        return np.array(limited).reshape(ratios.shape)
+    def is_limited(ratio: float) -> bool:
+        return _limit_at(method, Fraction(ratio)) is not None
 
-    ends = first_where(is_limited, RATIOS)
+    ends = first_where(np.vectorize(is_limited, otypes=[bool]), RATIOS)
     return ends[0] if ends else 0.0
 
 
@@ -79,6 +78,6 @@ def _limit_at(method: Method, damping_ratio: Fraction) -> Fraction | None:
     A step at which the path meets an edge without crossing it is a limit too: there errors do not decay.
     """
     path = Path(method, 2 * damping_ratio, ONE, (1, 2))
-    end = stable_end(path, ZERO)
+    end = verdict_end(path, ZERO)
     touched = (factor for factor in crossing_factors(path) if end is None or factor < end)
     return next((factor for factor in touched if not path.converges_at(factor)), end)

@@ -11,6 +11,7 @@ from fractions import Fraction
 import numpy as np
 
 from bezstab.stability.arrays import ComplexArray, FloatArray
+from bezstab.stability.low_degrees import quadratic_roots, signed_root
 
 SPLITTER = 2.0**27 + 1  # multiplying by it parts the 53 bits of a float64 into two halves (Dekker)
 
@@ -28,21 +29,8 @@ def feedback_roots(alpha_hat: FloatArray, beta_hat: FloatArray) -> tuple[Complex
         nothing = np.zeros_like(half)
         square = double_product((half, nothing), (half, nothing))
         discriminant, rest = double_sum(square, (-np.ldexp(beta_hat, -2 * exponent), nothing))
-        discriminant = discriminant + rest
-        root = np.sqrt(np.abs(discriminant))
-        real = discriminant >= 0
-
-        # real roots: the one further from zero without cancellation, the nearer as beta_hat over it
-        further = -(half + np.copysign(root, half))
-        scaled_once = np.ldexp(beta_hat, -exponent)  # where beta_hat scaled twice underflows, the nearer mu need not
-        nearer = np.divide(scaled_once, further, out=np.zeros_like(further), where=further != 0)
-        middle = np.ldexp(-half, exponent)
-        first = np.empty_like(half, complex)
-        second = np.empty_like(half, complex)
-        first.real = np.where(real, np.ldexp(further, exponent), middle)
-        second.real = np.where(real, nearer, middle)
-        first.imag = np.where(real, 0, np.ldexp(root, exponent))
-        second.imag = -first.imag
+        root = np.ldexp(signed_root(discriminant + rest), exponent)
+        first, second = quadratic_roots(alpha_hat / 2, beta_hat, root)
     return first, second
 
 

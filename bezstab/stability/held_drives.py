@@ -200,7 +200,7 @@ class HeldLimits:
     """How far each of four numbers may go with the others as they are.
 
     `kp` and `kd` are the gains, here beta_hat and alpha_hat, between which the drive is stable: the stretch that holds
-    its own, else the one nearest to it, None where there is none within a factor of FURTHEST. `every` and `late` are
+    its own, else the one nearest to it, None where there is none among GAINS. `every` and `late` are
     the last whole numbers of steps up to which all are proven stable; None where the least, 1 and 0, is not.
     """
 
@@ -210,14 +210,8 @@ class HeldLimits:
     late: int | None
 
 
-FURTHEST = 1e4
-"""Factor on a gain beyond which nobody asks, and its inverse."""
-
-FACTORS = np.geomspace(1, FURTHEST, 185)
-"""Where an end of stability is looked for first, 5 % apart; a stretch that is shorter is not seen."""
-
-SMALL_GAINS = 1e-8 * np.geomspace(1, 1e9, 425)
-"""alpha_hat or beta_hat: where a drive without a gain of its own is looked for first, 5 % apart."""
+GAINS = np.geomspace(1e-8, 1e8, 756)
+"""alpha_hat or beta_hat at which ends of stability are looked for first, 5 % apart: a shorter stretch is not seen."""
 
 
 def held_limits(way: str, alpha_hat: Fraction, beta_hat: Fraction, timing: Timing) -> HeldLimits:
@@ -237,15 +231,12 @@ def held_limits(way: str, alpha_hat: Fraction, beta_hat: Fraction, timing: Timin
 
 def _stable_stretch(own: float, decays: Callable[[FloatArray], BoolArray]) -> Stretch | None:
     """Return the stretch of gains that decay around a drive's own, else that nearest to it; None if there is none."""
-    around = np.concatenate([own / FACTORS[:0:-1], own * FACTORS]) if own > 0 else SMALL_GAINS
-    start = own
-    if own <= 0 or not decays(np.array([own]))[0]:
-        stable = around[decays(around)].tolist()
-        if not stable:
-            return None
-        start = min(stable, key=lambda gain: abs(np.log(gain / own)) if own > 0 else gain)
-    ways = (around[around < start][::-1], around[around > start])
-    down, up = (first_where(lambda gains: ~decays(gains), np.append(start, each)) for each in ways)
+    gains = np.sort(np.append(GAINS, own)) if own > 0 else GAINS
+    stable = np.flatnonzero(decays(gains))
+    if not stable.size:
+        return None
+    start = stable[np.argmin(np.abs(np.log(gains[stable] / max(own, GAINS[0]))))]  # the own one, where it is stable
+    down, up = (first_where(lambda some: ~decays(some), way) for way in (gains[start::-1], gains[start:]))
     return (down[0] if down else 0.0, up[0] if up else np.inf)
 
 

@@ -12,21 +12,25 @@ from bezstab.stability.arrays import ComplexArray, FloatArray
 CUBIC_STEPS = 6  # of Newton's method, from at most three times the root's distance from the inflection
 
 
-def quadratic_roots(half: FloatArray, last: FloatArray, discriminant: FloatArray) -> ComplexArray:
-    """Return both roots of z^2 + 2 half z + last, discriminant = half^2 - last; shape (2, points), larger first.
+def quadratic_roots(half: FloatArray, last: FloatArray, root: FloatArray) -> ComplexArray:
+    """Return both roots of z^2 + 2 half z + last; shape (2, *that of half), larger first.
 
-    Of a conjugate pair that with Im > 0 comes first.
+    `root` is that of half^2 - last, or minus that of last - half^2. Of a conjugate pair that with Im > 0 comes first.
     """
-    root = np.sqrt(np.abs(discriminant))
-    real = discriminant >= 0
+    real = root >= 0
     larger = -(half + np.copysign(root, half))
-    smaller = np.divide(last, larger, out=np.zeros_like(larger), where=larger != 0)
-    z = np.empty((2, half.size), complex)
+    smaller = np.divide(last, larger, out=np.zeros_like(larger), where=larger != 0)  # without cancellation
+    z = np.empty((2, *half.shape), complex)
     z[0].real = np.where(real, larger, -half)
     z[1].real = np.where(real, smaller, -half)
-    z[0].imag = np.where(real, 0, root)
+    z[0].imag = np.where(real, 0, -root)
     z[1].imag = -z[0].imag
     return z
+
+
+def signed_root(x: FloatArray) -> FloatArray:
+    """Return the root of each number, minus that of its size where it is negative."""
+    return np.asarray(np.copysign(np.sqrt(np.abs(x)), x))
 
 
 def largest_quadratic_root(half: FloatArray, discriminant: FloatArray) -> ComplexArray:

@@ -10,9 +10,8 @@ import numpy as np
 from bezstab.errors import InputError
 from bezstab.methods import Method
 from bezstab.stability.answer_checks import check_margin
-from bezstab.stability.arrays import BoolArray, FloatArray
 from bezstab.stability.closed_loop import converges
-from bezstab.stability.path_crossings import ONE, ZERO, Path, crossing_factors, stable_end
+from bezstab.stability.path_crossings import ONE, Path, crossing_factors, verdict_end
 from bezstab.stability.searches import first_where
 from bezstab.units import to_dimensionless
 
@@ -61,10 +60,7 @@ def largest_stable_step(
         except InputError:  # out of range
             return False
 
-    def any_unstable(steps: FloatArray) -> BoolArray:
-        return np.array([unstable(step) for step in steps.ravel().tolist()]).reshape(steps.shape)
-
-    ends = first_where(any_unstable, np.asarray(h * STEPS_TRIED, np.float64))
+    ends = first_where(np.vectorize(unstable, otypes=[bool]), h * STEPS_TRIED)
     return None if ends is None else ends[0]
 
 
@@ -79,17 +75,16 @@ def stable_up_to(method: Method, alpha: Fraction, beta: Fraction) -> float:
         return 0.0  # nothing takes an error back: z = 1 at every step
     unit = 1 / max(2 * abs(alpha), abs(beta))  # s: times it the numbers are of order one
     path = Path(method, *to_dimensionless(alpha, beta, unit), (1, 2))
-    end = stable_end(path, ZERO)
-    if end == 0:
-        return 0.0
     small = min(crossing_factors(path), default=ONE) / 2  # below it the verdict is one
-    check_margin(Path(method, *path.at(small), (1, 2)), (0.0, math.inf if end is None else float(end / small)))
-    return math.inf if end is None else float(end * unit)
+    if not path.converges_at(small):
+        return 0.0
+    _, times_longer = _ends(Path(method, *path.at(small), (1, 2)))
+    return times_longer * float(small * unit)
 
 
 def _ends(path: Path) -> tuple[float, float]:
     """Return the factors below and above one up to which a path is stable."""
-    below, above = stable_end(path, downwards=True), stable_end(path)
+    below, above = verdict_end(path, downwards=True), verdict_end(path)
     ends = 0.0 if below is None else float(below), math.inf if above is None else float(above)
     check_margin(path, ends)
     return ends

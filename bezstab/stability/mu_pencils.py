@@ -15,7 +15,7 @@ from numpy.polynomial.polynomial import polyder, polyval, polyval2d
 from numpy.typing import NDArray
 
 from bezstab.errors import NumericalError
-from bezstab.methods import Method, coefficient_table
+from bezstab.methods import Method
 from bezstab.stability.arrays import DOUBLE, EPS, SAME, BoolArray, ComplexArray, FloatArray
 from bezstab.stability.exact_sums import feedback_roots
 from bezstab.stability.low_degrees import largest_quadratic_root, polynomial_of_pair
@@ -44,7 +44,7 @@ class MuPencil:
     def table(self) -> FloatArray:
         """The coefficients: pi = sum_kj table[k, j] z^k mu^j; NumericalError if they leave float64's range."""
         try:
-            return np.array(coefficient_table(self.method), float)
+            return np.array(self.method.scheme.mu_table, float)
         except OverflowError:
             raise out_of_range(self.method) from None
 
@@ -90,15 +90,15 @@ class MuPencil:
         of_each_mu = z.reshape(len(z), *mu.shape).swapaxes(0, 1)
         return of_each_mu.reshape(self.degree, alpha_hat.size)
 
-    def all_within(self, alpha_hat: FloatArray, beta_hat: FloatArray, level: FloatArray) -> BoolArray:
-        """Return whether every pole has |z| < level at each point, by Schur's recursion; arrays of one shape.
+    def all_within(self, alpha_hat: FloatArray, beta_hat: FloatArray, level: float) -> BoolArray:
+        """Return whether every pole has |z| < level at each point, by Schur's recursion.
 
         False where an implicit step has no solution.
         """
         first, second = self.feedback_roots(alpha_hat, beta_hat)
         within = all_inside(self, first, level)
         real = within & (first.imag == 0)  # of a conjugate pair both have the same moduli
-        within[real] = all_inside(self, second[real], level[real])
+        within[real] = all_inside(self, second[real], level)
         return within
 
     def largest_poles(self, alpha_hat: FloatArray, beta_hat: FloatArray, shape: tuple[int, int]) -> ComplexArray:
@@ -257,8 +257,8 @@ def deadbeat_mu(pencil: MuPencil) -> ComplexArray:
     return np.asarray(roots_of_table(numerator[:, np.newaxis], np.zeros(1, complex))[:, 0])
 
 
-def all_inside(pencil: MuPencil, mu: ComplexArray, level: float | FloatArray) -> BoolArray:
-    """Return whether every root z of pi(., mu) has |z| < level, by Schur's recursion; shape of mu, and of levels."""
+def all_inside(pencil: MuPencil, mu: ComplexArray, level: float) -> BoolArray:
+    """Return whether every root z of pi(., mu) has |z| < level, by Schur's recursion; shape of mu."""
     with np.errstate(over="ignore", invalid="ignore"):  # far out, where nothing is inside
         coefficients = [np.full(mu.shape, horner(row, mu)) for row in pencil.table]
     return inside_circle(coefficients, level)

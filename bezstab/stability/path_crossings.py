@@ -13,11 +13,9 @@ All such places are known exactly (path_edges). Between two of them the verdict 
 largest steps, limits by damping ratio and the limits of single gains are all the end of a stable stretch of a path.
 """
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
-from itertools import pairwise
 
 from bezstab.methods import Method, turning_factors
 from bezstab.stability.closed_loop import converges
@@ -54,34 +52,22 @@ def crossing_factors(path: Path) -> tuple[Fraction, ...]:
     return tuple(turning_factors(path.method, path.alpha_hat, path.beta_hat, path.powers))
 
 
-def stable_end(path: Path, start: Fraction = ONE, downwards: bool = False) -> Fraction | None:
-    """Return the factor up to which (downwards: down to which) the path is stable from a start on; None without end.
+def verdict_end(path: Path, start: Fraction = ONE, downwards: bool = False, stable: bool = True) -> Fraction | None:
+    """Return the factor up to which (downwards: down to which) the path is stable, or not, from a start on.
 
-    The start itself if the path is not stable beside it. A place that is met, but not crossed, is no end.
+    None without end. The start itself if the verdict is another one beside it. A place that is met, but not crossed, is
+    no end.
     """
-    for near, far in _stretches(path, start, downwards):
-        if not path.converges_at(_between(near, far)):
-            return near
-    return None
-
-
-def first_stable_below(path: Path) -> Fraction | None:
-    """Return the largest factor, at most one, up to which a stretch of the path is stable; None if there is none."""
-    for near, far in _stretches(path, ONE, downwards=True):
-        if path.converges_at(_between(near, far)):
-            return near
-    return None
-
-
-def _stretches(path: Path, start: Fraction, downwards: bool) -> Iterator[tuple[Fraction, Fraction | None]]:
-    """Yield the stretches between crossings, outwards from a start: ends near and far, the last up to None or zero."""
     factors = crossing_factors(path)
+    outwards: list[Fraction | None]
     if downwards:
-        yield from pairwise([start, *(factor for factor in reversed(factors) if factor < start), ZERO])
+        outwards = [*(factor for factor in reversed(factors) if factor < start), ZERO]
     else:
-        yield from pairwise([start, *(factor for factor in factors if factor > start), None])
-
-
-def _between(near: Fraction, far: Fraction | None) -> Fraction:
-    """Return a factor between two, or beyond the last."""
-    return 2 * near + 1 if far is None else (near + far) / 2
+        outwards = [*(factor for factor in factors if factor > start), None]
+    near = start
+    for far in outwards:
+        between = 2 * near + 1 if far is None else (near + far) / 2
+        if path.converges_at(between) != stable:
+            return near
+        near = far or near
+    return None

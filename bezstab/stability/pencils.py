@@ -13,7 +13,7 @@ on a grid, and whether all are below a level. Of the plane they know
 
 from functools import cache
 
-from bezstab.methods import Method, coefficient_table, without_shared_factor
+from bezstab.methods import Method, without_shared_factor
 from bezstab.stability.charts import mu_chart, plane_chart
 from bezstab.stability.far_limits import far_limit_through_mu, least_far_limit
 from bezstab.stability.locus_shapes import locus_shape
@@ -53,6 +53,6 @@ Pencil = ThroughMu | ThroughP
 @cache
 def pencil_of(method: Method, free: bool = False) -> Pencil:
     """Return the pencil of a method. free: without the poles that no parameters move."""
-    if coefficient_table(method):
+    if method.scheme.mu_table:
         return ThroughMu(without_shared_factor(method) if free else method)
     return ThroughP(method, free)

@@ -15,7 +15,7 @@ from bezstab.errors import NumericalError
 from bezstab.methods import Method, closed_loop_table, reduced_table
 from bezstab.stability.arrays import BoolArray, ComplexArray, FloatArray
 from bezstab.stability.exact_sums import double_polynomial, double_product, double_sum, split
-from bezstab.stability.low_degrees import largest_cubic_root, largest_quadratic_root, quadratic_roots
+from bezstab.stability.low_degrees import largest_cubic_root, largest_quadratic_root, quadratic_roots, signed_root
 from bezstab.stability.neighbourhoods import FEWEST, blocks_of_neighbours
 from bezstab.stability.real_factors import largest_in_upper_half, largest_of_blocks
 from bezstab.stability.root_finding import CHUNK, horner, inside_circle, roots_of_rows
@@ -62,14 +62,15 @@ class PlanePencil:
         with np.errstate(all="ignore"):
             coefficients = self.coefficients_at(alpha_hat, beta_hat)
             if self.degree == 2:
-                z = quadratic_roots(*self._quadratics(coefficients, alpha_hat, beta_hat))
+                half, last, discriminant = self._quadratics(coefficients, alpha_hat, beta_hat)
+                z = quadratic_roots(half, last, signed_root(discriminant))
             else:
                 z = roots_of_rows(np.stack(coefficients).astype(complex))
         self._check_finite(z, alpha_hat, beta_hat)
         return z
 
-    def all_within(self, alpha_hat: FloatArray, beta_hat: FloatArray, level: FloatArray) -> BoolArray:
-        """Return whether every pole has |z| < level at each point, by Schur's recursion; arrays of one shape.
+    def all_within(self, alpha_hat: FloatArray, beta_hat: FloatArray, level: float) -> BoolArray:
+        """Return whether every pole has |z| < level at each point, by Schur's recursion.
 
         False where an implicit step has no solution.
         """

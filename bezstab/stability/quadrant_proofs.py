@@ -9,8 +9,8 @@ none of the three does, the whole quadrant is as stable as any point of it:
                | o             what is stable at one o is stable at the other
                +------- alpha_hat
 
-A polynomial whose coefficients have one sign has no zero there; nor has a sum over powers of alpha_hat whose factors,
-polynomials in beta_hat, are nowhere negative by Sturm's theorem, if one has no negative coefficient.
+A sum over powers of alpha_hat has no zero there if its factors, polynomials in beta_hat, are nowhere negative by
+Sturm's theorem, and one has no negative coefficient.
 """
 
 from fractions import Fraction
@@ -48,27 +48,19 @@ def stable_for_all(method: Method) -> StableForAll:
             if verdict(method, 2 * damping_ratio * beta_step, beta_step**2) != "converges":
                 return "no"
     polynomial = closed_loop_polynomial(method)
-    if polynomial.degree() > MOST_ROOTS:
-        return "no unstable point found"
-    ascending = polynomial.rep.to_list()[::-1]
-    at_one, at_minus_one, _, of_pairs = crossing_polynomials(ascending, polynomial.domain)
-    edges = [polynomial.domain.to_sympy(edge) for edge in (at_one, at_minus_one, of_pairs)]
-    if all(_positive(edge) or _positive(-edge) for edge in edges):
-        return "proven"
+    if polynomial.degree() <= MOST_ROOTS:
+        ascending = polynomial.rep.to_list()[::-1]
+        at_one, at_minus_one, _, of_pairs = crossing_polynomials(ascending, polynomial.domain)
+        edges = [polynomial.domain.to_sympy(edge) for edge in (at_one, at_minus_one, of_pairs)]
+        if all(_positive(edge) or _positive(-edge) for edge in edges):
+            return "proven"
     return "no unstable point found"
 
 
 def _positive(expression: sp.Expr) -> bool:
     """Return whether a polynomial is proven positive wherever alpha_hat, beta_hat > 0."""
-    if expression == 0:
-        return False
-    if _without_negative(sp.Poly(expression, ALPHA_HAT, BETA_HAT)):
-        return True
-    for powers_of, other in ((ALPHA_HAT, BETA_HAT), (BETA_HAT, ALPHA_HAT)):
-        factors = [sp.Poly(c, other, domain="QQ") for c in sp.Poly(expression, powers_of).all_coeffs() if c != 0]
-        if any(_without_negative(factor) for factor in factors) and all(_nowhere_negative(f) for f in factors):
-            return True
-    return False
+    factors = [sp.Poly(c, BETA_HAT, domain="QQ") for c in sp.Poly(expression, ALPHA_HAT).coeffs()]
+    return any(map(_without_negative, factors)) and all(map(_nowhere_negative, factors))
 
 
 def _without_negative(polynomial: sp.Poly) -> bool:

@@ -58,7 +58,7 @@ def check_region(method: Method, level: float, shape: Shape | None) -> None:
     name = f"{method.name}, |z_p| < {level:g}"
 
     def inside(alpha_hat: FloatArray, beta_hat: FloatArray) -> BoolArray:
-        return pencil.all_within(alpha_hat, beta_hat, np.full(alpha_hat.shape, level))
+        return pencil.all_within(alpha_hat, beta_hat, level)
 
     proven = partial(_proven, method, exact(level))
     if shape is None:

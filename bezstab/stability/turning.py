@@ -25,26 +25,20 @@ from bezstab.stability.arrays import ComplexArray
 from bezstab.stability.pencils import pencil_of
 
 
-def turning_sensitivity(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike, z: ArrayLike) -> ComplexArray:
-    """Return chi of poles z: constraints that turn at K (1/s) change each by z chi h eig K.
+def turning_shift(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike, z: ArrayLike) -> ComplexArray:
+    """Return z chi of poles z: where constraints turn at K (1/s), each pole moves by that times h eig K.
 
     Complex, shape of alpha_hat, beta_hat and z broadcast, dimensionless; h is the length of the method's own step.
     Infinite at a double pole of one mu, where the change is like the root of h K. Theory: the first-order law of the
     moving mechanism.
     """
     with np.errstate(all="ignore"):
-        return np.asarray(turning_shift(method, alpha_hat, beta_hat, z) / np.asarray(z, complex))
-
-
-def turning_shift(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike, z: ArrayLike) -> ComplexArray:
-    """Return z chi, by which poles z move for each unit of h eig K; as `turning_sensitivity`, and finite at z = 0."""
-    with np.errstate(all="ignore"):
         at = np.broadcast_arrays(alpha_hat, beta_hat, np.asarray(z, complex))
         return pencil_of(method).turning_shift(*at)
 
 
 def own_feedback_root(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike, z: ArrayLike) -> ComplexArray:
-    """Return the root mu of the feedback that each pole z belongs to; shape as `turning_sensitivity`, dimensionless.
+    """Return the root mu of the feedback that each pole z belongs to; shape as `turning_shift`, dimensionless.
 
     Of methods that step position and velocity differently poles belong to no mu: zero.
     """

@@ -44,7 +44,6 @@ from bezstab.methods import (
     implicit,
     lookup,
     recipe,
-    second_order_form,
     steps,
 )
 from bezstab.show.explorer import Explorer
@@ -208,7 +207,7 @@ def maps_of_other_kinds() -> Iterator[Line]:
         Method("Beeman", recipe(RECIPES["beeman"]), "Beeman, J. Comput. Phys. 20, 1976"): "a recipe, four roots",
         second_order("B2 and B3"): "a recipe, five roots",
         second_order("AB3 and B3"): "a recipe, six roots",
-        Method("B4 recipe", second_order_form(lookup("B4").scheme), "B4 in x, v, a"): "a recipe that spells out B4",
+        Method("B4 recipe", lookup("B4").scheme.second_order, "B4 in x, v, a"): "a recipe that spells out B4",
     }
     for method, kind in kinds.items():
         name, (a, b) = method.name, axes(method, FEWER_POINTS)

@@ -27,9 +27,9 @@ H = Fraction(1, 100)
     ],
 )
 def test_values_that_mean_nothing_are_refused(name: str, typed: tuple[str | int, ...], said: str) -> None:
-    for read in (ENGINES[name].point, ENGINES[name].applied):
+    for as_typed in (False, True):
         with pytest.raises(InputError, match=f"--engine {name}.*{said}"):
-            read(tuple(map(Fraction, typed)), H)
+            ENGINES[name].applied(tuple(map(Fraction, typed)), H, as_typed=as_typed)
 
 
 @pytest.mark.parametrize(

@@ -17,7 +17,7 @@ from bezstab.mechanism import (
     steps_taken,
 )
 from bezstab.mechanism.linearized import AT_A_TIME, acceleration_jacobians
-from bezstab.methods import lookup, second_order_form
+from bezstab.methods import lookup
 from bezstab.stability import FloatArray
 
 
@@ -55,7 +55,7 @@ def test_the_jacobians_are_the_slopes_to_rounding(name: str) -> None:
 def test_a_step_changes_as_the_difference_of_two_steps(name: str) -> None:
     """Beside the motion, by 1e-5 up and down: quadratic terms cancel, cubic ones are about 1e-10."""
     four_bar, method, h = compiled_mechanism(load_scene("driven_four_bar")), lookup(name), 0.01
-    shares = np.array(memory(second_order_form(method.scheme)).shares, float)
+    shares = np.array(memory(method.scheme.second_order).shares, float)
     t, times = 0.07, np.array([0.05, 0.07, 0.1])
     state_in_steps = np.stack([h**power * each for power, each in enumerate(motion(four_bar, 1.0).at(times))])
     start = np.einsum("ks,sti->tki", shares, state_in_steps)

@@ -4,12 +4,12 @@ import pytest
 
 from bezstab.mechanism.programs import Program, program_of
 from bezstab.mechanism.second_order_memory import memory
-from bezstab.methods import lookup, second_order_form
+from bezstab.methods import lookup
 
 
 def program(name: str) -> Program:
     """Return the program of a built-in method."""
-    return program_of(second_order_form(lookup(name).scheme))
+    return program_of(lookup(name).scheme.second_order)
 
 
 def test_velocity_verlet_is_the_program_of_the_books() -> None:
@@ -30,7 +30,7 @@ def test_velocity_verlet_is_the_program_of_the_books() -> None:
 
 
 def test_a_projection_changes_what_is_carried_of_the_newest_state_and_nothing_older() -> None:
-    names = [str(quantity) for quantity in memory(second_order_form(lookup("bdf2").scheme)).carried]
+    names = [str(quantity) for quantity in memory(lookup("bdf2").scheme.second_order).carried]
     shares = dict(zip(names, program("bdf2").corrected, strict=True))
     assert {name for name, of_it in shares.items() if any(of_it)} == {"x0", "v0"}
     assert {"x[-1]", "v[-1]"} <= set(shares)

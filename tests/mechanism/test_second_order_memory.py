@@ -7,7 +7,7 @@ import pytest
 from bezstab.errors import InputError
 from bezstab.mechanism.programs import program_of
 from bezstab.mechanism.second_order_memory import memory
-from bezstab.methods import Quantity, lookup, recipe, second_order_form
+from bezstab.methods import Quantity, lookup, recipe
 
 LEAPFROG = recipe({"w": "w[0] + a0", "x1": "x0 + w", "a1": "acceleration(x1, w)", "v1": "w + 1/2 a1"})
 """The velocity half a step back is what it carries."""
@@ -25,7 +25,7 @@ STOERMER = recipe({"x2": "2 x1 - x0 + a1", "v1": "1/2 x2 - 1/2 x0", "a1": "accel
     ],
 )
 def test_an_acceleration_is_taken_where_a_steady_motion_is_then(name: str, moment: Fraction) -> None:
-    assert list(program_of(second_order_form(lookup(name).scheme)).moments) == [float(moment)]
+    assert list(program_of(lookup(name).scheme.second_order).moments) == [float(moment)]
 
 
 def test_a_helper_starts_with_what_belongs_to_the_state() -> None:

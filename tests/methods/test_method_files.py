@@ -17,7 +17,6 @@ from bezstab.methods import (
     implicit,
     lookup,
     read_method,
-    second_order_form,
     steps,
 )
 from tests.methods import kinds
@@ -165,7 +164,7 @@ def test_coefficients_with_roots_are_those_of_the_book(content: str, name: str, 
 def test_equations_with_roots_are_reckoned_exactly(tmp_path: Path) -> None:
     update = "[update]\na0 = 'acceleration(x0, v0)'\nv1 = 'v0 + sqrt(2)/2 a0 + (a0 - a0/sqrt(2))'\nx1 = 'x0 + v1'\n"
     own = read_method(written(tmp_path, update))
-    assert second_order_form(own.scheme).table == second_order_form(lookup("SYM").scheme).table
+    assert own.scheme.second_order.table == lookup("SYM").scheme.second_order.table
     assert own.digits == 40
 
 

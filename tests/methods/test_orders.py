@@ -17,7 +17,6 @@ from bezstab.methods import (
     accuracy,
     accuracy_by_force,
     lookup,
-    second_order_form,
     steps,
 )
 from bezstab.methods.rooted_trees import _trees
@@ -140,7 +139,7 @@ def test_measured_orders_of_second_order_and_implicit_methods(name: str) -> None
     method = lookup(name)
     by_force = accuracy_by_force(method)
     expected = {"both": accuracy(method)[0], "position": by_force.position[0], "velocity": by_force.velocity[0]}
-    scheme = second_order_form(method.scheme)
+    scheme = method.scheme.second_order
     for kind, order in expected.items():
         # the error has a term of the next order: O(h) off, 0.2 at worst with these steps
         assert abs(measured_order(scheme, kind, count=128 if order <= 3 else 64) - order) < 0.3
@@ -157,7 +156,7 @@ def test_the_order_of_a_method_of_many_steps_or_stages_is_found() -> None:
 def test_the_second_order_form_has_the_order_of_the_scheme(name: str) -> None:
     """Where position and velocity are stepped alike both forces see the order and constant of y' = lambda y."""
     method = lookup(name)
-    by_force = accuracy_by_force(replace(method, scheme=second_order_form(method.scheme)))
+    by_force = accuracy_by_force(replace(method, scheme=method.scheme.second_order))
     order, constant = accuracy(method)
     assert by_force.velocity[0] == order
     if method.digits is None:

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from bezstab.errors import InputError
-from bezstab.methods import GROUPS, REGISTRY, lookup, read_method, second_order_form
+from bezstab.methods import GROUPS, REGISTRY, lookup, read_method
 
 NAMES = list(REGISTRY)
 
@@ -106,7 +106,7 @@ def test_parameters_are_exact_and_the_name_says_them(typed: str, name: str) -> N
     ],
 )
 def test_some_names_stand_for_the_same_step(given: str, explicit: str) -> None:
-    first, second = (second_order_form(lookup(name).scheme).table for name in (given, explicit))
+    first, second = (lookup(name).scheme.second_order.table for name in (given, explicit))
     assert first == second
 
 

@@ -4,7 +4,7 @@ from fractions import Fraction
 
 import pytest
 
-from bezstab.methods import Method, RungeKutta, accuracy, coefficient_table, evaluations, lookup
+from bezstab.methods import Method, RungeKutta, accuracy, evaluations, lookup
 from tests.methods.exact_lists import fractions
 from tests.reference.orders import DORMAND_PRINCE
 
@@ -82,7 +82,7 @@ def test_tsitouras_decimals_are_the_published_ones_and_satisfy_his_order_conditi
 
 def growth(method: Method) -> tuple[list[Fraction], list[Fraction]]:
     """Return numerator and denominator of R(mu), ascending: pi = denominator z - numerator."""
-    constant, linear = coefficient_table(method)
+    constant, linear = method.scheme.mu_table
     return [-c for c in constant], list(linear)
 
 

@@ -8,7 +8,6 @@ from bezstab.methods import (
     RungeKutta,
     evaluation_times,
     lookup,
-    second_order_form,
 )
 from tests.methods.kinds import RUNGE_KUTTA
 
@@ -17,5 +16,5 @@ from tests.methods.kinds import RUNGE_KUTTA
 def test_stages_are_evaluated_at_the_sums_of_their_rows(name: str) -> None:
     scheme = lookup(name).scheme
     assert isinstance(scheme, RungeKutta)
-    times = evaluation_times(second_order_form(scheme))
+    times = evaluation_times(scheme.second_order)
     assert list(times.values()) == [sum(row, Fraction(0)) for row in scheme.tableau]

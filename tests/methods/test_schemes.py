@@ -17,7 +17,6 @@ from bezstab.methods import (
     closed_loop_polynomial,
     evaluations,
     lookup,
-    second_order_form,
     steps,
 )
 from bezstab.methods.derivation import ALPHA_HAT, BETA_HAT, MU, Z, characteristic_polynomial
@@ -112,4 +111,4 @@ def test_p_of_the_form_is_the_product_of_pi_over_both_mu_of_the_feedback(name: s
 def test_an_implicit_form_has_one_group_to_solve_and_a_diagonally_implicit_one_for_each_stage(
     name: str, groups: int
 ) -> None:
-    assert sum(len(group) > 1 for group in second_order_form(lookup(name).scheme).groups) == groups
+    assert sum(len(group) > 1 for group in lookup(name).scheme.second_order.groups) == groups

@@ -16,7 +16,6 @@ from bezstab.methods import (
     closed_loop_table,
     lookup,
     recipe,
-    second_order_form,
     steps,
 )
 from tests.methods import kinds
@@ -43,7 +42,7 @@ def is_shifted(longer: list[Fraction], shorter: list[Fraction]) -> bool:
 @pytest.mark.parametrize("name", [*kinds.SECOND_ORDER, *(n for n in kinds.MU_METHODS if not n.startswith("B"))])
 @pytest.mark.parametrize(("alpha_hat", "beta_hat"), POINTS[:2])
 def test_p_is_the_characteristic_polynomial_of_the_step(name: str, alpha_hat: Fraction, beta_hat: Fraction) -> None:
-    form = second_order_form(lookup(name).scheme)
+    form = lookup(name).scheme.second_order
     polynomial = step_polynomial(form, alpha_hat, beta_hat)
     assert polynomial is not None
     assert is_shifted(polynomial, closed_loop_at(Method("form", form, ""), alpha_hat, beta_hat))
@@ -144,5 +143,5 @@ def test_a_root_on_the_circle_that_stays_is_allowed_once() -> None:
 def test_weakly_stable_multistep_methods_have_second_order_forms(sigma: str) -> None:
     """Their rho = z^2 - 1 has the root -1 once: once for positions, once for velocities, and zero-stable."""
     scheme = LinearMultistep((Fraction(1), Fraction(0), Fraction(-1)), tuple(map(Fraction, sigma.split())))
-    form = second_order_form(scheme)
+    form = scheme.second_order
     assert form.table == closed_loop_table(Method("weakly stable", scheme, ""))

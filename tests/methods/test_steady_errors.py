@@ -20,7 +20,6 @@ from bezstab.methods import (
     forced_errors,
     leading_error,
     lookup,
-    second_order_form,
     turning_error,
 )
 from bezstab.methods.steady_errors import Part, PlanePolynomial
@@ -107,7 +106,7 @@ SMALLEST = Fraction(1, 10**12)
 @pytest.mark.parametrize("name", sampled(list(REGISTRY), ("B4", "AB4", "RK4", "dopri5", "SYM", "hht", "gauss4")))
 def test_errors_begin_where_evaluations_begin_to_be_off_but_for_those_that_gauss_cancels(name: str) -> None:
     """So normals that turn add nothing of the leading order to any built-in method but gauss4."""
-    step = second_order_form(lookup(name).scheme)
+    step = lookup(name).scheme.second_order
     power = 2
     while max(abs(error) for pair in evaluation_errors(step, power).values() for error in pair) < SMALLEST:
         power += 1

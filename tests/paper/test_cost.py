@@ -20,8 +20,8 @@ def test_equal_times_would_be_confirmed() -> None:
 
 
 def test_other_programs_would_not_favour_the_same_methods_in_each_case(monkeypatch: pytest.MonkeyPatch) -> None:
-    found = one_step_methods_take_longer([])
+    found = one_step_methods_take_longer()
     assert "up to 3.5%" in found.here
     assert "in 3 of 3 cases" in found.here
     monkeypatch.setattr(cost, "TABLE_6", {**TABLE_6, "B4": (8.64, 8.42, 8.39)})
-    assert one_step_methods_take_longer([]).agreement == "confirmed"
+    assert one_step_methods_take_longer().agreement == "confirmed"

@@ -5,8 +5,6 @@ import pytest
 
 from bezstab.paper import drift
 from bezstab.paper.drift import (
-    COLLAPSE_DURATION,
-    COLLAPSE_STEPS,
     GROWTH_DURATION,
     Runs,
     drift_figure,
@@ -19,29 +17,6 @@ from bezstab.paper.experiments import largest
 
 def drifting(steps: tuple[float, ...], duration: float = GROWTH_DURATION) -> Runs:
     return unstabilized(steps, duration, "", lambda keys, label: keys)
-
-
-@pytest.mark.slow
-def test_without_stabilisation_the_start_decides_who_wins() -> None:
-    steps = (0.005, 0.01)
-    runs = drifting(steps)
-    final = {key: largest(run, 80, 100) for key, run in runs.items()}
-    for h in steps:
-        assert 0.7 < final["euler", "B4", h] / final["euler", "AB4", h] < 1
-        assert final["rk4", "B4", h] / final["rk4", "AB4", h] > 1000
-    linear = [np.log2(largest(run, 0, 100) / largest(run, 0, 50)) for run in runs.values()]
-    assert linear == pytest.approx(np.ones(8), abs=0.05)
-
-
-@pytest.mark.slow
-def test_after_an_euler_start_both_methods_collapse_and_b4_later() -> None:
-    runs = drifting(COLLAPSE_STEPS, COLLAPSE_DURATION)
-    for h in COLLAPSE_STEPS:
-        b4, ab4 = runs["euler", "B4", h], runs["euler", "AB4", h]
-        assert b4.failure
-        assert ab4.failure
-        assert b4.t[-1] > ab4.t[-1]
-        assert not runs["rk4", "AB4", h].failure
 
 
 def test_the_first_constraint_is_the_largest_and_its_derivative_is_followed() -> None:

@@ -11,13 +11,13 @@ from bezstab.paper.influence import (
     TABLE_4,
     VISIBLE,
     Behaviour,
+    about_cases,
     angle_is_the_frequency,
     behaviour,
     derivative_behaves_alike,
     dominant_pole_is_seen_late,
     histories_figure,
     kicked_runs,
-    of_cases,
     physics_decides,
     regions_h_are_faster,
     report,
@@ -53,7 +53,7 @@ def test_the_points_of_table_4_lie_where_the_paper_puts_them() -> None:
                 assert row.c.crossings / row.followed == pytest.approx(np.angle(row.pole) / np.pi, rel=0.05)
         assert row.cdot.rate == pytest.approx(row.c.rate, abs=0.06)
         assert row.cdot != row.c
-    corrected = [finding.claim for finding in of_cases.findings(rows()) if finding.agreement != "confirmed"]
+    corrected = [finding.claim for finding in about_cases(rows()) if finding.agreement != "confirmed"]
     assert corrected == ["the smaller |z_p|, the faster"]  # not so of double poles
     assert all(row.c.fallen > np.log(0.01) / np.log(abs(row.pole)) for row in (rows()[1], rows()[3]))
 

@@ -4,7 +4,9 @@ from bezstab.paper import methods
 
 
 def test_everything_but_the_orders_is_confirmed() -> None:
-    assert [found.where for found in methods.claims.findings() if found.agreement != "confirmed"] == ["Table 1"]
+    assert [
+        found.where for found in methods.report(lambda runs, label: runs).findings if found.agreement != "confirmed"
+    ] == ["Table 1"]
 
 
 def test_with_the_sign_of_alpha_changed_eq_17_holds_only_where_alpha_is_zero(monkeypatch: pytest.MonkeyPatch) -> None:

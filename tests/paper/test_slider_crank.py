@@ -15,7 +15,7 @@ TERMS = slider_crank.scene_terms(Q, V)
 
 
 def agreements(terms: slider_crank.Terms = TERMS) -> dict[str, str]:
-    return {found.where: found.agreement for found in slider_crank.claims.findings(terms)}
+    return {found.where: found.agreement for found in slider_crank.findings(terms)}
 
 
 def test_eqs_21_and_22_follow_from_eq_19() -> None:
@@ -38,11 +38,11 @@ def test_a_wrong_gamma_would_show_in_the_constraints_accelerations() -> None:
 
 
 def test_differences_of_c_would_show_a_forgotten_term(monkeypatch: pytest.MonkeyPatch) -> None:
-    assert slider_crank.derivatives_of_the_constraints(TERMS).agreement == "confirmed"
+    assert slider_crank.derivatives_of_the_constraints().agreement == "confirmed"
     monkeypatch.setattr(
         slider_crank, "constraint_errors", lambda mechanism, t, q: constraint_errors(mechanism, t, q) + t**2 / 2
     )
-    found = slider_crank.derivatives_of_the_constraints(TERMS)
+    found = slider_crank.derivatives_of_the_constraints()
     assert found.agreement == "not confirmed"
     assert "is not 0" in found.here
 
@@ -51,10 +51,6 @@ def test_a_matrix_with_a_constraint_twice_has_lost_its_rank() -> None:
     assert "rank 9 of 9; with a constraint written twice 9 of 10" in slider_crank.unique_accelerations(TERMS).here
     twice = replace(TERMS, jacobian=TERMS.jacobian[[0, 1, 2, 2]])
     assert slider_crank.unique_accelerations(twice).agreement == "not confirmed"
-
-
-def test_1_mm_at_the_start_stays_without_feedback() -> None:
-    assert "1.04 mm after 10 s" in slider_crank.inconsistent_start(TERMS).here
 
 
 def test_a_row_may_be_negated_but_then_in_all_three_equations() -> None:
@@ -76,7 +72,5 @@ def test_the_weight_of_the_rod_has_its_sign_and_its_size(weight: float, agreemen
 
 
 def test_table_3_leaves_out_what_does_not_enter() -> None:
-    crank, rod, slider = slider_crank.body_rows(load_scene("slider_crank"))
-    assert crank == {"body": "crank", "length": 0.2, "mass": None, "inertia": 45.0}
-    assert rod == {"body": "rod", "length": 0.35, "mass": 3.5, "inertia": 3.5}
-    assert slider == {"body": "slider", "length": None, "mass": 2.5, "inertia": None}
+    rows = [list(row.values()) for row in slider_crank.body_rows(load_scene("slider_crank"))]
+    assert rows == [["crank", "0.2", "-", "45"], ["rod", "0.35", "3.5", "3.5"], ["slider", "-", "2.5", "-"]]

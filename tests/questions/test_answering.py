@@ -12,7 +12,6 @@ from bezstab.stability import choose, describe_point, feedback_cost
 
 SYM = (lookup("SYM"),)
 POINT = (Fraction(1), Fraction(1, 2))
-H = Fraction(1, 240)
 
 
 def first(question: Question) -> Answer:
@@ -61,14 +60,6 @@ def test_an_engine_answers_for_every_point_that_it_takes() -> None:
     assert (small.verdict, large.verdict) == ("converges", "diverges")
     assert small.setting is None
     assert "solref" in str(small.instead.setting)
-
-
-def test_of_a_drive_kp_and_kd_are_told() -> None:
-    drive = Drive(Fraction(1000), Fraction(80), Fraction("0.1"))
-    explicit = first(Question(drive=drive, h=H))
-    assert explicit.gains
-    assert (explicit.gains.kp, explicit.gains.kd, explicit.gains.used_up) == (1000, 80, "kd")
-    assert explicit.gains.kp_max is None
 
 
 LIMITS = [

@@ -5,10 +5,11 @@ from typing import Any
 
 import pytest
 
-from bezstab.engines import DRIVE_METHODS, ENGINES, Drive
+from bezstab.engines import DRIVE_METHODS, ENGINES, Drive, engine_and_values
 from bezstab.errors import InputError
 from bezstab.methods import lookup
-from bezstab.questions import Question, usual_goal
+from bezstab.questions import Question, meant_in_seconds, usual_goal
+from bezstab.questions.question import engine_holds
 
 SYM = (lookup("SYM"),)
 POINT = (Fraction(1), Fraction(1, 2))
@@ -47,3 +48,23 @@ def test_the_usual_goal_is_accurate_and_along_a_curve_or_of_a_drive_robust() -> 
         "robust",
         "robust",
     ]
+
+
+H_OF_2_MS = Fraction(1, 500)
+
+
+def test_an_engine_holds_alpha_hat_and_beta_hat_or_alpha_and_beta_or_is_refused() -> None:
+    bullet, spring = engine_and_values("bullet=0.2"), engine_and_values("brax-spring=5000,20,1")
+    assert engine_holds(*bullet, H_OF_2_MS, 2 * H_OF_2_MS, as_typed=False)
+    assert not engine_holds(*spring, H_OF_2_MS, 2 * H_OF_2_MS, as_typed=False)
+    with pytest.raises(InputError, match="box2d makes of these values neither"):
+        engine_holds(*engine_and_values("box2d=60,2"), H_OF_2_MS, 2 * H_OF_2_MS, as_typed=False)
+
+
+@pytest.mark.parametrize(
+    ("alpha", "beta", "meant"),
+    [("50", "50.5", True), ("1.5", "0.9", False), ("4", "3", False)],  # 4, 3: unstable, but no numbers of 1/s
+)
+def test_large_numbers_that_are_not_stable_are_meant_in_one_over_seconds(alpha: str, beta: str, meant: bool) -> None:
+    assert meant_in_seconds([lookup("SYM")], (Fraction(alpha), Fraction(beta))) == meant
+    assert not meant_in_seconds([lookup("implicit-euler")], (Fraction(alpha), Fraction(beta)))  # stable as typed

@@ -4,7 +4,7 @@ from typing import Any
 
 import mpmath
 
-from bezstab.methods import Method, closed_loop_polynomial, coefficient_table
+from bezstab.methods import Method, closed_loop_polynomial
 
 EPS = 2.0**-52
 
@@ -20,7 +20,7 @@ def poles_with_errors(method: Method, alpha_hat: float, beta_hat: float) -> list
     root = mpmath.sqrt(p * p / 4 - q)
     pairs = []
     for mu in (-p / 2 + root, -p / 2 - root):
-        table = [[mpmath.mpf(x.numerator) / x.denominator for x in row] for row in coefficient_table(method)]
+        table = [[mpmath.mpf(x.numerator) / x.denominator for x in row] for row in method.scheme.mu_table]
         coefficients = [sum(x * mu**j for j, x in enumerate(row)) for row in table]
         sizes = [sum(abs(x * mu**j) for j, x in enumerate(row)) for row in table]
         while coefficients[0] == 0:  # exact zeros, which polyroots would only approach

@@ -9,7 +9,7 @@ from typing import Any
 
 import mpmath
 
-from bezstab.methods import Evaluation, ExponentialSum, Method, Quantity, second_order_form
+from bezstab.methods import Evaluation, ExponentialSum, Method, Quantity
 
 DIGITS = 60
 
@@ -34,7 +34,7 @@ def steady_errors(
     alpha_hat, beta_hat and omega are of the method's own step. What the start did must have died away by then.
     """
     with mpmath.workdps(DIGITS):
-        equations = second_order_form(method.scheme).equations
+        equations = method.scheme.second_order.equations
         alpha_hat, beta_hat, theta = _number(alpha_hat), _number(beta_hat), 1j * _number(omega)
         forcing = theta**2 + alpha_hat * theta + beta_hat
         ticking = _StepByStep(equations, mpmath.mpf(0), mpmath.mpf(0), lambda _: mpmath.mpf(0))

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bezstab.mechanism import Mechanism, state_function
-from bezstab.methods import Method, SecondOrder, implicit, second_order_form, steps
+from bezstab.methods import Method, SecondOrder, implicit, steps
 from tests.reference.plain_projection import projected
 from tests.reference.plain_second_order import plain_second_order_run
 from tests.reference.steppers import one_step
@@ -37,11 +37,11 @@ def plain_run(
 
     of_second_order = implicit(method) or isinstance(method.scheme, SecondOrder)
     if of_second_order and not iterations:
-        return np.array(plain_second_order_run(second_order_form(method.scheme), acceleration, h, list(states), count))
+        return np.array(plain_second_order_run(method.scheme.second_order, acceleration, h, list(states), count))
     history = list(states)
     for _ in range(count):
         if of_second_order:
-            (new,) = plain_second_order_run(second_order_form(method.scheme), acceleration, h, history[-1:], 1)
+            (new,) = plain_second_order_run(method.scheme.second_order, acceleration, h, history[-1:], 1)
         else:
             new = one_step(method, slope, history[-steps(method) :], h, float)
         history.append(projected(mechanism, 0.0, new, iterations) if iterations else new)

@@ -1,6 +1,6 @@
 """Second-order schemes as text, and registered methods written as such."""
 
-from bezstab.methods import Method, lookup, recipe, second_order_form
+from bezstab.methods import Method, lookup, recipe
 
 RECIPES = {
     "half": {"x1": "x0 + v0 + 1/2 a0", "vh": "v0 + 1/2 a0", "a1": "acceleration(x1, vh)", "v1": "vh + 1/2 a1"},
@@ -55,4 +55,4 @@ def newmark(by_position: str, rest: str) -> Method:
 def as_second_order(name: str) -> Method:
     """Return a registered method written as a second-order scheme."""
     method = lookup(name)
-    return Method(f"{name} as x, v, a", second_order_form(method.scheme), "", method.step_multiple)
+    return Method(f"{name} as x, v, a", method.scheme.second_order, "", method.step_multiple)

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from fractions import Fraction
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from bezstab.errors import NumericalError
 from bezstab.methods import lookup
 from bezstab.rationals import exact
 from bezstab.stability import (
+    FloatArray,
     Goal,
     best_point,
     best_points,
@@ -24,12 +26,14 @@ from bezstab.stability import (
     stability_margins,
     verdict,
 )
-from bezstab.stability.answer_checks import check_best_point, check_margin
+from bezstab.stability.answer_checks import check_least, check_margin
 from bezstab.stability.charts import SPACINGS, Chart
+from bezstab.stability.closed_loop import largest_modulus
 from bezstab.stability.least_modulus import Least, least_on
 from bezstab.stability.mu_pencils import deadbeat_mu
 from bezstab.stability.path_crossings import Path
 from bezstab.stability.pencils import pencil_of
+from bezstab.stability.searches import zoom_from_grid
 from tests.reference.made_methods import runge_kutta
 
 
@@ -58,17 +62,17 @@ def test_a_wrong_best_point_is_no_answer(name: str, factor: float, moved: float)
     extent = region(lookup(name)).extent
     assert right
     assert extent
+    modulus = partial(largest_modulus, pencil_of(lookup(name)))
+    point = moved * right.alpha_hat, right.beta_hat
     with pytest.raises(NumericalError):
-        check_best_point(
-            pencil_of(lookup(name)), factor * right.z_abs, moved * right.alpha_hat, right.beta_hat, extent, True
-        )
+        check_least(lookup(name), modulus, point, factor * right.z_abs, [extent], anywhere=True)
 
 
 @pytest.mark.parametrize("name", ["B4", "AB4", "ABM3"])
 @pytest.mark.slow_except("AB4")
 def test_a_kink_that_is_not_the_least_is_no_answer(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(best_points, "least_on", beside_the_least)
-    with pytest.raises(NumericalError, match="below the best point"):
+    with pytest.raises(NumericalError, match="the point chosen"):
         best_point(lookup(name))
 
 
@@ -90,8 +94,6 @@ def off_by(factor: float, search: Callable[..., tuple[float, float]]) -> Callabl
 
 
 BESIDE: list[tuple[str, str, Goal, float, str]] = [
-    ("_least", "RK4", "robust", 0.99, "the point chosen"),
-    ("_least", "B4", "robust", 0.99, "the point chosen"),
     ("least_between", "RK4", "robust", 0.99, "the point chosen"),
     ("least_between", "RK4", "fastest", 0.99, "the point chosen"),
     *(("_critical_point", "RK4", "critical", off, "critical point") for off in (0.99, 1.01)),
@@ -114,22 +116,37 @@ def test_a_choice_beside_its_place_is_no_answer(
         choose(lookup(name), goal, equal=along_a_curve, rate=0.9 if goal == "gentle" else None)
 
 
+def zoom_beside(objective: Callable[..., FloatArray], *arguments: Any, **options: Any) -> tuple[FloatArray, FloatArray]:
+    """Return a hundredth less than the place that a zoom finds, and the value there."""
+    place, _ = zoom_from_grid(objective, *arguments, **options)
+    return 0.99 * place, objective(0.99 * place[np.newaxis])[0]
+
+
+@pytest.mark.promise("Every region, best point, choice and margin")
+@pytest.mark.parametrize("name", ["RK4", "B4"])
+@pytest.mark.slow_except("RK4")
+def test_a_robust_choice_beside_its_place_is_no_answer(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(choices, "zoom_from_grid", zoom_beside)
+    with pytest.raises(NumericalError, match="the point chosen has"):
+        choose(lookup(name), "robust")
+
+
 @pytest.mark.slow
 def test_what_fails_at_first_is_searched_more_finely(monkeypatch: pytest.MonkeyPatch) -> None:
     """A first search that ends beside the least value, of either kind: the second one finds it."""
     method = lookup("AB3")
     right_best, right_choice = best_point(method), choose(method, "robust")
     assert right_best
-    least = choices._least
 
     def another(chart: Chart) -> tuple[float, Least | None]:
         return least_on(chart) if len(chart.axes[0]) > SPACINGS + 1 else beside_the_least(chart)
 
-    def beside(*arguments: Any) -> tuple[float, float]:
-        return (least if arguments[-1] > 1 else off_by(0.99, least))(*arguments)
+    def beside(*arguments: Any, **options: Any) -> tuple[FloatArray, FloatArray]:
+        search = zoom_from_grid if options["rounds"] > choices.ZOOMS else zoom_beside
+        return search(*arguments, **options)
 
     monkeypatch.setattr(best_points, "least_on", another)
-    monkeypatch.setattr(choices, "_least", beside)
+    monkeypatch.setattr(choices, "zoom_from_grid", beside)
     best_points._best_or_limit.cache_clear()
     found = best_point(method)
     assert found
