@@ -5,15 +5,20 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
 from itertools import chain
-from typing import Any
 
 import numpy as np
 
 from bezstab.evidence import kicked_motions
 from bezstab.evidence.measured_poles import SURROUNDINGS
-from bezstab.mechanism import Mechanism, compiled_mechanism, load_scene, shipped_scenes, turning_normals
+from bezstab.mechanism import (
+    Mechanism,
+    compiled_mechanism,
+    constraint_jacobian,
+    load_scene,
+    shipped_scenes,
+    turning_normals,
+)
 from bezstab.mechanism.motions import motion
-from bezstab.mechanism.start import geometry
 from bezstab.methods import REGISTRY, Method, lookup
 from bezstab.rationals import exact
 from bezstab.stability import FloatArray, region, spectral_radius, window
@@ -92,12 +97,12 @@ def _turning(scene: str) -> float:
     pendulum it is the angular speed, while K is zero.
     """
     mechanism = _mechanism(scene)
-    along, at = motion(mechanism, LASTS), geometry(mechanism)
+    along = motion(mechanism, LASTS)
     root = np.sqrt(np.array(mechanism.equations.mass, float))
     rates = [turning_normals(mechanism, LASTS).largest_norm]
     for t, q, v in zip(along.t[::SPARSE].tolist(), along.q[::SPARSE], along.v[::SPARSE], strict=True):
-        jacobian = np.asarray(at.jacobian(q, t), float) / root
-        ahead: Any = at.jacobian(q + 1j * TINY * v, t + 1j * TINY)
+        jacobian = constraint_jacobian(mechanism, t, q) / root
+        ahead = constraint_jacobian(mechanism, t + 1j * TINY, q + 1j * TINY * v)
         own_units = np.linalg.inv(np.linalg.cholesky(jacobian @ jacobian.T))
-        rates.append(float(np.linalg.norm(own_units @ np.asarray(ahead.imag / TINY, float) / root, ord=2)))
+        rates.append(float(np.linalg.norm(own_units @ (ahead.imag / TINY) / root, ord=2)))
     return max(rates)
