@@ -24,7 +24,7 @@ class Room(NamedTuple):
 
     registers (registers, width), in units of the last step (s), step[0]; a state (2, width), accelerations (width,) and
     the row of a lane's machine code; off, by which a projection corrects position and velocity of a run alone,
-    (2 n,); residuals and corrections (evaluations of a group, width); a Jacobian (unknowns, unknowns, lanes), and the
+    (2 n,); residuals and corrections (evaluations, width); a Jacobian (unknowns, unknowns, lanes), and the
     inverses of the last ones, nan at first, (groups, unknowns, unknowns, lanes); of each lane the size of what it
     computes with, how far this correction moves it and the one before did, and whether it is running, this correction
     is its last, and its Jacobian does not serve.
@@ -63,10 +63,9 @@ def room_of(program: Program, carried: FloatArray, h: float, stride: int, row: i
     length of that of a lane's machine code.
     """
     quantities, n, lanes = carried.shape
-    most = int((program.groups[:, 1] - program.groups[:, 0]).max())
-    unknowns = most * n if program.implicit else 0
-    width = n * stride
-    registers = np.zeros((program.table.shape[1] + len(program.table) - 2 * len(program.moments), n, stride))
+    evaluations, width = len(program.moments), n * stride
+    unknowns = evaluations * n if program.implicit else 0
+    registers = np.zeros((program.table.shape[1] + len(program.table) - 2 * evaluations, n, stride))
     registers[:quantities, :, :lanes] = carried
     of_lanes, yes_or_no = np.zeros((3, lanes)), np.zeros((3, lanes), np.bool_)
     return Room(
@@ -76,8 +75,8 @@ def room_of(program: Program, carried: FloatArray, h: float, stride: int, row: i
         found=np.zeros(width),
         row=np.zeros(row),
         off=np.zeros(2 * n),
-        residuals=np.zeros((most, width)),
-        corrections=np.zeros((most, width)),
+        residuals=np.zeros((evaluations, width)),
+        corrections=np.zeros((evaluations, width)),
         jacobian=np.zeros((unknowns, unknowns, lanes)),
         inverses=np.full((len(program.groups), unknowns, unknowns, lanes), math.nan),
         sizes=of_lanes[0],
