@@ -2,7 +2,7 @@
 
 This text is read in two ways: by numba as machine code (`compiled_stepping`), and by Python with numpy's arrays
 (`array_stepping`). Each gives some names a meaning of its own: the mechanism's functions, the numbers that say how its
-registers are laid out (`registers`), and what it does faster as a whole than place by place. All else is said here
+registers are laid out (`programs`), and what it does faster as a whole than place by place. All else is said here
 once. Where Python takes all lanes at a time, a number is an array over them: a choice between two values is a
 comparison or `take`, not a branch.
 
@@ -28,8 +28,7 @@ from typing import Any
 import numpy as np
 
 from bezstab.mechanism.compiled import SINGULAR
-from bezstab.mechanism.programs import FloatArray, IntArray, Program
-from bezstab.mechanism.registers import BoolArray, Room, Steps
+from bezstab.mechanism.programs import BoolArray, FloatArray, IntArray, Program, Room, Steps
 from bezstab.mechanism.start import CLOSED
 
 BLOWN_UP = 1e9  # SI units, sum of all coordinates and velocities: far beyond any mechanism, far below overflow
