@@ -24,28 +24,6 @@ def test_rules_of_thumb_are_where_they_are_known_to_be() -> None:
     assert marks["Brax positional: 0.5"] == (Fraction(1, 2), Fraction(1, 2))
 
 
-def test_refsafe_raises_a_time_constant_below_two_steps() -> None:
-    raised = MUJOCO.applied((Fraction(1, 1000), Fraction(1), Fraction("0.9"), Fraction("0.9")), H)
-    assert raised.point == MUJOCO.read(H, 2 * H, Fraction(1)) == (Fraction(1), Fraction(1, 4))
-    assert raised.notes == ("refsafe raises timeconst 0.001 s to 2h = 0.004 s",)
-    assert MUJOCO.read(H, Fraction(1, 1000), Fraction(1)) == (Fraction(4), Fraction(4))  # as typed
-
-
-def test_the_default_solimp_scales_small_errors_and_large_ones_are_told_too() -> None:
-    applied = MUJOCO.applied((2 * H, Fraction(1)), H)
-    ratio = Fraction(18, 19)
-    assert applied.point == (ratio, ratio**2 / 4)
-    assert applied.also == (("past solimp's width", (Fraction(1), Fraction(1, 4))),)
-    assert float(ratio) == pytest.approx(0.947, abs=5e-4)
-
-
-def test_impedances_are_clamped() -> None:
-    direct = (Fraction(-100), Fraction(-20))
-    hard = MUJOCO.applied((*direct, Fraction(2), Fraction(3)), H)
-    assert hard.point == MUJOCO.read(H, *direct)
-    assert hard.also == ()
-
-
 def mujocos_step(solref: str, solimp: str, size: float) -> Callable[[float, float], State]:
     """Return what MuJoCo itself makes of (c, v) in a step, both of a given size, for a body on a line."""
     mujoco: Any = pytest.importorskip("mujoco")

@@ -119,6 +119,17 @@ def test_the_pole_of_an_engines_defaults_is_the_known_one(name: str) -> None:
     assert spectral_radius(lookup(engine.method), *map(float, point)) == pytest.approx(z_abs, abs=5e-6)
 
 
+@settings(max_examples=20, deadline=None)
+@given(st.floats(0.1, 1e4), st.floats(0.1, 100), st.floats(1e-4, 0.05))
+def test_a_spring_and_damper_as_erp_and_cfm_is_implicit_euler(kp: float, kd: float, h: float) -> None:
+    # ODE's manual: ERP = h kp / (h kp + kd) and CFM = 1 / (h kp + kd) are an implicit spring and damper
+    values = tuple(map(Fraction, (h * kp / (h * kp + kd), 1 / (h * kp + kd), 1.0)))
+    a, b = map(float, ENGINES["ode"].read(Fraction(h), *values))
+    implicit = poles(lookup("implicit-euler"), kd * h, kp * h * h)
+    ours = poles(lookup("SYM"), a, b)
+    assert (ours.sum().real, ours.prod().real) == pytest.approx((implicit.sum().real, implicit.prod().real), rel=1e-9)
+
+
 @pytest.mark.parametrize(("name", "last"), [("bullet", "2"), ("pbd", "4/3"), ("brax-positional", "4/3"), ("jolt", "2")])
 def test_what_has_a_limit_turns_there(name: str, last: str) -> None:
     engine, h = ENGINES[name], Fraction(1, 60)
