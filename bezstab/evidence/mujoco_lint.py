@@ -552,19 +552,19 @@ def _step(
     inverse = plant.inverse_mass(0.0)
     arms = np.array([each.motor.direction for each in controlled]).reshape(motors, dofs)
     stiffness, damping = _springs_and_dampers(model.mass, model.of(Feedback))
-    acceleration = inverse @ np.hstack([-stiffness, -damping, arms.T])  # by positions, velocities and forces
-    # What constraints ask of it, J a = -(alpha_hat / h) J v - (beta_hat / h^2) J x, softened by R.
+    # Times h^2, by positions, velocities times h, and forces.
+    acceleration = inverse @ np.hstack([-stiffness * h * h, -damping * h, arms.T * h * h])
+    # What constraints ask of it, J a = -alpha_hat J v - beta_hat J x, softened by R.
     jacobian = np.vstack([np.zeros((0, dofs)), *(pull.constraint.jacobian for pull in held)])
     points = [pull.point for pull in held for _ in pull.constraint.diagonal]  # of each row
     alpha_hat, beta_hat = np.array(points, float).reshape(-1, 2, 1).swapaxes(0, 1)
-    asked = np.hstack([-beta_hat / h**2 * jacobian, -alpha_hat / h * jacobian, np.zeros((len(jacobian), motors))])
+    asked = np.hstack([-beta_hat * jacobian, -alpha_hat * jacobian, np.zeros((len(jacobian), motors))])
     regularized = jacobian @ inverse @ jacobian.T + np.diag(np.hstack([[], *(pull.softening for pull in held)]))
     acceleration += inverse @ jacobian.T @ np.linalg.solve(regularized, asked - jacobian @ acceleration)
     slower = plant.inverse_mass(h) @ model.mass  # what implicit damping leaves of it
-    in_steps = np.repeat([h * h, h, h * h], [dofs, dofs, motors])  # velocities are in units of 1/h
     whole = np.eye(2 * dofs + motors)
     change = np.zeros_like(whole)
-    change[dofs : 2 * dofs] = slower @ acceleration * in_steps
+    change[dofs : 2 * dofs] = slower @ acceleration
     if model.integrator == "RK4":
         change[:dofs, dofs : 2 * dofs] = np.eye(dofs)
         for part in (4, 3, 2, 1):
