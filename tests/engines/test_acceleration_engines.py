@@ -16,12 +16,9 @@ def test_rules_of_thumb_are_where_they_are_known_to_be() -> None:
     marks = {label: point for engine in ENGINES.values() for label, point in engine.marked(H).items()}
     assert marks["MuJoCo: timeconst = 2h"] == (Fraction(1), Fraction(1, 4))
     assert marks["MuJoCo: solref = 0.02 1"] == (Fraction(1, 5), Fraction(1, 100))
-    assert marks["bullet: ERP = 0.2"] == marks["ode: ERP = 0.2"] == (Fraction(1), Fraction(1, 5))
     assert marks["RBDL: T_stab = 0.1"] == (Fraction(1, 25), Fraction(1, 2500))
     assert marks["RigidBodyDynamics.jl: PDGains(100, 20)"] == (Fraction(1, 25), Fraction(1, 2500))
     assert marks["Pinocchio: Kp = Kd = 0"] == (Fraction(0), Fraction(0))
-    assert marks["Jolt: 0.2, 2 position steps"] == (Fraction(1), Fraction(9, 25))
-    assert marks["Brax positional: 0.5"] == (Fraction(1, 2), Fraction(1, 2))
 
 
 def mujocos_step(solref: str, solimp: str, size: float) -> Callable[[float, float], State]:
