@@ -9,7 +9,7 @@ feedback at the half-step velocity:
 
     evaluation 0:   position   1   1  1/2   0          a1 = acceleration there, at moment 1
                     velocity   0   1  1/2   0
-    combined:       x1         1   1  1/2   0
+    combined:       x1         1   1  1/2   0          the new state, then what else is needed
                     v1         0   1  1/2  1/2
     moved:          x0 <- x1,  v0 <- v1,  a0 <- a1     what the next turn begins with
 
@@ -47,12 +47,12 @@ class Program(NamedTuple):
     """A turn of a scheme in float64: registers are numbered through what is carried, found and combined.
 
     `powers` are those of h in what is carried. `table` has the rows of position and velocity of each evaluation, then
-    the combined ones; `moments` are the times of evaluations, in steps after step 0 of the turn, `guesses` registers.
-    `groups` has the evaluations that belong together, from the first to before the last, and whether they wait for each
-    other. The moves lead, in this order, from a register to one that is carried; `state` are the registers of position
-    and velocity at the end of the turn, before the moves. `corrected` says for each that is carried what share it has,
-    after the moves, in a change of that position, and of that velocity: none for what is older than they are. `after`
-    is what is done to the new state.
+    the combined ones, of which the first two are position and velocity at the end of the turn; `moments` are the times
+    of evaluations, in steps after step 0 of the turn, `guesses` registers. `groups` has the evaluations that belong
+    together, from the first to before the last, and whether they wait for each other. `moved` are the registers that
+    move, in this order, to those that are carried. `corrected` says for each that is carried what share it has, after
+    the moves, in a change of that position, and of that velocity: none for what is older than they are. `after` is what
+    is done to the new state.
     """
 
     powers: IntArray
@@ -60,9 +60,7 @@ class Program(NamedTuple):
     moments: FloatArray
     guesses: IntArray
     groups: IntArray
-    moved_from: IntArray
-    moved_to: IntArray
-    state: IntArray
+    moved: IntArray
     corrected: FloatArray
     after: AfterStep
 
@@ -95,9 +93,9 @@ def program_of(scheme: SecondOrder, after: AfterStep = NOTHING) -> Program:
         if len(guesses) > first:
             groups.append((first, len(guesses), waiting))
 
-    state = (Quantity(POSITION, 1), Quantity(VELOCITY, 1))
     newer = [Quantity(quantity.name, quantity.step + 1) for quantity in carried]
-    combined = [quantity for quantity in dict.fromkeys((*state, *newer)) if quantity not in places]
+    wanted = dict.fromkeys((Quantity(POSITION, 1), Quantity(VELOCITY, 1), *newer))
+    combined = [quantity for quantity in wanted if quantity not in places]
     register = {quantity: number for number, quantity in enumerate([*places, *combined])}
     return Program(
         powers=np.array([POWERS_OF_STEP.get(quantity.name, 2) for quantity in carried]),
@@ -105,9 +103,7 @@ def program_of(scheme: SecondOrder, after: AfterStep = NOTHING) -> Program:
         moments=np.array([moments[quantity] for quantity in found], np.float64),
         guesses=np.array(guesses),
         groups=np.array(groups, np.int64),
-        moved_from=np.array([register[quantity] for quantity in newer]),
-        moved_to=np.array([register[quantity] for quantity in carried]),
-        state=np.array([register[quantity] for quantity in state]),
+        moved=np.array([register[quantity] for quantity in newer]),
         corrected=np.array(
             [
                 shares[:2] if step == 0 else (ZERO, ZERO)

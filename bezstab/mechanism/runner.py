@@ -191,15 +191,15 @@ def recorded(
     mechanism: Mechanism, method: Method, first: FloatArray, times: FloatArray, blocks: Iterable[Block], how: How
 ) -> Trajectory:
     """Return a run from its blocks, the times (s) of whose states are given, the first state's included."""
-    parts, pivots, cause = [first[np.newaxis]], [np.ones(0)], None
+    parts, pivots, cause = [first[np.newaxis]], [], None
     for block in blocks:
         parts.append(block.states)
         pivots.append(block.pivots)
         cause = block.cause
-    states, least = np.concatenate(parts), np.concatenate(pivots)
+    states, least = np.concatenate(parts), np.concatenate([*pivots, np.ones(1)])  # 1.0 where no step was taken
     # the step that failed is not in the history, but was computed
     failure = f"at t = {times[len(states)]:.6g} s: {cause}" if cause else None
-    lowest = int(least.argmin()) if least.min(initial=1.0) < 1.0 else None
+    lowest = int(least.argmin())
     return Trajectory(
         mechanism=mechanism,
         method=method,
@@ -208,8 +208,8 @@ def recorded(
         v=states[:, mechanism.size :],
         evaluations=int(how.counts[EVALUATIONS]),
         failure=failure,
-        least_pivot=1.0 if lowest is None else float(least[lowest]),
-        pivot_time=0.0 if lowest is None else float(times[lowest]),
+        least_pivot=float(least[lowest]),
+        pivot_time=float(times[lowest]),
         iterations=int(how.counts[ITERATIONS]) if implicit(method) else None,
         projections=int(how.counts[PROJECTIONS]),
         after=how.after,

@@ -89,27 +89,22 @@ def accelerations(t: float, gains: FloatArray, room: Room) -> float:
 # What numpy does faster as a whole
 
 
-def combine(shares: FloatArray, registers: FloatArray, into: FloatArray) -> None:
-    """Write the sum of registers that a row of a program stands for."""
-    for place in every(WIDTH):
-        into[place] = 0.0
-    for source in range(len(shares)):
-        share, register = shares[source], registers[source]
-        if share != 0:
-            for place in every(WIDTH):
-                into[place] += share * register[place]
+def combine(rows: FloatArray, registers: FloatArray, into: FloatArray) -> None:
+    """Write the sums of registers that rows of a program stand for."""
+    for number in range(len(rows)):
+        for place in every(WIDTH):
+            into[number, place] = 0.0
+        for source in range(rows.shape[1]):
+            share = rows[number, source]
+            if share != 0:
+                for place in every(WIDTH):
+                    into[number, place] += share * registers[source, place]
 
 
 def scale(factor: float, source: FloatArray, into: FloatArray) -> None:
     """Write a register times a factor."""
     for place in every(WIDTH):
         into[place] = factor * source[place]
-
-
-def copy(source: FloatArray, into: FloatArray) -> None:
-    """Copy a register."""
-    for place in every(WIDTH):
-        into[place] = source[place]
 
 
 def take(lanes: BoolArray, source: FloatArray, into: FloatArray) -> None:
@@ -183,8 +178,7 @@ def invert_one(matrix: FloatArray, size: int, found: FloatArray) -> None:
 
 def accelerations_at(program: Program, number: int, time: float, h: float, gains: FloatArray, room: Room) -> float:
     """Write the state of an evaluation, and its accelerations; return the least pivot."""
-    combine(program.table[2 * number], room.registers, room.state[0])
-    combine(program.table[2 * number + 1], room.registers, room.state[1])
+    combine(program.table[2 * number : 2 * number + 2], room.registers, room.state)
     scale(1 / h, room.state[1], room.state[1])
     return accelerations(time + program.moments[number] * h, gains, room)
 
@@ -201,13 +195,12 @@ def evaluate(
 
 def finish(program: Program, h: float, room: Room, state: FloatArray) -> None:
     """Combine, write the new state, and move on."""
-    first, columns = 2 * len(program.moments), program.table.shape[1]
-    for number in range(len(program.table) - first):
-        combine(program.table[first + number], room.registers, room.registers[columns + number])
-    copy(room.registers[program.state[0]], state[0])
-    scale(1 / h, room.registers[program.state[1]], state[1])
-    for move in range(len(program.moved_from)):
-        copy(room.registers[program.moved_from[move]], room.registers[program.moved_to[move]])
+    new = room.registers[program.table.shape[1] :]
+    combine(program.table[2 * len(program.moments) :], room.registers, new)
+    scale(1.0, new[0], state[0])
+    scale(1 / h, new[1], state[1])
+    for number in range(len(program.moved)):
+        scale(1.0, room.registers[program.moved[number]], room.registers[number])
 
 
 def take_steps(program: Program, steps: Steps, room: Room, states: FloatArray, told: FloatArray) -> None:
@@ -407,7 +400,7 @@ def project(
 
 
 TEXT = (
-    *(accelerations, combine, take, add_sizes, any_of, multiply, invert, invert_one, scale, copy),
+    *(accelerations, combine, take, add_sizes, any_of, multiply, invert, invert_one, scale),
     *(accelerations_at, evaluate, finish, solve, guess, residual, correct, renew, advance, shift, project, take_steps),
 )
 """What is read in two ways."""

@@ -11,11 +11,11 @@ from itertools import chain
 
 import numpy as np
 
-from bezstab.engines import Engine, Point
+from bezstab.engines import Engine
 from bezstab.errors import InputError, NumericalError
 from bezstab.evidence import MovingRegion, moving_region
 from bezstab.mechanism import TurningNormals, load_scene
-from bezstab.methods import Method, Verdict
+from bezstab.methods import Method
 from bezstab.questions.motions import ReferenceMotion, motion_of, turn_too_far, turning_of
 from bezstab.questions.question import methods_for
 from bezstab.stability import (
@@ -35,12 +35,10 @@ from bezstab.stability import (
     exact_critical_damping_limit,
     falls_towards,
     pole_map,
-    poles,
     region,
     stable_for_all,
     unconditional_damping_ratio,
     useful_window,
-    verdict,
 )
 
 MOST_DRAWN = 1e100
@@ -198,33 +196,6 @@ class MapQuestion:
         """The points (alpha_hat, beta_hat) to mark, by label: the engine's defaults and rules of thumb."""
         points = self.engine.marked(self.h) if self.engine and self.h else {}
         return {label: (float(alpha_hat), float(beta_hat)) for label, (alpha_hat, beta_hat) in points.items()}
-
-
-@dataclass(frozen=True)
-class PlanePoint:
-    """What a method does to errors at a point (alpha_hat, beta_hat), exact: fast enough to follow a mouse."""
-
-    method: Method
-    point: Point
-
-    @cached_property
-    def poles(self) -> ComplexArray:
-        """All poles, the dominant one first, shape (degree,); errors as `poles`."""
-        return poles(self.method, *map(float, self.point))
-
-    @property
-    def stable(self) -> bool:
-        """Whether the dominant pole, in float64, lies inside the unit circle."""
-        return bool(abs(self.poles[0]) < 1)
-
-    @property
-    def verdict(self) -> Verdict:
-        """What errors do, proven."""
-        return verdict(self.method, *self.point)
-
-    def after_a_kick(self, steps: int) -> FloatArray:
-        """Return |c| from a unit kick on, shape (steps + 1,)."""
-        return abs(kick_response(self.poles, steps))
 
 
 def kick_response(poles: ComplexArray, steps: int) -> FloatArray:

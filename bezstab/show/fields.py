@@ -122,7 +122,7 @@ class Field:
         for name in (self.path or self.key).split("."):
             if value is None:
                 return None
-            if name in PARTS and isinstance(value, complex):
+            if name in PARTS:
                 value = PARTS[name](value)
             else:
                 value = value[int(name)] if name.lstrip("-").isdigit() else getattr(value, name)
@@ -147,7 +147,7 @@ class Field:
                 return value if isinstance(value, int) else float(value)
 
 
-number = partial(Field, kind="number")
+number = Field
 integer = partial(Field, kind="integer")
 text = partial(Field, kind="text")
 truth = partial(Field, kind="truth")

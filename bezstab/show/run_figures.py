@@ -79,8 +79,7 @@ def work_precision_figure(swept: SweptRuns, scene: str, error: ErrorOf) -> Figur
     with styled():
         figure = column_figure(1.15)
         axes = figure.add_subplot(title=title_lines(scene))
-        known_errors = [known for run in runs if (known := run.error(error)) is not None]
-        top = 10 * max(known_errors, default=1.0)
+        top = 10 * (max(run.error(error) or 0.0 for run in runs) or 1.0)
         for place, method in enumerate(dict.fromkeys(run.method for run in runs)):
             own = [run for run in runs if run.method == method]
             _draw_runs(swept, own, error, axes, label=method.name, **marked_line_at(place))
@@ -113,7 +112,7 @@ def projection_figure(swept: SweptRuns, scene: str) -> Figure:
                     _draw_runs(swept, own, error, axes, **line)
             axes.label_outer()
         figure.suptitle(title_lines(scene))
-        return with_legend(figure, panels[0].lines)
+        return with_legend(figure, handles=panels[0].lines)
 
 
 def _draw_runs(swept: SweptRuns, runs: Sequence[Run], error: ErrorOf, axes: Axes, **line: Any) -> None:

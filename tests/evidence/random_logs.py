@@ -10,9 +10,15 @@ import numpy as np
 
 from bezstab.evidence import kicked_motions
 from bezstab.evidence.measured_poles import SURROUNDINGS
-from bezstab.mechanism import Mechanism, compiled_mechanism, load_scene, shipped_scenes, turning_normals
+from bezstab.mechanism import (
+    Mechanism,
+    compiled_mechanism,
+    constraint_jacobian,
+    load_scene,
+    shipped_scenes,
+    turning_normals,
+)
 from bezstab.mechanism.motions import motion
-from bezstab.mechanism.start import geometry
 from bezstab.methods import REGISTRY, Method, lookup
 from bezstab.rationals import exact
 from bezstab.stability import FloatArray, region, spectral_radius, window
@@ -90,9 +96,9 @@ def _turning(scene: str) -> float:
     pendulum it is the angular speed, while K is zero.
     """
     mechanism = _mechanism(scene)
-    along, at = motion(mechanism, LASTS), geometry(mechanism)
+    along = motion(mechanism, LASTS)
     root = np.sqrt(np.array(mechanism.equations.mass, float))
-    jacobians = [np.asarray(at.jacobian(q, t), float) / root for t, q in zip(along.t.tolist(), along.q, strict=True)]
+    jacobians = [constraint_jacobian(mechanism, t, q) / root for t, q in zip(along.t.tolist(), along.q, strict=True)]
     rates = [turning_normals(mechanism, LASTS).largest_norm]
     for (before, after), passed in zip(pairwise(jacobians), np.diff(along.t), strict=True):
         own_units = np.linalg.inv(np.linalg.cholesky(before @ before.T))

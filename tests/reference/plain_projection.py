@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bezstab.mechanism import Mechanism, constraint_errors, constraint_jacobian
-from bezstab.mechanism.start import geometry
+from bezstab.mechanism.start import matrix_function
 
 FloatArray = NDArray[np.float64]
 
@@ -23,5 +23,5 @@ def projected(mechanism: Mechanism, t: float, state: FloatArray, iterations: int
     for _ in range(iterations):
         q = q + saddle_solution(mechanism, constraint_jacobian(mechanism, t, q), constraint_errors(mechanism, t, q))
     jacobian = constraint_jacobian(mechanism, t, q)
-    rate = jacobian @ v + geometry(mechanism).constraints_t(q, t)[:, 0]
+    rate = jacobian @ v + matrix_function(mechanism, "constraints_t")(q, t)[:, 0]
     return np.concatenate([q, v + saddle_solution(mechanism, jacobian, rate)])
