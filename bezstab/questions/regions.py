@@ -240,7 +240,8 @@ class MapAnswer:
         return {float(speed): moving_region(self.method, each, h) for speed, each in self.question.turnings.items()}
 
     @cached_property
-    def _choice_or_reason(self) -> tuple[Choice | None, str | None]:
+    def choice_or_reason(self) -> tuple[Choice | None, str | None]:
+        """The point to draw beside the fastest, or why there is no most accurate one on a motion."""
         motion = self.question.motion
         if motion is None:
             return choose(self.method, "robust", margins=False) if self.stable.best else None, None
@@ -252,12 +253,7 @@ class MapAnswer:
     @property
     def chosen(self) -> Choice | None:
         """The point to draw beside the fastest: the choice of the goal accurate on a motion, else of robust."""
-        return self._choice_or_reason[0]
-
-    @property
-    def choice_reason(self) -> str | None:
-        """Why there is no most accurate point on a motion; None where there is one, and without a motion."""
-        return self._choice_or_reason[1] if self.question.motion else None
+        return self.choice_or_reason[0]
 
     @property
     def best_error(self) -> float | None:
