@@ -115,7 +115,7 @@ RK4_ZEROS = np.array([(3.45888846213, 3.78125278982), (0.541111537865, 6.3471027
         (lookup("verlet-half"), [(1, 1)]),  # z^2 = 0 where 1 - alpha = 0 and alpha + beta = 2
         (lookup("verlet-implicit"), [(2, 2)]),  # alpha = 2, 2 beta = 4
         (lookup("verlet-kdk"), [(2, 2)]),  # (1 - alpha / 2)^2 = 0
-        (lookup("average-acceleration"), [(4, 4)]),  # average acceleration
+        (lookup("average-acceleration"), [(4, 4)]),
     ],
     ids=str,
 )
