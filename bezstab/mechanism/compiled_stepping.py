@@ -87,7 +87,7 @@ def machine_steps(mechanism: Mechanism, solving: bool, projecting: bool, stride:
 
 
 PARTS = (
-    *("accelerations_of", "corrections_of", "accelerations_at", "evaluate", "finish"),
+    *("accelerations_of", "corrections_of", "accelerations_at", "finish"),
     *("solve", "residual", "correct", "renew", "advance"),
 )
 """What becomes a part of what calls it: to hand over all the arrays of a program and its room takes a while."""
