@@ -26,7 +26,7 @@ from itertools import combinations
 
 import numpy as np
 
-from bezstab.stability.arrays import DOUBLE, EPS, SAME, TRIPLE, ComplexArray, FloatArray
+from bezstab.stability.arrays import DOUBLE, SAME, TRIPLE, ComplexArray, FloatArray
 from bezstab.stability.charts import Chart, Place
 from bezstab.stability.root_finding import companion_roots
 from bezstab.stability.searches import lowest_minima
@@ -38,7 +38,7 @@ NEWTON_STEPS = 16  # from a narrowed minimum three to ten lead to its kink; most
 LONGEST_STEP = 1.0  # of the larger parameter's size: what asks for a longer one has no kink nearby
 NEARBY = 0.5  # of the parameters' size, and of the largest |z|: poles so near may be one multiple pole, which float64
 # and the zoom's end part
-RADII = (1e-2, 1e-3, 1e-4, 1e-5)  # of circles, of the parameters' size: the first beyond which no poles meet nearby
+RADIUS = 1e-3  # of circles, of the parameters' size: beyond it the next poles meet
 ON_CIRCLE: ComplexArray = np.exp(2j * np.pi * np.arange(8) / 8)
 SMALL = 1e-3  # a parameter below it is as if of that size
 
@@ -97,8 +97,6 @@ def solved(chart: Chart, start: Place, active: Sequence[Cluster], edges: Sequenc
     place = newton(equations, start, scale)
     if place is None:
         return None
-    if _conditions(active, edges) < 2 and np.abs(np.subtract(place, start)).max() > NEARBY * max(scale):
-        return None  # what is flat leads further, to no minimum nearby
     others = _poles_at(chart, np.array(place))
     for about, cluster in zip(z, active, strict=True):
         for pole_of_pair in {about, about if cluster.real or not chart.real else about.conj()}:
@@ -148,16 +146,13 @@ def taylor(functions: Callable[[ComplexArray], ComplexArray], place: FloatArray,
     """Return values, both slopes and all four second slopes at a place, in units of the scale; shape (functions, 7).
 
     functions: analytic, take points (..., 2) and return (functions, ...). By Cauchy's formula, on circles along either
-    parameter and along both at once, on which the series of the functions has come to its end.
+    parameter and along both at once.
     """
     directions = np.array([[1, 0], [0, 1], [1, 1]])
-    for radius in RADII:
-        points = place + radius * scale * directions[:, np.newaxis] * ON_CIRCLE[:, np.newaxis]
-        series = np.fft.fft(functions(points), axis=-1) / len(ON_CIRCLE)
-        if np.abs(series[..., -1]).max() <= SAME * np.abs(series[..., 1:]).max():
-            break
-    value, (by_x, by_y, _) = series[:, 0, 0], series[..., 1].T / radius
-    twice_x, twice_y, twice_both = 2 * series[..., 2].T / radius**2
+    points = place + RADIUS * scale * directions[:, np.newaxis] * ON_CIRCLE[:, np.newaxis]
+    series = np.fft.fft(functions(points), axis=-1) / len(ON_CIRCLE)
+    value, (by_x, by_y, _) = series[:, 0, 0], series[..., 1].T / RADIUS
+    twice_x, twice_y, twice_both = 2 * series[..., 2].T / RADIUS**2
     mixed = (twice_both - twice_x - twice_y) / 2
     return np.stack([value, by_x, by_y, twice_x, mixed, mixed, twice_y], axis=-1)
 
@@ -212,10 +207,7 @@ def _conditions(active: Sequence[Cluster], edges: Sequence[int]) -> int:
 
 
 def _active_sets(chart: Chart, z: ComplexArray) -> Iterator[tuple[list[Cluster], tuple[int, ...]]]:
-    """Yield the sets of poles that may decide near a place with these, and which parameter is zero.
-
-    A set may have one condition more than there are unknowns, where poles are double because two mu are.
-    """
+    """Yield the sets of poles that may decide near a place with these, and which parameter is zero."""
     near = np.flatnonzero(np.abs(z) >= AS_LARGE * np.abs(z).max())
     clusters: list[tuple[tuple[int, ...], Cluster]] = []
     for some in (some for count in (1, 2, 3) for some in combinations(near.tolist(), count)):
@@ -229,7 +221,7 @@ def _active_sets(chart: Chart, z: ComplexArray) -> Iterator[tuple[list[Cluster],
         for chosen in (chosen for number in (1, 2, 3) for chosen in combinations(clusters, number)):
             active = [cluster for _, cluster in chosen]
             own = [pole for some, _ in chosen for pole in some]
-            if _conditions(active, edges) <= 3 and len(own) == len(set(own)):
+            if _conditions(active, edges) <= 2 and len(own) == len(set(own)):
                 yield active, edges
 
 
@@ -238,8 +230,6 @@ def _solutions(chart: Chart, start: FloatArray) -> Iterator[Least]:
     first = (float(start[0]), float(start[1]))
     yield from _all_zero(chart, first)
     z = _poles_at(chart, start)
-    if np.abs(z).max() < EPS**0.25:  # so near to all zero that nothing else is to be told
-        return
     for active, edges in _active_sets(chart, z):
         found = solved(chart, first, active, edges)
         place = _folded(chart, found.place) if found else None

@@ -5,6 +5,7 @@ X is found in float64 for a sample of steps, by a barrier method, and rounded. I
 M = N / d the leading minors of X d^2 - N^T X N are polynomials in s, which must be positive on the range (Sylvester).
 """
 
+import math
 from fractions import Fraction
 from functools import reduce
 from itertools import combinations_with_replacement, product, zip_longest
@@ -49,7 +50,9 @@ def centred_form(matrices: FloatArray, decays: FloatArray) -> FloatArray:
             hessian = np.einsum("akij,bkji->ab", scaled, scaled)
             change = -np.linalg.solve(hessian, gradient)
             decrement = -float(gradient @ change)
-            values = values + change / (1 + np.sqrt(decrement))  # keeps all conditions (Nesterov & Nemirovskii)
+            values = values + change / (
+                1 + math.sqrt(max(decrement, 0.0))
+            )  # keeps all conditions (Nesterov, Nemirovskii)
             if decrement < SAME:
                 break
         weight *= 2
