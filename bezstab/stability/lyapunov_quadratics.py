@@ -50,9 +50,8 @@ def centred_form(matrices: FloatArray, decays: FloatArray) -> FloatArray:
             hessian = np.einsum("akij,bkji->ab", scaled, scaled)
             change = -np.linalg.solve(hessian, gradient)
             decrement = -float(gradient @ change)
-            values = values + change / (
-                1 + math.sqrt(max(decrement, 0.0))
-            )  # keeps all conditions (Nesterov, Nemirovskii)
+            # the damped step keeps all conditions (Nesterov & Nemirovskii); rounding may leave a decrement below zero
+            values = values + change / (1 + math.sqrt(max(decrement, 0.0)))
             if decrement < SAME:
                 break
         weight *= 2
