@@ -38,7 +38,7 @@ NEWTON_STEPS = 16  # from a narrowed minimum three to ten lead to its kink; most
 LONGEST_STEP = 1.0  # of the larger parameter's size: what asks for a longer one has no kink nearby
 NEARBY = 0.5  # of the parameters' size, and of the largest |z|: poles so near may be one multiple pole, which float64
 # and the zoom's end part
-RADIUS = 1e-3  # of circles, of the parameters' size: beyond it the next poles meet
+RADII = (1e-2, 1e-3, 1e-4, 1e-5)  # of circles, of the parameters' size: the first beyond which no poles meet nearby
 ON_CIRCLE: ComplexArray = np.exp(2j * np.pi * np.arange(8) / 8)
 SMALL = 1e-3  # a parameter below it is as if of that size
 
@@ -131,13 +131,16 @@ def taylor(functions: Callable[[ComplexArray], ComplexArray], place: FloatArray,
     """Return values, both slopes and all four second slopes at a place, in units of the scale; shape (functions, 7).
 
     functions: analytic, take points (..., 2) and return (functions, ...). By Cauchy's formula, on circles along either
-    parameter and along both at once.
+    parameter and along both at once, on which the series of the functions has come to its end.
     """
     directions = np.array([[1, 0], [0, 1], [1, 1]])
-    points = place + RADIUS * scale * directions[:, np.newaxis] * ON_CIRCLE[:, np.newaxis]
-    series = np.fft.fft(functions(points), axis=-1) / len(ON_CIRCLE)
-    value, (by_x, by_y, _) = series[:, 0, 0], series[..., 1].T / RADIUS
-    twice_x, twice_y, twice_both = 2 * series[..., 2].T / RADIUS**2
+    for radius in RADII:
+        points = place + radius * scale * directions[:, np.newaxis] * ON_CIRCLE[:, np.newaxis]
+        series = np.fft.fft(functions(points), axis=-1) / len(ON_CIRCLE)
+        if np.abs(series[..., -1]).max() <= SAME * np.abs(series[..., 1:]).max():
+            break
+    value, (by_x, by_y, _) = series[:, 0, 0], series[..., 1].T / radius
+    twice_x, twice_y, twice_both = 2 * series[..., 2].T / radius**2
     mixed = (twice_both - twice_x - twice_y) / 2
     return np.stack([value, by_x, by_y, twice_x, mixed, mixed, twice_y], axis=-1)
 
@@ -192,7 +195,10 @@ def _conditions(active: Sequence[Cluster], edges: Sequence[int]) -> int:
 
 
 def _active_sets(chart: Chart, z: ComplexArray) -> Iterator[tuple[list[Cluster], tuple[int, ...]]]:
-    """Yield the sets of poles that may decide near a place with these, and which parameter is zero."""
+    """Yield the sets of poles that may decide near a place with these, and which parameter is zero.
+
+    A set may have one condition more than there are unknowns, where poles are double because two mu are.
+    """
     near = np.flatnonzero(np.abs(z) >= AS_LARGE * np.abs(z).max())
     clusters: list[tuple[tuple[int, ...], Cluster]] = []
     for some in (some for count in (1, 2, 3) for some in combinations(near.tolist(), count)):
@@ -206,7 +212,7 @@ def _active_sets(chart: Chart, z: ComplexArray) -> Iterator[tuple[list[Cluster],
         for chosen in (chosen for number in (1, 2, 3) for chosen in combinations(clusters, number)):
             active = [cluster for _, cluster in chosen]
             own = [pole for some, _ in chosen for pole in some]
-            if _conditions(active, edges) <= 2 and len(own) == len(set(own)):
+            if _conditions(active, edges) <= 3 and len(own) == len(set(own)):
                 yield active, edges
 
 
