@@ -383,8 +383,15 @@ def check_drive(
     InputError for a number out of range, and for a method that is no way of applying a drive. Source:
     Gil et al., J. Comput. Inf. Sci. Eng. 9, 011005, 2009.
     """
-    timing = {"every": every, "late": late, "filter_seconds": filter_seconds}
-    question = _asked(questions.HeldQuestion, drive=_drive(pd), h=h, methods=method, **timing)
+    question = _asked(
+        questions.HeldQuestion,
+        drive=_drive(pd),
+        h=h,
+        methods=method,
+        every=every,
+        late=late,
+        filter_seconds=filter_seconds,
+    )
     return _first_unsafe(questions.held_answers(question))
 
 
@@ -423,8 +430,14 @@ def feedback_cost(
     InputError unless the point is given in one of the two ways and omega h is from 1e-6 to 1. Source:
     the test equation of Prothero and Robinson (Math. Comp. 28, 1974).
     """
-    given = {"point": _plane_point(point), "h": point.get("h"), "omega": omega, "omega_h": omega_h}
-    question = _asked(questions.Question, methods=method, **given)
+    question = _asked(
+        questions.Question,
+        methods=method,
+        point=_plane_point(point),
+        h=point.get("h"),
+        omega=omega,
+        omega_h=omega_h,
+    )
     return stability.feedback_cost(question.methods[0], *question.given.point, question.motion.omega_h)
 
 
@@ -577,7 +590,7 @@ def _method(method_or_name: str | Method) -> Method:
     return method(method_or_name)
 
 
-def _scene(scene_or_name: str | Scene) -> Scene:
+def _scene(scene_or_name: str | Scene, _name: str = "scene") -> Scene:
     return scene(scene_or_name)
 
 
@@ -623,11 +636,6 @@ def _whole(value: int, name: str) -> int:
     return value
 
 
-def _scene_or_name(given: str | Scene, _name: str) -> str | Scene:
-    """Return a scene or its name as given; InputError for anything else."""
-    return given if isinstance(given, str) else scene(given)
-
-
 def _real(value: Number, name: str) -> float:
     """Return one number as float64; errors as `_exact`."""
     return float(_exact(value, name))
@@ -638,7 +646,7 @@ READ: Mapping[str, Callable[[Any, str], Any]] = {
     **dict.fromkeys(("late", "filter_seconds", "duration", "perturb"), _exact),
     **dict.fromkeys(("chain", "iterations"), _whole),
     "spread": _real,
-    "scene": _scene_or_name,
+    "scene": _scene,
     "methods": lambda given, _name: (method(given),),
 }
 """How keywords are read; the others are taken as they are."""

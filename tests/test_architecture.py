@@ -29,11 +29,9 @@ import re
 import subprocess
 import sys
 import tomllib
-from collections.abc import Iterator
-from functools import cache
 from pathlib import Path
 
-from tests.pages import PACKAGE, ROOMS, tree_of
+from tests.pages import PACKAGE, ROOMS, imports, own_imports, tree_of
 
 FOUNDATIONS = (
     *("lazy", "stopping", "errors", "rationals", "files", "toml_tables", "units", "compiling", "read_only", "goals"),
@@ -78,38 +76,6 @@ APPOINTED = {
 
 FILES = sorted(path.relative_to(PACKAGE) for path in PACKAGE.rglob("*.py"))
 IN_ROOMS = [path for path in FILES if len(path.parts) == 2 and path.name != "__init__.py"]
-
-
-@cache
-def imports(path: Path, with_types: bool = True) -> list[tuple[str, tuple[str, ...]]]:
-    """Return each module that a file imports, inside functions too, with the names taken from it."""
-    return list(_imports(path, with_types))
-
-
-def _imports(path: Path, with_types: bool) -> Iterator[tuple[str, tuple[str, ...]]]:
-    for node in _nodes(tree_of(path), with_types):
-        if isinstance(node, ast.ImportFrom) and node.module:
-            yield node.module, tuple(alias.name for alias in node.names)
-        elif isinstance(node, ast.Import):
-            for alias in node.names:
-                yield alias.name, ()
-
-
-def _nodes(node: ast.AST, with_types: bool) -> Iterator[ast.AST]:
-    for child in ast.iter_child_nodes(node):
-        for_types = isinstance(child, ast.If) and getattr(child.test, "id", "") == "TYPE_CHECKING"
-        if with_types or not for_types:
-            yield child
-            yield from _nodes(child, with_types)
-
-
-def own_imports(path: Path) -> Iterator[tuple[str, tuple[str, ...]]]:
-    """Yield what a file imports of the package, its first name left out: ("methods.schur", ("verdict",))."""
-    for module, names in imports(path):
-        if module == "bezstab":
-            yield from ((name, ()) for name in names)
-        elif module.startswith("bezstab."):
-            yield module.removeprefix("bezstab."), names
 
 
 def behind_the_door(room: str) -> set[str]:

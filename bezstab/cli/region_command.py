@@ -86,7 +86,8 @@ def region(quality: str, grid: int | None, files: Files, **typed: Any) -> int:
 def _write_map(question: "questions.MapQuestion", method: Method, files: Files) -> list[show.Row]:
     """Write the map of one method; return its rows."""
     answer = questions.MapAnswer(question, method)
-    say_each([answer.choice_reason])
+    if question.motion:
+        say_each([answer.choice_or_reason[1]])
     if files.wanted:
         z = answer.dominant_poles(partial(progress, label=method.name, length=len(answer.axes[1])))
         path = files.path("region", method.name, "accuracy" if question.motion else question.scene)

@@ -1,6 +1,5 @@
 """The command that holds predicted poles against measured ones: verify."""
 
-from functools import partial
 from typing import Any
 
 import click
@@ -86,7 +85,7 @@ def _show_forced_errors(question: "questions.VerifyQuestion") -> int:
 def _show_measurements(question: "questions.VerifyQuestion") -> None:
     """Print the poles measured at one point, else at random ones, and where there are several how well they agree."""
     scene, floquet = question.mechanism.scene.name, question.floquet
-    measured = [question.measurements(method, partial(progress, label=method.name)) for method in question.methods]
+    measured = [question.measurements(method) for method in progress(question.methods, "verify")]
     rows = [show.MEASUREMENTS.row(each, scene=scene) for of_method in measured for each in of_method]
     show_rows(show.MEASUREMENTS, rows, () if floquet else ("right",))
     if not for_reading():

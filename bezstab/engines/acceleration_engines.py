@@ -12,6 +12,7 @@ from bezstab.engines.conversions import (
     in_words,
 )
 from bezstab.errors import InputError
+from bezstab.rationals import ONE
 from bezstab.units import feedback_gains, from_dimensionless, from_feedback_gains, to_dimensionless
 
 
@@ -23,7 +24,7 @@ def _read_gains(h: Fraction, stiffness: Fraction, damping: Fraction) -> Point:
 # MuJoCo. With impedance d and its value dmax at full width, aref = -(damping / dmax) c' - (stiffness d / dmax^2) c, of
 # which d takes part: r = d / dmax scales damping once and stiffness twice. r = d0 / dmax at c = 0, 1 past the width.
 
-LEAST_IMPEDANCE, LARGEST_IMPEDANCE = Fraction("0.0001"), Fraction("0.9999")
+LEAST_IMPEDANCE, MOST_IMPEDANCE = Fraction("0.0001"), Fraction("0.9999")  # mjMINIMP and mjMAXIMP: it keeps d between
 DEFAULT_SOLIMP = Fraction("0.9"), Fraction("0.95")
 LEAST_TIME_CONSTANT = 2  # steps: below, refsafe raises it
 
@@ -50,9 +51,7 @@ def _apply_mujoco(h: Fraction, first: Fraction, second: Fraction, *solimp: Fract
     if first > 0 and second > 0 and first < least:
         notes.append(f"refsafe raises timeconst {float(first):g} s to {LEAST_TIME_CONSTANT}h = {float(least):g} s")
         first = least
-    d0, dmax = (
-        min(max(each, LEAST_IMPEDANCE), LARGEST_IMPEDANCE) for each in (*solimp, *DEFAULT_SOLIMP[len(solimp) :])
-    )
+    d0, dmax = (min(max(each, LEAST_IMPEDANCE), MOST_IMPEDANCE) for each in (*solimp, *DEFAULT_SOLIMP[len(solimp) :]))
     ratio = d0 / dmax
     alpha_hat, beta_hat = _read_solref(h, first, second)
     if ratio == 1:
@@ -259,7 +258,7 @@ BRAX_SPRING = Engine(
     optional=("mass",),
     above_zero=("mass",),
     units=("N/m", "N s/m", "kg"),
-    read=lambda h, stiffness, damping, mass=Fraction(1): _read_gains(h, stiffness / mass, damping / mass),
+    read=lambda h, stiffness, damping, mass=ONE: _read_gains(h, stiffness / mass, damping / mass),
     write=lambda point, h: (*gains_in_words(point, h), "1"),
     source="Brax source, spring/joints.py, spring/pipeline.py, spring/integrator.py; io/mjcf.py (2000, 0 unless set)",
     excludes="angles (constraint_ang_damping); vel_damping and ang_damping; spring_mass_scale; contacts: brax-contact",

@@ -7,7 +7,7 @@ from typing import Any, Literal
 
 from bezstab.engines.sweeping import Sweeping
 from bezstab.errors import InputError
-from bezstab.rationals import rational, within_float64
+from bezstab.rationals import ZERO, rational, within_float64
 from bezstab.units import feedback_gains
 
 Level = Literal["acceleration", "velocity", "position"]
@@ -15,7 +15,7 @@ Level = Literal["acceleration", "velocity", "position"]
 Point = tuple[Fraction, Fraction]
 """alpha_hat and beta_hat."""
 
-NO_FEEDBACK: Point = (Fraction(0), Fraction(0))
+NO_FEEDBACK: Point = (ZERO, ZERO)
 
 READ_BACK = 1e-7
 """Of a point, and beside one: what is read of the nine digits that are pasted differs by less from what was asked."""
@@ -95,10 +95,6 @@ class Engine:
             label: self.applied(tuple(_typed(number, h) for number in typed.split()), h).point
             for label, typed in self.marks
         }
-
-    def point(self, values: tuple[Fraction, ...], h: Fraction) -> Point:
-        """Return (alpha_hat, beta_hat) for values as typed; InputError as for `applied`."""
-        return self.applied(values, h, as_typed=True).point
 
     def applied(self, values: tuple[Fraction, ...], h: Fraction, *, as_typed: bool = False) -> Applied:
         """Return what the engine makes of values, in their order and the engine's units, at a step of h (s).

@@ -13,9 +13,9 @@ from fractions import Fraction
 from bezstab.engines.conversions import Engine, Point, engine_without_parameters, hard, in_words
 from bezstab.engines.sweeping import Move, Pass, Sweeping, SweptStep, VelocityOfMove
 from bezstab.errors import InputError
+from bezstab.rationals import ONE, ZERO
 from bezstab.units import feedback_gains, from_feedback_gains
 
-ONE = Fraction(1)
 MOST_ITERATIONS = 1000  # more than anybody runs, and the powers stay short
 
 
@@ -126,9 +126,7 @@ PBD = Engine(
 # -(c* + gamma h c0') / ((1 + gamma) w + alpha~) w: implicit Euler of a spring 1 / compliance and that damping
 
 
-def _read_xpbd(
-    h: Fraction, compliance: Fraction, damping: Fraction = Fraction(0), inverse_mass: Fraction = Fraction(1)
-) -> Point:
+def _read_xpbd(h: Fraction, compliance: Fraction, damping: Fraction = ZERO, inverse_mass: Fraction = ONE) -> Point:
     return from_feedback_gains(damping * inverse_mass, inverse_mass / compliance, h)
 
 

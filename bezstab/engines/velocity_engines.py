@@ -27,9 +27,9 @@ from bezstab.engines.conversions import (
 )
 from bezstab.engines.sweeping import Move, Pass, Sweeping, SweptStep, hard_velocity_step
 from bezstab.errors import InputError
+from bezstab.rationals import ONE, ZERO
 from bezstab.units import from_feedback_gains
 
-ONE = Fraction(1)
 ONLY_HARD = "α̂ = 1"
 STIFFEST = 0.999
 """The alpha_hat that soft constraints are chosen with: rigid but for a thousandth; beyond, their words are huge."""
@@ -83,7 +83,7 @@ BULLET = _engine_with_erp(
 )
 
 
-def _read_ode(h: Fraction, erp: Fraction, cfm: Fraction = Fraction(0), mass: Fraction = ONE) -> Point:
+def _read_ode(h: Fraction, erp: Fraction, cfm: Fraction = ZERO, mass: Fraction = ONE) -> Point:
     alpha_hat = h / (h + cfm * mass)
     return alpha_hat, alpha_hat * erp
 
@@ -96,9 +96,7 @@ def _write_ode(point: Point, h: Fraction) -> tuple[str, ...]:
     return in_words(erp), in_words(cfm), "1"
 
 
-def _ode_step(
-    iterations: int, h: Fraction, erp: Fraction, cfm: Fraction = Fraction(0), mass: Fraction = ONE
-) -> SweptStep:
+def _ode_step(iterations: int, h: Fraction, erp: Fraction, cfm: Fraction = ZERO, mass: Fraction = ONE) -> SweptStep:
     softness = float(cfm * mass / h)  # CFM / h beside 1 / mass
     return hard_velocity_step(erp, iterations, kept=0.0, relaxation=1.3, softness=softness)
 

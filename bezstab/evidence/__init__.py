@@ -23,13 +23,12 @@ if TYPE_CHECKING:
         reference_motion,
         swept_runs,
     )
-    from bezstab.evidence.chunk_stores import Arrays, chunk_store
-    from bezstab.evidence.chunks import completed_chunks, worker_pool
+    from bezstab.evidence.chunks import Arrays, chunk_store, completed_chunks, worker_pool
     from bezstab.evidence.extremes import Check, extreme_checks
     from bezstab.evidence.forced_runs import SHARES, HalvedStep, forced_sentence, halved_steps
     from bezstab.evidence.kicks import LINEAR, kicked_motions
     from bezstab.evidence.linear_prediction import SPREAD, Fit, fit_dominant_pole
-    from bezstab.evidence.logs import Log, error_columns, log_from, parse_log, read_log, row_step, time_column
+    from bezstab.evidence.logs import UNEVEN, Log, error_columns, log_from, parse_log, read_log, row_step, time_column
     from bezstab.evidence.measured_poles import (
         MeasuredVerdict,
         Measurement,
@@ -57,10 +56,8 @@ if TYPE_CHECKING:
         likenesses,
         points_like,
         probed_pole,
-        steps_between_rows,
     )
-    from bezstab.evidence.projection_costs import projection_sentences
-    from bezstab.evidence.sweep_summaries import Held, summary, sweep_sentences
+    from bezstab.evidence.sweep_summaries import Held, projection_sentences, summary, sweep_sentences
     from bezstab.evidence.verdict_maps import MapRows, VerdictMap, map_rows, simulated_verdicts, verdict_map
 
 __getattr__ = lazy_names(__name__)

@@ -193,11 +193,19 @@ class SweptRuns:
 
 
 def measured_runs(sweep: Sweep) -> dict[str, NDArray[np.generic]]:
-    """Return for each step, in their order, what Run has, as a JSON text that can be stored like arrays.
+    """Return for each step, the largest first, what Run has, as a JSON text that can be stored like arrays.
 
     InputError where alpha and beta in 1/s leave the range of float64 at a step; errors of `choose`.
     """
-    return {"runs": np.array(json.dumps([_measured_run(sweep, h) for h in sweep.steps]))}
+    runs: list[Run] = []
+    for h in sorted(sweep.steps, reverse=True):
+        runs.append(_measured_run(sweep, h, *runs[-1:]))
+    return {"runs": np.array(json.dumps([vars(run) | {"method": None} for run in runs]))}
+
+
+def swept_runs(sweep: Sweep, measured: Mapping[str, NDArray[np.generic]]) -> list[Run]:
+    """Return the runs of one method, the largest step first, from what `measured_runs` gave."""
+    return [Run(**values | {"method": sweep.method}) for values in json.loads(str(measured["runs"]))]
 
 
 def _point(sweep: Sweep, h: float) -> tuple[float, float]:
@@ -213,33 +221,46 @@ def _point(sweep: Sweep, h: float) -> tuple[float, float]:
     return float(alpha_hat), float(beta_hat)
 
 
-def _measured_run(sweep: Sweep, h: float) -> dict[str, float | str | None]:
-    """Return what one run, as often as it is to be repeated, costs and buys; h in s."""
+def _measured_run(sweep: Sweep, h: float, larger: Run | None = None) -> Run:
+    """Return a run, repeated as often as it is timed, with steps of h (s); `larger` is that of the next larger step."""
     mechanism, method, point = compiled_mechanism(sweep.scene), sweep.method, _point(sweep, h)
     gains = feedback_gains(*point, h)
     run, seconds = _timed_run(sweep, h, gains)
     seen = observe(mechanism, run.t, run.q, run.v, *gains)
     z_abs = float(spectral_radius(method, *point)) if sweep.stabilise == "baumgarte" else None
     whole = not run.failure
-    return {
-        "alpha_hat": point[0],
-        "beta_hat": point[1],
-        "z_abs": z_abs,
-        "trajectory_error": float(np.abs(run.q - sweep.reference.along.at(run.t)[0]).max()) if whole else None,
-        "c_max": seen.c_max,
-        "measured_error": settled_error(seen, run.t) if whole else None,
-        "predicted_error": _predicted_error(sweep, h, point) if z_abs is not None and z_abs < 1 else None,
-        "c_rms": float(np.sqrt((seen.c**2).mean())),
-        "cdot_max": seen.cdot_max,
-        "cdot_rms": float(np.sqrt((seen.cdot**2).mean())),
-        "energy_drift": float(energy_balance(seen, h * float(method.step_multiple)).drift[-1]),
-        "evaluations": run.evaluations,
-        "factorizations": run.factorizations,
-        "seconds": float(np.median(seconds)),
-        "seconds_min": min(seconds),
-        "seconds_max": max(seconds),
-        "failure": run.failure,
-    }
+    trajectory_error = float(np.abs(run.q - sweep.reference.along.at(run.t)[0]).max()) if whole else None
+    return Run(
+        method=method,
+        h=h,
+        alpha_hat=point[0],
+        beta_hat=point[1],
+        z_abs=z_abs,
+        trajectory_error=trajectory_error,
+        c_max=seen.c_max,
+        measured_error=settled_error(seen, run.t) if whole else None,
+        predicted_error=_predicted_error(sweep, h, point) if z_abs is not None and z_abs < 1 else None,
+        c_rms=float(np.sqrt((seen.c**2).mean())),
+        cdot_max=seen.cdot_max,
+        cdot_rms=float(np.sqrt((seen.cdot**2).mean())),
+        energy_drift=float(energy_balance(seen, h * float(method.step_multiple)).drift[-1]),
+        evaluations=run.evaluations,
+        factorizations=run.factorizations,
+        seconds=float(np.median(seconds)),
+        seconds_min=min(seconds),
+        seconds_max=max(seconds),
+        failure=run.failure,
+        order=_observed_order(larger, h, trajectory_error, sweep.reference.error),
+        stabilise=sweep.stabilise,
+        advised=sweep.point is None,
+    )
+
+
+def _observed_order(larger: Run | None, h: float, error: float | None, reference_error: float) -> float | None:
+    """Return the order of accuracy from a larger step's run to a step of h (s) with that error; None if unknown."""
+    if not larger or not larger.trajectory_error or not error or error <= ABOVE_REFERENCE * reference_error:
+        return None
+    return float(np.log(larger.trajectory_error / error) / np.log(larger.h / h))
 
 
 def _predicted_error(sweep: Sweep, h: float, point: tuple[float, float]) -> float | None:
@@ -263,24 +284,3 @@ def _timed_run(sweep: Sweep, h: float, gains: tuple[float, float]) -> tuple[Traj
         run = simulate(mechanism, method, h, sweep.duration, gains, **how)
         seconds.append(time.process_time() - begin)
     return run, seconds
-
-
-def swept_runs(sweep: Sweep, measured: Mapping[str, NDArray[np.generic]]) -> list[Run]:
-    """Return the runs of one method, the largest step first, with the order observed from each to the next.
-
-    `measured` is what `measured_runs` gave.
-    """
-    runs: list[Run] = []
-    found = zip(sweep.steps, json.loads(str(measured["runs"])), strict=True)
-    for h, values in sorted(found, key=lambda pair: -pair[0]):
-        order = _observed_order(runs[-1], h, values["trajectory_error"], sweep.reference.error) if runs else None
-        advised = sweep.point is None
-        runs.append(Run(method=sweep.method, h=h, order=order, stabilise=sweep.stabilise, advised=advised, **values))
-    return runs
-
-
-def _observed_order(larger: Run, h: float, error: float | None, reference_error: float) -> float | None:
-    """Return the order of accuracy from a larger step's run to a step of h (s) with that error; None if unknown."""
-    if not larger.trajectory_error or not error or error <= ABOVE_REFERENCE * reference_error:
-        return None
-    return float(np.log(larger.trajectory_error / error) / np.log(larger.h / h))

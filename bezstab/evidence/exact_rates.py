@@ -50,7 +50,7 @@ from bezstab.units import feedback_gains
 FIRST_SHARE = 1 / 3  # of the steps in which errors stand out: there the lesser poles still count
 VISIBLE = 1e-7  # of the change of the coordinates: the free motion of a method has a constraint error of this size
 ITERATIONS = 12  # of Newton's method: each squares the error, more only find nothing
-SOLVED = 1e-8  # m, rad: the last correction of a motion, grown over a revolution; the next would be about its square
+SOLVED = 1e-9  # m, rad: the last correction of a motion, grown over a revolution; the next would be about its square
 BESIDE = 1.0  # m, rad, from the motion of the mechanism: weak feedback drifts by 0.3, other closures lie further off
 
 
@@ -70,11 +70,6 @@ class SteppedMotion:
         return memory(self.method.scheme.second_order)
 
     @property
-    def positions(self) -> list[int]:
-        """Which quantities are positions, the newest one last."""
-        return [place for place, quantity in enumerate(self.memory.carried) if quantity.name == "x"]
-
-    @property
     def whole_turn(self) -> FloatArray:
         """By how much the coordinates differ after the motion, shape (n,)."""
         return np.asarray(self.along.q[-1] - self.along.q[0])
@@ -85,8 +80,8 @@ class SteppedMotion:
 
     @cached_property  # each revolution asks for it
     def starts(self) -> FloatArray:
-        """What each step starts with on the motion of the mechanism, shape (steps, quantities, n)."""
-        place = np.add.outer(np.arange(self.steps), self.memory.state_steps)
+        """What each step starts with on the motion of the mechanism, and the next; shape (steps + 1, quantities, n)."""
+        place = np.add.outer(np.arange(self.steps + 1), self.memory.state_steps)
         turns = place // self.steps if self.along.closed else 0 * place
         times = self.step * (place - turns * self.steps)
         q, v, a = (each.reshape(*place.shape, -1) for each in self.along.at(times.ravel()))
@@ -94,19 +89,16 @@ class SteppedMotion:
         by_q, by_v, by_a = np.array(self.memory.shares, float).T[:, :, np.newaxis]
         return np.asarray(by_q * q + by_v * self.step * v + by_a * self.step**2 * a)
 
-    def taken(self, gains: FloatArray, first: FloatArray | None = None) -> Iterator[StepsTaken]:
-        """Yield what each step does at points with these gains, (2, points).
 
-        A run goes on from `first`, (points, quantities, n); without it each step starts on the motion of the mechanism.
-        """
-        start = first
-        for k, along in enumerate(self.starts):
-            if first is None:
-                start = np.repeat(along[np.newaxis], gains.shape[1], axis=0)
-            assert start is not None
-            found = steps_taken(self.mechanism, self.method, self.step, k * self.step, gains, start)
-            yield found
-            start = found.handed_on
+class Changed(NamedTuple):
+    """What steps make of small changes: exp(log_scale) changes, shape (points, quantities, n, columns).
+
+    None of `changes` is larger than one. `taken`: the last of the steps.
+    """
+
+    changes: FloatArray
+    log_scale: FloatArray
+    taken: StepsTaken
 
 
 class Revolution(NamedTuple):
@@ -163,51 +155,67 @@ def find_own_motions(
     rates = rates_on_the_motion(stepped, gains)
     states = np.full((stepped.steps, alpha_hat.size, 2, mechanism.size), np.nan)
     if stepped.along.closed:
-        _find_motions(stepped, gains, rates, states)
+        around, found = _closed_motions(stepped, gains)
+        rates[found] = around.rates(found)
+        as_steps_begin = np.roll(around.states[:, found], 1, axis=0)
+        as_steps_begin[0, :, 0] -= stepped.whole_turn
+        states[:, found] = as_steps_begin / [[1], [stepped.step]]
     return OwnMotions(stepped, gains, rates, states)
 
 
 def rates_on_the_motion(stepped: SteppedMotion, gains: FloatArray) -> FloatArray:
     """Return |z| per step over the motion of the mechanism at points with these gains, (2, points); shape (points,)."""
-    return revolution(stepped, gains).rates() if stepped.along.closed else _rates_of_errors(stepped, gains)
+    return _revolution(stepped, gains).rates() if stepped.along.closed else _rates_of_errors(stepped, gains)
 
 
-def revolution(stepped: SteppedMotion, gains: FloatArray, first: FloatArray | None = None) -> Revolution:
-    """Return what a revolution's steps make of changes at points with these gains; `first` as `SteppedMotion.taken`."""
+def _changed(
+    stepped: SteppedMotion, gains: FloatArray, changes: FloatArray, first: FloatArray | None = None
+) -> Iterator[Changed]:
+    """Yield after each step what has become of changes at points with these gains, (2, points).
+
+    A run goes on from `first`, (points, quantities, n); without it each step starts on the motion of the mechanism.
+    """
+    mechanism, method, step = stepped.mechanism, stepped.method, stepped.step
+    log_scale, start = np.zeros(len(changes)), first
+    for k, along in enumerate(stepped.starts[:-1]):
+        if start is None or first is None:
+            start = np.repeat(along[np.newaxis], len(changes), axis=0)
+        taken = steps_taken(mechanism, method, step, k * step, gains, start)
+        start = taken.handed_on
+        changes = changes_handed_on(method, taken.jacobians, changes)
+        largest = np.abs(changes).max(axis=(1, 2, 3))
+        largest[largest == 0] = 1
+        changes = changes / largest[:, np.newaxis, np.newaxis, np.newaxis]
+        log_scale = log_scale + np.log(largest)
+        yield Changed(changes, log_scale, taken)
+
+
+def _revolution(stepped: SteppedMotion, gains: FloatArray, first: FloatArray | None = None) -> Revolution:
+    """Return what a revolution's steps make of changes at points with these gains; `first` as `_changed`."""
     points, (quantities, n) = gains.shape[1], stepped.starts[0].shape
-    changes = np.tile(np.eye(quantities * n).reshape(quantities, n, -1), (points, 1, 1, 1))
-    log_scale = np.zeros(points)
+    unit = np.tile(np.eye(quantities * n).reshape(quantities, n, -1), (points, 1, 1, 1))
     states = []
-    for taken in stepped.taken(gains, first):
-        changes = changes_handed_on(stepped.method, taken.jacobians, changes)
-        log_scale += _rescaled(changes)
-        states.append(taken.states)
-    return Revolution(changes.reshape(points, quantities * n, -1), log_scale, taken.handed_on, np.array(states))
+    for after in _changed(stepped, gains, unit, first):
+        states.append(after.taken.states)
+    product = after.changes.reshape(points, quantities * n, -1)
+    return Revolution(product, after.log_scale, after.taken.handed_on, np.array(states))
 
 
-def _find_motions(stepped: SteppedMotion, gains: FloatArray, rates: FloatArray, states: FloatArray) -> None:
-    """Fill in rates and states of the points with these gains, shape (2, points), that have a motion of their own."""
+def _closed_motions(stepped: SteppedMotion, gains: FloatArray) -> tuple[Revolution, BoolArray]:
+    """Return a revolution at points with these gains, (2, points), and at which it is one of the method's own."""
     along = stepped.starts[0]
-    turn = np.multiply.outer(np.array([shares[0] for shares in stepped.memory.shares], float), stepped.whole_turn)
+    turn = stepped.starts[-1] - along
     starts = np.repeat(along[np.newaxis], gains.shape[1], axis=0)
-    left = np.arange(gains.shape[1])
-    for _ in range(ITERATIONS):
-        with np.errstate(all="ignore"):  # of what runs into infinity; what is not a number is not less
-            around = revolution(stepped, gains[:, left], starts)
+    with np.errstate(all="ignore"):  # of what runs into infinity; what is not a number is not less
+        for _ in range(ITERATIONS):
+            around = _revolution(stepped, gains, starts)
             correction = _closing(around, around.handed_on - starts - turn)
             starts = starts + correction
             amplified = np.maximum(1, np.abs(around.product).max(axis=(1, 2)) * np.exp(around.log_scale))
-            last, beside = (np.abs(each).max(axis=(1, 2)) for each in (correction, starts - along))
-            ended = amplified * last < SOLVED
-            closed = ended & (amplified * beside < BESIDE)
-        rates[left[closed]] = around.rates(closed)
-        as_steps_begin = np.roll(around.states[:, closed], 1, axis=0)
-        as_steps_begin[0, :, 0] -= stepped.whole_turn
-        states[:, left[closed]] = as_steps_begin / [[1], [stepped.step]]
-        going_on = ~ended & (beside < BESIDE)
-        left, starts = left[going_on], starts[going_on]
-        if not left.size:
-            break
+            last, beside = (amplified * np.abs(each).max(axis=(1, 2)) for each in (correction, starts - along))
+            if not (last >= SOLVED).any():
+                break
+    return around, (last < SOLVED) & (beside < BESIDE)
 
 
 def _closing(around: Revolution, missing: FloatArray) -> FloatArray:
@@ -217,45 +225,32 @@ def _closing(around: Revolution, missing: FloatArray) -> FloatArray:
     return np.asarray(np.linalg.solve(closing, missing.reshape(*closing.shape[:2], 1)).reshape(missing.shape))
 
 
-def _rescaled(changes: FloatArray) -> FloatArray:
-    """Divide changes by the largest number at each point, and return its logarithm."""
-    largest = np.abs(changes).max(axis=(1, 2, 3))
-    largest[largest == 0] = 1
-    changes /= largest[:, np.newaxis, np.newaxis, np.newaxis]
-    return np.asarray(np.log(largest))
-
-
 def _rates_of_errors(stepped: SteppedMotion, gains: FloatArray) -> FloatArray:
     """Return |z| per step at points with these gains by constraint errors after a kick; shape (points,).
 
     All positions that are carried are kicked, by unit errors. An error w has the size of the displacement
     M^-1 C_q^T S^-1 w that it stands for, in the metric of the masses: that of L^-1 w with S = C_q M^-1 C_q^T = L L^T.
     """
-    mechanism, positions = stepped.mechanism, stepped.positions
+    mechanism, carried = stepped.mechanism, stepped.memory.carried
     mass = np.array(mechanism.equations.mass, float)
-    first = stepped.memory.carried[positions[-1]].step
-    t = stepped.step * np.arange(first, first + stepped.steps + 1, dtype=np.float64)
+    *older, newest = [place for place, quantity in enumerate(carried) if quantity.name == "x"]
+    t = stepped.step * np.arange(carried[newest].step, carried[newest].step + stepped.steps + 1, dtype=np.float64)
     sizes = []
     for time, q in zip(t, stepped.along.at(t)[0], strict=True):
         jacobian = constraint_jacobian(mechanism, float(time), q)
         sizes.append(np.linalg.solve(np.linalg.cholesky((jacobian / mass) @ jacobian.T), jacobian))
-    points = gains.shape[1]
-    changes = np.zeros((points, len(stepped.memory.carried), mechanism.size, mechanism.constraints))
-    changes[:, positions] = (sizes[0] / mass).T
-    log_scale = np.zeros(points)
-    log_errors = np.empty((stepped.steps, points))
-    visible = np.empty((stepped.steps, points), bool)
-    for k, taken in enumerate(stepped.taken(gains)):
-        changes = changes_handed_on(stepped.method, taken.jacobians, changes)
-        moved = changes[:, positions[-1]]
-        error = np.sqrt(((sizes[k + 1] @ moved) ** 2).sum(axis=(1, 2)))
+    kicked = np.zeros((gains.shape[1], len(carried), mechanism.size, mechanism.constraints))
+    kicked[:, [*older, newest]] = (sizes[0] / mass).T
+    log_errors, visible = [], []
+    for size, (changes, log_scale, _) in zip(sizes[1:], _changed(stepped, gains, kicked), strict=True):
+        moved = changes[:, newest]
+        error = np.sqrt(((size @ moved) ** 2).sum(axis=(1, 2)))
         with np.errstate(divide="ignore"):
-            log_errors[k] = np.log(error) + log_scale
-        visible[k] = error > VISIBLE * np.sqrt((mass @ moved**2).sum(axis=1))
-        log_scale += _rescaled(changes)
-    lost = np.where(visible.all(axis=0), stepped.steps, np.argmin(visible, axis=0))
-    growth = np.empty(points)
-    for point, end in enumerate(np.maximum(lost, 2)):
+            log_errors.append(np.log(error) + log_scale)
+        visible.append(error > VISIBLE * np.sqrt((mass @ moved**2).sum(axis=1)))
+    growth = []
+    for of_point, steps in zip(np.transpose(log_errors), np.logical_and.accumulate(visible).sum(axis=0), strict=True):
+        end = max(steps, 2)
         first = int(FIRST_SHARE * end)
-        growth[point], _ = np.polyfit(np.arange(first, end), log_errors[first:end, point], 1)
+        growth.append(np.polyfit(np.arange(first, end), of_point[first:end], 1)[0])
     return np.exp(growth)

@@ -72,7 +72,7 @@ def _differences(motions: OwnMotions, there: NDArray[np.intp], known: int) -> It
     history = [state.reshape(-1, size).T for state in motions.states[:known, there]]
     kicks = np.where(motions.rates[there] > 1, KICK_OF_GROWTH, KICK_OF_DECAY)
     gains = motions.gains[0, there], motions.gains[1, there]
-    directions, count = np.eye(size) / units, REVOLUTIONS * stepped.steps
-    blocks = kicked_states(stepped.mechanism, stepped.method, stepped.step, gains, history, directions, kicks, count)
+    displaced, count = (np.eye(size) / units)[:, :, np.newaxis] * kicks, REVOLUTIONS * stepped.steps
+    blocks = kicked_states(stepped.mechanism, stepped.method, stepped.step, gains, history, displaced, count)
     for state in islice(chain.from_iterable(blocks), stepped.steps, None, stepped.steps):
         yield np.moveaxis(state[:, 0] - state[:, 1], 2, 0) * units[:, np.newaxis]

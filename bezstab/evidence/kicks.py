@@ -31,10 +31,8 @@ not enough: where steps are coarse, feedback may turn truncation errors into mil
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bezstab.evidence.linear_prediction import NEGLIGIBLE
 from bezstab.mechanism import (
@@ -88,20 +86,18 @@ def kicked_states(
     step: float,
     gains: tuple[FloatArray, FloatArray],
     history: Sequence[FloatArray],
-    directions: FloatArray,
-    kicks: FloatArray,
+    displaced: FloatArray,
     count: int,
     compiled: bool = False,
 ) -> Iterator[FloatArray]:
     """Yield the states of kicked runs, (2 n, 2 for up and down, kicks, points) each, in blocks; the first is the kick.
 
-    `history` holds the states up to the kick, `step` (s) apart, (2 n, points) each. Each of the `kicks`, that may
-    depend on the points, is along one of the `directions`, (2 n, kicks). What a multistep method remembers of before is
-    left alone, and so is what a second-order scheme remembers of accelerations: its recursion is linear, and its poles
-    are the same from any first values. InputError where runs are to be `compiled` without numba.
+    `history` holds the states up to the kick, `step` (s) apart, (2 n, points) each. By a kick up the last is
+    `displaced`, (2 n, kicks, points or 1). What a multistep method remembers of before is left alone, and so is what a
+    second-order scheme remembers of accelerations: its recursion is linear, and its poles are the same from any first
+    values. InputError where runs are to be `compiled` without numba.
     """
     undisturbed = history[-1]
-    displaced = directions[:, :, np.newaxis] * kicks
     kicked = undisturbed[:, np.newaxis, np.newaxis] + np.stack([displaced, -displaced], axis=1)
     yield kicked[np.newaxis]
     so_far = [*history[:-1], kicked]
@@ -130,11 +126,10 @@ def kicked_motions(
     start = np.repeat(np.concatenate([q, v])[:, np.newaxis], alpha_hat.size, axis=1)
     before = march(mechanism, method, step, gains, start, "rk4", steps_before_a_kick(method))
     history = [start, *(state for block in before for state in block.states)]
-    displaced = perturbed_state(mechanism, 1.0)[0] - q  # linear in the constraint error
-    directions = np.outer(np.concatenate([displaced, np.zeros_like(v)]), np.ones(len(kicks)))
-    amounts = np.array(kicks)[:, np.newaxis]
+    by_a_unit = np.concatenate([perturbed_state(mechanism, 1.0)[0] - q, 0 * v])  # linear in the constraint error
+    displaced = np.multiply.outer(by_a_unit, kicks)[:, :, np.newaxis]
     k = len(history) - 1
-    for states in kicked_states(mechanism, method, step, gains, history, directions, amounts, count, compiled):
+    for states in kicked_states(mechanism, method, step, gains, history, displaced, count, compiled):
         times = step * np.arange(k, k + len(states), dtype=np.float64)
         q = states[:, : mechanism.size]
         c = constraint_errors(mechanism, times.reshape(-1, 1, 1, 1), np.moveaxis(q, 1, 0))
@@ -142,87 +137,40 @@ def kicked_motions(
         k += len(states)
 
 
-def nothing_happens_without_feedback(mechanism: Mechanism, method: Method, h: float) -> bool:
-    """Return whether without feedback c stays well within the linear range for the first few steps; h in s."""
-    none = np.zeros(1)
-    with np.errstate(all="ignore"):
-        drifting = kicked_motions(mechanism, method, h, none, none, [0.0], AT_ONCE)
-        largest = max(float(np.abs(c).max()) for c, _ in drifting)
-    return largest < CALM  # not so where it is not a number
+def thrown_apart(mechanism: Mechanism, method: Method, h: float, size: FloatArray) -> BoolArray:
+    """Return where it is the feedback that throws a mechanism apart at once, by the largest |c|, (steps, points).
 
-
-@dataclass(frozen=True)
-class Followed:
-    """Half the difference of two runs after a kick, in windows; `error` and `moved` of shape (windows, points).
-
-    `error`: the largest |dc| of a window, of any constraint, in units of the kick. `moved`: the largest size of dq, in
-    the metric of the masses, in units of what the kick itself displaced. Both are zero from where c has left the linear
-    range, which holds for so many steps, shape (points,). `thrown_apart`: c is beyond APART AT_ONCE, shape (points,).
+    That is so if without feedback c stays well within the linear range for these first few steps; h in s.
     """
-
-    error: FloatArray
-    moved: FloatArray
-    linear_steps: NDArray[np.int_]
-    thrown_apart: BoolArray
-
-
-def follow(blocks: Iterator[tuple[FloatArray, FloatArray]], masses: FloatArray, kick: float, run: int) -> Followed:
-    """Return what is seen after the first step of the blocks, that of the kick (SI units), in `run` steps.
-
-    A block of c has shape (steps, constraints, 2, 1, points), of q (steps, coordinates, ...); masses (coordinates,).
-    Where no run is linear any more, the rest is left out.
-    """
-    c, q = next(blocks)
-    points = c.shape[-1]
-    error, moved = np.zeros((2, run // WINDOW, points))
-    linear_steps = np.zeros(points, int)
-    sizes = np.abs(c).max(axis=(1, 2, 3))
-    linear, together = sizes[0] < LINEAR[0], sizes[0] < APART  # not so where it is not a number
-    displaced = _size(q, masses)[0]
-    k = 0
-    for c, q in blocks:
-        if k == run or (k >= AT_ONCE and not linear.any()):
-            break
-        sizes = np.abs(c).max(axis=(1, 2, 3))
-        together &= (sizes[: max(AT_ONCE - k, 0)] < APART).all(axis=0)
-        still = np.logical_and.accumulate(sizes < LINEAR[0], axis=0) & linear
-        differences = np.abs(c[:, :, 0, 0] - c[:, :, 1, 0]).max(axis=1) / (2 * kick)
-        window_of_step = np.arange(k, k + len(c)) // WINDOW
-        for of_all, of_block in ((error, differences), (moved, _size(q, masses) / displaced)):
-            np.maximum.at(of_all, window_of_step, np.where(still, of_block, 0.0))
-        linear = still[-1]
-        linear_steps += still.sum(axis=0)
-        k += len(c)
-    return Followed(error, moved, linear_steps, ~together)
+    apart = np.logical_not((size[: AT_ONCE + 1] < APART).all(axis=0))  # what is not a number is not less
+    if apart.any():
+        none = np.zeros(1)
+        without = kicked_motions(mechanism, method, h, none, none, [0.0], AT_ONCE)
+        apart &= all(bool((np.abs(c) < CALM).all()) for c, _ in without)
+    return apart
 
 
-def _size(q: FloatArray, masses: FloatArray) -> FloatArray:
-    """Return half the difference of q of both runs, in the metric of the masses; shape (steps, points)."""
-    return np.asarray(np.sqrt(np.einsum("i,kip->kp", masses, (q[:, :, 0, 0] - q[:, :, 1, 0]) ** 2)) / 2)
-
-
-def fates(followed: Followed, thrown_apart_is_growth: bool) -> tuple[BoolArray, BoolArray]:
+def fates(size: FloatArray, error: FloatArray, moved: FloatArray, apart: BoolArray) -> tuple[BoolArray, BoolArray]:
     """Return where a kick's error grows, and where there is no verdict; shape (points,) each.
 
-    `thrown_apart_is_growth`: as `nothing_happens_without_feedback`. Theory: the docstring of this file.
+    Of each step, (steps, points), the first that of the kick: the `size` of c, the largest |c|; the `error`, half of
+    what two runs differ by in c, in units of the kick; how far they have `moved` apart, in units of what the kick
+    displaced. `apart`: as `thrown_apart`, shape (points,). Theory: the docstring of this file.
     """
-    error, windows = followed.error, len(followed.error)
+    linear = np.logical_and.accumulate(size < LINEAR[0], axis=0)  # not so where it is not a number
+    of_windows = linear[1:].reshape(-1, WINDOW, len(apart))
+    linear_windows = np.logical_and.reduce(of_windows, axis=1)
+    error, moved = (np.where(of_windows, each[1:].reshape(of_windows.shape), 0).max(axis=1) for each in (error, moved))
     with np.errstate(all="ignore"):  # of windows that are no longer linear
-        share = np.where(followed.moved > 0, error / followed.moved, 0.0)
-    window = np.arange(windows)[:, np.newaxis]
-    linear_windows = followed.linear_steps // WINDOW
+        share = np.where(moved > 0, error / moved, 0.0)
     largest_so_far = np.maximum.accumulate(np.maximum(error, 1.0), axis=0)  # the kick itself is one
-    dead = (window < linear_windows) & (error < NEGLIGIBLE * largest_so_far)
+    dead = np.logical_or.accumulate(linear_windows & (error < NEGLIGIBLE * largest_so_far), axis=0)
     grown = (error > GROWN) & (share > OF_ALL)
-    died = dead.any(axis=0)
-    died_in = np.where(died, dead.argmax(axis=0), windows)
-    came_back = (grown & (window > died_in)).any(axis=0)
-    to_the_end = linear_windows == windows
-    part = windows // PARTS
-    last, before_middle = error[-part:].max(axis=0), error[windows // 2 - part : windows // 2].max(axis=0)
+    died, came_back, to_the_end = dead[-1], (grown[1:] & dead[:-1]).any(axis=0), linear_windows[-1]
+    middle, part = len(error) // 2, len(error) // PARTS
+    last, before_middle = error[-part:].max(axis=0), error[middle - part : middle].max(axis=0)
     more = (last > before_middle) & (share[-part:].max(axis=0) > OF_ALL)
     # less is decay, whatever accounts for it: the motions' drift only adds to it
     converges = np.where(died, ~came_back, to_the_end & (last <= before_middle))
-    diverges = ~died & np.where(to_the_end, more, grown.any(axis=0))
-    diverges |= followed.thrown_apart & thrown_apart_is_growth
+    diverges = ~died & np.where(to_the_end, more, grown.any(axis=0)) | apart
     return diverges, ~(diverges | converges)

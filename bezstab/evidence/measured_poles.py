@@ -14,10 +14,8 @@ Linear prediction finds the poles of that recursion.
 
 import cmath
 import math
-from collections import deque
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import islice
 from statistics import median
 from typing import Literal
 
@@ -25,7 +23,7 @@ import numpy as np
 
 from bezstab.evidence.exact_rates import find_own_motions
 from bezstab.evidence.kicked_revolutions import rates_of_kicked_revolutions
-from bezstab.evidence.kicks import APART, AT_ONCE, GROWN, LINEAR, kicked_motions, nothing_happens_without_feedback
+from bezstab.evidence.kicks import AT_ONCE, GROWN, LINEAR, kicked_motions, thrown_apart
 from bezstab.evidence.linear_prediction import NEGLIGIBLE, SAMPLES, SPREAD, fit_dominant_pole
 from bezstab.evidence.moving_mechanisms import MovingPole, moving_poles
 from bezstab.mechanism import Mechanism, runs_compiled, turning_normals
@@ -34,7 +32,6 @@ from bezstab.rationals import exact
 from bezstab.stability import ComplexArray, FloatArray, dominant_pole, poles, region, useful_window, verdict
 
 MeasuredVerdict = Literal["converges", "diverges", "too close to call"]
-Progress = Callable[[Sequence[int]], Iterable[int]]
 
 RUN = 1000
 """Steps after the kick."""
@@ -195,21 +192,18 @@ def measure_poles(
     h: float,
     alpha_hat: FloatArray,
     beta_hat: FloatArray,
-    progress: Progress = iter,
     floquet: bool = False,
 ) -> list[Measurement]:
     """Return what is predicted and what is measured at each of a row of points.
 
-    alpha_hat and beta_hat have shape (points,), h is in s; `progress` sees the step numbers pass. All points run as one
-    batch. Where no pole can be measured the verdict still says whether the error grew or decayed. InputError for a
-    scene that cannot start; NumericalError where a predicted pole leaves the range of float64. The prediction is the
-    characteristic polynomial P(z) (paper Eq. 17, Table 2), the first-order law of the motion and, with `floquet`,
-    exact; the measurement is linear prediction (`fit_dominant_pole`).
+    alpha_hat and beta_hat have shape (points,), h is in s. All points run as one batch. Where no pole can be measured
+    the verdict still says whether the error grew or decayed. InputError for a scene that cannot start; NumericalError
+    where a predicted pole leaves the range of float64. The prediction is the characteristic polynomial P(z) (paper Eq.
+    17, Table 2), the first-order law of the motion and, with `floquet`, exact; the measurement is linear prediction
+    (`fit_dominant_pole`).
     """
-    difference, size = _kicked_responses(mechanism, method, h, alpha_hat, beta_hat, progress)
-    thrown_apart = np.asarray(~(size[: AT_ONCE + 1, -1] < APART).all(axis=0))
-    if thrown_apart.any() and not nothing_happens_without_feedback(mechanism, method, h):
-        thrown_apart[:] = False  # the mechanism itself breaks down
+    difference, size = _kicked_responses(mechanism, method, h, alpha_hat, beta_hat)
+    apart = thrown_apart(mechanism, method, h, size[:, -1])
     duration = RUN * h * float(method.step_multiple)
     turning = turning_normals(mechanism, duration)
     moving = moving_poles(method, turning, h, alpha_hat, beta_hat)
@@ -223,7 +217,7 @@ def measure_poles(
         predicted = complex(dominant_pole(method, a, b))
         measured, reason = _measured_pole(predicted, poles(method, a, b), *responses)
         measured_verdict = _measured_verdict(measured, *responses, max(CLOSE, moving[i].shift(method, h)))
-        if thrown_apart[i] and measured_verdict == "too close to call":  # so fast that no growth shows while linear
+        if apart[i] and measured_verdict == "too close to call":  # so fast that no growth shows while linear
             measured_verdict, reason = "diverges", f"the feedback throws the mechanism apart within {AT_ONCE} steps"
         found.append(
             Measurement(
@@ -245,20 +239,16 @@ def measure_poles(
 
 
 def _kicked_responses(
-    mechanism: Mechanism, method: Method, h: float, alpha_hat: FloatArray, beta_hat: FloatArray, progress: Progress
+    mechanism: Mechanism, method: Method, h: float, alpha_hat: FloatArray, beta_hat: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Return half the difference of c_1 after kicks up and down, and the largest |c|; shape (steps, kicks, points)."""
     differences, sizes = [], []
-    seen = iter(progress(range(RUN + 1)))
     compiled = runs_compiled(2 * len(KICKS) * (RUN + 1) * alpha_hat.size * evaluations(method), together=True)
     with np.errstate(all="ignore"):  # what diverges runs into infinity, and is cut off there
         for c, _ in kicked_motions(mechanism, method, h, alpha_hat, beta_hat, KICKS, RUN, compiled):
             differences.append((c[:, 0, 0] - c[:, 0, 1]) / 2)
             sizes.append(np.abs(c).max(axis=(1, 2)))
-            deque(islice(seen, len(c)), maxlen=0)
-    size = np.concatenate(sizes)
-    size[~np.isfinite(size)] = np.inf
-    return np.concatenate(differences), size
+    return np.concatenate(differences), np.concatenate(sizes)
 
 
 def _measured_pole(

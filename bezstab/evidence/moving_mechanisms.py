@@ -202,11 +202,8 @@ class Law:
 
         That of a pole that mixes is at most what it reaches, and none is less than at rest.
         """
-        with np.errstate(divide="ignore"):
-            at_rest = np.log(self.nearest.z_abs)
-        by_the_law = self.at_rest + self.growth
-        of_each = np.where(self.mixing(), np.minimum(by_the_law, self.furthest()), by_the_law)
-        return np.asarray(np.maximum(at_rest, of_each.max(axis=1)))
+        of_each = np.minimum(self.at_rest + self.growth, self.furthest())
+        return np.asarray(np.maximum(self.at_rest[:, 0], of_each.max(axis=1)))
 
     @property
     def double(self) -> BoolArray:
@@ -222,7 +219,7 @@ class Law:
 
         But not beyond LAW_HOLDS; not a number where it does so at rest.
         """
-        decays = self.at_rest.max(axis=1) < 0
+        decays = self.at_rest[:, 0] < 0
         if self.turned == 0:
             return np.where(decays, np.inf, np.nan)
         fastest = np.full(decays.shape, LAW_HOLDS / self.turned)
@@ -281,7 +278,7 @@ def moving_poles(
     with np.errstate(all="ignore"):
         of_one = (np.abs(law.chi) * turned) ** 2 if turned else np.zeros(law.chi.shape)  # at rest however large chi is
         unsure = law.leading(np.where(mixing, nearest.left_out(turned), of_one))
-        highest = np.maximum(highest, np.log(nearest.z_abs))
+        highest = np.maximum(highest, law.at_rest[:, 0])
         lowest_of_pair = np.log(np.maximum(law.leading(2 * nearest.middle - nearest.reach(turned)), 0))
     lowest_alone = np.where(mixing, -np.inf, law.at_rest + law.sure).max(axis=1)
     lowest = np.where(law.double, lowest_of_pair, lowest_alone)

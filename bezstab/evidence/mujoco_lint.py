@@ -28,14 +28,13 @@ from bezstab.errors import NumericalError
 from bezstab.evidence.mujoco_controllers import Controlled, MotorGains, controlled_motors, lifted_step
 from bezstab.evidence.mujoco_models import LEAST_SIZE, Constraint, Feedback, ModelData, Motor, Unjudged
 from bezstab.methods import Method, Verdict, closed_loop_at, lookup, recursion_verdict
-from bezstab.rationals import exact
+from bezstab.rationals import ONE, ZERO, exact
 from bezstab.stability import (
     BoolArray,
     FloatArray,
     Timing,
     first_where,
-    held_spectral_radius,
-    held_verdict,
+    held_method,
     poles,
 )
 
@@ -45,14 +44,14 @@ FRESH = Timing()
 Points = Callable[[Fraction], list[tuple[Point, str]]]
 """Of a factor on the step: the points of an element there, always as many, and what makes each of them."""
 
+IMPLICIT_IN_VELOCITY = lookup("imex-euler")
+"""What an integrator is for springs and drives whose damping is all implicit."""
+
 DEFAULT_SOLREF = (0.02, 1.0)
 """What MuJoCo takes where one number of solref is positive and the other not."""
 
 DIGITS = 12
 """Of a share: what linear algebra in float64 leaves of small matrices."""
-
-AS_IT_IS = Fraction(1)
-"""Factor on the step: the model's own."""
 
 FACTORS = np.geomspace(1, 1e3, 120)
 """On the step, or its inverse, where an end of stability is looked for first: the maps here have no gap of 6 %."""
@@ -108,16 +107,13 @@ class Linted:
     @property
     def unsafe(self) -> bool:
         """Whether errors grow, or would at the smallest change; without damping they are only kept, at any step."""
-        return not self.safe_together and self._unsafe_alone
+        alone = self.verdict == "diverges" or (self.verdict == "marginal" and bool(self.alpha_hat))
+        return alone and not self.safe_together
 
     @property
     def safe(self) -> bool | None:
         """Whether it is not unsafe; None where that was not judged."""
         return None if self.verdict is None else not self.unsafe
-
-    @property
-    def _unsafe_alone(self) -> bool:
-        return self.verdict == "diverges" or (self.verdict == "marginal" and bool(self.alpha_hat))
 
     def beside(self, together: "Linted | None") -> "Linted":
         """Return the same, whose safety is decided by what it was judged together with, if it was.
@@ -125,7 +121,7 @@ class Linted:
         That has the true inertia, as that of a closed loop. Where it neither grows nor decays, |z| = 1 to rounding, it
         says that nothing diverges, but no more.
         """
-        if not self._unsafe_alone or together is None or together.verdict in (None, "diverges", self.verdict):
+        if not self.unsafe or together is None or together.verdict in (None, "diverges", self.verdict):
             return self
         return replace(self, safe_together=True, advice=SAFE_TOGETHER)
 
@@ -181,22 +177,18 @@ class _Plant:
         return lookup("RK4" if self.model.integrator == "RK4" else "SYM")
 
     @cached_property
-    def implicit_damping(self) -> FloatArray:
-        """The damping D that the integrator treats implicitly; shape (dofs, dofs), SI."""
-        model = self.model
-        return _springs_and_dampers(model, [each for each in model.of(Feedback) if self.is_implicit(each)])[1]
-
-    @cached_property
     def inverse_mass(self) -> Callable[[float], FloatArray]:
         """(M + h D)^-1 by h (s), shape (dofs, dofs): what divides accelerations; that of the mass alone at h = 0.
 
-        NumericalError where the mass is singular to rounding.
+        D is the damping that the integrator treats implicitly. NumericalError where M is singular to rounding.
         """
+        mass, feedbacks = self.model.mass, self.model.of(Feedback)
         try:
-            np.linalg.cholesky(self.model.mass)
+            np.linalg.cholesky(mass)
         except np.linalg.LinAlgError:
             raise NumericalError("the mass matrix at qpos0 is singular to rounding") from None
-        return cache(lambda h: np.linalg.inv(self.model.mass + h * self.implicit_damping))
+        _, damping = _springs_and_dampers(mass, [each for each in feedbacks if self.is_implicit(each)])
+        return cache(lambda h: np.linalg.inv(mass + h * damping))
 
     def is_implicit(self, feedback: Feedback) -> bool:
         """Return whether the integrator treats a damping implicitly."""
@@ -210,55 +202,47 @@ class _Plant:
         return exact(float(f"{inertia:.{DIGITS}g}"))
 
 
-def _springs_and_dampers(model: ModelData, feedbacks: Sequence[Feedback]) -> tuple[FloatArray, FloatArray]:
-    """Return the stiffness and the damping matrix of feedbacks; shape (dofs, dofs) each, SI."""
-    directions = np.array([each.direction for each in feedbacks]).reshape(-1, len(model.mass))
-    stiffness = directions.T * [each.stiffness for each in feedbacks] @ directions
-    damping = directions.T * [each.damping for each in feedbacks] @ directions
+def _springs_and_dampers(mass: FloatArray, feedbacks: Sequence[Feedback]) -> tuple[FloatArray, FloatArray]:
+    """Return the stiffness and the damping matrix of feedbacks; each of the shape of `mass`, (dofs, dofs), SI."""
+    stiffness, damping = np.zeros_like(mass), np.zeros_like(mass)
+    for each in feedbacks:
+        along = np.outer(each.direction, each.direction)
+        stiffness += each.stiffness * along
+        damping += each.damping * along
     return stiffness, damping
 
 
 # One element
 
 
-@dataclass(frozen=True)
-class _Map:
-    """What a point is judged by: a method, and for a motor when its controller computes and applies the torque."""
-
-    method: Method
-    timing: Timing | None = None
-
-    def verdict(self, point: Point) -> Verdict:
-        """Return the proven verdict; where there is no stiffness, that on the velocity alone."""
-        if self.timing:
-            return held_verdict(self.method.name, *point, self.timing)
-        polynomial = closed_loop_at(self.method, *point)
-        if point[1] == 0:  # nothing holds the position: P = (z - 1) Q, -Q's coefficients are the running sums of P's
-            polynomial = list(accumulate(polynomial))[:-1]
-        return recursion_verdict(polynomial)
-
-    def moduli(self, points: Sequence[Point]) -> FloatArray:
-        """Return |z_p|; where there is no stiffness, of the velocity alone: without the pole at one."""
-        if self.timing:
-            return np.array([held_spectral_radius(self.method.name, *point, self.timing) for point in points])
-        alpha_hat, beta_hat = np.array(points, float).T
-        z = poles(self.method, alpha_hat, beta_hat)
-        if not beta_hat.any():
-            z = np.take_along_axis(z, np.argsort(np.abs(z - 1), axis=-1)[:, 1:], axis=-1)
-        return np.asarray(np.abs(z).max(axis=-1))
+def _verdict(method: Method, point: Point) -> Verdict:
+    """Return the proven verdict; where there is no stiffness, that on the velocity alone."""
+    polynomial = closed_loop_at(method, *point)
+    if point[1] == 0:  # nothing holds the position: P = (z - 1) Q, -Q's coefficients are the running sums of P's
+        polynomial = list(accumulate(polynomial))[:-1]
+    return recursion_verdict(polynomial)
 
 
-def _linted(element: str, kind: str, setting: str, judge: _Map, points_at: Points) -> Linted:
+def _moduli(method: Method, points: Sequence[Point]) -> FloatArray:
+    """Return |z_p| a step of the model; where there is no stiffness, of the velocity alone: without the pole at one."""
+    alpha_hat, beta_hat = np.array(points, float).T
+    z = poles(method, alpha_hat, beta_hat)
+    if not beta_hat.any():
+        z = np.take_along_axis(z, np.argsort(np.abs(z - 1), axis=-1)[:, 1:], axis=-1)
+    return np.asarray(np.abs(z).max(axis=-1) ** (1 / float(method.step_multiple)))
+
+
+def _linted(element: str, kind: str, setting: str, method: Method, points_at: Points) -> Linted:
     """Judge an element by the worst of its points; without advice."""
-    points, reasons = zip(*points_at(AS_IT_IS), strict=True)
-    moduli = judge.moduli(points)
+    points, reasons = zip(*points_at(ONE), strict=True)
+    moduli = _moduli(method, points)
     worst = int(np.argmax(moduli))
     alpha_hat, beta_hat = points[worst]
 
     def unstable(factors: FloatArray) -> BoolArray:
         there = [point for factor in factors.tolist() for point, _ in points_at(exact(factor))]
         limit = 1.0 if all(point[0] for point in there) else 1 + ROUNDING
-        return np.asarray((judge.moduli(there).reshape(len(factors), -1) >= limit).any(axis=-1))
+        return np.asarray((_moduli(method, there).reshape(len(factors), -1) >= limit).any(axis=-1))
 
     return Linted(
         element=element,
@@ -268,8 +252,8 @@ def _linted(element: str, kind: str, setting: str, judge: _Map, points_at: Point
         judged=reasons[worst],
         alpha_hat=float(alpha_hat),
         beta_hat=float(beta_hat),
-        map=judge.method.name,
-        verdict=judge.verdict(points[worst]),
+        map=method.name,
+        verdict=_verdict(method, points[worst]),
         z_abs=float(moduli[worst]),
         h_factor=_h_factor(unstable),
     )
@@ -277,11 +261,9 @@ def _linted(element: str, kind: str, setting: str, judge: _Map, points_at: Point
 
 def _h_factor(unstable: Callable[[FloatArray], BoolArray]) -> float | None:
     """Return the factor on the step at which stability ends, or, where it is lost already, begins; None for neither."""
-    if unstable(np.ones(1))[0]:
-        found = first_where(lambda factors: ~unstable(factors), 1 / FACTORS)
-        return found[1] if found else None
-    found = first_where(unstable, FACTORS)
-    return found[0] if found else None
+    lost = bool(unstable(np.ones(1))[0])
+    found = first_where(lambda factors: unstable(factors) != lost, 1 / FACTORS if lost else FACTORS)
+    return found[lost] if found else None  # of the two next to each other the stable one
 
 
 # Constraints
@@ -310,7 +292,7 @@ def _pulls(plant: _Plant, constraint: Constraint, factor: Fraction) -> list[_Pul
     at_rest, largest, width = constraint.solimp
     impedances = [at_rest, largest] if width > 0 else [(at_rest + largest) / 2]
     if not constraint.positional:  # friction has no position to be off
-        impedances, beta_hat = impedances[:1], Fraction(0)
+        impedances, beta_hat = impedances[:1], ZERO
     share = 1 / exact(largest)
     return [
         _Pull(constraint, impedance, where, (alpha_hat * share, beta_hat * exact(impedance) * share**2))
@@ -330,7 +312,7 @@ def _in_force(model: ModelData, solref: tuple[float, float], h: Fraction) -> tup
 def _linted_constraint(plant: _Plant, constraint: Constraint) -> Linted:
     setting = f'solref="{_numbers(constraint.solref)}" solimp="{_numbers(constraint.solimp)}"'
     points_at = partial(_constraint_points, plant, constraint)
-    found = _linted(constraint.element, constraint.kind, setting, _Map(plant.method), points_at)
+    found = _linted(constraint.element, constraint.kind, setting, plant.method, points_at)
     return replace(found, advice=_constraint_advice(plant, constraint, found))
 
 
@@ -387,9 +369,8 @@ def _softness(plant: _Plant, constraint: Constraint, found: Linted) -> str:
     if constraint.solimp[0] < LEAST_HOLD and constraint.solimp[2] > 0:
         return f"solimp leaves small errors alone: d = {constraint.solimp[0]:g} at the constraint itself"
     firm = (2 * plant.model.h, 1.0)
-    points = [point for point, _ in _constraint_points(plant, replace(constraint, solref=firm), AS_IT_IS)]
-    moduli = np.maximum(ROUNDING, [_Map(plant.method).moduli(points).max(), found.z_abs])
-    faster, now = np.log(moduli)
+    points = [point for point, _ in _constraint_points(plant, replace(constraint, solref=firm), ONE)]
+    faster, now = np.log(np.maximum(ROUNDING, [_moduli(plant.method, points).max(), found.z_abs]))
     times = faster / now
     return f'needlessly soft: solref="{_numbers(firm)}" settles {times:.0f} times as fast' if times > SOFT else ""
 
@@ -418,26 +399,18 @@ def _along_one_direction(feedbacks: Sequence[Feedback]) -> list[list[Feedback]]:
 
 @dataclass(frozen=True)
 class _Drive:
-    """Stiffness and damping along one direction, and the inertia there with all other joints free (SI).
-
-    `timing` is for a drive whose torque a controller outside computes.
-    """
+    """Stiffness and damping along one direction, the inertia there with all other joints free (SI), and its method."""
 
     stiffness: Fraction
     explicit_damping: Fraction
     implicit_damping: Fraction
     inertia: Fraction
-    timing: Timing | None = None
+    method: Method
 
     @property
     def damping(self) -> Fraction:
         """All of it."""
         return self.explicit_damping + self.implicit_damping
-
-    def judge(self, plant: _Plant) -> _Map:
-        """Return what the integrator is for it."""
-        all_implicit = self.implicit_damping and not self.explicit_damping
-        return _Map(lookup("imex-euler") if all_implicit else plant.method, self.timing)
 
     def point(self, h: Fraction) -> Point:
         """Return its point at a step of h seconds."""
@@ -449,9 +422,7 @@ class _Drive:
     def linted(self, plant: _Plant, element: str, kind: str, setting: str, reason: str) -> Linted:
         """Judge it, without advice; `reason` is what makes its point."""
         judged = f"{reason} with all other joints free"
-        return _linted(
-            element, kind, setting, self.judge(plant), lambda factor: [(self.point(plant.h * factor), judged)]
-        )
+        return _linted(element, kind, setting, self.method, lambda factor: [(self.point(plant.h * factor), judged)])
 
 
 def _linted_group(plant: _Plant, group: Sequence[Feedback]) -> Linted:
@@ -476,7 +447,9 @@ def _drive(plant: _Plant, group: Sequence[Feedback]) -> _Drive:
         arm = float(feedback.direction @ direction / (direction @ direction))
         stiffness += arm**2 * feedback.stiffness
         damping[plant.is_implicit(feedback)] += arm**2 * feedback.damping
-    return _Drive(exact(stiffness), exact(damping[False]), exact(damping[True]), plant.inertia_along(direction))
+    explicit, implicit = exact(damping[False]), exact(damping[True])
+    method = IMPLICIT_IN_VELOCITY if implicit and not explicit else plant.method
+    return _Drive(exact(stiffness), explicit, implicit, plant.inertia_along(direction), method)
 
 
 def _drive_advice(plant: _Plant, drive: _Drive, found: Linted) -> str:
@@ -488,8 +461,8 @@ def _drive_advice(plant: _Plant, drive: _Drive, found: Linted) -> str:
     if found.verdict == "converges":
         return ""
     used = _used_up(plant, drive)
-    all_implicit = replace(drive, explicit_damping=Fraction(0), implicit_damping=drive.damping)
-    if drive.explicit_damping and all_implicit.judge(plant).verdict(all_implicit.point(plant.h)) == "converges":
+    all_implicit = replace(drive, explicit_damping=ZERO, implicit_damping=drive.damping)
+    if drive.explicit_damping and _verdict(IMPLICIT_IN_VELOCITY, all_implicit.point(plant.h)) == "converges":
         return f'{used}write integrator="implicitfast"'
     return f"{used}{_smaller_step(plant, found.h_factor)}"
 
@@ -514,7 +487,8 @@ def _linted_motor(plant: _Plant, controlled: Controlled) -> Linted:
     """Judge a motor with its controller on the inertia along its direction: all other joints are free."""
     motor, timing, gain = controlled.motor, controlled.timing, exact(controlled.motor.gain)
     inertia = plant.inertia_along(motor.direction)
-    drive = _Drive(gain * controlled.kp, gain * controlled.kd, Fraction(0), inertia, timing)
+    method = held_method(plant.method.name, timing)
+    drive = _Drive(gain * controlled.kp, gain * controlled.kd, ZERO, inertia, method)
     gains = f"kp {float(drive.stiffness):.6g}, kd {float(drive.damping):.6g}"
     setting = f"{gains}, every {timing.every}, late {float(timing.late):g}"
     found = drive.linted(plant, motor.element, "motor", setting, f"{setting} on inertia {float(inertia):.6g}")
@@ -534,7 +508,6 @@ def _linted_together(plant: _Plant, constraints: Sequence[Constraint], controlle
     if dofs > MOST_DOFS:
         return _not_judged("all at qpos0", "together", f"{dofs} degrees of freedom, at most {MOST_DOFS}")
 
-    @cache
     def modulus(factor: float) -> float:
         """Return |z| with impedances at the constraints or past solimp's width, whichever is worse."""
         pulls = [_pulls(plant, each, exact(factor)) for each in constraints]
@@ -564,11 +537,8 @@ def _linted_together(plant: _Plant, constraints: Sequence[Constraint], controlle
 def _modulus(plant: _Plant, held: Sequence[_Pull], controlled: Sequence[Controlled], factor: float) -> float:
     """Return the largest |z| of a step of all that holds, so many times the model's; 0 where nothing holds."""
     step, forces = _step(plant, held, controlled, factor)
-    every = 1
-    if controlled:
-        every = controlled[0].timing.every
-        step = lifted_step(step, forces, controlled, factor * plant.model.h)
-    z = np.linalg.eigvals(step)
+    every = controlled[0].timing.every if controlled else 1
+    z = np.linalg.eigvals(lifted_step(step, forces, controlled, factor * plant.model.h) if controlled else step)
     moduli = np.abs(z[np.abs(z - 1) > FREE]) ** (1 / every)
     return float(moduli.max(initial=0.0))
 
@@ -581,20 +551,20 @@ def _step(
     h, dofs, motors = factor * model.h, len(model.mass), len(controlled)
     inverse = plant.inverse_mass(0.0)
     arms = np.array([each.motor.direction for each in controlled]).reshape(motors, dofs)
-    stiffness, damping = _springs_and_dampers(model, model.of(Feedback))
-    acceleration = inverse @ np.hstack([-stiffness, -damping, arms.T])  # by positions, velocities and forces
-    # What constraints ask of it, J a = -(alpha_hat / h) J v - (beta_hat / h^2) J x, softened by R.
+    stiffness, damping = _springs_and_dampers(model.mass, model.of(Feedback))
+    # Times h^2, by positions, velocities times h, and forces.
+    acceleration = inverse @ np.hstack([-stiffness * h * h, -damping * h, arms.T * h * h])
+    # What constraints ask of it, J a = -alpha_hat J v - beta_hat J x, softened by R.
     jacobian = np.vstack([np.zeros((0, dofs)), *(pull.constraint.jacobian for pull in held)])
     points = [pull.point for pull in held for _ in pull.constraint.diagonal]  # of each row
     alpha_hat, beta_hat = np.array(points, float).reshape(-1, 2, 1).swapaxes(0, 1)
-    asked = np.hstack([-beta_hat / h**2 * jacobian, -alpha_hat / h * jacobian, np.zeros((len(jacobian), motors))])
+    asked = np.hstack([-beta_hat * jacobian, -alpha_hat * jacobian, np.zeros((len(jacobian), motors))])
     regularized = jacobian @ inverse @ jacobian.T + np.diag(np.hstack([[], *(pull.softening for pull in held)]))
     acceleration += inverse @ jacobian.T @ np.linalg.solve(regularized, asked - jacobian @ acceleration)
     slower = plant.inverse_mass(h) @ model.mass  # what implicit damping leaves of it
-    in_steps = np.repeat([h * h, h, h * h], [dofs, dofs, motors])  # velocities are in units of 1/h
     whole = np.eye(2 * dofs + motors)
     change = np.zeros_like(whole)
-    change[dofs : 2 * dofs] = slower @ acceleration * in_steps
+    change[dofs : 2 * dofs] = slower @ acceleration
     if model.integrator == "RK4":
         change[:dofs, dofs : 2 * dofs] = np.eye(dofs)
         for part in (4, 3, 2, 1):

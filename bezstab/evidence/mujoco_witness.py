@@ -7,17 +7,17 @@ MuJoCo's constraint reference is aref = -b cdot - k c, Baumgarte's feedback, wit
 import types
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import partial
 from itertools import product
 from typing import Literal
 
 import numpy as np
 
+from bezstab.engines import MOST_IMPEDANCE
 from bezstab.errors import InputError
-from bezstab.evidence.mujoco_models import MOST_IMPEDANCE, mujoco_module, silent
+from bezstab.evidence.mujoco_models import mujoco_module, silent
 from bezstab.mechanism import GROUND, Body, Mechanism, Revolute, Scene, constraint_errors, perturbed_state
 from bezstab.methods import Method, lookup
-from bezstab.stability import BoolArray, FloatArray, first_where, region, spectral_radius
+from bezstab.stability import FloatArray, bisected, region, spectral_radius
 from bezstab.units import feedback_gains
 
 Outcome = Literal["converges", "diverges", "neither"]
@@ -40,8 +40,8 @@ KICK = 1e-3
 GROWN_TO = 1.0
 """m: |z_p| >= 1.1 takes the kick there within a hundred steps."""
 
-ALONG_A_RAY = np.linspace(0, 2, 400)[1:]
-"""In units of the region's extent: where the boundary is looked for first."""
+ALONG_A_RAY = 0.005, 2.0
+"""In units of the region's extent: stable and unstable. The two regions have one boundary on each ray in between."""
 
 
 @dataclass(frozen=True)
@@ -106,8 +106,8 @@ def model_xml(scene: Scene, integrator: str, h: float, alpha_hat: float, beta_ha
     if scene.forces or scene.springs or not all(isinstance(joint, Revolute) for joint in scene.joints):
         raise InputError(f"--witness mujoco: {scene.name} has more than revolute joints and gravity: not supported")
     two_alpha, beta_squared = feedback_gains(alpha_hat, beta_hat, h)
-    # The most that MuJoCo takes: the rest of the unconstrained acceleration leaks into the constraint.
-    feedback = f'solref="{-beta_squared!r} {-two_alpha!r}" solimp="{MOST_IMPEDANCE} {MOST_IMPEDANCE} 1 0.5 1"'
+    impedance = float(MOST_IMPEDANCE)  # the rest of the unconstrained acceleration leaks into the constraint
+    feedback = f'solref="{-beta_squared!r} {-two_alpha!r}" solimp="{impedance} {impedance} 1 0.5 1"'
     sites: dict[str, str] = dict.fromkeys([GROUND, *(body.name for body in scene.bodies)], "")
     connections = ""
     for number, joint in enumerate(scene.joints):
@@ -144,20 +144,15 @@ def _body_xml(body: Body, sites: str) -> str:
     </body>"""
 
 
-def _boundary_points(method: Method) -> Iterator[FloatArray]:
-    """Yield the first point with |z_p| = 1 on each ray from the origin, as (alpha_hat, beta_hat)."""
+def _boundary_points(method: Method) -> FloatArray:
+    """Return the point with |z_p| = 1 on each ray from the origin, as (alpha_hat, beta_hat); shape (rays, 2)."""
     view = region(method).view
     assert view
-    extent = np.array([largest for _, largest in view])
-    for angle in np.radians(RAYS):
-        ray = np.array([np.cos(angle), np.sin(angle)]) * extent
-        met = first_where(partial(_unstable, method, ray), ALONG_A_RAY)
-        assert met
-        yield met[0] * ray
-
-
-def _unstable(method: Method, ray: FloatArray, times: FloatArray) -> BoolArray:
-    return spectral_radius(method, *np.outer(ray, times)) >= 1
+    angles = np.radians(RAYS)
+    rays = np.stack([np.cos(angles), np.sin(angles)], axis=-1) * [largest for _, largest in view]
+    stable, unstable = (np.full(len(RAYS), times) for times in ALONG_A_RAY)
+    _, met = bisected(lambda times: spectral_radius(method, *(times * rays.T[:, np.newaxis])) >= 1, stable, unstable)
+    return np.asarray(met[:, np.newaxis] * rays)
 
 
 def _run(mujoco: types.ModuleType, model: object, mechanism: Mechanism) -> FloatArray:

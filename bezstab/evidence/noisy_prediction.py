@@ -20,7 +20,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
-from numpy.typing import NDArray
 
 from bezstab.evidence.linear_prediction import NEGLIGIBLE, SAMPLES, STANDARD_ERRORS, TIMES_FARTHEST
 from bezstab.stability import EPS, ComplexArray, FloatArray
@@ -44,21 +43,15 @@ not known to so much errors are no longer normal, and nobody is helped."""
 
 
 @dataclass(frozen=True)
-class NoisyPole:
-    """A pole in the closed upper half plane, per sample, and how far off it may be in the plane: STANDARD_ERRORS."""
-
-    pole: complex
-    uncertainty: float
-
-
-@dataclass(frozen=True)
 class NoisyFit:
-    """What a stretch of a response shows beside white noise: `poles` by modulus, none where all is noise.
+    """What a stretch of a response shows beside white noise.
 
-    `noise` is the standard deviation of the noise, in the unit of the response, `samples` the length of the stretch.
+    `poles` are those in the closed upper half plane, per sample and by modulus, each with how far off it may be in the
+    plane: STANDARD_ERRORS; none where all is noise. `noise` is the standard deviation of the noise, in the unit of the
+    response, `samples` the length of the stretch.
     """
 
-    poles: tuple[NoisyPole, ...]
+    poles: dict[complex, float]
     noise: float
     samples: int
 
@@ -102,7 +95,7 @@ def _fit_stretch(samples: FloatArray, order: int) -> NoisyFit | None:
     if not level:
         return None
     sums = _sums(samples / level, order)
-    best = int(np.argmin([each.left_over_worth for each in sums[: order + 1]]))
+    best = int(np.argmin([each.worth for each in sums[: order + 1]]))
     chosen, richer = sums[best], sums[best + 1 : best + BEYOND]
     if not (chosen.deviation and _unrelated(chosen.left_over) and _even(chosen.left_over)):
         return None
@@ -114,33 +107,38 @@ def _sums(samples: FloatArray, order: int) -> "list[_Sum]":
     # Singular vectors of the Hankel matrix, those of the largest values first.
     hankel = sliding_window_view(samples, len(samples) // 2)
     vectors = np.linalg.svd(hankel, full_matrices=False)[2].T
-    sums = [_Sum.of(samples, np.zeros(0, complex))]
+    sums = [_sum(samples, np.zeros(0, complex))]
     for count in range(1, order + BEYOND):
         # Poles that nearly fit multiply sums of powers shifted by a row.
         z = np.linalg.eigvals(np.linalg.lstsq(vectors[:-1, :count], vectors[1:, :count], rcond=None)[0])
-        fitted = _Sum.fitted(samples, np.where(np.abs(z) < NEGLIGIBLE, NEGLIGIBLE, z).astype(complex))
+        fitted = _fitted(samples, np.where(np.abs(z) < NEGLIGIBLE, NEGLIGIBLE, z).astype(complex))
         if fitted.freedom < FREEDOM:
             break
         sums.append(fitted)
-        if min(each.left_over_worth for each in sums[-BEYOND:]) > min(each.left_over_worth for each in sums):
+        if min(each.worth for each in sums[-BEYOND:]) > min(each.worth for each in sums):
             break
     return sums
 
 
-def _visible_poles(chosen: "_Sum", richer: "Sequence[_Sum]") -> tuple[NoisyPole, ...]:
-    """Return the poles that explain more than noise, by modulus, of the closed upper half plane.
+def _visible_poles(chosen: "_Sum", richer: "Sequence[_Sum]") -> dict[complex, float]:
+    """Return the poles that explain more than noise, by modulus, of the closed upper half plane, and their errors.
 
     A pole that is too weak to be counted may still shift the others: by how much, sums of more poles say.
     """
-    found = []
-    for z, error, visible in zip(chosen.z, chosen.errors(), chosen.visible(), strict=True):
-        if visible < VISIBLE or z.imag < 0:
-            continue
-        shifts = [float(np.abs(other.z - z).min()) for other in richer]
-        # By Cornish and Fisher's expansion as many of the errors of fewer samples are less.
-        factor = STANDARD_ERRORS * (1 + (STANDARD_ERRORS**2 + 1) / (4 * chosen.freedom))
-        found.append(NoisyPole(complex(z), factor * float(error) + TIMES_FARTHEST * max(shifts, default=0.0)))
-    return tuple(sorted(found, key=lambda each: -abs(each.pole)))
+    real = chosen.z.imag == 0
+    of_pairs = np.where(real, 1, 2) * np.abs(chosen.explained.real)  # a pair counts together
+    visible = (of_pairs > chosen.deviation).sum(axis=0) >= VISIBLE
+    # The standard error in the plane, of a pair that of both parts together.
+    errors = np.abs(chosen.z) * chosen.deviation * np.linalg.norm(np.linalg.pinv(chosen.slopes), axis=1)
+    # By Cornish and Fisher's expansion as many of the errors of fewer samples are less.
+    factor = STANDARD_ERRORS * (1 + (STANDARD_ERRORS**2 + 1) / (4 * chosen.freedom))
+    found = {}
+    for place in np.argsort(-np.abs(chosen.z), kind="stable"):
+        z = complex(chosen.z[place])
+        if visible[place] and z.imag >= 0:
+            shift = max((float(np.abs(other.z - z).min()) for other in richer), default=0.0)
+            found[z] = factor * float(errors[place]) + TIMES_FARTHEST * shift
+    return found
 
 
 @dataclass(frozen=True)
@@ -156,45 +154,15 @@ class _Sum:
     slopes: ComplexArray
     explained: ComplexArray
 
-    @classmethod
-    def fitted(cls, samples: FloatArray, z: ComplexArray) -> "_Sum":
-        """Return the sum that leaves least over, of as many poles as nearly fit, by Gauss and Newton's method."""
-        best = cls.of(samples, z)
-        for _ in range(ITERATIONS):
-            change = -np.linalg.lstsq(best.slopes, best.left_over, rcond=None)[0]
-            following = cls.of(samples, _moved(best.z, np.asarray(change)))
-            gained = best.squares - following.squares
-            if gained > 0:
-                best = following
-            if not gained > NEGLIGIBLE**2 * best.squares / max(best.freedom, 1):
-                break
-        return best
-
-    @classmethod
-    def of(cls, samples: FloatArray, z: ComplexArray) -> "_Sum":
-        """Return the sum of powers of given poles that leaves least over."""
-        k = np.arange(len(samples))[:, np.newaxis]
-        growth = (len(samples) - 1) * np.maximum(np.log(np.abs(z)), 0.0)  # so that what grows ends at one
-        powers = np.exp(k * np.log(z) - growth)
-        inverse = np.linalg.pinv(powers, rcond=EPS * len(samples))
-        explained = powers * (inverse @ samples)
-        slopes = -k * explained
-        return cls(z, samples - explained.real.sum(axis=1), slopes - powers @ (inverse @ slopes), explained)
-
     @property
     def squares(self) -> float:
         """The sum of squares that is left over."""
         return float(np.sum(self.left_over**2))
 
     @property
-    def unknowns(self) -> int:
-        """Of poles and of their amplitudes."""
-        return 2 * len(self.z)
-
-    @property
     def freedom(self) -> int:
-        """Samples more than unknowns."""
-        return len(self.left_over) - self.unknowns
+        """Samples more than unknowns: poles and their amplitudes."""
+        return len(self.left_over) - 2 * len(self.z)
 
     @property
     def deviation(self) -> float:
@@ -202,24 +170,39 @@ class _Sum:
         return float(np.sqrt(self.squares / max(self.freedom, 1)))
 
     @property
-    def left_over_worth(self) -> float:
+    def worth(self) -> float:
         """What is the less, the more likely a sum is: squares left over, and the unknowns it takes (Bayes' criterion).
 
         With a larger price weak poles are left out, and shift the others unseen.
         """
         samples = len(self.left_over)
         with np.errstate(divide="ignore"):
-            return float(samples * np.log(self.squares) + self.unknowns * np.log(samples))
+            return float(samples * np.log(self.squares) + (samples - self.freedom) * np.log(samples))
 
-    def errors(self) -> FloatArray:
-        """Return the standard error of each pole in the plane, of a pair that of both parts together."""
-        of_noise = np.linalg.norm(np.linalg.pinv(self.slopes), axis=1)
-        return np.asarray(np.abs(self.z) * self.deviation * of_noise)
 
-    def visible(self) -> NDArray[np.intp]:
-        """Return in how many samples each pole, a pair together, explains more than the noise."""
-        both = np.where(self.z.imag == 0, 1, 2) * np.abs(self.explained.real)
-        return np.asarray((both > self.deviation).sum(axis=0))
+def _sum(samples: FloatArray, z: ComplexArray) -> _Sum:
+    """Return the sum of powers of given poles that leaves least over."""
+    k = np.arange(len(samples))[:, np.newaxis]
+    growth = (len(samples) - 1) * np.maximum(np.log(np.abs(z)), 0.0)  # so that what grows ends at one
+    powers = np.exp(k * np.log(z) - growth)
+    inverse = np.linalg.pinv(powers, rcond=EPS * len(samples))
+    explained = powers * (inverse @ samples)
+    slopes = -k * explained
+    return _Sum(z, samples - explained.real.sum(axis=1), slopes - powers @ (inverse @ slopes), explained)
+
+
+def _fitted(samples: FloatArray, z: ComplexArray) -> _Sum:
+    """Return the sum that leaves least over, of as many poles as nearly fit, by Gauss and Newton's method."""
+    best = _sum(samples, z)
+    for _ in range(ITERATIONS):
+        change = -np.linalg.lstsq(best.slopes, best.left_over, rcond=None)[0]
+        following = _sum(samples, _moved(best.z, np.asarray(change)))
+        gained = best.squares - following.squares
+        if gained > 0:
+            best = following
+        if not gained > NEGLIGIBLE**2 * best.squares / max(best.freedom, 1):
+            break
+    return best
 
 
 def _moved(z: ComplexArray, change: ComplexArray | FloatArray) -> ComplexArray:

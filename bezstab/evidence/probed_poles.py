@@ -28,7 +28,7 @@ from numpy.typing import ArrayLike
 
 from bezstab.errors import InputError, NumericalError
 from bezstab.evidence.linear_prediction import NEGLIGIBLE, SAMPLES, SPREAD, Fit, fit_dominant_pole
-from bezstab.evidence.logs import UNEVEN, decimal_place
+from bezstab.evidence.logs import decimal_place
 from bezstab.evidence.measured_poles import CLOSE, GROWN
 from bezstab.evidence.noisy_prediction import ITERATIONS, RESOLVED, VISIBLE, NoisyFit, fit_in_noise
 from bezstab.methods import Method, closed_loop_at, closed_loop_table
@@ -217,7 +217,7 @@ def _told(samples: FloatArray, rounding: float, of_two_runs: bool) -> Told:
     if len(_linear_limits(samples)) == 1:  # else it leaves the linear range: what is left over looks like noise
         in_noise = filter(None, (fit_in_noise(response, ORDER) for response in samples.T))
         # Of several responses that which shows its pole best.
-        best = min(in_noise, key=lambda fit: fit.poles[0].uncertainty if fit.poles else np.inf, default=None)
+        best = min(in_noise, key=lambda fit: next(iter(fit.poles.values()), np.inf), default=None)
         if best:
             return _told_in_noise(best, of_two_runs)
     if as_given:
@@ -246,14 +246,14 @@ def _told_in_noise(fit: NoisyFit, of_two_runs: bool) -> Told:
     In one run a pole near 1 is what the motion forces, and one on the circle may be.
     """
     noise = f"{fit.noise:.2g}"
-    poles = [each for each in fit.poles if of_two_runs or abs(each.pole - 1) > RESOLVED]
+    poles = {z: error for z, error in fit.poles.items() if of_two_runs or abs(z - 1) > RESOLVED}
     if not poles:
         return None, (FORCED_IN_NOISE if fit.poles else ALL_NOISE).format(noise)
-    dominant = poles[0]
-    if dominant.uncertainty > RESOLVED:
-        return None, HIDDEN_IN_NOISE.format(noise, dominant.pole, dominant.uncertainty)
+    (dominant, uncertainty), *_ = poles.items()
+    if uncertainty > RESOLVED:
+        return None, HIDDEN_IN_NOISE.format(noise, dominant, uncertainty)
     no_recursion = np.nan
-    found = Fit(tuple(each.pole for each in poles), no_recursion, 0, fit.samples, dominant.uncertainty)
+    found = Fit(tuple(poles), no_recursion, 0, fit.samples, uncertainty)
     if not _on_the_circle(found):
         return found, IN_NOISE.format(noise)
     return (found, f"{IN_NOISE.format(noise)}; {ON_THE_CIRCLE}") if of_two_runs else (None, ON_THE_CIRCLE)
@@ -323,18 +323,6 @@ def likenesses(
     return sorted(found, key=lambda one: one.distance)
 
 
-def steps_between_rows(method: Method, h: float | None, row: float | None, every: int = 1) -> int | None:
-    """Return how many of a method's own steps lie between two rows of a log; None if the rows are no multiple of one.
-
-    `h` is the user's step and `row` the time between two rows, both in s; without either it is `every`, as it was said.
-    """
-    if h is None or row is None:
-        return every
-    ratio = row / (h * float(method.step_multiple))
-    nearest = round(ratio)
-    return nearest if nearest >= 1 and abs(ratio - nearest) <= UNEVEN else None
-
-
 def kicked_responses(
     step: Callable[[FloatArray], FloatArray],
     state: ArrayLike,
@@ -355,13 +343,12 @@ def kicked_responses(
     responses = np.full((steps + 1, len(SHARES)), np.nan)
     with np.errstate(all="ignore"):  # what diverges runs into infinity, and is cut off there
         for place, share in enumerate(SHARES):
-            states = [start + share * change, start - share * change]
+            up, down = start + share * change, start - share * change
             for k in range(steps + 1):
-                up, down = (float(constraint(each)) for each in states)
-                responses[k, place] = (up - down) / 2
+                responses[k, place] = (float(constraint(up)) - float(constraint(down))) / 2
                 if not np.isfinite(responses[k, place]):
                     break
-                states = [np.asarray(step(each.copy())) for each in states]
+                up, down = (np.asarray(step(each.copy())) for each in (up, down))
     return responses
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bezstab.errors import InputError, NumericalError
-from bezstab.evidence.kicks import fates, follow, kicked_motions, nothing_happens_without_feedback
+from bezstab.evidence.kicks import fates, kicked_motions, thrown_apart
 from bezstab.evidence.mixing_poles import nearest_poles
 from bezstab.mechanism import Scene, compiled_mechanism, runs_compiled, turning_normals
 from bezstab.methods import Method, evaluations
@@ -143,11 +143,15 @@ def simulated_verdicts(rows: MapRows) -> dict[str, NDArray[Any]]:
     alpha_hat, beta_hat = alpha_grid.ravel(), beta_grid.ravel()
     mechanism, method, h = compiled_mechanism(rows.scene), rows.method, rows.h
     masses = np.array(mechanism.equations.mass, float)
-    calm = nothing_happens_without_feedback(mechanism, method, h)
+    sizes, errors, distances = [], [], []
     with np.errstate(all="ignore"):  # what diverges runs into infinity, and is cut off there
-        blocks = kicked_motions(mechanism, method, h, alpha_hat, beta_hat, [MAP_KICK], MAP_RUN, rows.compiled)
-        followed = follow(blocks, masses, MAP_KICK, MAP_RUN)
-        diverges, undecided = fates(followed, thrown_apart_is_growth=calm)
+        for c, q in kicked_motions(mechanism, method, h, alpha_hat, beta_hat, [MAP_KICK], MAP_RUN, rows.compiled):
+            sizes.append(np.abs(c).max(axis=(1, 2, 3)))
+            errors.append(np.abs(c[:, :, 0, 0] - c[:, :, 1, 0]).max(axis=1) / (2 * MAP_KICK))
+            distances.append(np.sqrt(np.einsum("i,kip->kp", masses, (q[:, :, 0, 0] - q[:, :, 1, 0]) ** 2)))
+        size, error, distance = (np.concatenate(each) for each in (sizes, errors, distances))
+        apart = thrown_apart(mechanism, method, h, size)
+        diverges, undecided = fates(size, error, distance / distance[0], apart)
     z_abs = np.abs(np.concatenate(list(pole_map(method, rows.alpha_hat, rows.beta_hat))))
     nearest = nearest_poles(method, alpha_hat, beta_hat)
     with np.errstate(invalid="ignore"):  # zero times infinite: nothing is known

@@ -7,12 +7,18 @@ Units are SI and rad.
 
 from bezstab.mechanism.compiled import Mechanism, accelerations, compiled_mechanism, state_function
 from bezstab.mechanism.compiled_stepping import runs_compiled
-from bezstab.mechanism.constraint_motions import ConstraintMotion, along_normals, constraint_motion
-from bezstab.mechanism.constraint_normals import TurningNormals, turned_across, turning_normals
+from bezstab.mechanism.constraint_normals import (
+    ConstraintMotion,
+    TurningNormals,
+    along_normals,
+    constraint_motion,
+    turned_across,
+    turning_normals,
+)
 from bezstab.mechanism.energies import energy_balance
 from bezstab.mechanism.equations import Equations, T, equations_of_motion
 from bezstab.mechanism.linearized import StepsTaken, changes_handed_on, steps_taken
-from bezstab.mechanism.motions import Motion, motion, motion_over, regular_motion, revolution_period
+from bezstab.mechanism.motions import Motion, motion, motion_over, regular_motion
 from bezstab.mechanism.observation import Observation, observe, singular_passages
 from bezstab.mechanism.runner import (
     Block,

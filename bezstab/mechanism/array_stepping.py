@@ -8,8 +8,7 @@ import numpy as np
 
 from bezstab.linear_equations import inverses
 from bezstab.mechanism.compiled import Mechanism, state_function
-from bezstab.mechanism.programs import FloatArray, Program
-from bezstab.mechanism.registers import BoolArray, Room, Steps
+from bezstab.mechanism.programs import BoolArray, FloatArray, Program, Room, Steps
 from bezstab.mechanism.stepping import TakeSteps, read
 
 
@@ -23,7 +22,7 @@ def array_steps(mechanism: Mechanism, lanes: int) -> TakeSteps:
         np.einsum("ijl,jl->il", inverse[:size, :size], right, out=left)
 
     own: dict[str, Any] = {"N": n, "STRIDE": lanes, "WIDTH": n * lanes, "every": every, "multiply": multiply}
-    own |= {"combine": combine, "scale": scale, "copy": copy, "invert": invert}
+    own |= {"combine": combine, "scale": scale, "invert": invert}
     own |= _one_run(mechanism) if lanes == 1 else _many_runs(mechanism, lanes)
     taken = read(own)
 
@@ -37,7 +36,7 @@ def array_steps(mechanism: Mechanism, lanes: int) -> TakeSteps:
     return take_steps
 
 
-QUICKLY = ("powers", "moments", "guesses", "groups", "moved_from", "moved_to", "state")
+QUICKLY = ("powers", "moments", "guesses", "groups", "moved")
 """What of a program is read number by number."""
 
 
@@ -46,19 +45,15 @@ def every(_count: int) -> tuple[slice]:
     return (slice(None),)
 
 
-def combine(shares: FloatArray, registers: FloatArray, into: FloatArray) -> None:
-    """Write the sum of registers that a row of a program stands for."""
-    np.dot(shares, registers[: len(shares)], out=into)
+def combine(rows: FloatArray, registers: FloatArray, into: FloatArray) -> None:
+    """Write the sums of registers that rows of a program stand for."""
+    for row, combined in zip(rows, into, strict=False):  # one by one: together they take longer in batches
+        np.dot(row, registers[: len(row)], out=combined)
 
 
 def scale(factor: float, source: FloatArray, into: FloatArray) -> None:
     """Write a register times a factor."""
     np.multiply(source, factor, out=into)
-
-
-def copy(source: FloatArray, into: FloatArray) -> None:
-    """Copy a register."""
-    into[:] = source
 
 
 def invert(matrices: FloatArray, size: int, lanes: BoolArray, found: FloatArray) -> None:

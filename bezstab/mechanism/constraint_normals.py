@@ -1,4 +1,10 @@
-r"""How fast the directions of the constraints turn along a motion: K = Cdot_q G, in the metric of the masses.
+r"""What a mechanism's own motion does to its constraints: how it accelerates them, and turns their directions.
+
+Along the motion q(t) a method forces errors in proportion to derivatives of q, of which the constraints see what lies
+along their normals: C_q q^(k). The first that is not zero is C_q qddot = gamma, since C_q qdot only balances drivers.
+
+    amplitude    max |C_q qddot| / omega^2          as if every constraint moved as cos(omega t)
+    omega        rms of C_q q''' / rms of C_q qddot
 
 A constraint's direction in coordinate space is its row of C_q. Along a motion it turns, and what the feedback has put
 right in the old directions is off in the new ones:
@@ -9,24 +15,58 @@ right in the old directions is off in the new ones:
               |                    /        dq = G w that the constraint forces make; C_q(t + h) G(t) = 1 + h K
         ------+------         ----/-----
 
-K is m x m, in 1/s. The roots mu and poles z of the feedback move by it to first order (`stability.turning`).
+K = Cdot_q G is m x m, in 1/s, in the metric of the masses. The roots mu and poles z of the feedback move by it to first
+order (`stability.turning`).
 """
 
 from dataclasses import dataclass
 from functools import cache, cached_property
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from bezstab.errors import InputError
 from bezstab.mechanism.compiled import IMAGINARY_STEP, Mechanism
 from bezstab.mechanism.motions import STEPS, Motion, motion
-from bezstab.mechanism.start import geometry
+from bezstab.mechanism.start import constraint_jacobian
 
 FloatArray = NDArray[np.float64]
 
 SAMPLES = 400  # over a run, or a turn of the fastest driver, an even number: K turns a few times in one, so its
 # integrals are good to 1e-8
+
+AT_REST = 1e-9
+"""Of an acceleration (SI): below, it is what rounding leaves of a mechanism that does not move."""
+
+
+@dataclass(frozen=True)
+class ConstraintMotion:
+    """omega: the motion's own rate as the constraints see it (1/s); amplitude: of their motion (m or rad)."""
+
+    omega: float
+    amplitude: float
+
+
+@cache
+def constraint_motion(mechanism: Mechanism, duration: float) -> ConstraintMotion:
+    """Return rate and amplitude of the motion: over a revolution of steady drivers, else over `duration` (s).
+
+    InputError for a mechanism whose constraints do not accelerate: it has no rate. Else errors as `motion`.
+    """
+    along = motion(mechanism, duration)
+    accelerations = along_normals(mechanism, along, along.a)
+    largest = float(np.abs(accelerations).max())
+    if largest < AT_REST:
+        raise InputError(f"{mechanism.scene.name} is at rest: its constraints do not move, so there is no omega")
+    changing = along_normals(mechanism, along, np.gradient(along.a, along.t, axis=0, edge_order=2))
+    omega = float(np.sqrt((changing**2).mean() / (accelerations**2).mean()))
+    return ConstraintMotion(omega=omega, amplitude=largest / omega**2)
+
+
+def along_normals(mechanism: Mechanism, along: Motion, vectors: FloatArray) -> FloatArray:
+    """Return C_q times a vector at each of the first times of a motion; shapes (times, n) and (times, m)."""
+    states = zip(along.t, along.q, vectors, strict=False)
+    return np.stack([constraint_jacobian(mechanism, t, q) @ vector for t, q, vector in states])
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -72,9 +112,9 @@ def turning_normals(mechanism: Mechanism, duration: float) -> TurningNormals:
     every = STEPS // SAMPLES
     rates, metrics = [], []
     for t, q, v in zip(along.t[::every], along.q[::every], along.v[::every], strict=True):
-        rate, metric = _rate(mechanism, float(t), q, v)
-        rates.append(rate)
-        metrics.append(metric)
+        jacobian, turning, by_forces = _directions(mechanism, float(t), q, v)
+        metrics.append(jacobian @ by_forces)
+        rates.append(np.linalg.solve(metrics[-1], (turning @ by_forces).T).T)  # S is symmetric
     return TurningNormals(
         duration=along.duration,
         rates=np.stack(rates),
@@ -83,21 +123,13 @@ def turning_normals(mechanism: Mechanism, duration: float) -> TurningNormals:
     )
 
 
-def _rate(mechanism: Mechanism, t: float, q: FloatArray, v: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return K and S at one moment."""
-    jacobian, turning = _jacobian_and_turning(mechanism, t, q, v)
-    by_forces = jacobian.T / np.array(mechanism.equations.mass, float)[:, np.newaxis]  # M^-1 C_q^T
-    metric = jacobian @ by_forces
-    return np.linalg.solve(metric, (turning @ by_forces).T).T, metric  # S is symmetric
-
-
-def _jacobian_and_turning(
+def _directions(
     mechanism: Mechanism, t: float, q: FloatArray, v: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """Return C_q and Cdot_q at one moment, the latter by a complex step along the motion."""
-    at = geometry(mechanism)
-    ahead: Any = at.jacobian(q + 1j * IMAGINARY_STEP * v, t + 1j * IMAGINARY_STEP)  # type: ignore[arg-type]
-    return np.asarray(at.jacobian(q, t), float), np.asarray(ahead.imag / IMAGINARY_STEP, float)
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return C_q, Cdot_q and M^-1 C_q^T at one moment, the second by a complex step along the motion."""
+    jacobian = constraint_jacobian(mechanism, t, q)
+    ahead = constraint_jacobian(mechanism, t + 1j * IMAGINARY_STEP, q + 1j * IMAGINARY_STEP * v)
+    return jacobian, ahead.imag / IMAGINARY_STEP, jacobian.T / np.array(mechanism.equations.mass, float)[:, np.newaxis]
 
 
 def turned_across(mechanism: Mechanism, along: Motion, vectors: FloatArray) -> FloatArray:
@@ -107,8 +139,7 @@ def turned_across(mechanism: Mechanism, along: Motion, vectors: FloatArray) -> F
     """
     across = []
     for t, q, v, vector in zip(along.t, along.q, along.v, vectors, strict=False):
-        jacobian, turning = _jacobian_and_turning(mechanism, float(t), q, v)
-        by_forces = jacobian.T / np.array(mechanism.equations.mass, float)[:, np.newaxis]  # M^-1 C_q^T
+        jacobian, turning, by_forces = _directions(mechanism, float(t), q, v)
         normal = by_forces @ np.linalg.solve(jacobian @ by_forces, jacobian @ vector)
         across.append(turning @ (vector - normal))
     return np.stack(across)

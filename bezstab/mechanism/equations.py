@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from bezstab.mechanism.scenes import GROUND, Body, Distance, Driver, Joint, PointOnLine, Revolute, Scene, Spring
+from bezstab.mechanism.scenes import GROUND, Between, Body, Distance, Driver, Joint, PointOnLine, Revolute, Scene
 
 T = sp.Symbol("t")
 """Time (s)."""
@@ -50,40 +50,34 @@ class Frame:
     theta: sp.Expr
 
 
-AT_THE_ORIGIN = Frame(sp.Integer(0), sp.Integer(0), sp.Integer(0))
-
-
-def variable_names(prefix: str, count: int) -> list[str]:
-    """Return `prefix` with the numbers from 0: q0, q1, ...; how expressions and generated code call their variables."""
-    return [f"{prefix}{number}" for number in range(count)]
-
-
 def equations_of_motion(scene: Scene) -> Equations:
     """Return the scene's equations of motion, paper Eqs 1 to 5; shapes and units as in `Equations`.
 
     Differentiating c(q, t) = 0 twice gives C_q qddot = gamma = -(cdot_q v + cdot_t), cdot = C_q v + c_t.
     """
     # Symbols are numbered, not called after the bodies: a scene's names must never get into generated code.
-    q = [sp.Symbol(name) for name in variable_names("q", len(scene.coordinates))]
-    v = [sp.Symbol(name) for name in variable_names("v", len(scene.coordinates))]
+    q, v = (sp.symbols(f"{letter}:{len(scene.coordinates)}") for letter in "qv")
     symbol_of = dict(zip(scene.coordinates, q, strict=True))
-    frames = {body.name: _frame(body, symbol_of) for body in scene.bodies}
-    frames[GROUND] = AT_THE_ORIGIN
+    frames = {GROUND: Frame(sp.S.Zero, sp.S.Zero, sp.S.Zero)}
+    frames |= {body.name: _frame(body, symbol_of) for body in scene.bodies}
 
     mass = [sp.Float(body.inertia if axis == "theta" else body.mass) for body in scene.bodies for axis in body.free]
     c = sp.Matrix([row for joint in scene.joints for row in _constraints(joint, frames, symbol_of)])
-    jacobian = _jacobian(c, q)
+    jacobian = c.jacobian(q)
     c_t = c.diff(T)
     velocity = sp.Matrix(v)
     cdot = jacobian * velocity + c_t
-    gamma = -(_jacobian(cdot, q) * velocity + cdot.diff(T))
-    lengths = [_distance(spring, frames) for spring in scene.springs]
+    gamma = -(cdot.jacobian(q) * velocity + cdot.diff(T))
+    lengths = []
+    for spring in scene.springs:
+        (ax, ay), (bx, by) = _end_positions(spring, frames)
+        lengths.append(sp.sqrt((bx - ax) ** 2 + (by - ay) ** 2))
     potential = _potential_energy(scene, frames, lengths)
     applied = _gradient(_work(scene, frames), q) - _gradient(_dissipation(scene, lengths, q, velocity), v)
     forces = applied - _gradient(potential, q)
     return Equations(
-        q=tuple(q),
-        v=tuple(v),
+        q=q,
+        v=v,
         mass=tuple(mass),
         constraints=c,
         jacobian=jacobian,
@@ -96,19 +90,9 @@ def equations_of_motion(scene: Scene) -> Equations:
     )
 
 
-def _jacobian(column: sp.Matrix, q: Sequence[sp.Symbol]) -> sp.Matrix:
-    """Return the derivatives of m expressions by n coordinates, shape (m, n), most of them zero without being asked."""
-    number_of = {symbol: number for number, symbol in enumerate(q)}
-    jacobian = sp.zeros(len(column), len(q))
-    for row, expression in enumerate(column):
-        for symbol in expression.free_symbols & number_of.keys():
-            jacobian[row, number_of[symbol]] = expression.diff(symbol)
-    return jacobian
-
-
 def _gradient(expression: sp.Expr, q: Sequence[sp.Symbol]) -> sp.Matrix:
     """Return the derivatives by each coordinate, shape (n, 1)."""
-    return _jacobian(sp.Matrix([expression]), q).T
+    return sp.Matrix([expression]).jacobian(q).T
 
 
 def _frame(body: Body, symbol_of: dict[str, sp.Symbol]) -> Frame:
@@ -138,12 +122,9 @@ def _position(frame: Frame, point: tuple[float, float]) -> tuple[sp.Expr, sp.Exp
     return frame.x + x, frame.y + y
 
 
-def _distance(spring: Spring, frames: dict[str, Frame]) -> sp.Expr:
-    """Return the distance (m) of a spring's ends."""
-    (ax, ay), (bx, by) = (
-        _position(frames[name], point) for name, point in zip(spring.bodies, spring.points, strict=True)
-    )
-    return sp.sqrt((bx - ax) ** 2 + (by - ay) ** 2)
+def _end_positions(between: Between, frames: dict[str, Frame]) -> list[tuple[sp.Expr, sp.Expr]]:
+    """Return the ground coordinates of the points that a joint or a spring holds."""
+    return [_position(frames[name], point) for name, point in zip(between.bodies, between.points, strict=True)]
 
 
 def _potential_energy(scene: Scene, frames: dict[str, Frame], lengths: Sequence[sp.Expr]) -> sp.Expr:
@@ -180,9 +161,7 @@ def _constraints(joint: Joint, frames: dict[str, Frame], symbol_of: dict[str, sp
     """Return the joint's entries of c."""
     if isinstance(joint, Driver):
         return [symbol_of[joint.coordinate] - _driven_value(joint)]
-    first, second = (frames[name] for name in joint.bodies)
-    ax, ay = _position(first, joint.points[0])
-    bx, by = _position(second, joint.points[1])
+    (ax, ay), (bx, by) = _end_positions(joint, frames)
     match joint:
         case Revolute():
             return [ax - bx, ay - by]
@@ -191,7 +170,7 @@ def _constraints(joint: Joint, frames: dict[str, Frame], symbol_of: dict[str, sp
         case PointOnLine(direction=(x, y)):
             # the distance (m) of b from the line through a, as a cross product with the unit vector along the line
             norm = math.hypot(x, y)
-            along_x, along_y = _turned((x / norm, y / norm), first.theta)
+            along_x, along_y = _turned((x / norm, y / norm), frames[joint.bodies[0]].theta)
             return [along_x * (by - ay) - along_y * (bx - ax)]
 
 

@@ -16,14 +16,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from bezstab.mechanism.array_stepping import array_steps
 from bezstab.mechanism.compiled import IMAGINARY_STEP, Mechanism, accelerations
-from bezstab.mechanism.programs import program_of
-from bezstab.mechanism.registers import Steps, room_of
+from bezstab.mechanism.programs import Steps, program_of, room_of
 from bezstab.methods import Method
 
 FloatArray = NDArray[np.float64]
-
-AT_A_TIME = 200
-"""States: what is computed of them along all directions, some hundred arrays, stays in a core's cache."""
 
 
 class StepsTaken(NamedTuple):
@@ -89,7 +85,7 @@ def changes_handed_on(method: Method, jacobians: FloatArray, changes: FloatArray
             found = np.linalg.solve(np.eye(count * n) - by_sought.reshape(points, count * n, count * n), found)
         registers[:, found_from[first] : found_from[last]] = found.reshape(points, count, -1)
     every = np.concatenate([registers, program.table[2 * evaluations :] @ registers], axis=1)
-    return every[:, program.moved_from].reshape(changes.shape)
+    return every[:, program.moved].reshape(changes.shape)
 
 
 def acceleration_jacobians(
@@ -101,14 +97,8 @@ def acceleration_jacobians(
     against (...).
     """
     size = mechanism.size
-    directions = 1j * IMAGINARY_STEP * np.eye(2 * size)[:, :, np.newaxis]
-    shape = q.shape[:-1]
-    scalars = [np.broadcast_to(each, shape).ravel() for each in (t, two_alpha, beta_squared)]
-    states = np.concatenate([q, v], axis=-1).reshape(-1, 2 * size)
-    jacobians = np.empty((len(states), size, 2 * size))
-    for first in range(0, len(states), AT_A_TIME):
-        some = slice(first, first + AT_A_TIME)
-        ahead = states[some].T[:, np.newaxis] + directions
-        changed = accelerations(mechanism, *(each[some] for each in scalars), *np.split(ahead, 2))
-        jacobians[some] = np.moveaxis(changed, 2, 0).imag / IMAGINARY_STEP
-    return jacobians.reshape(*shape, size, 2 * size)
+    state = np.moveaxis(np.concatenate([q, v], axis=-1), -1, 0)
+    directions = np.eye(2 * size).reshape(2 * size, 2 * size, *(1,) * (state.ndim - 1))
+    ahead = state[:, np.newaxis] + 1j * IMAGINARY_STEP * directions
+    changed = accelerations(mechanism, t, two_alpha, beta_squared, *np.split(ahead, 2))
+    return np.moveaxis(changed, (0, 1), (-2, -1)).imag / IMAGINARY_STEP

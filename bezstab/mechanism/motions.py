@@ -1,5 +1,6 @@
 """The motion of a mechanism itself, without a method's errors, as a function of time; and when it begins anew."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cache
@@ -82,14 +83,15 @@ def motion(mechanism: Mechanism, duration: float) -> Motion:
     that provides the motion breaks down. Of a scene whose drivers oscillate, and that is not where it began after
     their common period, as one with freedoms of its own, there is a run.
     """
-    period = revolution_period(mechanism)
-    if period is None:
+    drivers = [joint for joint in mechanism.scene.joints if isinstance(joint, Driver)]
+    period, turns = revolution(drivers)
+    if not turns:
         return motion_over(mechanism, duration, STEPS)
-    along = motion_over(mechanism, period, STEPS * _turns_of_the_fastest(mechanism))
+    along = motion_over(mechanism, period, STEPS * turns)
     off = _what_is_off(mechanism, along.q[0], along.q[-1])
     if off is None:
         return replace(along, closed=True)
-    if _oscillates(mechanism):
+    if any(driver.amplitude and driver.frequency for driver in drivers):
         return motion_over(mechanism, duration, STEPS)
     name, apart = off
     raise InputError(
@@ -123,44 +125,24 @@ def regular_motion(mechanism: Mechanism, duration: float) -> Motion:
     return along
 
 
-def revolution_period(mechanism: Mechanism) -> float | None:
-    """Return how long it takes until all drivers begin anew (s), those that turn and those that oscillate.
+def revolution(drivers: Sequence[Driver]) -> tuple[float, int]:
+    """Return how long it takes until all drivers begin anew (s), and how many turns of the fastest that are.
 
-    None without drivers that move, where one speeds up, and where they have no common period that is at most MOST_TURNS
-    turns of the fastest: their frequencies are not in the ratio of whole numbers.
+    Both are 0 without drivers that turn or oscillate, where one speeds up, and where the turns are more than
+    MOST_TURNS: their frequencies are not in the ratio of whole numbers.
     """
-    turns = _turns_of_the_fastest(mechanism)
-    return float(2 * np.pi * turns / max(_frequencies(mechanism))) if turns else None
-
-
-def _drivers(mechanism: Mechanism) -> list[Driver]:
-    return [joint for joint in mechanism.scene.joints if isinstance(joint, Driver)]
-
-
-def _oscillates(mechanism: Mechanism) -> bool:
-    return any(driver.amplitude and driver.frequency for driver in _drivers(mechanism))
-
-
-def _frequencies(mechanism: Mechanism) -> set[float]:
-    """Return at how many rad/s drivers turn and oscillate."""
-    turning = {abs(driver.rate) for driver in _drivers(mechanism)}
-    oscillating = {abs(driver.frequency) for driver in _drivers(mechanism) if driver.amplitude}
-    return (turning | oscillating) - {0.0}
-
-
-def _turns_of_the_fastest(mechanism: Mechanism) -> int:
-    """Return after how many turns of the fastest driver all begin anew; 0 where that is not known."""
-    frequencies = _frequencies(mechanism)
-    if not frequencies or any(driver.acceleration for driver in _drivers(mechanism)):
-        return 0
-    fastest = max(frequencies)
-    turns = 1
+    turning = {abs(driver.rate) for driver in drivers}
+    oscillating = {abs(driver.frequency) for driver in drivers if driver.amplitude}
+    frequencies = (turning | oscillating) - {0.0}  # in rad/s
+    if not frequencies or any(driver.acceleration for driver in drivers):
+        return 0.0, 0
+    fastest, turns = max(frequencies), 1
     for frequency in frequencies:
         ratio = Fraction(frequency / fastest).limit_denominator(MOST_TURNS)
         if not ratio or abs(float(ratio) * fastest - frequency) > SAME_RATIO * frequency:
-            return 0
+            return 0.0, 0
         turns = lcm(turns, ratio.denominator)
-    return turns if turns <= MOST_TURNS else 0
+    return (2 * np.pi * turns / fastest, turns) if turns <= MOST_TURNS else (0.0, 0)
 
 
 def _what_is_off(mechanism: Mechanism, start: FloatArray, end: FloatArray) -> tuple[str, float] | None:

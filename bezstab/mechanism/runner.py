@@ -14,8 +14,7 @@ from bezstab.errors import InputError
 from bezstab.mechanism.array_stepping import array_steps
 from bezstab.mechanism.compiled import SINGULAR, Mechanism, accelerations
 from bezstab.mechanism.compiled_stepping import LANES, machine_steps, runs_compiled
-from bezstab.mechanism.programs import program_of
-from bezstab.mechanism.registers import Steps, room_of
+from bezstab.mechanism.programs import Steps, program_of, room_of
 from bezstab.mechanism.second_order_memory import memory
 from bezstab.mechanism.start import initial_state
 from bezstab.mechanism.stepping import (
@@ -191,15 +190,15 @@ def recorded(
     mechanism: Mechanism, method: Method, first: FloatArray, times: FloatArray, blocks: Iterable[Block], how: How
 ) -> Trajectory:
     """Return a run from its blocks, the times (s) of whose states are given, the first state's included."""
-    parts, pivots, cause = [first[np.newaxis]], [np.ones(0)], None
+    parts, pivots, cause = [first[np.newaxis]], [], None
     for block in blocks:
         parts.append(block.states)
         pivots.append(block.pivots)
         cause = block.cause
-    states, least = np.concatenate(parts), np.concatenate(pivots)
+    states, least = np.concatenate(parts), np.concatenate([*pivots, np.ones(1)])  # 1.0 where no step was taken
     # the step that failed is not in the history, but was computed
     failure = f"at t = {times[len(states)]:.6g} s: {cause}" if cause else None
-    lowest = int(least.argmin()) if least.min(initial=1.0) < 1.0 else None
+    lowest = int(least.argmin())
     return Trajectory(
         mechanism=mechanism,
         method=method,
@@ -208,8 +207,8 @@ def recorded(
         v=states[:, mechanism.size :],
         evaluations=int(how.counts[EVALUATIONS]),
         failure=failure,
-        least_pivot=1.0 if lowest is None else float(least[lowest]),
-        pivot_time=0.0 if lowest is None else float(times[lowest]),
+        least_pivot=float(least[lowest]),
+        pivot_time=float(times[lowest]),
         iterations=int(how.counts[ITERATIONS]) if implicit(method) else None,
         projections=int(how.counts[PROJECTIONS]),
         after=how.after,

@@ -129,14 +129,14 @@ def _joint(table: TomlTable, body_names: Sequence[str], coordinates: Sequence[st
     table.where += f" ({kind})"
     match kind:
         case "revolute":
-            return Revolute(_two_bodies(table, body_names), _two_points(table))
+            return Revolute(*_ends(table, body_names))
         case "distance":
-            return Distance(_two_bodies(table, body_names), _two_points(table), table.positive_number("length"))
+            return Distance(*_ends(table, body_names), table.positive_number("length"))
         case "point-on-line":
             direction = table.point("direction")
             if direction == NOWHERE:
                 raise table.mistake("direction = [0, 0]: expected a direction")
-            return PointOnLine(_two_bodies(table, body_names), _two_points(table), direction)
+            return PointOnLine(*_ends(table, body_names), direction)
         case "driver":
             return _driver(table, coordinates)
         case _:
@@ -155,21 +155,19 @@ def _driver(table: TomlTable, coordinates: Sequence[str]) -> Driver:
     return driver
 
 
-def _two_bodies(table: TomlTable, body_names: Sequence[str]) -> tuple[str, str]:
+def _ends(table: TomlTable, body_names: Sequence[str]) -> tuple[tuple[str, str], tuple[Point, Point]]:
+    """Return two bodies, and a point of each."""
     names = table.texts("bodies")
     if len(names) != 2 or names[0] == names[1]:
         raise table.mistake(f"bodies = {names!r}: expected two different names")
-    return _known_body(names[0], body_names, table), _known_body(names[1], body_names, table)
+    first, second = (_known_body(name, body_names, table) for name in names)
+    return (first, second), table.entry("points", pair_of(pair_of(a_number)), "two points [x, y]")
 
 
 def _known_body(name: str, body_names: Sequence[str], table: TomlTable) -> str:
     if name not in body_names and name != GROUND:
         raise table.mistake(f"there is no body {name!r}")
     return name
-
-
-def _two_points(table: TomlTable) -> tuple[Point, Point]:
-    return table.entry("points", pair_of(pair_of(a_number)), "two points [x, y]")
 
 
 def _force(table: TomlTable, body_names: Sequence[str]) -> Force:
@@ -182,8 +180,7 @@ def _force(table: TomlTable, body_names: Sequence[str]) -> Force:
 
 
 def _spring(table: TomlTable, body_names: Sequence[str]) -> Spring:
-    bodies = _two_bodies(table, body_names)
-    points = _two_points(table)
+    ends = _ends(table, body_names)
     stiffness = table.number("stiffness", default=0.0)
     damping = table.number("damping", default=0.0)
     for key, value in (("stiffness", stiffness), ("damping", damping)):
@@ -195,7 +192,7 @@ def _spring(table: TomlTable, body_names: Sequence[str]) -> Spring:
         raise table.mistake("stiffness and damping are both 0: expected one of them positive")
     if free_length < 0:
         raise table.mistake(f"free_length = {free_length:g}: expected 0 or more")
-    return Spring(bodies, points, stiffness, free_length, damping)
+    return Spring(*ends, stiffness, free_length, damping)
 
 
 Chain = tuple[tuple[Body, ...], tuple[Joint, ...], dict[str, float]]

@@ -3,6 +3,7 @@
 import cmath
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import ClassVar
 
 from bezstab.errors import InputError
 
@@ -37,28 +38,33 @@ class Body:
 
 
 @dataclass(frozen=True)
-class Revolute:
-    """One point of each body coincides: two constraints, c in m; points in m in the body's frame."""
+class Between:
+    """What is between a point of one body and a point of another, or of the ground; points in m in the body's frame."""
 
     bodies: tuple[str, str]
     points: tuple[Point, Point]
 
 
 @dataclass(frozen=True)
-class PointOnLine:
+class Revolute(Between):
+    """The points coincide: two constraints, c in m."""
+
+    kind: ClassVar = "revolute"
+
+
+@dataclass(frozen=True)
+class PointOnLine(Between):
     """The second body's point stays on the line through the first's, along a direction fixed in the first; c in m."""
 
-    bodies: tuple[str, str]
-    points: tuple[Point, Point]
+    kind: ClassVar = "point-on-line"
     direction: Point
 
 
 @dataclass(frozen=True)
-class Distance:
+class Distance(Between):
     """Two points keep their distance: c = (d^2 - length^2) / (2 length), all in m."""
 
-    bodies: tuple[str, str]
-    points: tuple[Point, Point]
+    kind: ClassVar = "distance"
     length: float
 
 
@@ -97,14 +103,12 @@ class Force:
 
 
 @dataclass(frozen=True)
-class Spring:
-    """A spring and a damper, side by side, between a point of each body.
+class Spring(Between):
+    """A spring and a damper, side by side.
 
     At the distance L of the points they pull with stiffness (L - free_length) + damping dL/dt (N/m, m, N s/m; N).
     """
 
-    bodies: tuple[str, str]
-    points: tuple[Point, Point]
     stiffness: float
     free_length: float
     damping: float
@@ -140,21 +144,17 @@ class Scene:
         """What messages call each constraint, in order: its joint by number, kind and bodies, and of a pair, which."""
         names = []
         for number, joint in enumerate(self.joints, start=1):
-            match joint:
-                case Driver(coordinate=coordinate):
-                    names.append(f"joint {number} (driver of {coordinate})")
-                case Revolute(bodies=(first, second)):
-                    names += [f"{axis} of joint {number} (revolute, {first} and {second})" for axis in ("x", "y")]
-                case PointOnLine(bodies=(first, second)):
-                    names.append(f"joint {number} (point-on-line, {first} and {second})")
-                case Distance(bodies=(first, second)):
-                    names.append(f"joint {number} (distance, {first} and {second})")
+            if isinstance(joint, Driver):
+                names.append(f"joint {number} (driver of {joint.coordinate})")
+                continue
+            name = f"joint {number} ({joint.kind}, {' and '.join(joint.bodies)})"
+            names += [f"x of {name}", f"y of {name}"] if isinstance(joint, Revolute) else [name]
         return tuple(names)
 
     @property
     def attachments(self) -> tuple[tuple[str, Point], ...]:
         """Each body's or the ground's name, and the point in its frame (m), wherever a joint holds it."""
-        joined = (joint for joint in self.joints if not isinstance(joint, Driver))
+        joined = (joint for joint in self.joints if isinstance(joint, Between))
         return tuple(end for joint in joined for end in zip(joint.bodies, joint.points, strict=True))
 
     def joint_places(self, q: Sequence[float]) -> dict[str, list[Point]]:

@@ -1,8 +1,8 @@
 """Initial states: q and qdot that satisfy the constraints, or violate the first of them by a given error."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cache
+from typing import Any
 
 import numpy as np
 import sympy as sp
@@ -21,35 +21,25 @@ DEPENDENT = 1e-9  # of a row of C_q, at length one: what earlier ones leave of o
 MOST_NAMED = 3  # dependences in a message: one tells where to look, and a long chain may have dozens
 
 
-@dataclass(frozen=True, eq=False)
-class Geometry:
-    """c (shape (m, 1)), C_q (m, n) and c_t (m, 1) as functions of q (n of them) and t (s); SI units."""
-
-    constraints: Callable[[Sequence[FloatArray] | FloatArray, float | FloatArray], FloatArray]
-    jacobian: Callable[[Sequence[FloatArray] | FloatArray, float], FloatArray]
-    constraints_t: Callable[[Sequence[FloatArray] | FloatArray, float], FloatArray]
-
-
 @cache
-def geometry(mechanism: Mechanism) -> Geometry:
-    """Return the mechanism's constraints and their first derivatives as functions of floats or arrays."""
+def matrix_function(mechanism: Mechanism, name: str) -> Callable[[Any, Any], NDArray[Any]]:
+    """Return the function of q (n of them) and t (s) that gives a matrix of the equations of motion, by its name there.
+
+    It takes floats, complex numbers or, for matrices of one column, arrays; SI units.
+    """
     equations = mechanism.equations
-
-    def compiled(matrix: sp.Matrix) -> Callable[..., FloatArray]:
-        function: Callable[..., FloatArray] = sp.lambdify((equations.q, T), matrix, "numpy")
-        return function
-
-    return Geometry(compiled(equations.constraints), compiled(equations.jacobian), compiled(equations.constraints_t))
+    function: Callable[[Any, Any], NDArray[Any]] = sp.lambdify((equations.q, T), getattr(equations, name), "numpy")
+    return function
 
 
 def constraint_errors(mechanism: Mechanism, t: float | FloatArray, q: Sequence[FloatArray] | FloatArray) -> FloatArray:
     """Return c at time t (s) for a batch, one array of q per coordinate; shape (m, *shape of these), SI units."""
-    return geometry(mechanism).constraints(q, t)[:, 0]
+    return matrix_function(mechanism, "constraints")(q, t)[:, 0]
 
 
-def constraint_jacobian(mechanism: Mechanism, t: float, q: FloatArray) -> FloatArray:
-    """Return C_q at time t (s) for one q of shape (n,); shape (m, n), SI units."""
-    return np.asarray(geometry(mechanism).jacobian(q, t), float)
+def constraint_jacobian(mechanism: Mechanism, t: complex, q: NDArray[Any]) -> NDArray[Any]:
+    """Return C_q at time t (s) for one q of shape (n,), floats or complex numbers; shape (m, n), SI units."""
+    return 1.0 * matrix_function(mechanism, "jacobian")(q, t)
 
 
 def initial_state(mechanism: Mechanism) -> tuple[FloatArray, FloatArray]:
@@ -76,31 +66,29 @@ def _refuse_springs_without_direction(mechanism: Mechanism, q: FloatArray) -> No
 def _closed_position(mechanism: Mechanism) -> FloatArray:
     """Return q at t = 0: the scene's coordinates, completed by Newton's method on c(q, 0) = 0 from its guesses."""
     scene = mechanism.scene
-    at = geometry(mechanism)
     q = np.array([scene.position.get(name, scene.guess.get(name, 0.0)) for name in scene.coordinates])
-    unknown = _unknown(scene.position, scene.coordinates)
-    for _ in range(NEWTON_STEPS if unknown else 0):
+    unknown = np.array([name not in scene.position for name in scene.coordinates])
+    for _ in range(NEWTON_STEPS):
         # least squares: it also has an answer where the linear system has none, on the way or for good
-        step = np.linalg.lstsq(at.jacobian(q, 0.0)[:, unknown], at.constraints(q, 0.0)[:, 0], rcond=None)[0]
+        jacobian, errors = constraint_jacobian(mechanism, 0.0, q), constraint_errors(mechanism, 0.0, q)
+        step = np.linalg.lstsq(jacobian[:, unknown], errors, rcond=None)[0]
         q[unknown] -= step
-        if np.abs(step).max() < SETTLED:
+        if np.abs(step).max(initial=0.0) < SETTLED:
             break
-    error = float(np.abs(at.constraints(q, 0.0)).max())
+    error = float(np.abs(constraint_errors(mechanism, 0.0, q)).max())
     closed = error <= CLOSED  # not if it is not a number
     if closed:
         _refuse_dependent_constraints(mechanism, q)  # first: it would explain a wrong number of coordinates
-    _check_number(scene.position, scene.coordinates, mechanism.constraints, "position")
+    _check_number(mechanism, "position", scene.position)
     if not closed:
-        key = (
-            "position: the joints cannot close" if unknown else "position: all coordinates are given, but inconsistent"
-        )
-        raise InputError(f"initial: {key} (largest |c| = {error:.3g})")
+        what = "the joints cannot close" if unknown.any() else "all coordinates are given, but inconsistent"
+        raise InputError(f"initial: position: {what} (largest |c| = {error:.3g})")
     return q
 
 
 def _refuse_dependent_constraints(mechanism: Mechanism, q: FloatArray) -> None:
     """Raise InputError, naming them, if constraints depend on others in a closed position q."""
-    names, jacobian = mechanism.scene.constraint_names, geometry(mechanism).jacobian(q, 0.0)
+    names, jacobian = mechanism.scene.constraint_names, constraint_jacobian(mechanism, 0.0, q)
     rows = jacobian / np.maximum(np.linalg.norm(jacobian, axis=1, keepdims=True), np.finfo(float).tiny)
     if np.linalg.matrix_rank(rows, tol=DEPENDENT) == len(rows):
         return
@@ -125,33 +113,24 @@ def _refuse_dependent_constraints(mechanism: Mechanism, q: FloatArray) -> None:
 def _consistent_velocity(mechanism: Mechanism, q: FloatArray) -> FloatArray:
     """Return qdot at t = 0: the scene's velocities, completed by C_q qdot = -c_t, linear in the unknown ones."""
     scene = mechanism.scene
-    at = geometry(mechanism)
-    jacobian = at.jacobian(q, 0.0)
-    c_t = at.constraints_t(q, 0.0)[:, 0]
+    jacobian = constraint_jacobian(mechanism, 0.0, q)
+    c_t = matrix_function(mechanism, "constraints_t")(q, 0.0)[:, 0]
     v = np.array([scene.velocity.get(name, 0.0) for name in scene.coordinates])
-    _check_number(scene.velocity, scene.coordinates, mechanism.constraints, "velocity")
-    unknown = _unknown(scene.velocity, scene.coordinates)
-    if unknown:
-        is_unknown = np.isin(np.arange(mechanism.size), unknown)
-        right = -(c_t + jacobian @ np.where(is_unknown, 0.0, v))
-        v[unknown] = np.linalg.lstsq(jacobian[:, unknown], right, rcond=None)[0]
+    _check_number(mechanism, "velocity", scene.velocity)
+    unknown = np.array([name not in scene.velocity for name in scene.coordinates])
+    v[unknown] = np.linalg.lstsq(jacobian[:, unknown], -(c_t + jacobian @ v), rcond=None)[0]
     error = float(np.abs(jacobian @ v + c_t).max())
     if not error <= CLOSED * max(1.0, float(np.abs(v).max())):
         raise InputError(f"initial: velocity: inconsistent with the joints (largest |cdot| = {error:.3g})")
     return v
 
 
-def _unknown(given: Mapping[str, float], coordinates: Sequence[str]) -> list[int]:
-    """Return the indices of the coordinates that are not given."""
-    return [index for index, name in enumerate(coordinates) if name not in given]
-
-
-def _check_number(given: Mapping[str, float], coordinates: Sequence[str], constraints: int, key: str) -> None:
+def _check_number(mechanism: Mechanism, key: str, given: Mapping[str, float]) -> None:
     """Raise InputError unless as many coordinates are given as there are freedoms, or all."""
-    freedoms = len(coordinates) - constraints
-    if len(given) not in (freedoms, len(coordinates)):
-        expected = f"{freedoms}, or all" if freedoms >= 0 else f"all, as there are {constraints} constraints"
-        raise InputError(f"initial: {key} gives {len(given)} of {len(coordinates)} coordinates: expected {expected}")
+    n, m = mechanism.size, mechanism.constraints
+    if len(given) not in (n - m, n):
+        expected = f"{n - m}, or all" if n >= m else f"all, as there are {m} constraints"
+        raise InputError(f"initial: {key} gives {len(given)} of {n} coordinates: expected {expected}")
 
 
 def perturbed_state(mechanism: Mechanism, error: float) -> tuple[FloatArray, FloatArray]:
@@ -162,7 +141,7 @@ def perturbed_state(mechanism: Mechanism, error: float) -> tuple[FloatArray, Flo
     float64; InputError as `initial_state`.
     """
     q, v = initial_state(mechanism)
-    jacobian = geometry(mechanism).jacobian(q, 0.0)
+    jacobian = constraint_jacobian(mechanism, 0.0, q)
     directions = jacobian.T / np.array(mechanism.equations.mass, float)[:, np.newaxis]  # M^-1 C_q^T
     with np.errstate(all="ignore"):
         effective = jacobian @ directions

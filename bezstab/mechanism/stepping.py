@@ -2,7 +2,7 @@
 
 This text is read in two ways: by numba as machine code (`compiled_stepping`), and by Python with numpy's arrays
 (`array_stepping`). Each gives some names a meaning of its own: the mechanism's functions, the numbers that say how its
-registers are laid out (`registers`), and what it does faster as a whole than place by place. All else is said here
+registers are laid out (`programs`), and what it does faster as a whole than place by place. All else is said here
 once. Where Python takes all lanes at a time, a number is an array over them: a choice between two values is a
 comparison or `take`, not a branch.
 
@@ -28,8 +28,7 @@ from typing import Any
 import numpy as np
 
 from bezstab.mechanism.compiled import SINGULAR
-from bezstab.mechanism.programs import FloatArray, IntArray, Program
-from bezstab.mechanism.registers import BoolArray, Room, Steps
+from bezstab.mechanism.programs import BoolArray, FloatArray, IntArray, Program, Room, Steps
 from bezstab.mechanism.start import CLOSED
 
 BLOWN_UP = 1e9  # SI units, sum of all coordinates and velocities: far beyond any mechanism, far below overflow
@@ -89,27 +88,22 @@ def accelerations(t: float, gains: FloatArray, room: Room) -> float:
 # What numpy does faster as a whole
 
 
-def combine(shares: FloatArray, registers: FloatArray, into: FloatArray) -> None:
-    """Write the sum of registers that a row of a program stands for."""
-    for place in every(WIDTH):
-        into[place] = 0.0
-    for source in range(len(shares)):
-        share, register = shares[source], registers[source]
-        if share != 0:
-            for place in every(WIDTH):
-                into[place] += share * register[place]
+def combine(rows: FloatArray, registers: FloatArray, into: FloatArray) -> None:
+    """Write the sums of registers that rows of a program stand for."""
+    for number in range(len(rows)):
+        for place in every(WIDTH):
+            into[number, place] = 0.0
+        for source in range(rows.shape[1]):
+            share = rows[number, source]
+            if share != 0:
+                for place in every(WIDTH):
+                    into[number, place] += share * registers[source, place]
 
 
 def scale(factor: float, source: FloatArray, into: FloatArray) -> None:
     """Write a register times a factor."""
     for place in every(WIDTH):
         into[place] = factor * source[place]
-
-
-def copy(source: FloatArray, into: FloatArray) -> None:
-    """Copy a register."""
-    for place in every(WIDTH):
-        into[place] = source[place]
 
 
 def take(lanes: BoolArray, source: FloatArray, into: FloatArray) -> None:
@@ -181,33 +175,24 @@ def invert_one(matrix: FloatArray, size: int, found: FloatArray) -> None:
 # A step
 
 
-def accelerations_at(program: Program, number: int, time: float, h: float, gains: FloatArray, room: Room) -> float:
-    """Write the state of an evaluation, and its accelerations; return the least pivot."""
-    combine(program.table[2 * number], room.registers, room.state[0])
-    combine(program.table[2 * number + 1], room.registers, room.state[1])
-    scale(1 / h, room.state[1], room.state[1])
-    return accelerations(time + program.moments[number] * h, gains, room)
-
-
-def evaluate(
+def accelerations_at(
     program: Program, number: int, time: float, h: float, gains: FloatArray, room: Room, told: FloatArray
 ) -> None:
-    """Take an explicit evaluation."""
-    pivot = accelerations_at(program, number, time, h, gains, room)
-    scale(h * h, room.found, room.registers[len(program.powers) + number])
-    told[PIVOT] = min(told[PIVOT], pivot)
+    """Write the state of an evaluation, and its accelerations."""
+    combine(program.table[2 * number : 2 * number + 2], room.registers, room.state)
+    scale(1 / h, room.state[1], room.state[1])
+    told[PIVOT] = min(told[PIVOT], accelerations(time + program.moments[number] * h, gains, room))
     told[EVALUATIONS] += 1
 
 
 def finish(program: Program, h: float, room: Room, state: FloatArray) -> None:
     """Combine, write the new state, and move on."""
-    first, columns = 2 * len(program.moments), program.table.shape[1]
-    for number in range(len(program.table) - first):
-        combine(program.table[first + number], room.registers, room.registers[columns + number])
-    copy(room.registers[program.state[0]], state[0])
-    scale(1 / h, room.registers[program.state[1]], state[1])
-    for move in range(len(program.moved_from)):
-        copy(room.registers[program.moved_from[move]], room.registers[program.moved_to[move]])
+    new = room.registers[program.table.shape[1] :]
+    combine(program.table[2 * len(program.moments) :], room.registers, new)
+    scale(1.0, new[0], state[0])
+    scale(1 / h, new[1], state[1])
+    for number in range(len(program.moved)):
+        scale(1.0, room.registers[program.moved[number]], room.registers[number])
 
 
 def take_steps(program: Program, steps: Steps, room: Room, states: FloatArray, told: FloatArray) -> None:
@@ -225,7 +210,8 @@ def take_steps(program: Program, steps: Steps, room: Room, states: FloatArray, t
             if SOLVING and group[2]:
                 solve(program, group, time, h, gains, room.inverses[number], room, told[k])
             else:
-                evaluate(program, group[0], time, h, gains, room, told[k])
+                accelerations_at(program, group[0], time, h, gains, room, told[k])
+                scale(h * h, room.found, room.registers[len(program.powers) + group[0]])
         finish(program, h, room, states[k])
         if PROJECTING and program.after.projecting:
             project(program, time + h, h, gains, room, states[k], told[k])
@@ -298,11 +284,9 @@ def residual(
     """Write the residuals of a group."""
     for number in range(group[0], group[1]):
         unknown, left = room.registers[len(program.powers) + number], into[number - group[0]]
-        pivot = accelerations_at(program, number, time, h, gains, room)
-        told[PIVOT] = min(told[PIVOT], pivot)
+        accelerations_at(program, number, time, h, gains, room, told)
         for place in every(WIDTH):
             left[place] = unknown[place] - h * h * room.found[place]
-    told[EVALUATIONS] += group[1] - group[0]
 
 
 def correct(group: IntArray, inverse: FloatArray, room: Room) -> bool:
@@ -407,8 +391,8 @@ def project(
 
 
 TEXT = (
-    *(accelerations, combine, take, add_sizes, any_of, multiply, invert, invert_one, scale, copy),
-    *(accelerations_at, evaluate, finish, solve, guess, residual, correct, renew, advance, shift, project, take_steps),
+    *(accelerations, combine, take, add_sizes, any_of, multiply, invert, invert_one, scale),
+    *(accelerations_at, finish, solve, guess, residual, correct, renew, advance, shift, project, take_steps),
 )
 """What is read in two ways."""
 

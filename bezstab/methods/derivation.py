@@ -11,7 +11,7 @@ import sympy as sp
 from sympy.polys.rings import PolyElement
 
 from bezstab.methods.polynomials import PlaneTable, horner
-from bezstab.methods.schemes import Method
+from bezstab.methods.schemes import Method, RungeKutta
 
 Z, MU, ALPHA_HAT, BETA_HAT, S, H = sp.symbols("z mu alpha_hat beta_hat s h")
 PLANE = sp.QQ[ALPHA_HAT, BETA_HAT]
@@ -63,7 +63,7 @@ def closed_loop_table(method: Method) -> PlaneTable:
     m = method.step_multiple
     return tuple(
         tuple(tuple(c * m ** (i + 2 * j) for j, c in enumerate(row)) for i, row in enumerate(in_plane))
-        for in_plane in method.scheme.table
+        for in_plane in method.scheme.second_order.table
     )
 
 
@@ -91,7 +91,7 @@ def mapping_equations(method: Method) -> list[sp.Equality]:
     pi = characteristic_polynomial(method)
     if pi.is_zero:
         return []
-    if method.scheme.mapping_gives_z:
+    if isinstance(method.scheme, RungeKutta):
         in_z = sp.Poly(pi.as_expr(), Z)
         return [sp.Eq(Z, (-in_z.nth(0) / in_z.nth(1)).subs(MU, h * S))]
     if pi.degree(MU) == 1:

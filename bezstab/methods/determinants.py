@@ -10,7 +10,6 @@ expands the little that remains.
 
 from collections.abc import Sequence
 from fractions import Fraction
-from math import lcm
 
 import sympy as sp
 from sympy.polys.matrices import DomainMatrix
@@ -22,7 +21,6 @@ from bezstab.methods.step_equations import POSITION, VELOCITY, Equation, Evaluat
 from bezstab.rationals import ZERO
 
 RING, RING_W, RING_ALPHA, RING_BETA = ring("w, alpha_hat, beta_hat", sp.QQ)
-WHOLE_RING = RING.clone(domain=sp.ZZ)
 
 Matrix = list[list[PolyElement]]
 
@@ -70,14 +68,8 @@ def determinant(rows: Matrix) -> PolyElement:
     n = len(remaining)
     if n > MOST_TOGETHER:
         raise InputError(f"{n} equations wait for each other: expected at most {MOST_TOGETHER}")
-    rest = []
-    for row in remaining:  # as whole numbers, whose products are fast
-        entries = [matrix[row][column] for column in remaining]
-        scale = lcm(*(int(c.denominator) for entry in entries for c in entry.values()))
-        rest.append([entry.mul_ground(scale).set_ring(WHOLE_RING) for entry in entries])
-        factor /= scale
-    expanded = DomainMatrix(rest, (n, n), WHOLE_RING.to_domain()).charpoly()[-1]
-    return WHOLE_RING(expanded).set_ring(RING) * ((-1) ** n * factor)
+    rest = [[matrix[row][column] for column in remaining] for row in remaining]
+    return RING(DomainMatrix(rest, (n, n), RING.to_domain()).det()) * factor
 
 
 def _simple_row(matrix: Matrix, remaining: Sequence[int]) -> int | None:

@@ -1,12 +1,13 @@
 """Order of accuracy and error constant, from a method's exact coefficients."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import count, islice
+from itertools import count
 
 from bezstab.methods.polynomials import Polynomial
-from bezstab.methods.schemes import Method
+from bezstab.methods.rooted_trees import tree_errors
+from bezstab.methods.schemes import Method, RungeKutta
 from bezstab.rationals import ZERO
 
 Accuracy = tuple[int, Fraction]
@@ -77,13 +78,21 @@ Force = Callable[[Polynomial], Fraction]
 def _order(method: Method, force: Force) -> int:
     """Return the largest p such that nothing is left over of one kind of force up to mu^p, relative to mu."""
     rounding = _rounding(method)
-    return next(p for p in count() if any(abs(force(each)) > rounding for each in method.scheme.left_over(p + 1)))
+    return next(p for p in count() if any(abs(force(each)) > rounding for each in _left_over(method, p + 1)))
+
+
+def _left_over(method: Method, power: int) -> Iterator[Polynomial]:
+    """Yield what linear motions leave over, then nonlinear ones of a Runge-Kutta method: one for each rooted tree."""
+    yield from method.scheme.second_order.left_over(power)
+    if isinstance(method.scheme, RungeKutta):
+        for error in tree_errors(method.scheme.tableau, method.scheme.weights, power):
+            yield (error,)
 
 
 def _error_under(method: Method, force: Force) -> Accuracy:
     """Return order and constant for one kind of force."""
     p = _order(method, force)
-    growth, ratio = map(force, islice(method.scheme.left_over(p + 1), 2))  # of linear motions
+    growth, ratio = map(force, method.scheme.second_order.left_over(p + 1))
     if abs(growth) > _rounding(method):
         # P(e^mu) = (e^mu - z) (mu - mu_2) ... is so much, mu_2 the other root: -mu, or 0 without a force of position
         return p, growth / (2 if force is _force_of_position else 1)

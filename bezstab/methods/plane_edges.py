@@ -100,7 +100,8 @@ def plane_strips(method: Method, level: Fraction) -> PlaneStrips | None:
     factors = _factors([sp.Poly.from_dict(dict(edge), A, B, domain=sp.QQ) for edge in edges])
     _refuse_what_takes_minutes(factors, method, level)
     curves = [factor for factor in factors if factor.degree(A) > 0]
-    levels, lost = _levels(factors, curves)
+    levels = _levels(factors, curves)
+    lost = tuple(_lost(curve, levels) for curve in curves)
     between = _between(list(levels))
     ends = [None, *levels, None]
     tables = tuple(_table(curve) for curve in curves)
@@ -116,7 +117,7 @@ def plane_strips(method: Method, level: Fraction) -> PlaneStrips | None:
             at_high = _limits(tables, lost, crossings, beta_hat, high, sign=1)
             limits = {crossing: (at_low[crossing], at_high[crossing]) for crossing in crossings}
         strips.append(Strip(low, high, crossings, stable, limits))
-    return PlaneStrips(tables, tuple(strips), tuple(lost))
+    return PlaneStrips(tables, tuple(strips), lost)
 
 
 def _coefficients(table: PlaneTable, level: Fraction) -> list[PolyElement]:
@@ -183,40 +184,33 @@ def _factors(polynomials: Iterable[sp.Poly]) -> list[sp.Poly]:
 
 def _refuse_what_takes_minutes(factors: list[sp.Poly], method: Method, level: Fraction) -> None:
     for factor in factors:
-        if factor.degree(A) >= HIGH and _length(factor) > LONG:
+        bits = max(int(c).bit_length() for c in factor.coeffs())
+        if factor.degree(A) >= HIGH and bits > LONG:
             raise NumericalError(
                 f"{method.name}: |z_p| < {float(level):.6g} has an edge of degree {factor.degree(A)} with coefficients "
-                f"of {_length(factor)} bits, which takes minutes; take a level, or coefficients, of fewer digits"
+                f"of {bits} bits, which takes minutes; take a level, or coefficients, of fewer digits"
             )
 
 
-def _length(polynomial: sp.Poly) -> int:
-    """Return the bits of the longest coefficient, as whole numbers without a common factor."""
-    return max(int(c).bit_length() for c in primitive(polynomial).coeffs())
+def _levels(factors: list[sp.Poly], curves: list[sp.Poly]) -> dict[Fraction, sp.Poly]:
+    """Return the ascending beta_hat at which the crossings may change, each with the irreducible polynomial of it."""
+    in_beta = [factor.eject(B).LC() for factor in factors]  # where crossings are lost, or all of beta_hat alone
+    in_beta += [curve.discriminant() for curve in curves]
+    in_beta += [first.resultant(second) for first, second in combinations(curves, 2)]
+    polynomials = [sp.Poly(each, B, domain=sp.QQ) for each in in_beta]
+    irreducible = {factor for polynomial in polynomials for factor, _ in polynomial.factor_list()[1]}
+    return dict(sorted((root, factor) for factor in irreducible for root in real_roots(factor)))
 
 
-def _levels(factors: list[sp.Poly], curves: list[sp.Poly]) -> tuple[list[Fraction], list[dict[Fraction, int]]]:
-    """Return the ascending beta_hat at which the crossings may change, and for each curve those where some are lost."""
-    in_beta = [sp.Poly(factor.as_expr(), B) for factor in factors if factor.degree(A) == 0]
-    by_power = [
-        [sp.Poly(c, B) for c in sp.Poly(curve.as_expr(), A).all_coeffs()] for curve in curves
-    ]  # the highest first
-    in_beta += [top[0] for top in by_power]
-    in_beta += [sp.Poly(curve.discriminant().as_expr(), B) for curve in curves]
-    for first, second in combinations(curves, 2):
-        in_beta.append(sp.Poly(first.resultant(second).as_expr(), B))
-    different = {primitive(factor) for polynomial in in_beta for factor, _ in polynomial.factor_list()[1]}
-    levels = sorted(root for factor in different for root in real_roots(factor))
-    lost = []
-    for top in by_power:
-        of_curve = {}
-        for factor, _ in top[0].factor_list()[1]:
-            number = 0  # of leading coefficients that vanish together
-            while number < len(top) and (top[number].is_zero or top[number].rem(factor).is_zero):
-                number += 1
-            of_curve.update(dict.fromkeys(real_roots(factor), number))
-        lost.append(of_curve)
-    return levels, lost
+def _lost(curve: sp.Poly, levels: dict[Fraction, sp.Poly]) -> dict[Fraction, int]:
+    """Return the levels at which crossings of a curve run to infinity: so many leading coefficients vanish together."""
+    by_power = [sp.Poly(c, B, domain=sp.QQ) for c in curve.eject(B).all_coeffs()]
+    found = {}
+    for level, factor in levels.items():
+        number = next(k for k, coefficient in enumerate(by_power) if coefficient.rem(factor))
+        if number:
+            found[level] = number
+    return found
 
 
 def _between(ascending: list[Fraction]) -> list[Fraction]:
@@ -264,7 +258,7 @@ def _crossings(curves: Sequence[CurveTable], beta_hat: Fraction) -> tuple[tuple[
 
 def _limits(
     tables: tuple[CurveTable, ...],
-    lost: list[dict[Fraction, int]],
+    lost: tuple[dict[Fraction, int], ...],
     crossings: tuple[Crossing, ...],
     inside: Fraction,
     level: Fraction | None,

@@ -8,6 +8,9 @@ Algebra in several variables is sympy's (determinants, derivation).
 
 from collections.abc import Sequence
 from fractions import Fraction
+from typing import TypeVar
+
+Number = TypeVar("Number", int, Fraction)
 
 Polynomial = Sequence[Fraction]
 
@@ -35,16 +38,17 @@ def lagrange_integral(node: Fraction | int, others: Sequence[Fraction | int], en
     return sum((a * end ** (k + 1) / (k + 1) for k, a in enumerate(ascending)), Fraction(0))
 
 
-def without_zeros(ascending: Polynomial) -> list[Fraction]:
-    """Return the coefficients without the zeros at their end."""
-    return list(ascending[: max(k for k, c in enumerate(ascending) if c) + 1])
+def without_zeros(ascending: Sequence[Number]) -> list[Number]:
+    """Return the coefficients without the zeros at their end; one at least."""
+    coefficients = list(ascending)
+    while len(coefficients) > 1 and coefficients[-1] == 0:
+        coefficients.pop()
+    return coefficients
 
 
 def trimmed(polynomial: Polynomial) -> list[Fraction]:
     """Return the monic polynomial with the same roots, leading zeros dropped; ZeroDivisionError for zero."""
-    p = list(polynomial)
-    while len(p) > 1 and p[-1] == 0:
-        p.pop()
+    p = without_zeros(polynomial)
     return [a / p[-1] for a in p]
 
 

@@ -11,16 +11,14 @@ from fractions import Fraction
 from functools import cache
 from itertools import pairwise
 from math import ceil, floor
-from typing import TypeVar
 
 import sympy as sp
 
+from bezstab.methods.polynomials import Number
 from bezstab.rationals import ZERO, bisected_integers
 
 BITS = 70  # of a root, relative: float64 has 53
 SHORT = 2**24  # denominators up to it are tried for a root that is known to 70 bits: one that fits is no chance
-
-Number = TypeVar("Number", int, Fraction)
 
 WholePolynomial = tuple[int, ...]
 """Whole coefficients without a common factor, ascending powers, the last positive."""

@@ -7,15 +7,16 @@ A scheme is a formula, a method a scheme with its name, source, family and step:
     RungeKutta           stages by a Butcher tableau A, weights b         RK4, SIE, SDIRK2
     SecondOrder          equations for x, v, a and helpers                SYM, Verlet, Newmark (second_order.py)
 
-Whatever a scheme is, it says how many past points it uses (`steps`), whether a step solves equations (`implicit`), how
-often it evaluates (`evaluations`), and what its step is as equations for x, v and a (`second_order`), in which the
-state is y = (x, v) and its slope f = (v, a). On y' = lambda y all but a SecondOrder are a polynomial pi(z, mu),
-mu = h lambda: `mu_table`. All have their P(z; alpha_hat, beta_hat), `table`, and say what exact motions leave over in a
-step, `left_over`, from which their order follows.
+Whatever a scheme is, it says how many past points it uses (`steps`), and what its step is as equations for x, v and a
+(`second_order`), in which the state is y = (x, v) and its slope f = (v, a). From these follow whether a step solves
+equations, how often it evaluates, P(z; alpha_hat, beta_hat) and the order of accuracy.
+
+On y' = lambda y all but a SecondOrder are a polynomial pi(z, mu), mu = h lambda: `mu_table`, C with
+pi = sum_kj C[k][j] z^k mu^j. It has `steps` + 1 rows, one column for each power of mu, and is monic in z for mu = 0;
+for every mu unless implicit. P is its product over both mu of the feedback.
 """
 
-from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
@@ -25,13 +26,10 @@ from itertools import zip_longest
 from bezstab.errors import InputError
 from bezstab.methods.polynomials import (
     MuTable,
-    PlaneTable,
-    Polynomial,
     polynomial_gcd,
     quotient_and_remainder,
     without_zeros,
 )
-from bezstab.methods.rooted_trees import tree_errors
 from bezstab.methods.schur import recursion_verdict
 from bezstab.methods.second_order import SecondOrder
 from bezstab.methods.step_equations import (
@@ -62,36 +60,8 @@ def _refuse_what_is_out_of_size(what: str, *coefficients: Fraction) -> None:
             raise InputError(f"{what}: found {found:.3g}, expected numbers up to 1e100 in size")
 
 
-class FirstOrder(ABC):
-    """A scheme that steps position and velocity alike, and so has a pi(z, mu)."""
-
-    mapping_gives_z = False  # but s, where pi is linear in mu
-
-    @property
-    @abstractmethod
-    def mu_table(self) -> MuTable:
-        """C with pi(z, mu) = sum_kj C[k][j] z^k mu^j of one step of h on y' = lambda y, mu = h lambda; exact.
-
-        `steps` + 1 rows, one column for each power of mu. Monic in z for mu = 0; for every mu unless implicit.
-        """
-
-    @property
-    @abstractmethod
-    def second_order(self) -> SecondOrder:
-        """The step as equations for x, v and a, with h = 1."""
-
-    @property
-    def table(self) -> PlaneTable:
-        """P(z; alpha_hat, beta_hat) for a step of h: the product of pi(z, mu) over both mu of the feedback."""
-        return self.second_order.table
-
-    def left_over(self, power: int) -> Iterator[Polynomial]:
-        """Yield what linear motions leave over, as `SecondOrder.left_over`."""
-        return self.second_order.left_over(power)
-
-
 @dataclass(frozen=True)
-class LinearMultistep(FirstOrder):
+class LinearMultistep:
     """rho(E) y = h sigma(E) f: coefficients from the newest value back, as files have them; rho begins with 1.
 
     InputError unless the method is consistent (rho(1) = 0, sigma(1) = rho'(1)) and zero-stable (the roots of rho in
@@ -100,8 +70,6 @@ class LinearMultistep(FirstOrder):
 
     rho: Coefficients
     sigma: Coefficients
-
-    evaluations = 1
 
     def __post_init__(self) -> None:
         if len(self.rho) != len(self.sigma) or len(self.rho) < 2:
@@ -157,7 +125,7 @@ class LinearMultistep(FirstOrder):
 
 
 @dataclass(frozen=True)
-class PredictorCorrector(FirstOrder):
+class PredictorCorrector:
     """PECE: the explicit predictor's value is evaluated once for the implicit corrector, whose value is evaluated.
 
     InputError unless the predictor is explicit, the corrector implicit, and both use the same number of past values.
@@ -165,9 +133,6 @@ class PredictorCorrector(FirstOrder):
 
     predictor: LinearMultistep
     corrector: LinearMultistep
-
-    implicit = False
-    evaluations = 2
 
     def __post_init__(self) -> None:
         if self.predictor.implicit or not self.corrector.implicit or self.predictor.steps != self.corrector.steps:
@@ -197,7 +162,7 @@ class PredictorCorrector(FirstOrder):
 
 
 @dataclass(frozen=True)
-class RungeKutta(FirstOrder):
+class RungeKutta:
     """A Runge-Kutta method by its Butcher tableau; explicit where A is strictly lower triangular.
 
         0    |
@@ -213,7 +178,6 @@ class RungeKutta(FirstOrder):
     weights: Coefficients
 
     steps = 1
-    mapping_gives_z = True
 
     def __post_init__(self) -> None:
         stages = len(self.weights)
@@ -222,16 +186,6 @@ class RungeKutta(FirstOrder):
         if sum(self.weights) != 1:
             raise InputError(f"inconsistent: the weights b sum to {sum(self.weights)}, not 1")
         _refuse_what_is_out_of_size("A and b", *self.weights, *(a for row in self.tableau for a in row))
-
-    @property
-    def implicit(self) -> bool:
-        """Whether some stage needs itself or a later one: an entry of A on or above the diagonal."""
-        return any(a != 0 for i, row in enumerate(self.tableau) for a in row[i:])
-
-    @property
-    def evaluations(self) -> int:
-        """The number of stages."""
-        return len(self.weights)
 
     @cached_property
     def mu_table(self) -> MuTable:
@@ -267,12 +221,6 @@ class RungeKutta(FirstOrder):
         equations.append(Assignment(Quantity(POSITION, 1), moved(POSITION, self.weights, velocity)))
         equations.append(Assignment(Quantity(VELOCITY, 1), moved(VELOCITY, self.weights, acceleration)))
         return SecondOrder(tuple(equations))
-
-    def left_over(self, power: int) -> Iterator[Polynomial]:
-        """Yield what linear motions leave over, then nonlinear ones: one term for each rooted tree."""
-        yield from super().left_over(power)
-        for error in tree_errors(self.tableau, self.weights, power):
-            yield (error,)
 
 
 PREDICTED = "predicted_"
@@ -324,7 +272,7 @@ def steps(method: Method) -> int:
 
 def implicit(method: Method) -> bool:
     """Return whether a step has to solve equations for what it evaluates at."""
-    return method.scheme.implicit
+    return method.scheme.second_order.implicit
 
 
 def evaluations(method: Method) -> int:
@@ -332,7 +280,7 @@ def evaluations(method: Method) -> int:
 
     Of an implicit method: for one iteration.
     """
-    return method.scheme.evaluations
+    return method.scheme.second_order.evaluations
 
 
 STATE = (POSITION, VELOCITY, ACCELERATION)

@@ -7,7 +7,7 @@ from fractions import Fraction
 from math import gcd
 from typing import Literal
 
-from bezstab.methods.polynomials import Polynomial, polynomial_gcd, quotient_and_remainder, trimmed
+from bezstab.methods.polynomials import Polynomial, polynomial_gcd, quotient_and_remainder, trimmed, without_zeros
 from bezstab.rationals import whole_multiples
 
 Verdict = Literal["converges", "marginal", "diverges"]
@@ -48,9 +48,7 @@ def is_schur(polynomial: Polynomial) -> bool:
 
     A proof either way: whole numbers, whose last bits are dropped as long as their sum of errors decides nothing.
     """
-    whole, _ = whole_multiples(polynomial)
-    while len(whole) > 1 and whole[-1] == 0:
-        whole.pop()
+    whole = without_zeros(whole_multiples(polynomial)[0])
     decided = _whole_is_schur(whole, WORKING_BITS)
     return bool(_whole_is_schur(whole, None)) if decided is None else decided
 

@@ -46,8 +46,6 @@ class SecondOrder:
 
     equations: tuple[Equation, ...]
 
-    mapping_gives_z = False  # nor s
-
     def __post_init__(self) -> None:
         latest: dict[str, Quantity] = {}
         for equation in self.equations:
@@ -70,17 +68,19 @@ class SecondOrder:
                     raise InputError(
                         f"{equation.result}: uses {quantity}, but {latest[quantity.name]} is the latest there is"
                     )
-                if quantity.step < FURTHEST_BACK:
-                    raise InputError(
-                        f"{equation.result}: uses {quantity}: expected at most {-FURTHEST_BACK} steps back"
-                    )
 
     def check_motion(self) -> None:
-        """Raise InputError unless the equations determine x1 and v1, and are consistent and zero-stable.
+        """Raise InputError unless the equations determine x1 and v1 from 20 steps, and are consistent and zero-stable.
 
         Consistent: a free motion x0 + v0 t is followed exactly and an acceleration acts in full. Zero-stable: without
         feedback z = 1 is a double root, all others lie inside the unit circle or are simple on it.
         """
+        for equation in self.equations:
+            for quantity in equation.used:
+                if quantity.step < FURTHEST_BACK:
+                    raise InputError(
+                        f"{equation.result}: uses {quantity}: expected at most {-FURTHEST_BACK} steps back"
+                    )
         free = [in_plane[0][0] for in_plane in self.table]
         if not free or not free[-1]:  # else without feedback, or with little, a step has no solution or many
             raise InputError("the equations do not determine x1 and v1")

@@ -23,7 +23,7 @@ def shared_factor(method: Method) -> tuple[Fraction, ...]:
     algorithm, exact. A root of it at zero, an unused past value, is left out: it never decides.
     """
     scheme = method.scheme
-    coefficients = scheme.mu_table or [[c for row in in_plane for c in row] for in_plane in scheme.table]
+    coefficients = scheme.mu_table or [[c for row in in_plane for c in row] for in_plane in scheme.second_order.table]
     shared: list[Fraction] = []
     for polynomial in zip(*coefficients, strict=True):
         if any(polynomial):

@@ -11,6 +11,7 @@ from functools import cached_property
 from bezstab.engines import Point
 from bezstab.errors import InputError, NumericalError
 from bezstab.evidence import (
+    UNEVEN,
     Likeness,
     LikePoint,
     Log,
@@ -20,11 +21,9 @@ from bezstab.evidence import (
     points_like,
     probed_pole,
     row_step,
-    steps_between_rows,
     time_column,
 )
 from bezstab.methods import REGISTRY, Method, lookup
-from bezstab.stability import FloatArray
 
 SAME_STEP = 1e-3
 """The times between rows of two runs may differ by this share, as times in logs are rounded."""
@@ -62,7 +61,7 @@ class PoleQuestion:
         if self.h is None or row is None:
             return
         apart = f"the log's times are {row:.6g} s apart"
-        if self.own_steps and not self.logged:
+        if self.compared and not self.steps:
             raise InputError(f"{apart}: expected a multiple of the step, --h {self.h:g}")
         if self.every is not None and round(row / self.h) != self.every:
             raise InputError(f"--every {self.every}: {apart}, {row / self.h:.4g} times --h {self.h:g}")
@@ -81,15 +80,17 @@ class PoleQuestion:
         return row_step(self.log, time_column(self.log, self.time)) if self.log else None
 
     @cached_property
-    def own_steps(self) -> dict[Method, int | None]:
-        """How many steps each method that is compared takes from row to row; None where these are no whole number."""
-        compared = self.methods or ([lookup(name) for name in REGISTRY] if self.point else [])
-        return {method: steps_between_rows(method, self.h, self.row_step, self.every or 1) for method in compared}
+    def compared(self) -> Sequence[Method]:
+        """The methods whose poles are compared, or whose points are looked for."""
+        return self.methods or ([lookup(name) for name in REGISTRY] if self.point else [])
 
-    @property
-    def logged(self) -> dict[Method, int]:
-        """The methods that may have made the log, each with its steps from row to row."""
-        return {method: between for method, between in self.own_steps.items() if between is not None}
+    @cached_property
+    def steps(self) -> dict[Method, int]:
+        """How many of its own steps each method takes from row to row; without those to which rows are no multiple."""
+        if self.h is None or self.row_step is None:
+            return dict.fromkeys(self.compared, self.every or 1)
+        ratios = {method: self.row_step / (self.h * float(method.step_multiple)) for method in self.compared}
+        return {method: round(ratio) for method, ratio in ratios.items() if abs(ratio - max(1, round(ratio))) <= UNEVEN}
 
     @property
     def turned(self) -> float | None:
@@ -131,7 +132,7 @@ class Probe:
         """How near the pole is to each method's at the point, the nearest first; none without a pole or a point."""
         if self.question.point is None:
             return []
-        return likenesses(self.found, self.question.logged, *self.question.point, self.question.turned)
+        return likenesses(self.found, self.question.steps, *self.question.point, self.question.turned)
 
     @property
     def points(self) -> list[LikePoint]:
@@ -149,9 +150,10 @@ class Probe:
         remarks: list[str] = []
         if self.question.point is not None or self.pole is None:
             return found, remarks
-        for method, between in self.question.own_steps.items():
+        steps = self.question.steps
+        for method in self.question.compared:
             try:
-                points = [] if between is None else points_like(self.found, method, between)
+                points = points_like(self.found, method, steps[method]) if method in steps else []
             except InputError as error:
                 remarks.append(f"{error}.")
                 continue
@@ -168,7 +170,7 @@ class Probe:
     @property
     def fits(self) -> bool:
         """Whether a method fits, or has the pole somewhere; true, too, if no method is asked about."""
-        return bool(self.fitting if self.question.point else self.points or not self.question.own_steps)
+        return bool(self.fitting if self.question.point else self.points or not self.question.compared)
 
 
 def log_answers(question: PoleQuestion) -> Iterator[Probe]:
@@ -176,8 +178,10 @@ def log_answers(question: PoleQuestion) -> Iterator[Probe]:
     log, minus = question.log, question.minus
     assert log
     for group in question.groups:
-        names = [log.columns[place] for place in group]
-        other = None if minus is None else _columns_called(names, minus, log, group)
+        names, other = [log.columns[place] for place in group], None
+        if minus:
+            same = minus.columns == log.columns
+            other = minus.values[:, group if same else [minus.number_of(name) for name in names]]
         yield Probe(question, ", ".join(names), probed_pole(log.values[:, group], other))
 
 
@@ -189,12 +193,6 @@ def check_told(found: Sequence[Probe]) -> None:
         failures = [f"no pole can be told: {'; '.join(untold)}"] if untold else []
         failures += [f"nothing fits {', '.join(unfit)}"] if unfit else []
         raise NumericalError("; ".join(failures))
-
-
-def _columns_called(names: Sequence[str], other: Log, log: Log, places: Sequence[int]) -> FloatArray:
-    """Return another run's values in the columns of these names; InputError if it has others."""
-    same = other.columns == log.columns
-    return other.values[:, list(places) if same else [other.number_of(name) for name in names]]
 
 
 def _check_same_step(other: Log, log: Log) -> None:

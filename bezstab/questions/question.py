@@ -116,11 +116,12 @@ class Question:
 
     def _check_goal(self, goal: Goal) -> None:
         """Raise InputError for arguments that do not go with the goal."""
-        if self.settle is None and goal == "gentle":
-            raise InputError("--goal gentle needs --settle: the time in s in which c falls a thousandfold")
-        if self.settle is not None and goal not in SETTLING:
+        if self.settle is None:
+            if goal == "gentle":
+                raise InputError("--goal gentle needs --settle: the time in s in which c falls a thousandfold")
+        elif goal not in SETTLING:
             raise InputError(f"--settle goes with --goal gentle or accurate, not {goal}")
-        if self.settle is not None and self.settle <= 0:
+        elif self.settle <= 0:
             raise InputError(f"--settle {float(self.settle):g} s: expected a positive time")
         in_seconds = (self.h_min, self.h_max, self.settle, self.engine, self.drive)
         if self.h is None:
@@ -240,14 +241,13 @@ def methods_for(methods: tuple[Method, ...], engine: Engine | None, drive: Drive
 
     InputError where there are none, and for another method than its own with an engine whose steps are of one alone.
     """
-    if engine and not (methods or engine.method):
-        raise InputError(f"{engine.name} has no integrator of its own: name yours with --method")
     own = engine.method if engine else None
     if not methods:
-        names = [own] if own else DRIVE_METHODS if drive else []
-        methods = tuple(map(lookup, names))
+        methods = tuple(map(lookup, [own] if own else DRIVE_METHODS if drive else []))
     if not methods:
-        raise InputError(WHICH_METHOD)
+        raise InputError(
+            f"{engine.name} has no integrator of its own: name yours with --method" if engine else WHICH_METHOD
+        )
     if engine and engine.level != "acceleration" and [method.name for method in methods] != [own]:
         raise InputError(
             f"{engine.name} works at {engine.level} level: its steps are those of {own}, only with --method {own}"

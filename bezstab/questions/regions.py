@@ -11,11 +11,11 @@ from itertools import chain
 
 import numpy as np
 
-from bezstab.engines import Engine, Point
+from bezstab.engines import Engine
 from bezstab.errors import InputError, NumericalError
 from bezstab.evidence import MovingRegion, moving_region
 from bezstab.mechanism import TurningNormals, load_scene
-from bezstab.methods import Method, Verdict
+from bezstab.methods import Method
 from bezstab.questions.motions import ReferenceMotion, motion_of, turn_too_far, turning_of
 from bezstab.questions.question import methods_for
 from bezstab.stability import (
@@ -35,12 +35,10 @@ from bezstab.stability import (
     exact_critical_damping_limit,
     falls_towards,
     pole_map,
-    poles,
     region,
     stable_for_all,
     unconditional_damping_ratio,
     useful_window,
-    verdict,
 )
 
 MOST_DRAWN = 1e100
@@ -200,33 +198,6 @@ class MapQuestion:
         return {label: (float(alpha_hat), float(beta_hat)) for label, (alpha_hat, beta_hat) in points.items()}
 
 
-@dataclass(frozen=True)
-class PlanePoint:
-    """What a method does to errors at a point (alpha_hat, beta_hat), exact: fast enough to follow a mouse."""
-
-    method: Method
-    point: Point
-
-    @cached_property
-    def poles(self) -> ComplexArray:
-        """All poles, the dominant one first, shape (degree,); errors as `poles`."""
-        return poles(self.method, *map(float, self.point))
-
-    @property
-    def stable(self) -> bool:
-        """Whether the dominant pole, in float64, lies inside the unit circle."""
-        return bool(abs(self.poles[0]) < 1)
-
-    @property
-    def verdict(self) -> Verdict:
-        """What errors do, proven."""
-        return verdict(self.method, *self.point)
-
-    def after_a_kick(self, steps: int) -> FloatArray:
-        """Return |c| from a unit kick on, shape (steps + 1,)."""
-        return abs(kick_response(self.poles, steps))
-
-
 def kick_response(poles: ComplexArray, steps: int) -> FloatArray:
     """Return c_0 = 1, c_1, ... of the linear recursion that has these poles, float64 of shape (steps + 1,).
 
@@ -269,7 +240,8 @@ class MapAnswer:
         return {float(speed): moving_region(self.method, each, h) for speed, each in self.question.turnings.items()}
 
     @cached_property
-    def _choice_or_reason(self) -> tuple[Choice | None, str | None]:
+    def choice_or_reason(self) -> tuple[Choice | None, str | None]:
+        """The point to draw beside the fastest, or why there is no most accurate one on a motion."""
         motion = self.question.motion
         if motion is None:
             return choose(self.method, "robust", margins=False) if self.stable.best else None, None
@@ -281,12 +253,7 @@ class MapAnswer:
     @property
     def chosen(self) -> Choice | None:
         """The point to draw beside the fastest: the choice of the goal accurate on a motion, else of robust."""
-        return self._choice_or_reason[0]
-
-    @property
-    def choice_reason(self) -> str | None:
-        """Why there is no most accurate point on a motion; None where there is one, and without a motion."""
-        return self._choice_or_reason[1] if self.question.motion else None
+        return self.choice_or_reason[0]
 
     @property
     def best_error(self) -> float | None:

@@ -3,7 +3,7 @@
 scene, methods, a step, a point or none   →   VerifyQuestion   →   measured poles, or errors at shares of the gains
 """
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -32,13 +32,13 @@ class VerifyQuestion(SceneQuestion):
     points: int | None = None
     floquet: bool = False
 
-    def measurements(self, method: Method, bar: Callable[[Iterable[int]], Iterable[int]] = iter) -> list[Measurement]:
-        """Return predicted and measured poles at the point, else at the random ones; `bar` shows the progress."""
+    def measurements(self, method: Method) -> list[Measurement]:
+        """Return predicted and measured poles at the point, else at the random ones."""
         if self.point is None:
             alpha_hat, beta_hat = random_points(method, self.points or RANDOM_POINTS)
         else:
             alpha_hat, beta_hat = (np.array([float(each)]) for each in self.point)
-        return measure_poles(self.mechanism, method, float(self.h), alpha_hat, beta_hat, bar, self.floquet)
+        return measure_poles(self.mechanism, method, float(self.h), alpha_hat, beta_hat, self.floquet)
 
     def forced_errors(self, method: Method) -> Iterator[HalvedStep]:
         """Yield predicted and measured errors at shares of the gains of the point, else of the goal robust."""

@@ -11,17 +11,15 @@ from typing import TYPE_CHECKING, Any, BinaryIO
 import numpy as np
 from numpy.typing import NDArray
 
-from bezstab.show.fields import Row, Value
+from bezstab.show.fields import Row
 from bezstab.show.row_kinds import FIELDS
 from bezstab.stability import ComplexArray, FloatArray, Region
 from bezstab.units import feedback_gains
 
 if TYPE_CHECKING:  # so that an array of the plane does not load what runs mechanisms
-    from bezstab.evidence import VerdictMap
+    from bezstab.evidence import Arrays, VerdictMap
     from bezstab.mechanism import Simulation
     from bezstab.questions import MapAnswer
-
-Arrays = dict[str, NDArray[np.generic]]
 
 
 def map_arrays(answer: MapAnswer, z: ComplexArray) -> Arrays:
@@ -47,18 +45,17 @@ def boundary_arrays(regions: Sequence[Region], h: float | None) -> Arrays:
 
     Dimensionless; with h (s) also 2 alpha and beta^2 in 1/s and 1/s^2.
     """
-    methods: list[str] = []
-    numbers: list[int] = []
-    curves = [np.empty((0, 2))]
-    for region in regions:
-        for number, curve in enumerate(region.boundary):
-            methods += [region.method.name] * len(curve)
-            numbers += [number] * len(curve)
-            curves.append(curve)
-    alpha_hat, beta_hat = np.concatenate(curves).T
+    points = [
+        (region.method.name, number, *point)
+        for region in regions
+        for number, curve in enumerate(region.boundary)
+        for point in curve
+    ]
+    methods, numbers, *place = zip(*points, strict=True) if points else [()] * 4
+    alpha_hat, beta_hat = np.array(place, float)
     return {
-        "method": np.array(methods, dtype=np.str_),
-        "curve": np.array(numbers, dtype=np.int64),
+        "method": np.array(methods, np.str_),
+        "curve": np.array(numbers, np.int64),
         "alpha_hat": alpha_hat,
         "beta_hat": beta_hat,
         **_gains(alpha_hat, beta_hat, h),
@@ -103,13 +100,8 @@ def untimed_arrays(rows: Sequence[Row]) -> Arrays:
     What is missing is nan among numbers and an empty text among texts.
     """
     keys = [key for key in rows[0] if not key.startswith("seconds")]
-    return {key: np.array([_present(key, row[key]) for row in rows]) for key in keys}
-
-
-def _present(key: str, value: Value) -> Value:
-    if value is not None:
-        return value
-    return "" if FIELDS[key].kind == "text" else math.nan
+    missing = {key: "" if FIELDS[key].kind == "text" else math.nan for key in keys}
+    return {key: np.array([missing[key] if row[key] is None else row[key] for row in rows]) for key in keys}
 
 
 def write_arrays(arrays: Mapping[str, NDArray[np.generic]], form: str, file: BinaryIO) -> None:

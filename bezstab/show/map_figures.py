@@ -32,8 +32,8 @@ from bezstab.show.style import (
     mark_in_alpha_and_beta,
     marked_line_at,
     new_axes,
-    plane_axes,
     plane_coordinates,
+    plane_words,
     styled,
     title_lines,
     with_legend,
@@ -41,8 +41,8 @@ from bezstab.show.style import (
 from bezstab.stability import ComplexArray, FloatArray, FrontPoint, Limit, Member, Region
 
 EDGE_LINES = 0.015  # of the axes' sides: so far apart are the arrows of regions that go on beyond the same edge
-ALONG_AN_EDGE, ARROWS = 121, 5
-"""Points along an edge of the axes, and how many of them are arrows."""
+ALONG_AN_EDGE, ARROW_EVERY = 121, 24
+"""Points along an edge of the axes, and at every which of them an arrow is."""
 
 TICKS = (0.1, 0.5, 0.9, 0.99, 0.999, 0.9999)
 """Of |z_p|, where it is drawn evenly in how fast errors fall."""
@@ -53,8 +53,8 @@ FASTEST_DRAWN, SLOWEST_DRAWN = 0.1, 0.9999
 MOST_CONTOURS = 12
 """Of a map, each a power of ten; where there would be more, only every second is drawn."""
 
-STAR: dict[str, Any] = {"marker": "*", "markersize": 11, "clip_on": False, "zorder": ABOVE_THE_AXES}
-"""A drive's own gains; no edge of the axes cuts through it."""
+WHOLE: dict[str, Any] = {"clip_on": False, "zorder": ABOVE_THE_AXES}
+"""Of markers: no edge of the axes cuts through them."""
 
 MARK_SHAPES = "Ds^vP"
 """Of points to mark, by their place; after the last the first comes again."""
@@ -79,27 +79,22 @@ if TYPE_CHECKING:  # so that a picture of the plane does not load what runs mech
 
 
 def map_figure(answer: MapAnswer, z: ComplexArray) -> Figure:
-    """Return the map of |z_p|, below the errors that feedback forces where they are asked about.
+    """Return the |z_p| map with exact boundary, faster regions, best point and critical damping (paper Fig. 1).
 
     z are the dominant poles over the axes of the answer, of shape (beta_hat.size, alpha_hat.size). With a step the axes
     are 2 alpha (1/s) and beta^2 (1/s^2), marked in alpha and beta if that is asked for; else alpha_hat and beta_hat.
-    """
-    return accuracy_map_figure(answer, z) if answer.question.motion else region_figure(answer, z)
-
-
-def region_figure(answer: MapAnswer, z: ComplexArray) -> Figure:
-    """Return the |z_p| map with exact boundary, faster regions, best point and critical damping (paper Fig. 1).
-
     The label of an unbounded region says so, and arrows along the edges of the axes point to where it goes on. Of a
     scene that moves its own boundaries are drawn as well, by times its own speed, and where the law behind the first of
-    them does not hold.
+    them does not hold. Where errors are asked about it is `_accuracy_map_figure`.
     """
     question, region, moving = answer.question, answer.stable.region, answer.moving
     h = question.seconds
+    if question.motion:
+        return _accuracy_map_figure(answer, z, float(question.motion.omega_h))
     with styled():
         name = region.method.name
         title = title_lines(name, f"at rest and on the {question.scene_name}") if moving else name
-        figure, axes = plane_axes(title, h)
+        figure, axes = new_axes(*plane_words(title, h))
         figure.colorbar(plot.modulus_map(*answer.axes, np.abs(z), axes, h), label="$|z_p|$")
         at_rest = " at rest" if moving else ""
         unbounded = "" if region.bounded else " (unbounded)"
@@ -129,10 +124,9 @@ def _draw_points(answer: MapAnswer, axes: Axes) -> None:
     x, y = plane_coordinates(alpha_hat, beta_hat, h)
     axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]), facecolor="0.93")
 
-    whole = {"clip_on": False, "zorder": ABOVE_THE_AXES}  # no edge of the axes cuts through a marker
-    drawn = [plot.point(found, axes, h, **whole) for found in (answer.stable.best, answer.chosen) if found]
+    drawn = [plot.point(found, axes, h, **WHOLE) for found in (answer.stable.best, answer.chosen) if found]
     for shape, (label, point) in zip(cycle(MARK_SHAPES), question.marks.items(), strict=False):
-        drawn.append(plot.point(point, axes, h, marker=shape, label=label, **whole))
+        drawn.append(plot.point(point, axes, h, marker=shape, label=label, **WHOLE))
     for marker in drawn:
         if not axes.viewLim.contains(*np.asarray(marker.get_xydata())[0]):
             marker.remove()
@@ -161,11 +155,7 @@ def _draw_open_edges(region: Region, axes: Axes, h: float | None, inset: float =
         inside = region.contains(*points.T)
         if inside.any():
             x, y = np.where(inside, np.clip(edge, inset, 1 - inset).T, np.nan)
-            arrows: dict[str, Any] = {
-                "marker": ("<>", "v^")[axis][end],
-                "markersize": 3,
-                "markevery": ALONG_AN_EDGE // ARROWS,
-            }
+            arrows: dict[str, Any] = {"marker": ("<>", "v^")[axis][end], "markersize": 3, "markevery": ARROW_EVERY}
             axes.plot(x, y, transform=axes.transAxes, **{"linestyle": "-", "linewidth": 0.6, **arrows, **line})
 
 
@@ -179,35 +169,32 @@ def from_decay_scale(values: FloatArray) -> FloatArray:
     return np.exp(-np.exp(-np.asarray(values)))
 
 
-def accuracy_map_figure(answer: MapAnswer, z: ComplexArray) -> Figure:
+def _accuracy_map_figure(answer: MapAnswer, z: ComplexArray, omega_h: float) -> Figure:
     """Return contours of the forced error over the map of |z_p|, on logarithmic axes, with both best points.
 
     The error is a share of the answer's motion. Dashed are further levels of |z_p|.
     """
     region, h, z_abs = answer.stable.region, answer.question.seconds, np.abs(z)
-    assert answer.question.motion
     with styled():
-        omega_h = float(answer.question.motion.omega_h)
-        figure, axes = plane_axes(rf"{region.method.name}, forced errors at $\omega h$ = {omega_h:.3g}", h)
+        title = rf"{region.method.name}, forced errors at $\omega h$ = {omega_h:.3g}"
+        figure, axes = new_axes(*plane_words(title, h))
         axes.set(xscale="log", yscale="log")
         axes.grid(visible=False)
         x, y = plane_coordinates(*answer.axes, h)
         norm = FuncNorm((decay_scale, from_decay_scale), vmin=FASTEST_DRAWN, vmax=SLOWEST_DRAWN)
-        stable = np.ma.masked_greater_equal(z_abs, 1.0)
         # as an image in files of lines, too: a mesh of so many cells has no place there
+        stable = np.ma.masked_greater_equal(z_abs, 1.0)
         mesh = axes.pcolormesh(x, y, stable, cmap="cividis", norm=norm, shading="nearest", rasterized=True)
         bar = figure.colorbar(mesh, label="$|z_p|$", extend="both", format="{x:g}", ticks=TICKS)
         bar.ax.minorticks_off()
-        white: dict[str, Any] = {"colors": "white", "linewidths": 0.7, "linestyles": "-"}
-        powers = MaxNLocator(MOST_CONTOURS, integer=True)
-        contours = axes.contour(x, y, np.log10(answer.errors(z)), locator=powers, **white)
+        powers, errors = MaxNLocator(MOST_CONTOURS, integer=True), np.log10(answer.errors(z))
+        contours = axes.contour(x, y, errors, locator=powers, colors="white", linewidths=0.7, linestyles="-")
         contours.set_path_effects(HALO)
         axes.plot([], [], color="white", linewidth=0.7, path_effects=HALO, label="forced error / motion")  # a key
         boundary = plot.region(region, axes, h, color="black", linestyle="-", label="$|z_p| = 1$")
         boundary.set_data(np.transpose(Path(boundary.get_xydata()).interpolated(PARTS).vertices))
         for number, level in enumerate(answer.drawn_levels, start=1):
-            label, dashes = f"$|z_p| = {level:.4g}$", DASHES[number % 4]
-            _level_line(axes, x, y, z_abs, level, label, dashes)
+            _level_line(axes, x, y, z_abs, level, f"$|z_p| = {level:.4g}$", DASHES[number % 4])
         _draw_points(answer, axes)
         for text in axes.clabel(contours, fmt="$10^{%d}$", fontsize=6, colors="black", inline=False):
             box = {"boxstyle": "round,pad=0.1", "facecolor": "white", "edgecolor": "none"}
@@ -223,7 +210,7 @@ def comparison_figure(question: MapQuestion) -> Figure:
     """
     regions, h = [answer.region for answer in question.compared], question.seconds
     with styled():
-        figure, axes = plane_axes(rf"$|z_p| = {regions[0].level:g}$", h)
+        figure, axes = new_axes(*plane_words(rf"$|z_p| = {regions[0].level:g}$", h))
         for place, region in enumerate(regions):
             plot.region(region, axes, h, **line_at(place))  # of those that coincide all show between dashes
         if question.alpha_range:
@@ -246,7 +233,7 @@ def verdict_figure(verdicts: VerdictMap, region: Region) -> Figure:
     if verdicts.undecided.any():
         meanings["no verdict"] = "white"
     with styled():
-        figure, axes = plane_axes(f"{title_lines(*run)}\n{title_lines(agreeing)}", None)
+        figure, axes = new_axes(*plane_words(f"{title_lines(*run)}\n{title_lines(agreeing)}", None))
         diverges = np.ma.masked_array(verdicts.diverges, verdicts.undecided)
         colours = ListedColormap([CONVERGES, DIVERGES])
         cells(axes, verdicts.alpha_hat, verdicts.beta_hat, diverges, cmap=colours, vmin=0, vmax=1)
@@ -255,8 +242,8 @@ def verdict_figure(verdicts: VerdictMap, region: Region) -> Figure:
         plot.region(region, axes, color="black", linestyle="-", label=r"$|z_p| = 1$")
         if verdicts.disagrees.any():
             rows, columns = np.nonzero(verdicts.disagrees)
-            crosses = verdicts.alpha_hat[columns], verdicts.beta_hat[rows]
-            axes.plot(*crosses, "x", color=ACCENT, markersize=3, label="disagree")
+            x, y = verdicts.alpha_hat[columns], verdicts.beta_hat[rows]
+            axes.plot(x, y, "x", color=ACCENT, markersize=3, label="disagree")
         return with_legend(figure)
 
 
@@ -279,10 +266,11 @@ def held_figure(answer: HeldAnswer, points: int) -> Figure:
         if found.has_edge:
             _level_line(axes, kd, kp, found.z_abs, 1.0, "$|z_p| = 1$")
         if found.law is not None:
-            law: dict[str, Any] = {"color": "white", "linestyle": (0, (4, 4)), "linewidth": 1.0}
-            axes.plot(kd, kp_of_one * found.law, label="closed form", **law)
+            law = kp_of_one * found.law
+            axes.plot(kd, law, color="white", linestyle=(0, (4, 4)), linewidth=1.0, label="closed form")
         own = float(question.drive.kd), float(question.drive.kp)
-        plot.point(own, axes, label=f"kp = {own[1]:g}, kd = {own[0]:g}", color=ACCENT, **STAR)
+        label = f"kp = {own[1]:g}, kd = {own[0]:g}"
+        plot.point(own, axes, label=label, marker="*", markersize=11, color=ACCENT, **WHOLE)
         axes.set(xlim=(min(0.0, kd[0]), kd[-1]), ylim=(min(0.0, kp[0]), kp[-1]), facecolor="0.93")
         across = axes.secondary_xaxis("top", functions=(partial(mul, 1 / kd_of_one), partial(mul, kd_of_one)))
         across.set_xlabel(r"$\hat\alpha = $ kd $h$ / inertia")
@@ -300,30 +288,29 @@ def family_figure(families: Mapping[str, Sequence[Member]], shown: str, limit: L
     the orders are drawn instead. `limit` is what the Bezier methods tend to: a line, and its region.
     """
     members = families[shown]
-    own = line_at(list(families).index(shown))
-    orders = {member.order for member in members}
+    one_order = len({member.order for member in members}) == 1
     with styled():
         figure = column_figure(1.3)
         (area, fastest), (accuracy, regions) = figure.subplots(2, 2)
         for place, (name, of_family) in enumerate(families.items()):
             line = {"label": STEP_FAMILIES[name].title, "marker": ".", **line_at(place)}
-            n = [member.n for member in of_family]
-            area.plot(n, np.array([member.region.area for member in of_family], float), **line)  # nan for None
-            fastest.plot(n, np.array([member.z_abs for member in of_family], float), **line)
-        errors = [member.error_constant if len(orders) == 1 else member.order for member in members]
-        accuracy.plot([member.n for member in members], np.array(errors, float), marker=".", **own)
-        for member, dashes in zip(members[:: max(1, len(members) // 3)], DASHES, strict=False):
-            plot.region(member.region, regions, color=own["color"], linestyle=dashes)
+            numbers = [(each.n, each.region.area, each.z_abs, each.order, each.error_constant) for each in of_family]
+            n, areas, moduli, orders, constants = np.array(numbers, float).T  # nan for None
+            area.plot(n, areas, **line)
+            fastest.plot(n, moduli, **line)
+            if name == shown:
+                accuracy.plot(n, constants if one_order else orders, **line)
+                for member, dashes in zip(members[:: max(1, len(members) // 3)], DASHES, strict=False):
+                    plot.region(member.region, regions, color=line["color"], linestyle=dashes)
         if limit is not None:
             line = {"color": ACCENT, "linestyle": DASHES[2]}
             values = ((area, limit.area), (fastest, limit.z_abs), (accuracy, float(limit.error_constant)))
             for axes, value in values:
                 axes.axhline(value, label="Bézier, limit", **line)
-            regions.plot(limit.boundary[:, 0], limit.boundary[:, 1], **line)
+            regions.plot(*limit.boundary.T, **line)
         area.set(ylabel="area of the region", yscale="log")
         fastest.set(ylabel="least $|z_p|$")
-        one_order = f"error constant, all of order {members[0].order}"
-        accuracy.set(ylabel=one_order if len(orders) == 1 else "order of accuracy")
+        accuracy.set(ylabel=f"error constant, all of order {members[0].order}" if one_order else "order of accuracy")
         regions.set(xlabel=r"$\hat\alpha$ (dimensionless)", ylabel=r"$\hat\beta$ (dimensionless)")
         regions.set_ylim(top=1.4 * regions.get_ylim()[1])  # room above the curves
         regions.legend(fontsize=6, loc="upper center", ncols=2, handlelength=1.5, columnspacing=1)
@@ -382,4 +369,4 @@ def chains_figure(engine: Engine, title: str, maps: Sequence[ChainMap]) -> Figur
         rows[-1].set_xlabel("sweeps in a step")
         figure.suptitle(title)
         figure.colorbar(image, ax=list(rows), label="$|z|$ a step", extend="max")
-        return with_legend(figure, rows[0].lines)
+        return with_legend(figure, handles=rows[0].lines)

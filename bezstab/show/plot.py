@@ -38,8 +38,6 @@ if TYPE_CHECKING:  # so that a picture of the plane does not load what runs mech
     from bezstab.mechanism import Scene, Simulation
 
 Range = tuple[SupportsFloat, SupportsFloat]
-Point = tuple[float, float]
-Coordinates = tuple[ArrayLike, ArrayLike]
 
 __all__ = [
     "critical_damping",
@@ -128,7 +126,9 @@ def critical_damping(alpha_range: Range, axes: Axes | None = None, h: float | No
     )
 
 
-def point(at: BestPoint | Choice | Point, axes: Axes | None = None, h: float | None = None, **line: Any) -> Line2D:
+def point(
+    at: BestPoint | Choice | tuple[float, float], axes: Axes | None = None, h: float | None = None, **line: Any
+) -> Line2D:
     """Draw a white marker at a point (alpha_hat, beta_hat), and return the line of one point.
 
     A best point is a star, labelled with its |z_p|; a choice a circle, labelled with its goal and |z_p|.
@@ -151,7 +151,7 @@ def point(at: BestPoint | Choice | Point, axes: Axes | None = None, h: float | N
     return _line(axes, plane_coordinates(alpha_hat, beta_hat, h), line, **white, **usual)
 
 
-def _line(axes: Axes, points: Coordinates, line: Mapping[str, Any], **usual: Any) -> Line2D:
+def _line(axes: Axes, points: tuple[ArrayLike, ArrayLike], line: Mapping[str, Any], **usual: Any) -> Line2D:
     """Draw a line through points (x, y) as a caller asks for it, in the usual way where he does not, and return it.
 
     Its colour and dashes are those that no other line in the axes has, unless the usual way has its own.
@@ -211,8 +211,8 @@ def mechanism(scene: Scene, q: FloatArray, axes: Axes | None = None) -> list[Lin
         x, y = np.transpose(points)
         length = math.dist(points[0], points[-1])
         above = 2 + 1 / (2 + length)  # so that a longer body hides no shorter one
-        thick: dict[str, Any] = {"linewidth": 3, "solid_capstyle": "round", "zorder": above, "label": name}
-        lines += axes.plot(x, y, color=line_at(place)["color"], **thick)
+        colour = line_at(place)["color"]
+        lines += axes.plot(x, y, color=colour, linewidth=3, solid_capstyle="round", zorder=above, label=name)
         if len(x) == 1 and name in sliding:
             axes.plot(x, y, "s", color="0.8", markeredgecolor="black", markersize=12, zorder=1.5)
         axes.plot(x, y, "o", color="white", markeredgecolor="black", markersize=4, zorder=above)

@@ -138,34 +138,19 @@ def varying_words(name: str, varying: VaryingSteps) -> str:
     of_range = f"steps between {_seconds(varying.h_min)} and {_seconds(varying.h_max)}"
     match varying.varying:
         case "proven":
-            return f"{name}, {held}: proven to decay for every sequence of {of_range} ({_reason(varying)})."
+            said = f"proven to decay for every sequence of {of_range} ({_proof(varying)})"
         case "refuted":
-            assert varying.sequence
-            steps = sequence_text(varying.sequence)
-            if len(varying.sequence) == 1:
-                return f"{name}, {held}: refuted for {of_range}: a step of {steps} alone does not decay."
-            return f"{name}, {held}: refuted for {of_range}: {steps}, over and over, {_growth(varying)}."
+            said = f"refuted for {of_range}: {_growing(varying)}"
         case "not known":
-            return f"{name}, {held}: not known whether every sequence of {of_range} decays."
-
-
-def sequence_text(sequence: Sequence[Fraction]) -> str:
-    """Return steps in s as text, with how often each is taken: 3 of 0.01 s, then 0.02 s."""
-    repeated = [(_seconds(step), len(list(same))) for step, same in groupby(sequence)]
-    return ", then ".join(step if count == 1 else f"{count} of {step}" for step, count in repeated)
-
-
-def _growth(varying: VaryingSteps) -> str:
-    """Return what a sequence does to errors: how many times as large they are after each round, where that is seen."""
-    growth = "" if varying.growth is None else f"{varying.growth:.3g}"
-    return f"grow {growth}-fold each time" if growth and float(growth) > 1 else "do not decay"
+            said = f"not known whether every sequence of {of_range} decays"
+    return f"{name}, {held}: {said}."
 
 
 def _seconds(step: Fraction) -> str:
     return f"{float(step):.6g} s"
 
 
-def _reason(varying: VaryingSteps) -> str:
+def _proof(varying: VaryingSteps) -> str:
     match varying.kind:
         case "quadratic":
             return "a quadratic form falls with each step"
@@ -174,6 +159,20 @@ def _reason(varying: VaryingSteps) -> str:
             return f"each step maps a polygon of {2 * len(varying.certificate)} corners into itself"
         case _:
             return "each step decays alone, and steps commute"
+
+
+def _growing(varying: VaryingSteps) -> str:
+    """Return a sequence and what it does to errors: 3 of 0.01 s, then 0.02 s, over and over, grow 1.3-fold each time.
+
+    That they grow is said where three digits show it.
+    """
+    assert varying.sequence
+    repeated = [(_seconds(step), len(list(same))) for step, same in groupby(varying.sequence)]
+    steps = ", then ".join(step if count == 1 else f"{count} of {step}" for step, count in repeated)
+    if len(varying.sequence) == 1:
+        return f"a step of {steps} alone does not decay"
+    growth = f"{varying.growth or 1:.3g}"
+    return f"{steps}, over and over, {f'grow {growth}-fold each time' if float(growth) > 1 else 'do not decay'}"
 
 
 def best_point_words(best: BestPoint) -> str:
@@ -193,20 +192,19 @@ def best_point_words(best: BestPoint) -> str:
 
 
 def falling_words(limit: FarLimit) -> str:
-    """Return what |z_p| falls towards without a least value, and along which way of alpha_hat and beta_hat."""
-    return f"|z_p| falls towards {limit.z_abs:.6g} as {_way(limit)}"
+    """Return what |z_p| falls towards without a least value, and along which way of alpha_hat and beta_hat.
 
-
-def _way(limit: FarLimit) -> str:
-    """Return "β̂ grows at α̂ = 2", or "α̂ and β̂ grow, α̂² = 3 β̂"."""
+    The way is "β̂ grows at α̂ = 2", or "α̂ and β̂ grow, α̂² = 3 β̂".
+    """
     (p, q), ratio = limit.direction, limit.ratio
+    falls = f"|z_p| falls towards {limit.z_abs:.6g} as"
     if p == 0 or q == 0:
         grows, stays = ("α̂", "β̂") if q == 0 else ("β̂", "α̂")
-        return f"{grows} grows" + ("" if ratio is None else f" at {stays} = {limit.point(1.0)[q == 0]:.6g}")
+        return f"{falls} {grows} grows" + ("" if ratio is None else f" at {stays} = {limit.point(1.0)[q == 0]:.6g}")
     times = "" if ratio is None or f"{ratio:.6g}" == "1" else f"{ratio:.6g} "
     equal = "like" if ratio is None else "="
     grow = "α̂ and β̂ grow" if p > 0 and q > 0 else "β̂ grows and α̂ falls" if q > 0 else "α̂ grows and β̂ falls"
-    return f"{grow}, {_power('α̂', q)} {equal} {times}{_power('β̂', p)}"
+    return f"{falls} {grow}, {_power('α̂', q)} {equal} {times}{_power('β̂', p)}"
 
 
 def _power(name: str, exponent: int) -> str:
@@ -216,7 +214,8 @@ def _power(name: str, exponent: int) -> str:
 def _poles_in_words(best: BestPoint) -> str:
     if best.z_abs == 0:
         return "deadbeat: every pole is 0"
-    words = f"z = {' and '.join(_pole_text(z) for z in best.meeting)}"
+    poles = [f"{z.real:+.6f} ± {z.imag:.6f}i" if z.imag else f"{z.real:+.6f}" for z in best.meeting]
+    words = f"z = {' and '.join(poles)}"
     if len(best.meeting) > 1:
         words += " meet"
     if best.multiplicity > 1:
@@ -224,11 +223,6 @@ def _poles_in_words(best: BestPoint) -> str:
     if best.double:
         words += ", each double, on β̂ = α̂²/4"
     return words
-
-
-def _pole_text(z: complex) -> str:
-    """Return +0.625884, or -0.140131 ± 0.504013i for a pair."""
-    return f"{z.real:+.6f} ± {z.imag:.6f}i" if z.imag else f"{z.real:+.6f}"
 
 
 def exact_rate_words(measurement: Measurement) -> str:

@@ -6,6 +6,7 @@ documentation of keys (`bezstab schema`) take it from there.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 
 from bezstab.show.cells import (
     any_or_none,
@@ -43,7 +44,6 @@ NO_ERROR = "where errors do not decay, or it is not known"
 NO_CHOICE = "where no feedback decays so fast"
 NO_BEST = "where there is no best point; `best_reason` says why"
 NO_SWEEPS = "where the engine does not sweep, or it is not known how"
-UNBOUNDED = "where the region has no end there, or is empty"
 
 METHOD = text(
     "method",
@@ -134,24 +134,9 @@ AREA = number(
     null="where it is infinite or empty",
     path="region.area",
 )
-ALPHA_HAT_MAX = number(
-    "alpha_hat_max",
-    "Largest alpha_hat of the region",
-    "α̂ to",
-    ".8g",
-    otherwise=unbounded,
-    null=UNBOUNDED,
-    path="region.extent.0.1",
-)
-BETA_HAT_MAX = number(
-    "beta_hat_max",
-    "Largest beta_hat of the region",
-    "β̂ to",
-    ".8g",
-    otherwise=unbounded,
-    null=UNBOUNDED,
-    path="region.extent.1.1",
-)
+end = partial(number, form=".8g", otherwise=unbounded, null="where the region has no end there, or is empty")
+ALPHA_HAT_MAX = end("alpha_hat_max", "Largest alpha_hat of the region", "α̂ to", path="region.extent.0.1")
+BETA_HAT_MAX = end("beta_hat_max", "Largest beta_hat of the region", "β̂ to", path="region.extent.1.1")
 BEST_Z_ABS = number(
     "best_z_abs",
     "Smallest modulus of the dominant pole over the region",
@@ -580,25 +565,9 @@ REGIONS = RowKind(
         METHOD.of("region.method"),
         Z_ABS_BELOW,
         AREA,
-        number(
-            "alpha_hat_min",
-            "Smallest alpha_hat of the region",
-            "α̂ from",
-            ".8g",
-            otherwise=unbounded,
-            null=UNBOUNDED,
-            path="region.extent.0.0",
-        ),
+        end("alpha_hat_min", "Smallest alpha_hat of the region", "α̂ from", path="region.extent.0.0"),
         ALPHA_HAT_MAX,
-        number(
-            "beta_hat_min",
-            "Smallest beta_hat of the region",
-            "β̂ from",
-            ".8g",
-            otherwise=unbounded,
-            null=UNBOUNDED,
-            path="region.extent.1.0",
-        ),
+        end("beta_hat_min", "Smallest beta_hat of the region", "β̂ from", path="region.extent.1.0"),
         BETA_HAT_MAX,
         text(
             "approached",
@@ -765,10 +734,7 @@ CHOICES = RowKind(
         BETA,
         VERDICT,
         SAFE,
-        Z_REAL,
-        Z_IMAG,
-        Z_ABS,
-        Z_ANGLE_DEG,
+        *POLE,
         number(
             "worst",
             "Largest modulus of the dominant pole with alpha and beta off by the spread",
@@ -1203,7 +1169,7 @@ PROBED = RowKind(
     added=(*LIKENESS, *LIKE_POINT[1:]),
     sometimes=(
         "samples",
-        *(field.key for field in (Z_REAL, Z_IMAG, Z_ABS, Z_ANGLE_DEG, REASON, *LIKENESS, *LIKE_POINT)),
+        *(field.key for field in (*POLE, REASON, *LIKENESS, *LIKE_POINT)),
     ),
 )
 # printed by `tradeoff`

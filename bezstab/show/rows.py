@@ -57,7 +57,7 @@ if TYPE_CHECKING:  # so that a small row does not load what makes the large ones
     from bezstab.engines import Engine
     from bezstab.evidence import HalvedStep, Likeness, LikePoint
     from bezstab.questions import Answer, ChainMap, LargestStep, MapAnswer, Question, RegionAnswer
-    from bezstab.stability import FrontPoint, Limit, Region
+    from bezstab.stability import FrontPoint, Limit
 
 
 def pole_cells(z: complex) -> dict[str, Value]:
@@ -128,29 +128,23 @@ def region_row(answer: RegionAnswer) -> Row:
     region, inside = answer.region, answer.inside
     reason = None if inside else f"not known: {answer.trouble}" if answer.trouble else _nowhere(answer)
     where = best_point_words(inside) if inside else reason
-    return REGIONS.row(answer, approached=_approached(region), best_where=where, best_reason=reason)
+    only_near = [near for ends in region.approached for near in ends]
+    approached = ", ".join(key for key, near in zip(LIMITS, only_near, strict=True) if near) or None
+    return REGIONS.row(answer, approached=approached, best_where=where, best_reason=reason)
 
 
 def map_rows(answer: MapAnswer) -> list[Row]:
     """Return a row for the stable region, or for it at each speed of the scene, and one for each level below 1."""
-    stable, *faster = [region_row(each) for each in answer.regions]
+    stable, *faster = rows = [region_row(each) for each in answer.regions]
     if answer.question.motion:
         forced = cells(ACCURACY, answer)
-        return [{**row, **forced} for row in (stable, *faster)]
-    if not answer.moving:
-        return [stable, *faster]
-    kappas = [turning.kappa for turning in answer.question.turnings.values()]
-    at_speeds = [
-        {**stable, "speed": speed, "kappa": kappa, "area_moving": moving.area}
-        for (speed, moving), kappa in zip(answer.moving.items(), kappas, strict=True)
+        return [{**row, **forced} for row in rows]
+    turnings = answer.question.turnings.values()
+    at_speeds: list[Row] = [
+        {**stable, "speed": speed, "kappa": turning.kappa, "area_moving": moving.area}
+        for (speed, moving), turning in zip(answer.moving.items(), turnings, strict=True)
     ]
-    return [*at_speeds, *faster]
-
-
-def _approached(region: Region) -> str | None:
-    """Return the names of those limits that no edge attains, None if there is no such limit."""
-    only_near = [near for ends in region.approached for near in ends]
-    return ", ".join(key for key, near in zip(LIMITS, only_near, strict=True) if near) or None
+    return [*(at_speeds or [stable]), *faster]
 
 
 def _nowhere(answer: RegionAnswer) -> str | None:

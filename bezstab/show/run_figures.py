@@ -41,8 +41,6 @@ COST_LABELS: Mapping[Cost, str] = {
 }
 """Of a run's errors and costs, for axes."""
 
-MARKER = {"markersize": 3.5, "markeredgewidth": 0.7}
-
 TIMES = 5  # intervals between the times that are written below a history: times of milliseconds have six digits
 
 
@@ -79,8 +77,7 @@ def work_precision_figure(swept: SweptRuns, scene: str, error: ErrorOf) -> Figur
     with styled():
         figure = column_figure(1.15)
         axes = figure.add_subplot(title=title_lines(scene))
-        known_errors = [known for run in runs if (known := run.error(error)) is not None]
-        top = 10 * max(known_errors, default=1.0)
+        top = 10 * (max(run.error(error) or 0.0 for run in runs) or 1.0)
         for place, method in enumerate(dict.fromkeys(run.method for run in runs)):
             own = [run for run in runs if run.method == method]
             _draw_runs(swept, own, error, axes, label=method.name, **marked_line_at(place))
@@ -109,11 +106,11 @@ def projection_figure(swept: SweptRuns, scene: str) -> Figure:
             for (place, method), (held, (name, marker)) in product(enumerate(methods), TREATMENTS.items()):
                 own = [run for run in swept.runs if (run.method, run.stabilise, run.advised) == (method, *held)]
                 if own:
-                    line = {"label": f"{method.name}, {name}", **MARKER, **line_at(place), **marker}
-                    _draw_runs(swept, own, error, axes, **line)
+                    line = {"markersize": 3.5, "markeredgewidth": 0.7, **line_at(place), **marker}
+                    _draw_runs(swept, own, error, axes, label=f"{method.name}, {name}", **line)
             axes.label_outer()
         figure.suptitle(title_lines(scene))
-        return with_legend(figure, panels[0].lines)
+        return with_legend(figure, handles=panels[0].lines)
 
 
 def _draw_runs(swept: SweptRuns, runs: Sequence[Run], error: ErrorOf, axes: Axes, **line: Any) -> None:

@@ -1,6 +1,5 @@
 """What all figures share: size, fonts, colours and dashes, the plane of alpha_hat and beta_hat, and saving."""
 
-from collections.abc import Sequence
 from contextlib import AbstractContextManager
 from textwrap import fill
 from typing import Any, BinaryIO, TypeVar
@@ -11,7 +10,6 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
-from matplotlib.lines import Line2D
 from matplotlib.ticker import FixedLocator, MaxNLocator
 from numpy.typing import ArrayLike, NDArray
 
@@ -89,11 +87,6 @@ def new_axes(title: str, xlabel: str, ylabel: str, height: float = 1.0) -> tuple
     return figure, figure.add_subplot(title=title, xlabel=xlabel, ylabel=ylabel)
 
 
-def plane_axes(title: str, h: float | None) -> tuple[Figure, Axes]:
-    """Return a figure of column width with axes alpha_hat, beta_hat, or 2 alpha, beta^2 for a step of h seconds."""
-    return new_axes(*plane_words(title, h))
-
-
 def plane_words(title: str, h: float | None) -> tuple[str, str, str]:
     """Return the title and the labels of both axes, alpha_hat and beta_hat, or 2 alpha and beta^2 for a step of h s."""
     if h is None:
@@ -102,14 +95,14 @@ def plane_words(title: str, h: float | None) -> tuple[str, str, str]:
 
 
 def plane_coordinates(alpha_hat: Number, beta_hat: Number, h: float | None) -> tuple[Number, Number]:
-    """Return where points lie on the axes of plane_axes: as they are, or 2 alpha (1/s), beta^2 (1/s^2) with h (s)."""
+    """Return where points lie in the plane of plane_words: as they are, or 2 alpha (1/s), beta^2 (1/s^2) with h (s)."""
     if h is None:
         return alpha_hat, beta_hat
     return feedback_gains(alpha_hat, beta_hat, h)
 
 
 def mark_in_alpha_and_beta(axes: Axes) -> None:
-    """Put round values of alpha and beta (1/s) on the axes 2 alpha and beta^2 of plane_axes, whose limits are final.
+    """Put round values of alpha and beta (1/s) on the axes 2 alpha and beta^2 of plane_words, whose limits are final.
 
     The region keeps its shape; only what is written at its axes changes. Below beta^2 = 0 there is no real beta.
     """
@@ -131,14 +124,9 @@ def title_lines(*parts: str) -> str:
 def cells(axes: Axes, x: FloatArray, y: FloatArray, values: ArrayLike, **colours: Any) -> AxesImage:
     """Draw values of shape (y.size, x.size) as cells around the points of an even grid; return the image."""
     axes.grid(visible=False)
-    ends = (*_outer_edges(x), *_outer_edges(y))
+    half_x, half_y = (x[1] - x[0]) / 2, (y[1] - y[0]) / 2
+    ends = (x[0] - half_x, x[-1] + half_x, y[0] - half_y, y[-1] + half_y)
     return axes.imshow(values, origin="lower", extent=ends, aspect="auto", interpolation="nearest", **colours)
-
-
-def _outer_edges(points: FloatArray) -> tuple[float, float]:
-    """Return the ends of the cells around the first and the last of evenly spaced points."""
-    half = (points[1] - points[0]) / 2
-    return points[0] - half, points[-1] + half
 
 
 def line_at(place: int) -> dict[str, Any]:
@@ -158,14 +146,13 @@ def marked_line_at(place: int) -> dict[str, Any]:
     }
 
 
-def with_legend(figure: Figure, handles: Sequence[Line2D] | None = None, **box: Any) -> Figure:
-    """Return the figure with a legend of all that has a label, or of some lines, below its axes.
+def with_legend(figure: Figure, **box: Any) -> Figure:
+    """Return the figure with a legend below its axes: of all that has a label, or of some lines as `handles`.
 
     It has as many columns as its width allows. A label that is too long even for one column is broken into lines.
     """
-    named = {} if handles is None else {"handles": handles}
     for columns in (4, 3, 2, 1):
-        legend = figure.legend(loc="outside lower center", ncols=columns, **named, **box)
+        legend = figure.legend(loc="outside lower center", ncols=columns, **box)
         if legend.get_window_extent().width <= LEGEND_WIDTH * figure.bbox.width:
             break
         if columns > 1:

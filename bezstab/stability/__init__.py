@@ -45,6 +45,7 @@ if TYPE_CHECKING:
         Timing,
         held_limits,
         held_map,
+        held_method,
         held_spectral_radius,
         held_verdict,
     )

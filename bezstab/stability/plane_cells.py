@@ -14,14 +14,15 @@ tanh-sinh quadrature does not mind.
 """
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import partial
 from itertools import pairwise
 
 import numpy as np
+from numpy.polynomial.polynomial import polyder, polyval, polyval2d
 
 from bezstab.errors import NumericalError
-from bezstab.methods import Crossing, CurveTable, Limit, Method, PlaneStrips, Strip, plane_strips
+from bezstab.methods import CurveTable, Limit, Method, PlaneStrips, plane_strips
 from bezstab.rationals import exact
 from bezstab.stability.arrays import DOUBLE, ROUNDING, SAME, ComplexArray, Extent, FloatArray
 from bezstab.stability.exact_sums import double_polynomial, split
@@ -35,104 +36,88 @@ FAR_APART = 100.0  # ends of a strip, one so many times the other: what an edge 
 FAR_OUT = 1e8  # of a level, or USUAL_SIZE: from so near to a strip's end up to so far from it turns are looked for
 OUT_OF_VIEW = 3.0  # times what is to be seen: curves that go on are drawn so far
 
+Range = tuple[float, float]
 
-@dataclass(frozen=True)
-class Cell:
-    """A stable cell: its strip, and the crossings that bound it on the left and on the right (None: unbounded)."""
-
-    strip: Strip
-    left: Crossing | None
-    right: Crossing | None
-
-    @property
-    def low(self) -> float:
-        """The lower end of the strip."""
-        return -math.inf if self.strip.low is None else float(self.strip.low)
-
-    @property
-    def high(self) -> float:
-        """The upper end of the strip."""
-        return math.inf if self.strip.high is None else float(self.strip.high)
-
-    @property
-    def limits(self) -> tuple[tuple[Limit, Limit], tuple[Limit, Limit]]:
-        """What alpha_hat comes to at the lower and the upper end of the strip, along the left wall and the right."""
-        left = (-math.inf, -math.inf) if self.left is None else self.strip.limits[self.left]
-        right = (math.inf, math.inf) if self.right is None else self.strip.limits[self.right]
-        return left, right
+SplitCurve = list[list[tuple[float, float]]]
+"""A curve's coefficients, the largest of size one, each as a sum of two float64."""
 
 
-class Edges:
-    """The edges of all strips as functions of beta_hat, in float64."""
+@dataclass(frozen=True, eq=False)
+class Edge:
+    """An edge along a strip: of a curve the real root alpha_hat number k, of `count`, as a function of beta_hat.
 
-    def __init__(self, strips: PlaneStrips) -> None:
-        self._lost = strips.lost
-        self._split = [_split(curve) for curve in strips.curves]
-        self.tables = [np.array(curve)[:, :, 0] for curve in self._split]
-        self._slopes = [np.polynomial.polynomial.polyder(table, axis=0) for table in self.tables]
+    It is known from `low` to `high`: the strip's ends, less what is so near to a level at which roots of the curve are
+    lost that one may show at the wrong infinity. `limits`: what alpha_hat comes to at either end.
+    """
 
-    def places(self, crossing: Crossing, cell: Cell, beta_hat: FloatArray) -> FloatArray:
-        """Return alpha_hat of one crossing with lines in a cell's strip, to rounding; the shape of beta_hat.
+    curve: SplitCurve
+    k: int
+    count: int
+    low: float
+    high: float
+    limits: tuple[Limit, Limit]
 
-        On a level at which a crossing of the same curve is lost, it is taken just beside, in the strip. An eigenvalue
-        is made exact by Newton's method with the curve's exact value, unless two roots meet.
+    def places(self, beta_hat: FloatArray) -> FloatArray:
+        """Return alpha_hat on lines, to rounding; the shape of beta_hat. Beyond where it is known: where it still is.
+
+        An eigenvalue is made exact by Newton's method with the curve's exact value, unless two roots meet.
         """
-        number, k = crossing
-        levels = np.clip(beta_hat, *self._known_span(cell, number))
-        place = _real_roots(
-            self._coefficients(number, levels), sum(curve == number for curve, _ in cell.strip.crossings)
-        )[k]
+        levels = np.clip(beta_hat.ravel(), self.low, self.high)
+        place = _most_real(self._roots(levels).T, self.count)[:, self.k]
+        slope = polyder(self._table, axis=0)
         for _ in range(STEPS):
             with np.errstate(all="ignore"):
-                high, rest = double_polynomial(self._split[number], place, levels)
-                step = (high + rest) / np.polynomial.polynomial.polyval2d(place, levels, self._slopes[number])
+                high, rest = double_polynomial(self.curve, place, levels)
+                step = (high + rest) / polyval2d(place, levels, slope)
             place = place - np.where(np.abs(step) < DOUBLE * np.abs(place), step, 0)
-        return np.asarray(place)
+        return place.reshape(beta_hat.shape)
 
-    def corner(self, crossing: Crossing, cell: Cell, level: float) -> float:
+    def corner(self, level: float) -> float:
         """Return alpha_hat at an end of the strip: where two meet, which float64 parts, the middle of both."""
-        place = float(self.places(crossing, cell, np.array([level]))[0])
-        roots = companion_roots(self._coefficients(crossing[0], np.array([level])))
+        place = float(self.places(np.array(level)))
+        roots = self._roots(np.array([level]))
         meeting = roots[np.abs(roots - place) <= DOUBLE * abs(place)].real
         return float(meeting.mean()) if len(meeting) > 1 else place
 
-    def _coefficients(self, number: int, levels: FloatArray) -> FloatArray:
-        return np.stack([np.polynomial.polynomial.polyval(levels, row) for row in self.tables[number]])
+    def furthest(self, low: float, high: float, sign: int) -> tuple[float, float]:
+        """Return the point between two levels that lies furthest to the right (sign 1) or left (-1)."""
+        level, least = least_between(lambda levels: -sign * self.places(levels), np.asarray(low), np.asarray(high))
+        return -sign * float(least), float(level)
 
-    def _known_span(self, cell: Cell, number: int) -> tuple[float, float]:
-        """Return the strip's ends, less what is so near to a lost crossing that it may show at the wrong infinity."""
-        low, high = cell.low, cell.high
-        width = high - low if math.isfinite(high - low) else 1.0
-        if cell.strip.low in self._lost[number]:
-            low += ROUNDING * max(width, abs(low))
-        if cell.strip.high in self._lost[number]:
-            high -= ROUNDING * max(width, abs(cell.high))
-        return low, high
+    @property
+    def _table(self) -> FloatArray:
+        return np.array(self.curve)[:, :, 0]
 
-    def is_vertical(self, crossing: Crossing) -> bool:
-        """Return whether a crossing has one alpha_hat on all lines."""
-        return len(self.tables[crossing[0]][0]) == 1
+    def _roots(self, levels: FloatArray) -> ComplexArray:
+        """Return all roots of the curve on lines, as eigenvalues; shape (roots, lines)."""
+        return companion_roots(polyval(levels, self._table.T))
 
 
-def _split(curve: CurveTable) -> list[list[tuple[float, float]]]:
-    """Return a curve's coefficients as sums of two float64, the largest one: they may have hundreds of digits."""
-    largest = max(abs(c) for row in curve for c in row)
-    return [[split(c / largest) for c in row] for row in curve]
+@dataclass(frozen=True)
+class Cell:
+    """A stable cell: between two levels, and between two edges (None: unbounded)."""
 
+    low: float
+    high: float
+    left: Edge | None
+    right: Edge | None
 
-def _real_roots(coefficients: FloatArray, count: int) -> FloatArray:
-    """Return so many real roots of each polynomial, ascending, infinite where one is; coefficients ascending.
+    @property
+    def limits(self) -> tuple[tuple[Limit, Limit], tuple[Limit, Limit]]:
+        """What alpha_hat comes to at the lower and the upper end of the strip, along the left edge and the right."""
+        left = (-math.inf, -math.inf) if self.left is None else self.left.limits
+        right = (math.inf, math.inf) if self.right is None else self.right.limits
+        return left, right
 
-    Shape (n + 1, lines) of the coefficients, (count, lines) of the roots, which are eigenvalues.
-    """
-    with np.errstate(all="ignore"):
-        lost = ~np.isfinite(coefficients[:-1] / coefficients[-1]).all(axis=0)
-    x = np.sort(_most_real(companion_roots(coefficients).T, count), axis=1).T
-    return np.where(lost, np.inf, x)
+    def widths(self, beta_hat: FloatArray) -> FloatArray:
+        """Return the widths of a bounded cell, as one function of several; shape (1, *that of beta_hat)."""
+        assert self.left is not None
+        assert self.right is not None
+        return (self.right.places(beta_hat) - self.left.places(beta_hat))[np.newaxis]
 
 
 def _most_real(roots: ComplexArray, count: int) -> FloatArray:
-    """Return of each line's roots those so many that are real; shape (lines, count).
+    """Return of each line's roots those so many that are real, ascending; shape (lines, count).
 
     Near a level rounding may turn a close pair of real roots into a conjugate one, or the other way about.
     """
@@ -145,7 +130,7 @@ def _most_real(roots: ComplexArray, count: int) -> FloatArray:
             closest = int(np.argmin(np.diff(x)))
             x = np.delete(x, [closest, closest + 1])
         chosen[line] = x[:count]
-    return chosen
+    return np.sort(chosen, axis=1)
 
 
 def strips_shape(method: Method, level: float) -> Shape | None:
@@ -154,26 +139,48 @@ def strips_shape(method: Method, level: float) -> Shape | None:
     NumericalError if its area cannot be integrated.
     """
     strips = plane_strips(method, exact(level))
-    return None if strips is None else shape_of_strips(strips, f"{method.name}, |z_p| < {level:g}")
-
-
-def shape_of_strips(strips: PlaneStrips, name: str) -> Shape | None:
-    """Return what the stable cells make; None if there are none. `name` is what an error is about."""
-    edges = Edges(strips)
-    cells = tuple(cell for strip in strips.strips for cell in _stable_cells(strip))
+    cells = stable_cells(strips) if strips else []
     if not cells:
         return None
-    corners = _turns(edges, cells)
+    edges = list(dict.fromkeys(edge for cell in cells for edge in (cell.left, cell.right) if edge))
+    corners = _turns(edges)
     extent, approached = _extent(cells, corners)
     view = _view(extent, corners)
     bounded = bool(np.isfinite(extent).all())
-    area = _area(edges, cells, name) if bounded else None
+    area = _area(cells, f"{method.name}, |z_p| < {level:g}") if bounded else None
     return Shape(area, extent, view, tuple(_curves(edges, cells, view)), approached)
 
 
-def _stable_cells(strip: Strip) -> list[Cell]:
-    walls = pairwise([None, *strip.crossings, None])
-    return [Cell(strip, left, right) for (left, right), stable in zip(walls, strip.stable, strict=True) if stable]
+def stable_cells(strips: PlaneStrips) -> list[Cell]:
+    """Return the stable cells of all strips, in float64."""
+    curves = [_split(curve) for curve in strips.curves]
+    cells = []
+    for strip in strips.strips:
+        if not any(strip.stable):
+            continue
+        low = -math.inf if strip.low is None else float(strip.low)
+        high = math.inf if strip.high is None else float(strip.high)
+        width = high - low if math.isfinite(high - low) else 1.0
+        edges = [
+            Edge(
+                curves[number],
+                k,
+                sum(curve == number for curve, _ in strip.crossings),
+                low + ROUNDING * max(width, abs(low)) if strip.low in strips.lost[number] else low,
+                high - ROUNDING * max(width, abs(high)) if strip.high in strips.lost[number] else high,
+                strip.limits[number, k],
+            )
+            for number, k in strip.crossings
+        ]
+        between = pairwise([None, *edges, None])
+        cells += [Cell(low, high, *sides) for sides, stable in zip(between, strip.stable, strict=True) if stable]
+    return cells
+
+
+def _split(curve: CurveTable) -> SplitCurve:
+    """Return a curve's coefficients, the largest one: they may have hundreds of digits."""
+    largest = max(abs(c) for row in curve for c in row)
+    return [[split(c / largest) for c in row] for row in curve]
 
 
 def _drawn_levels(low: float, high: float) -> FloatArray:
@@ -181,58 +188,39 @@ def _drawn_levels(low: float, high: float) -> FloatArray:
     angle = np.linspace(0, np.pi, DRAWN)
     levels = (low + high) / 2 - (high - low) / 2 * np.cos(angle)
     levels[0], levels[-1] = low, high
-    if _far_apart(low, high):
+    if 0 < FAR_APART * low < high:
         return np.union1d(levels, np.geomspace(low, high, DRAWN)[1:-1])
     return levels
 
 
-def _far_apart(low: float, high: float) -> bool:
-    return 0 < FAR_APART * low < high
-
-
-def _levels_to_infinity(cell: Cell) -> FloatArray:
+def _levels_to_infinity(low: float, high: float) -> FloatArray:
     """Return beta_hat along a strip with an infinite end or two, up to FAR_OUT, where edges have taken their course."""
-    finite = [end for end in (cell.low, cell.high) if math.isfinite(end)]
-    start = finite[0] if finite else 0.0
+    start = next((end for end in (low, high) if math.isfinite(end)), 0.0)
     away = max(USUAL_SIZE, abs(start)) * np.concatenate([[0], np.geomspace(1 / FAR_OUT, FAR_OUT, DRAWN)])
-    signs = [sign for sign, end in ((1, cell.high), (-1, cell.low)) if math.isinf(end)]
+    signs = [sign for sign, end in ((1, high), (-1, low)) if math.isinf(end)]
     return np.unique([start + sign * away for sign in signs])
 
 
-def _turns(edges: Edges, cells: tuple[Cell, ...]) -> FloatArray:
-    """Return the corners of all cells and each edge's furthest points within its strip; shape (points, 2), finite."""
+def _turns(edges: list[Edge]) -> FloatArray:
+    """Return the corners of all cells and each edge's furthest points within its strip; shape (points, 2)."""
     points = []
-    for cell in cells:
-        finite_ends = np.isfinite([cell.low, cell.high])
-        levels = _drawn_levels(cell.low, cell.high) if finite_ends.all() else _levels_to_infinity(cell)
-        for crossing, limits in zip((cell.left, cell.right), cell.limits, strict=True):
-            if crossing is None:
-                continue
-            place = edges.places(crossing, cell, levels)
-            ends = [levels[end] for end in (0, -1) if limits[end] is None]
-            points.append([(edges.corner(crossing, cell, end), end) for end in ends])
-            if edges.is_vertical(crossing):
-                points.append([(place[0], levels[0])])
-            rounding = 0 if finite_ends.all() else SAME * np.abs(place[1:-1])  # near a limit it turns by no more
-            for sign in (1, -1):
-                within = sign * place[1:-1] - rounding
-                turning = 1 + np.flatnonzero((within > sign * place[:-2]) & (within > sign * place[2:]))
-                for k in turning:
-                    points.append([_furthest(edges, crossing, cell, levels[k - 1], levels[k + 1], sign)])
-    flat = np.array([point for group in points for point in group]).reshape(-1, 2)
-    finite: FloatArray = flat[np.isfinite(flat).all(axis=1)]
-    return finite
+    for edge in edges:
+        bounded = math.isfinite(edge.high - edge.low)
+        levels = _drawn_levels(edge.low, edge.high) if bounded else _levels_to_infinity(edge.low, edge.high)
+        place = edge.places(levels)
+        ends = [levels[end] for end in (0, -1) if edge.limits[end] is None]
+        points += [(edge.corner(end), end) for end in ends]
+        if not ends and (place == place[0]).all():  # vertical
+            points.append((place[0], levels[0]))
+        rounding = 0 if bounded else SAME * np.abs(place[1:-1])  # near a limit it turns by no more
+        for sign in (1, -1):
+            within = sign * place[1:-1] - rounding
+            turning = 1 + np.flatnonzero((within > sign * place[:-2]) & (within > sign * place[2:]))
+            points += [edge.furthest(levels[k - 1], levels[k + 1], sign) for k in turning]
+    return np.array(points).reshape(-1, 2)
 
 
-def _furthest(edges: Edges, crossing: Crossing, cell: Cell, low: float, high: float, sign: int) -> tuple[float, float]:
-    """Return the point of an edge between two levels that lies furthest to the right (sign 1) or left (-1)."""
-    level, _ = least_between(
-        lambda levels: -sign * edges.places(crossing, cell, levels), np.asarray(low), np.asarray(high)
-    )
-    return float(edges.places(crossing, cell, level[np.newaxis])[0]), float(level)
-
-
-def _extent(cells: tuple[Cell, ...], corners: FloatArray) -> tuple[Extent, Approached]:
+def _extent(cells: list[Cell], corners: FloatArray) -> tuple[Extent, Approached]:
     """Return the ranges of alpha_hat and beta_hat, infinite where there is no limit, and which ends no edge attains."""
     towards = [limit for cell in cells for wall in cell.limits for limit in wall if limit is not None]
     first, last = float(corners[:, 0].min(initial=math.inf)), float(corners[:, 0].max(initial=-math.inf))
@@ -247,7 +235,7 @@ def _extent(cells: tuple[Cell, ...], corners: FloatArray) -> tuple[Extent, Appro
     return ((left, right), (low, high)), (beyond_corners, (_only_far_out(cells, low), _only_far_out(cells, high)))
 
 
-def _only_far_out(cells: tuple[Cell, ...], level: float) -> bool:
+def _only_far_out(cells: list[Cell], level: float) -> bool:
     """Return whether each cell that comes to a finite level does so at an infinite alpha_hat."""
     at_the_level = [
         walls
@@ -273,96 +261,61 @@ def _view(extent: Extent, corners: FloatArray) -> Extent:
     return (0.0, alpha_hat_max), (0.0, beta_hat_max)
 
 
-def _area(edges: Edges, cells: tuple[Cell, ...], name: str) -> float:
-    """Return the sum over cells of the integral of their width."""
-
+def _area(cells: list[Cell], name: str) -> float:
+    """Return the sum over cells of the integral of their width. `name` is what an error is about."""
     area = off = 0.0
     for cell in cells:
-        (found,), may_be_off = integrals(partial(_widths, edges, cell), np.array([[cell.low, cell.high]]))
+        (found,), may_be_off = integrals(cell.widths, np.array([[cell.low, cell.high]]))
         area, off = area + float(found), off + may_be_off
     if off > SAME * area:
         raise NumericalError(f"{name}: the area cannot be integrated")
     return area
 
 
-def _widths(edges: Edges, cell: Cell, beta_hat: FloatArray) -> FloatArray:
-    """Return a cell's widths at some beta_hat; shape (1, *that of beta_hat)."""
-    assert cell.left is not None
-    assert cell.right is not None
-    left, right = (edges.places(wall, cell, beta_hat.ravel()) for wall in (cell.left, cell.right))
-    return (right - left).reshape(1, *beta_hat.shape)
-
-
-# The boundary: each wall of a cell, and along a level what is stable on one side only.
+# The boundary: each edge, and along a level what is stable on one side only.
 #
 #        above:   |-- stable --|     |------|            - and the parts that differ are edges
 #        level:  =|=====-------|=====|------|-----
 #        below:   |---- |            |--- stable --|
 
 
-def _curves(edges: Edges, cells: tuple[Cell, ...], view: Extent) -> list[FloatArray]:
+def _curves(edges: list[Edge], cells: list[Cell], view: Extent) -> list[FloatArray]:
     """Return the boundary as curves of shape (points, 2): closed, or ending out of view where the region goes on."""
-    box = _box(view)
-    pieces = _walls(edges, cells, box) + _level_pieces(edges, cells, box)
-    size = np.ptp(np.array(box), axis=1)
-    return joined(pieces, most=DOUBLE * size)
+    sizes = [high - low for low, high in view]
+    box = [(low - OUT_OF_VIEW * size, high + OUT_OF_VIEW * size) for (low, high), size in zip(view, sizes, strict=True)]
+    pieces = [piece for edge in edges for piece in _within_box(edge, *box)] + _level_pieces(cells, *box)
+    return joined(pieces, most=DOUBLE * np.ptp(box, axis=1))
 
 
-def _box(view: Extent) -> Extent:
-    ends = []
-    for low, high in view:
-        more = OUT_OF_VIEW * (high - low)
-        ends.append((low - more, high + more))
-    return ends[0], ends[1]
+def _within_box(edge: Edge, across: Range, up: Range) -> Iterator[FloatArray]:
+    """Yield the pieces of an edge within the box."""
+    low, high = max(edge.low, up[0]), min(edge.high, up[1])
+    if low >= high:
+        return
+    levels = _drawn_levels(low, high)
+    place = edge.places(levels)
+    seen = (place >= across[0]) & (place <= across[1])
+    for run in np.split(np.arange(len(levels)), np.flatnonzero(np.diff(seen)) + 1):
+        if seen[run[0]] and len(run) > 1:
+            yield np.stack([place[run], levels[run]], axis=1)
 
 
-def _walls(edges: Edges, cells: tuple[Cell, ...], box: Extent) -> list[FloatArray]:
-    """Return the cells' left and right edges within the box; one that bounds two cells is none."""
-    (left, right), (bottom, top) = box
-    walls: dict[tuple[float, Crossing], Cell] = {}
-    for cell in cells:
-        for crossing in (cell.left, cell.right):
-            if crossing is not None:
-                walls[cell.low, crossing] = cell
-    pieces = []
-    for (_, crossing), cell in walls.items():
-        low, high = max(cell.low, bottom), min(cell.high, top)
-        if low >= high:
-            continue
-        levels = _drawn_levels(low, high)
-        place = edges.places(crossing, cell, levels)
-        seen = np.isfinite(place) & (place >= left) & (place <= right)
-        for run in np.split(np.arange(len(levels)), np.flatnonzero(np.diff(seen)) + 1):
-            if seen[run[0]] and len(run) > 1:
-                pieces.append(np.stack([place[run], levels[run]], axis=1))
-    return pieces
-
-
-def _level_pieces(edges: Edges, cells: tuple[Cell, ...], box: Extent) -> list[FloatArray]:
+def _level_pieces(cells: list[Cell], across: Range, up: Range) -> list[FloatArray]:
     """Return the pieces of levels that are stable on one side only, within the box."""
-    (left, right), (bottom, top) = box
-    gap = DOUBLE * (right - left)
+    left, right = across
     pieces = []
-    for level in sorted({cell.low for cell in cells} | {cell.high for cell in cells}):
-        if not bottom <= level <= top:
-            continue
-        sides = []
-        for beside in ([c for c in cells if c.high == level], [c for c in cells if c.low == level]):
-            intervals = []
-            for cell in beside:
-                ends = [
-                    limit if crossing is None else float(edges.places(crossing, cell, np.array([level]))[0])
-                    for crossing, limit in ((cell.left, left), (cell.right, right))
-                ]
-                ends = [limit if not np.isfinite(end) else end for end, limit in zip(ends, (left, right), strict=True)]
-                intervals.append((max(ends[0], left), min(ends[1], right)))
-            sides.append(intervals)
-        ends = sorted({end for intervals in sides for interval in intervals for end in interval})
-        for start, end in pairwise(ends):
-            if end - start <= gap:
-                continue
-            middle = (start + end) / 2
-            inside = [any(a < middle < b for a, b in intervals) for intervals in sides]
-            if inside[0] != inside[1]:
+    for level in sorted({end for cell in cells for end in (cell.low, cell.high) if up[0] <= end <= up[1]}):
+        at_level = np.array(level)
+        intervals = [
+            (
+                left if cell.left is None else max(left, float(cell.left.places(at_level))),
+                right if cell.right is None else min(right, float(cell.right.places(at_level))),
+            )
+            for cell in cells
+            if level in (cell.low, cell.high)
+        ]
+        for start, end in pairwise(sorted({end for interval in intervals for end in interval})):
+            sides = sum(low < (start + end) / 2 < high for low, high in intervals)
+            if sides == 1 and end - start > DOUBLE * (right - left):
                 pieces.append(np.array([[start, level], [end, level]]))
     return pieces

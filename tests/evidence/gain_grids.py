@@ -9,10 +9,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from bezstab.evidence.forced_runs import COMPARED, settled_error
 from bezstab.mechanism import compiled_mechanism, constraint_motion, load_scene, motion, observe, simulate
 from bezstab.methods import Method, lookup
 from bezstab.rationals import exact
-from bezstab.stability import Goal, choose, spectral_radius
+from bezstab.stability import FloatArray, Goal, choose, spectral_radius
 from bezstab.units import feedback_gains
 
 METHODS = ("RK4", "dopri5", "bs3", "B4", "AB2", "AB4", "ABM4", "SYM", "verlet-half", "bdf2", "hht", "gauss4")
@@ -25,42 +26,26 @@ SCALES = tuple(3.0**-n for n in range(8))
 
 DAMPING_RATIOS = (0.5, 1.0, 2.0)
 
-COMPARED = 0.5
-"""Of a run: before, errors are those of the start."""
-
 Point = tuple[float, float]
 
 
 @dataclass(frozen=True)
-class Errors:
-    """Largest errors (SI) of constraints and coordinates in the later half of a run; infinite where it breaks down."""
-
-    constraint: float
-    trajectory: float
-
-    def beaten_by(self, other: "Errors") -> float:
-        """Return by what factor another run is better in both errors at once."""
-        return min(self.constraint / other.constraint, self.trajectory / other.trajectory)
-
-
-@dataclass(frozen=True)
 class Grid:
-    """The errors of all stable points of the grid, and of the points that goals choose."""
+    """Largest errors (SI) of constraints and coordinates in the later half of runs: of all stable points, and of goals.
 
-    points: dict[Point, Errors]
-    goals: dict[Goal, Errors]
+    Rows of two, infinite where a run breaks down.
+    """
+
+    points: FloatArray
+    goals: dict[Goal, FloatArray]
 
     def beaten(self, goal: Goal) -> float:
         """Return by what factor some point of the grid beats a goal's in both errors at once."""
-        return max(self.goals[goal].beaten_by(errors) for errors in self.points.values())
+        return float((self.goals[goal] / self.points).min(axis=1).max())
 
-    def from_best(self, goal: Goal) -> tuple[float, float]:
+    def from_best(self, goal: Goal) -> FloatArray:
         """Return how many times the least of all there are a goal's constraint and trajectory errors are."""
-        every = [*self.points.values(), *self.goals.values()]
-        return (
-            self.goals[goal].constraint / min(errors.constraint for errors in every),
-            self.goals[goal].trajectory / min(errors.trajectory for errors in every),
-        )
+        return np.asarray(self.goals[goal] / np.vstack([self.points, *self.goals.values()]).min(axis=0))
 
 
 def grid(scene: str, name: str, goals: Sequence[Goal] = GOALS) -> Grid:
@@ -68,36 +53,27 @@ def grid(scene: str, name: str, goals: Sequence[Goal] = GOALS) -> Grid:
     h, duration = SCENES[scene]
     method = lookup(name)
     omega = constraint_motion(compiled_mechanism(load_scene(scene)), duration).omega
-    robust = choose(method, "robust", margins=False)
-    strongest = np.sqrt(robust.beta_hat)
+    strongest = np.sqrt(choose(method, "robust", margins=False).beta_hat)
     points = [(2 * ratio * scale * strongest, (scale * strongest) ** 2) for scale in SCALES for ratio in DAMPING_RATIOS]
     chosen = {goal: choose(method, goal, margins=False, omega_h=exact(h) * exact(omega)) for goal in goals}
     return Grid(
-        points={
-            point: measured(scene, method, h, duration, point)
-            for point in points
-            if spectral_radius(method, *point) < 1
-        },
-        goals={
-            goal: measured(scene, method, h, duration, (choice.alpha_hat, choice.beta_hat))
-            for goal, choice in chosen.items()
-        },
+        np.array([measured(scene, method, point) for point in points if spectral_radius(method, *point) < 1]),
+        {goal: measured(scene, method, (choice.alpha_hat, choice.beta_hat)) for goal, choice in chosen.items()},
     )
 
 
-def measured(scene: str, method: Method, h: float, duration: float, point: Point) -> Errors:
-    """Return the errors of one run, of steps of h (s)."""
+def measured(scene: str, method: Method, point: Point) -> FloatArray:
+    """Return the two errors of one run."""
+    h, duration = SCENES[scene]
     mechanism = compiled_mechanism(load_scene(scene))
     gains = feedback_gains(*point, h)
     run = simulate(mechanism, method, h, duration, gains)
     if run.failure:
-        return Errors(np.inf, np.inf)
+        return np.full(2, np.inf)
     later = run.t >= COMPARED * duration
     exactly, _, _ = motion(mechanism, duration).at(run.t[later])
-    return Errors(
-        constraint=float(np.abs(observe(mechanism, run.t, run.q, run.v, *gains).c[later]).max()),
-        trajectory=float(np.abs(run.q[later] - exactly).max()),
-    )
+    seen = observe(mechanism, run.t, run.q, run.v, *gains)
+    return np.array([settled_error(seen, run.t), np.abs(run.q[later] - exactly).max()])
 
 
 def print_table(names: Sequence[str]) -> None:

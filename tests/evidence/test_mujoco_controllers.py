@@ -75,12 +75,12 @@ def test_the_last_row_is_mujocos_own_step(integrator: str, timing: Timing) -> No
 
 
 def test_a_motor_alone_is_a_held_drive_on_its_own_inertia() -> None:
-    """The other joint is free; inside and outside of the limit of its rate."""
+    """The other joint is free; inside and outside of the limit of its rate. Without kp the velocity is judged."""
     timing = Timing(10, Fraction(3))
-    for kd, verdict in (("0.1", "converges"), ("0.01", "diverges")):
-        row, *_ = lint(arm(), ("hip.*", "2", kd), timing=timing)
+    for kp, kd, verdict in ((2, "0.1", "converges"), (2, "0.01", "diverges"), (0, "0.01", "converges")):
+        row, *_ = lint(arm(), ("hip.*", str(kp), kd), timing=timing)
         assert (row.kind, row.verdict) == ("motor", verdict)
-        assert row.z_abs == pytest.approx(modulus(arm(), [2, 0], [float(kd), 0], timing), abs=1e-6)
+        assert row.z_abs == pytest.approx(modulus(arm(), [kp, 0], [float(kd), 0], timing), abs=1e-6)
 
 
 def test_a_motor_without_gains_is_named_and_not_judged() -> None:

@@ -83,7 +83,7 @@ def test_where_there_is_nothing_but_noise_that_is_said() -> None:
         c = white(random, size, int(random.integers(60, 400)))
         fit = fitted(c)
         assert fit is not None
-        assert fit.poles == ()
+        assert not fit.poles
         assert fit.noise == pytest.approx(size, rel=0.35)  # four times 1 / sqrt(2 * 60)
         for found in (probed_pole(c), probed_pole(c, 0 * c), probed_pole(c + 0.3)):
             assert found.pole is None

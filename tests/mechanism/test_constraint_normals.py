@@ -1,9 +1,16 @@
-"""How the normals of the constraints turn: by hand where that can be done, and over closed motions."""
+"""What constraints see of a motion: its rate, and how their normals turn; by hand, and over closed motions."""
 
 import numpy as np
 import pytest
 
-from bezstab.mechanism import compiled_mechanism, load_scene, motion, turned_across, turning_normals
+from bezstab.mechanism import (
+    compiled_mechanism,
+    constraint_motion,
+    load_scene,
+    motion,
+    turned_across,
+    turning_normals,
+)
 
 OMEGA = 2 * np.pi  # rad/s, of both driven scenes
 
@@ -37,3 +44,13 @@ def test_of_a_mass_on_a_circle_what_lies_along_it_comes_across_as_its_normal_tur
     along = motion(mechanism, 1.0)
     assert turned_across(mechanism, along, along.v)[:, 0] == pytest.approx((along.v**2).sum(axis=1), rel=1e-9)
     assert np.abs(turned_across(mechanism, along, along.q)).max() < 1e-9  # the motion's own error
+
+
+def test_a_driven_crank_moves_its_constraints_about_as_fast_as_it_turns() -> None:
+    """The crank of the four-bar is 0.1 m long; the rocker adds what is faster.
+
+    Of a mechanism at rest tests/cli/mistakes.txt says what is said.
+    """
+    found = constraint_motion(compiled_mechanism(load_scene("driven_four_bar")), 1.0)
+    assert 1 < found.omega / OMEGA < 1.5
+    assert 0.05 < found.amplitude < 0.1

@@ -20,9 +20,7 @@ def test_velocity_verlet_is_the_program_of_the_books() -> None:
         "moments": [1],
         "guesses": [0],
         "groups": [[0, 1, False]],
-        "moved_from": [4, 5, 3],
-        "moved_to": [0, 1, 2],
-        "state": [4, 5],
+        "moved": [4, 5, 3],
         "corrected": [[1, 0], [0, 1], [0, 0]],
     }
     for name, value in expected.items():

@@ -60,7 +60,7 @@ def errors(world: int, kind: int, erp: float) -> NDArray[np.float64]:
 @pytest.mark.parametrize("erp", ["1/5", "1/2", "9/5", "11/5"])
 def test_bullets_pole_is_that_of_its_erp(world: int, kind: str, erp: str) -> None:
     """At 0.9 and 1.1 of the limit, too; to 1e-9, what is left of the solver's own residual."""
-    point = ENGINES["bullet"].point((Fraction(erp),), Fraction(1, 240))
+    point = ENGINES["bullet"].read(Fraction(1, 240), Fraction(erp))
     expected = complex(dominant_pole(lookup("SYM"), float(point[0]), float(point[1])))
     found = errors(world, getattr(pybullet, kind), float(Fraction(erp)))
     assert found[1:] / found[:-1] == pytest.approx(expected.real, abs=1e-9)
