@@ -9,8 +9,6 @@ from bezstab.errors import InputError
 COMPILED_CHOICE = "BEZSTAB_COMPILED"
 """The environment variable that says whether runs are compiled: auto (also if it is not set), yes or no."""
 
-NEEDS_NUMBA = "compiled runs need an optional package: pip install 'bezstab[fast]'"
-
 INNER = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 """Options for functions that machine code alone calls: what Python needs to call one takes as long to compile again."""
 
@@ -23,12 +21,6 @@ def compiled_choice() -> str:
     return choice
 
 
-def check_numba() -> None:
-    """Raise InputError unless the compiler is there; it is not loaded."""
-    if not numba_is_installed():
-        raise InputError(NEEDS_NUMBA)
-
-
 def numba_is_installed() -> bool:
     """Return whether the compiler is there; it is not loaded."""
     return importlib.util.find_spec("numba") is not None
@@ -39,7 +31,7 @@ def compiler() -> Any:
     try:
         import numba
     except ImportError:
-        raise InputError(NEEDS_NUMBA) from None
+        raise InputError("compiled runs need an optional package: pip install 'bezstab[fast]'") from None
     return numba
 
 

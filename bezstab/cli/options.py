@@ -13,7 +13,7 @@ import click
 from click.shell_completion import CompletionItem
 
 from bezstab.cli.output import Files, Work
-from bezstab.compiling import COMPILED_CHOICE, check_numba
+from bezstab.compiling import COMPILED_CHOICE, compiler
 from bezstab.engines import ENGINES, Drive, Engine, Point, engine_and_values, engine_named
 from bezstab.errors import InputError
 from bezstab.methods import REGISTRY, lookup
@@ -147,7 +147,7 @@ def _choose_compiled(_context: click.Context, _option: click.Parameter, choice: 
     InputError if numba is asked for and missing.
     """
     if choice == "yes":
-        check_numba()
+        compiler()
     os.environ[COMPILED_CHOICE] = choice
 
 

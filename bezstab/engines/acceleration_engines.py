@@ -24,7 +24,7 @@ def _read_gains(h: Fraction, stiffness: Fraction, damping: Fraction) -> Point:
 # MuJoCo. With impedance d and its value dmax at full width, aref = -(damping / dmax) c' - (stiffness d / dmax^2) c, of
 # which d takes part: r = d / dmax scales damping once and stiffness twice. r = d0 / dmax at c = 0, 1 past the width.
 
-LEAST_IMPEDANCE, LARGEST_IMPEDANCE = Fraction("0.0001"), Fraction("0.9999")
+LEAST_IMPEDANCE, MOST_IMPEDANCE = Fraction("0.0001"), Fraction("0.9999")  # mjMINIMP and mjMAXIMP: it keeps d between
 DEFAULT_SOLIMP = Fraction("0.9"), Fraction("0.95")
 LEAST_TIME_CONSTANT = 2  # steps: below, refsafe raises it
 
@@ -51,9 +51,7 @@ def _apply_mujoco(h: Fraction, first: Fraction, second: Fraction, *solimp: Fract
     if first > 0 and second > 0 and first < least:
         notes.append(f"refsafe raises timeconst {float(first):g} s to {LEAST_TIME_CONSTANT}h = {float(least):g} s")
         first = least
-    d0, dmax = (
-        min(max(each, LEAST_IMPEDANCE), LARGEST_IMPEDANCE) for each in (*solimp, *DEFAULT_SOLIMP[len(solimp) :])
-    )
+    d0, dmax = (min(max(each, LEAST_IMPEDANCE), MOST_IMPEDANCE) for each in (*solimp, *DEFAULT_SOLIMP[len(solimp) :]))
     ratio = d0 / dmax
     alpha_hat, beta_hat = _read_solref(h, first, second)
     if ratio == 1:

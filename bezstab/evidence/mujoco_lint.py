@@ -177,22 +177,18 @@ class _Plant:
         return lookup("RK4" if self.model.integrator == "RK4" else "SYM")
 
     @cached_property
-    def implicit_damping(self) -> FloatArray:
-        """The damping D that the integrator treats implicitly; shape (dofs, dofs), SI."""
-        model = self.model
-        return _springs_and_dampers(model, [each for each in model.of(Feedback) if self.is_implicit(each)])[1]
-
-    @cached_property
     def inverse_mass(self) -> Callable[[float], FloatArray]:
         """(M + h D)^-1 by h (s), shape (dofs, dofs): what divides accelerations; that of the mass alone at h = 0.
 
-        NumericalError where the mass is singular to rounding.
+        D is the damping that the integrator treats implicitly. NumericalError where M is singular to rounding.
         """
+        mass, feedbacks = self.model.mass, self.model.of(Feedback)
         try:
-            np.linalg.cholesky(self.model.mass)
+            np.linalg.cholesky(mass)
         except np.linalg.LinAlgError:
             raise NumericalError("the mass matrix at qpos0 is singular to rounding") from None
-        return cache(lambda h: np.linalg.inv(self.model.mass + h * self.implicit_damping))
+        _, damping = _springs_and_dampers(mass, [each for each in feedbacks if self.is_implicit(each)])
+        return cache(lambda h: np.linalg.inv(mass + h * damping))
 
     def is_implicit(self, feedback: Feedback) -> bool:
         """Return whether the integrator treats a damping implicitly."""
@@ -206,11 +202,13 @@ class _Plant:
         return exact(float(f"{inertia:.{DIGITS}g}"))
 
 
-def _springs_and_dampers(model: ModelData, feedbacks: Sequence[Feedback]) -> tuple[FloatArray, FloatArray]:
-    """Return the stiffness and the damping matrix of feedbacks; shape (dofs, dofs) each, SI."""
-    directions = np.array([each.direction for each in feedbacks]).reshape(-1, len(model.mass))
-    stiffness = directions.T * [each.stiffness for each in feedbacks] @ directions
-    damping = directions.T * [each.damping for each in feedbacks] @ directions
+def _springs_and_dampers(mass: FloatArray, feedbacks: Sequence[Feedback]) -> tuple[FloatArray, FloatArray]:
+    """Return the stiffness and the damping matrix of feedbacks; each of the shape of `mass`, (dofs, dofs), SI."""
+    stiffness, damping = np.zeros_like(mass), np.zeros_like(mass)
+    for each in feedbacks:
+        along = np.outer(each.direction, each.direction)
+        stiffness += each.stiffness * along
+        damping += each.damping * along
     return stiffness, damping
 
 
@@ -539,11 +537,8 @@ def _linted_together(plant: _Plant, constraints: Sequence[Constraint], controlle
 def _modulus(plant: _Plant, held: Sequence[_Pull], controlled: Sequence[Controlled], factor: float) -> float:
     """Return the largest |z| of a step of all that holds, so many times the model's; 0 where nothing holds."""
     step, forces = _step(plant, held, controlled, factor)
-    every = 1
-    if controlled:
-        every = controlled[0].timing.every
-        step = lifted_step(step, forces, controlled, factor * plant.model.h)
-    z = np.linalg.eigvals(step)
+    every = controlled[0].timing.every if controlled else 1
+    z = np.linalg.eigvals(lifted_step(step, forces, controlled, factor * plant.model.h) if controlled else step)
     moduli = np.abs(z[np.abs(z - 1) > FREE]) ** (1 / every)
     return float(moduli.max(initial=0.0))
 
@@ -556,20 +551,20 @@ def _step(
     h, dofs, motors = factor * model.h, len(model.mass), len(controlled)
     inverse = plant.inverse_mass(0.0)
     arms = np.array([each.motor.direction for each in controlled]).reshape(motors, dofs)
-    stiffness, damping = _springs_and_dampers(model, model.of(Feedback))
-    acceleration = inverse @ np.hstack([-stiffness, -damping, arms.T])  # by positions, velocities and forces
-    # What constraints ask of it, J a = -(alpha_hat / h) J v - (beta_hat / h^2) J x, softened by R.
+    stiffness, damping = _springs_and_dampers(model.mass, model.of(Feedback))
+    # Times h^2, by positions, velocities times h, and forces.
+    acceleration = inverse @ np.hstack([-stiffness * h * h, -damping * h, arms.T * h * h])
+    # What constraints ask of it, J a = -alpha_hat J v - beta_hat J x, softened by R.
     jacobian = np.vstack([np.zeros((0, dofs)), *(pull.constraint.jacobian for pull in held)])
     points = [pull.point for pull in held for _ in pull.constraint.diagonal]  # of each row
     alpha_hat, beta_hat = np.array(points, float).reshape(-1, 2, 1).swapaxes(0, 1)
-    asked = np.hstack([-beta_hat / h**2 * jacobian, -alpha_hat / h * jacobian, np.zeros((len(jacobian), motors))])
+    asked = np.hstack([-beta_hat * jacobian, -alpha_hat * jacobian, np.zeros((len(jacobian), motors))])
     regularized = jacobian @ inverse @ jacobian.T + np.diag(np.hstack([[], *(pull.softening for pull in held)]))
     acceleration += inverse @ jacobian.T @ np.linalg.solve(regularized, asked - jacobian @ acceleration)
     slower = plant.inverse_mass(h) @ model.mass  # what implicit damping leaves of it
-    in_steps = np.repeat([h * h, h, h * h], [dofs, dofs, motors])  # velocities are in units of 1/h
     whole = np.eye(2 * dofs + motors)
     change = np.zeros_like(whole)
-    change[dofs : 2 * dofs] = slower @ acceleration * in_steps
+    change[dofs : 2 * dofs] = slower @ acceleration
     if model.integrator == "RK4":
         change[:dofs, dofs : 2 * dofs] = np.eye(dofs)
         for part in (4, 3, 2, 1):

@@ -15,6 +15,7 @@ from typing import Any, Literal, TypeVar, get_args
 
 import numpy as np
 
+from bezstab.engines import LEAST_IMPEDANCE, MOST_IMPEDANCE
 from bezstab.errors import InputError
 from bezstab.stability import FloatArray
 
@@ -24,9 +25,6 @@ LEAST_VERSION = (3, 7)
 Up to 3.8.0 the implicit integrators still move free bodies by the midpoint rule, which is stable beyond what lint says
 of their constraints; 3.8.1, 3.10, 3.11 and 4.0 do as it says (measured).
 """
-
-LEAST_IMPEDANCE, MOST_IMPEDANCE = 0.0001, 0.9999
-"""MuJoCo keeps d in between (mjMINIMP, mjMAXIMP)."""
 
 LEAST_SIZE = 1e-15
 """MuJoCo's mjMINVAL, its least R: neither what is less nor what is beyond the inverse is what anybody means."""
@@ -243,7 +241,7 @@ class _Loaded:
 
 def _constraint(element: str, kind: str, solref: FloatArray, solimp: FloatArray, **rows: Any) -> Constraint:
     """Return a constraint with MuJoCo's own solref and solimp, and what is known of its rows."""
-    first, last = np.clip(solimp[:2], LEAST_IMPEDANCE, MOST_IMPEDANCE).tolist()
+    first, last = np.clip(solimp[:2], float(LEAST_IMPEDANCE), float(MOST_IMPEDANCE)).tolist()
     (a, b), width = solref.tolist(), max(0.0, float(solimp[2]))
     return Constraint(element, kind, (a, b), (first, last, width), **rows)
 

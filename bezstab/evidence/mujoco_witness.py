@@ -12,8 +12,9 @@ from typing import Literal
 
 import numpy as np
 
+from bezstab.engines import MOST_IMPEDANCE
 from bezstab.errors import InputError
-from bezstab.evidence.mujoco_models import MOST_IMPEDANCE, mujoco_module, silent
+from bezstab.evidence.mujoco_models import mujoco_module, silent
 from bezstab.mechanism import GROUND, Body, Mechanism, Revolute, Scene, constraint_errors, perturbed_state
 from bezstab.methods import Method, lookup
 from bezstab.stability import FloatArray, bisected, region, spectral_radius
@@ -105,8 +106,8 @@ def model_xml(scene: Scene, integrator: str, h: float, alpha_hat: float, beta_ha
     if scene.forces or scene.springs or not all(isinstance(joint, Revolute) for joint in scene.joints):
         raise InputError(f"--witness mujoco: {scene.name} has more than revolute joints and gravity: not supported")
     two_alpha, beta_squared = feedback_gains(alpha_hat, beta_hat, h)
-    # The most that MuJoCo takes: the rest of the unconstrained acceleration leaks into the constraint.
-    feedback = f'solref="{-beta_squared!r} {-two_alpha!r}" solimp="{MOST_IMPEDANCE} {MOST_IMPEDANCE} 1 0.5 1"'
+    impedance = float(MOST_IMPEDANCE)  # the rest of the unconstrained acceleration leaks into the constraint
+    feedback = f'solref="{-beta_squared!r} {-two_alpha!r}" solimp="{impedance} {impedance} 1 0.5 1"'
     sites: dict[str, str] = dict.fromkeys([GROUND, *(body.name for body in scene.bodies)], "")
     connections = ""
     for number, joint in enumerate(scene.joints):

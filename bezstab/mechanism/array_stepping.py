@@ -8,8 +8,7 @@ import numpy as np
 
 from bezstab.linear_equations import inverses
 from bezstab.mechanism.compiled import Mechanism, state_function
-from bezstab.mechanism.programs import FloatArray, Program
-from bezstab.mechanism.registers import BoolArray, Room, Steps
+from bezstab.mechanism.programs import BoolArray, FloatArray, Program, Room, Steps
 from bezstab.mechanism.stepping import TakeSteps, read
 
 

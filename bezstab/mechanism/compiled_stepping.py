@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from bezstab import compiling, stabilising
-from bezstab.compiling import INNER, check_numba, compiled_choice, compiler, numba_is_installed
+from bezstab.compiling import INNER, compiled_choice, compiler, numba_is_installed
 from bezstab.mechanism.compiled import Mechanism
 from bezstab.mechanism.generated_code import LONG, code_of, compiled_source, function_by_operations, machine_source
 from bezstab.mechanism.stepping import TakeSteps, read
@@ -32,14 +32,12 @@ LANES = 32
 
 
 def runs_compiled(evaluations: int, together: bool = False) -> bool:
-    """Return whether runs, or runs together, of so many evaluations are to be compiled. InputError if that cannot be.
+    """Return whether runs, or runs together, of so many evaluations are to be compiled.
 
-    That is without numba. By default where numba is there and they are long enough to pay. `evaluations` do not include
-    what iterations and projections take. InputError, too, where BEZSTAB_COMPILED says neither auto nor yes nor no.
+    By default where numba is there and they are long enough to pay. `evaluations` do not include what iterations and
+    projections take. InputError where BEZSTAB_COMPILED says neither auto nor yes nor no.
     """
     choice = compiled_choice()
-    if choice == "yes":
-        check_numba()
     if choice != "auto":
         return choice == "yes"
     return numba_is_installed() and evaluations >= WORTH_COMPILING * (CHEAPER_TOGETHER if together else 1)
@@ -87,7 +85,7 @@ def machine_steps(mechanism: Mechanism, solving: bool, projecting: bool, stride:
 
 
 PARTS = (
-    *("accelerations_of", "corrections_of", "accelerations_at", "evaluate", "finish"),
+    *("accelerations_of", "corrections_of", "accelerations_at", "finish"),
     *("solve", "residual", "correct", "renew", "advance"),
 )
 """What becomes a part of what calls it: to hand over all the arrays of a program and its room takes a while."""

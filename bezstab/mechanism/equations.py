@@ -63,11 +63,11 @@ def equations_of_motion(scene: Scene) -> Equations:
 
     mass = [sp.Float(body.inertia if axis == "theta" else body.mass) for body in scene.bodies for axis in body.free]
     c = sp.Matrix([row for joint in scene.joints for row in _constraints(joint, frames, symbol_of)])
-    jacobian = _jacobian(c, q)
+    jacobian = c.jacobian(q)
     c_t = c.diff(T)
     velocity = sp.Matrix(v)
     cdot = jacobian * velocity + c_t
-    gamma = -(_jacobian(cdot, q) * velocity + cdot.diff(T))
+    gamma = -(cdot.jacobian(q) * velocity + cdot.diff(T))
     lengths = []
     for spring in scene.springs:
         (ax, ay), (bx, by) = _end_positions(spring, frames)
@@ -90,19 +90,9 @@ def equations_of_motion(scene: Scene) -> Equations:
     )
 
 
-def _jacobian(column: sp.Matrix, q: Sequence[sp.Symbol]) -> sp.Matrix:
-    """Return the derivatives of m expressions by n coordinates, shape (m, n), most of them zero without being asked."""
-    number_of = {symbol: number for number, symbol in enumerate(q)}
-    jacobian = sp.zeros(len(column), len(q))
-    for row, expression in enumerate(column):
-        for symbol in expression.free_symbols & number_of.keys():
-            jacobian[row, number_of[symbol]] = expression.diff(symbol)
-    return jacobian
-
-
 def _gradient(expression: sp.Expr, q: Sequence[sp.Symbol]) -> sp.Matrix:
     """Return the derivatives by each coordinate, shape (n, 1)."""
-    return _jacobian(sp.Matrix([expression]), q).T
+    return sp.Matrix([expression]).jacobian(q).T
 
 
 def _frame(body: Body, symbol_of: dict[str, sp.Symbol]) -> Frame:

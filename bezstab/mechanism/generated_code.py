@@ -236,14 +236,14 @@ def compiled_source(text: str, library: Any, others: Mapping[str, Any] | None = 
 # What turning text into machine code costs grows faster than the text. So thousands of lines, as of a long mechanism,
 # become a table of single operations on a row of all variables and numbers, which one short loop takes:
 #
-#     W6_5 = C6_46 * 12.0 - W5_4        12.0                          (NUMBER, 1, its place among the numbers)
-#                                       C6_46 * 12.0                  (TIMES, 2, place of C6_46, 1)
-#                                       that - W5_4                   (PLUS, 4, 2, 3), 3 the place of -1 W5_4
+#     W6_5 = C6_46 * 12.0 - W5_4        C6_46 * 12.0                  (TIMES, 1, places of C6_46 and of 12.0)
+#                                       -1 W5_4                       (TIMES, 2, places of -1 and of W5_4)
+#                                       their sum                     (PLUS, 3, 1, 2)
 
 LONG = 1000
 """Lines above which a code becomes a table of operations; a shorter one runs faster as it is."""
 
-NUMBER, PLUS, TIMES, POWER, SINE, COSINE = range(6)
+PLUS, TIMES, POWER, SINE, COSINE = range(5)
 KINDS = {sp.Add: PLUS, sp.Mul: TIMES, sp.Pow: POWER, sp.sin: SINE, sp.cos: COSINE}
 
 
@@ -261,7 +261,7 @@ def function_by_operations(code: Code, stride: int, made: Callable[[Any], Any]) 
     """Return the same function by single operations, which `made` makes machine code of; and how long the row is."""
     rows, numbers = operations(code)
     n, first, take = (len(code.given) - 3) // 2, len(code.given), made(take_operations)
-    last = first + len(rows)
+    last = first + len(numbers) + len(rows)
     pivots = last - len(code.pivots)
     results = pivots - len(code.results)
 
@@ -270,7 +270,9 @@ def function_by_operations(code: Code, stride: int, made: Callable[[Any], Any]) 
         for i in range(n):
             row[3 + i] = state[0, i * stride + lane]
             row[3 + n + i] = state[1, i * stride + lane]
-        take(rows, numbers, row)
+        for place in range(len(numbers)):
+            row[first + place] = numbers[place]
+        take(rows, row)
         for place in range(results, pivots):
             found[(place - results) * stride + lane] = row[place]
         least = 1.0
@@ -282,24 +284,23 @@ def function_by_operations(code: Code, stride: int, made: Callable[[Any], Any]) 
 
 
 def operations(code: Code) -> tuple[NDArray[np.uint32], NDArray[np.float64]]:
-    """Return a code as single operations, and the numbers in it.
+    """Return a code as single operations, and the numbers in it, which have the places after what is given.
 
     An operation is its kind, the place of its result, and those of two operands. The last ones give all results, then
     the pivots.
     """
-    places: dict[sp.Expr, int] = {symbol: place for place, symbol in enumerate(code.given)}
+    zero = sp.Integer(0)
+    numbers = sorted({zero}.union(*(value.atoms(sp.Number) for _, value in code.assignments)), key=float)
+    places: dict[sp.Expr, int] = {value: place for place, value in enumerate([*code.given, *numbers])}
     rows: list[tuple[int, int, int, int]] = []
-    numbers: list[float] = []
+    first = len(places)
 
     def operation(kind: int, left: int, right: int) -> int:
-        rows.append((kind, len(code.given) + len(rows), left, right))
+        rows.append((kind, first + len(rows), left, right))
         return rows[-1][1]
 
     def place_of(value: sp.Expr) -> int:
         """Return the place of what a value comes to, each computed once."""
-        if value not in places and value.is_number:
-            numbers.append(float(value))
-            places[value] = operation(NUMBER, len(numbers) - 1, 0)
         if value not in places:
             place, *others = map(place_of, value.args)
             for other in others or [place]:  # sines have one operand
@@ -309,21 +310,16 @@ def operations(code: Code) -> tuple[NDArray[np.uint32], NDArray[np.float64]]:
 
     for symbol, value in code.assignments:
         places[symbol] = place_of(value)
-    zero = place_of(sp.Integer(0))
     for result in (*code.results, *code.pivots):
-        operation(PLUS, places[result], zero)
+        operation(PLUS, places[result], places[zero])
     # without a sign: numba need not ask whether they count from the end
-    return np.array(rows, np.uint32), np.array(numbers)
+    return np.array(rows, np.uint32), np.array(numbers, np.float64)
 
 
-def take_operations(rows: Any, numbers: Any, variables: Any) -> None:
+def take_operations(rows: Any, variables: Any) -> None:
     """Take single operations on variables, one after the other."""
     for k in range(len(rows)):
-        kind, result = rows[k, 0], rows[k, 1]
-        if kind == NUMBER:
-            variables[result] = numbers[rows[k, 2]]
-            continue
-        left, right = variables[rows[k, 2]], variables[rows[k, 3]]
+        kind, result, left, right = rows[k, 0], rows[k, 1], variables[rows[k, 2]], variables[rows[k, 3]]
         if kind == TIMES:
             variables[result] = left * right
         elif kind == PLUS:

@@ -16,8 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from bezstab.mechanism.array_stepping import array_steps
 from bezstab.mechanism.compiled import IMAGINARY_STEP, Mechanism, accelerations
-from bezstab.mechanism.programs import program_of
-from bezstab.mechanism.registers import Steps, room_of
+from bezstab.mechanism.programs import Steps, program_of, room_of
 from bezstab.methods import Method
 
 FloatArray = NDArray[np.float64]

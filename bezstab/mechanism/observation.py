@@ -77,14 +77,14 @@ def observe(
     columns = np.stack([np.broadcast_to(value, t.shape) for value in values], axis=-1)
     c, cdot, multipliers, pivots = np.split(columns, 4, axis=1)
     kinetic = v**2 @ np.array(mechanism.equations.mass, float) / 2
-    potential, applied_power = _energy_terms(mechanism)(q_columns, v_columns)
+    potential, applied_power, driver_power = _energy_terms(mechanism)(q_columns, v_columns, t, multipliers.T)
     return Observation(
         c=c,
         cdot=cdot,
         multipliers=multipliers,
         energy=kinetic + potential,
-        driver_power=_driver_power(mechanism, t, multipliers),
-        applied_power=np.zeros(t.shape) + applied_power,  # a number where nothing is applied
+        driver_power=np.zeros(t.shape) + driver_power,  # a number where nothing is driven, or applied
+        applied_power=np.zeros(t.shape) + applied_power,
         pivots=pivots.min(axis=1),
     )
 
@@ -104,24 +104,16 @@ def singular_passages(pivots: FloatArray) -> NDArray[np.intp]:
 
 
 @cache
-def _energy_terms(mechanism: Mechanism) -> Callable[[FloatArray, FloatArray], tuple[FloatArray, FloatArray]]:
-    """Return the function of q and v that gives the potential energy (J) and the power of the applied forces (W)."""
-    equations = mechanism.equations
-    power = equations.applied.dot(sp.Matrix(equations.v))
-    terms: Callable[[FloatArray, FloatArray], tuple[FloatArray, FloatArray]] = sp.lambdify(
-        (equations.q, equations.v), (equations.potential, power), "numpy"
-    )
-    return terms
-
-
-def _driver_power(mechanism: Mechanism, t: FloatArray, multipliers: FloatArray) -> FloatArray:
-    """Return the power (W) of the drivers, zero without any.
+def _energy_terms(mechanism: Mechanism) -> Callable[..., tuple[FloatArray, FloatArray, FloatArray]]:
+    """Return the function of q, v, t and lambda that gives potential energy (J), and power of forces and drivers (W).
 
     The constraint forces -C_q^T lambda do -lambda . C_q v = lambda . c_t where cdot = C_q v + c_t = 0. Only a driver
     has a c_t, minus its prescribed rate.
     """
-    power = np.zeros(t.shape)
-    for multiplier, rate in zip(multipliers.T, mechanism.equations.constraints_t, strict=True):
-        if rate != 0:
-            power += multiplier * sp.lambdify(T, rate, "numpy")(t)
-    return power
+    equations = mechanism.equations
+    multipliers = sp.symbols(f"l:{mechanism.constraints}")
+    powers = (equations.applied.dot(sp.Matrix(equations.v)), equations.constraints_t.dot(sp.Matrix(multipliers)))
+    terms: Callable[..., tuple[FloatArray, FloatArray, FloatArray]] = sp.lambdify(
+        (equations.q, equations.v, T, multipliers), (equations.potential, *powers), "numpy"
+    )
+    return terms

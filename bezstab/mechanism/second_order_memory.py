@@ -65,17 +65,15 @@ def memory(scheme: SecondOrder) -> Memory:
 def _carried(scheme: SecondOrder) -> list[Quantity]:
     """Return what a turn needs and does not give, or reports, or takes as a guess of what it has to solve for."""
     latest = {equation.result.name: equation.result.step for equation in scheme.equations}
-    earliest: dict[str, int] = {}
-    for equation in scheme.equations:
-        for quantity in equation.used:
-            earliest[quantity.name] = min(quantity.step, earliest.get(quantity.name, quantity.step))
-    for name in (POSITION, VELOCITY):  # both are reported at step 1
-        earliest[name] = min(earliest.get(name, 1), 1)
+    needed = [quantity for equation in scheme.equations for quantity in equation.used]
+    needed += [Quantity(POSITION, 1), Quantity(VELOCITY, 1)]  # which are reported
     for group in scheme.groups:
-        for equation in group:
-            if isinstance(equation, Evaluation) and is_solved_together(group):
-                name, step = equation.result.name, equation.result.step
-                earliest[name] = min(earliest.get(name, step), step - 1)
+        if is_solved_together(group):
+            found = (equation.result for equation in group if isinstance(equation, Evaluation))
+            needed += [Quantity(result.name, result.step - 1) for result in found]
+    earliest: dict[str, int] = {}
+    for quantity in needed:
+        earliest[quantity.name] = min(quantity.step, earliest.get(quantity.name, quantity.step))
     return [Quantity(name, step) for name in earliest for step in range(earliest[name], latest[name])]
 
 

@@ -67,24 +67,22 @@ def _closed_position(mechanism: Mechanism) -> FloatArray:
     """Return q at t = 0: the scene's coordinates, completed by Newton's method on c(q, 0) = 0 from its guesses."""
     scene = mechanism.scene
     q = np.array([scene.position.get(name, scene.guess.get(name, 0.0)) for name in scene.coordinates])
-    unknown = _unknown(scene.position, scene.coordinates)
-    for _ in range(NEWTON_STEPS if unknown else 0):
+    unknown = np.array([name not in scene.position for name in scene.coordinates])
+    for _ in range(NEWTON_STEPS):
         # least squares: it also has an answer where the linear system has none, on the way or for good
         jacobian, errors = constraint_jacobian(mechanism, 0.0, q), constraint_errors(mechanism, 0.0, q)
         step = np.linalg.lstsq(jacobian[:, unknown], errors, rcond=None)[0]
         q[unknown] -= step
-        if np.abs(step).max() < SETTLED:
+        if np.abs(step).max(initial=0.0) < SETTLED:
             break
     error = float(np.abs(constraint_errors(mechanism, 0.0, q)).max())
     closed = error <= CLOSED  # not if it is not a number
     if closed:
         _refuse_dependent_constraints(mechanism, q)  # first: it would explain a wrong number of coordinates
-    _check_number(scene.position, scene.coordinates, mechanism.constraints, "position")
+    _check_number(mechanism, "position", scene.position)
     if not closed:
-        key = (
-            "position: the joints cannot close" if unknown else "position: all coordinates are given, but inconsistent"
-        )
-        raise InputError(f"initial: {key} (largest |c| = {error:.3g})")
+        what = "the joints cannot close" if unknown.any() else "all coordinates are given, but inconsistent"
+        raise InputError(f"initial: position: {what} (largest |c| = {error:.3g})")
     return q
 
 
@@ -118,29 +116,21 @@ def _consistent_velocity(mechanism: Mechanism, q: FloatArray) -> FloatArray:
     jacobian = constraint_jacobian(mechanism, 0.0, q)
     c_t = matrix_function(mechanism, "constraints_t")(q, 0.0)[:, 0]
     v = np.array([scene.velocity.get(name, 0.0) for name in scene.coordinates])
-    _check_number(scene.velocity, scene.coordinates, mechanism.constraints, "velocity")
-    unknown = _unknown(scene.velocity, scene.coordinates)
-    if unknown:
-        is_unknown = np.isin(np.arange(mechanism.size), unknown)
-        right = -(c_t + jacobian @ np.where(is_unknown, 0.0, v))
-        v[unknown] = np.linalg.lstsq(jacobian[:, unknown], right, rcond=None)[0]
+    _check_number(mechanism, "velocity", scene.velocity)
+    unknown = np.array([name not in scene.velocity for name in scene.coordinates])
+    v[unknown] = np.linalg.lstsq(jacobian[:, unknown], -(c_t + jacobian @ v), rcond=None)[0]
     error = float(np.abs(jacobian @ v + c_t).max())
     if not error <= CLOSED * max(1.0, float(np.abs(v).max())):
         raise InputError(f"initial: velocity: inconsistent with the joints (largest |cdot| = {error:.3g})")
     return v
 
 
-def _unknown(given: Mapping[str, float], coordinates: Sequence[str]) -> list[int]:
-    """Return the indices of the coordinates that are not given."""
-    return [index for index, name in enumerate(coordinates) if name not in given]
-
-
-def _check_number(given: Mapping[str, float], coordinates: Sequence[str], constraints: int, key: str) -> None:
+def _check_number(mechanism: Mechanism, key: str, given: Mapping[str, float]) -> None:
     """Raise InputError unless as many coordinates are given as there are freedoms, or all."""
-    freedoms = len(coordinates) - constraints
-    if len(given) not in (freedoms, len(coordinates)):
-        expected = f"{freedoms}, or all" if freedoms >= 0 else f"all, as there are {constraints} constraints"
-        raise InputError(f"initial: {key} gives {len(given)} of {len(coordinates)} coordinates: expected {expected}")
+    n, m = mechanism.size, mechanism.constraints
+    if len(given) not in (n - m, n):
+        expected = f"{n - m}, or all" if n >= m else f"all, as there are {m} constraints"
+        raise InputError(f"initial: {key} gives {len(given)} of {n} coordinates: expected {expected}")
 
 
 def perturbed_state(mechanism: Mechanism, error: float) -> tuple[FloatArray, FloatArray]:

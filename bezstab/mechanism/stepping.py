@@ -2,7 +2,7 @@
 
 This text is read in two ways: by numba as machine code (`compiled_stepping`), and by Python with numpy's arrays
 (`array_stepping`). Each gives some names a meaning of its own: the mechanism's functions, the numbers that say how its
-registers are laid out (`registers`), and what it does faster as a whole than place by place. All else is said here
+registers are laid out (`programs`), and what it does faster as a whole than place by place. All else is said here
 once. Where Python takes all lanes at a time, a number is an array over them: a choice between two values is a
 comparison or `take`, not a branch.
 
@@ -28,8 +28,7 @@ from typing import Any
 import numpy as np
 
 from bezstab.mechanism.compiled import SINGULAR
-from bezstab.mechanism.programs import FloatArray, IntArray, Program
-from bezstab.mechanism.registers import BoolArray, Room, Steps
+from bezstab.mechanism.programs import BoolArray, FloatArray, IntArray, Program, Room, Steps
 from bezstab.mechanism.start import CLOSED
 
 BLOWN_UP = 1e9  # SI units, sum of all coordinates and velocities: far beyond any mechanism, far below overflow
@@ -176,20 +175,13 @@ def invert_one(matrix: FloatArray, size: int, found: FloatArray) -> None:
 # A step
 
 
-def accelerations_at(program: Program, number: int, time: float, h: float, gains: FloatArray, room: Room) -> float:
-    """Write the state of an evaluation, and its accelerations; return the least pivot."""
-    combine(program.table[2 * number : 2 * number + 2], room.registers, room.state)
-    scale(1 / h, room.state[1], room.state[1])
-    return accelerations(time + program.moments[number] * h, gains, room)
-
-
-def evaluate(
+def accelerations_at(
     program: Program, number: int, time: float, h: float, gains: FloatArray, room: Room, told: FloatArray
 ) -> None:
-    """Take an explicit evaluation."""
-    pivot = accelerations_at(program, number, time, h, gains, room)
-    scale(h * h, room.found, room.registers[len(program.powers) + number])
-    told[PIVOT] = min(told[PIVOT], pivot)
+    """Write the state of an evaluation, and its accelerations."""
+    combine(program.table[2 * number : 2 * number + 2], room.registers, room.state)
+    scale(1 / h, room.state[1], room.state[1])
+    told[PIVOT] = min(told[PIVOT], accelerations(time + program.moments[number] * h, gains, room))
     told[EVALUATIONS] += 1
 
 
@@ -218,7 +210,8 @@ def take_steps(program: Program, steps: Steps, room: Room, states: FloatArray, t
             if SOLVING and group[2]:
                 solve(program, group, time, h, gains, room.inverses[number], room, told[k])
             else:
-                evaluate(program, group[0], time, h, gains, room, told[k])
+                accelerations_at(program, group[0], time, h, gains, room, told[k])
+                scale(h * h, room.found, room.registers[len(program.powers) + group[0]])
         finish(program, h, room, states[k])
         if PROJECTING and program.after.projecting:
             project(program, time + h, h, gains, room, states[k], told[k])
@@ -291,11 +284,9 @@ def residual(
     """Write the residuals of a group."""
     for number in range(group[0], group[1]):
         unknown, left = room.registers[len(program.powers) + number], into[number - group[0]]
-        pivot = accelerations_at(program, number, time, h, gains, room)
-        told[PIVOT] = min(told[PIVOT], pivot)
+        accelerations_at(program, number, time, h, gains, room, told)
         for place in every(WIDTH):
             left[place] = unknown[place] - h * h * room.found[place]
-    told[EVALUATIONS] += group[1] - group[0]
 
 
 def correct(group: IntArray, inverse: FloatArray, room: Room) -> bool:
@@ -401,7 +392,7 @@ def project(
 
 TEXT = (
     *(accelerations, combine, take, add_sizes, any_of, multiply, invert, invert_one, scale),
-    *(accelerations_at, evaluate, finish, solve, guess, residual, correct, renew, advance, shift, project, take_steps),
+    *(accelerations_at, finish, solve, guess, residual, correct, renew, advance, shift, project, take_steps),
 )
 """What is read in two ways."""
 

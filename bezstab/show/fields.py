@@ -8,7 +8,7 @@ import unicodedata
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from importlib import import_module
+from pkgutil import resolve_name
 from typing import Any, Literal, get_args
 
 Value = str | float | int | Sequence[float] | Sequence[Sequence[str]] | None
@@ -93,8 +93,7 @@ class Field:
     @property
     def values(self) -> tuple[str, ...]:
         """All that a text can be, where there are few; loads what has the types that say so."""
-        named = [name.rpartition(".") for name in self.values_of.split()]
-        types = [getattr(import_module(f"bezstab.{module}"), name) for module, _, name in named]
+        types = [resolve_name(f"bezstab.{name}") for name in self.values_of.split()]
         return tuple(dict.fromkeys(value for each in types for value in get_args(each)))
 
     def cell(self, row: Row) -> str:

@@ -79,23 +79,18 @@ if TYPE_CHECKING:  # so that a picture of the plane does not load what runs mech
 
 
 def map_figure(answer: MapAnswer, z: ComplexArray) -> Figure:
-    """Return the map of |z_p|, below the errors that feedback forces where they are asked about.
+    """Return the |z_p| map with exact boundary, faster regions, best point and critical damping (paper Fig. 1).
 
     z are the dominant poles over the axes of the answer, of shape (beta_hat.size, alpha_hat.size). With a step the axes
     are 2 alpha (1/s) and beta^2 (1/s^2), marked in alpha and beta if that is asked for; else alpha_hat and beta_hat.
-    """
-    return accuracy_map_figure(answer, z) if answer.question.motion else region_figure(answer, z)
-
-
-def region_figure(answer: MapAnswer, z: ComplexArray) -> Figure:
-    """Return the |z_p| map with exact boundary, faster regions, best point and critical damping (paper Fig. 1).
-
     The label of an unbounded region says so, and arrows along the edges of the axes point to where it goes on. Of a
     scene that moves its own boundaries are drawn as well, by times its own speed, and where the law behind the first of
-    them does not hold.
+    them does not hold. Where errors are asked about it is `_accuracy_map_figure`.
     """
     question, region, moving = answer.question, answer.stable.region, answer.moving
     h = question.seconds
+    if question.motion:
+        return _accuracy_map_figure(answer, z, float(question.motion.omega_h))
     with styled():
         name = region.method.name
         title = title_lines(name, f"at rest and on the {question.scene_name}") if moving else name
@@ -174,15 +169,14 @@ def from_decay_scale(values: FloatArray) -> FloatArray:
     return np.exp(-np.exp(-np.asarray(values)))
 
 
-def accuracy_map_figure(answer: MapAnswer, z: ComplexArray) -> Figure:
+def _accuracy_map_figure(answer: MapAnswer, z: ComplexArray, omega_h: float) -> Figure:
     """Return contours of the forced error over the map of |z_p|, on logarithmic axes, with both best points.
 
     The error is a share of the answer's motion. Dashed are further levels of |z_p|.
     """
     region, h, z_abs = answer.stable.region, answer.question.seconds, np.abs(z)
-    assert answer.question.motion
     with styled():
-        title = rf"{region.method.name}, forced errors at $\omega h$ = {float(answer.question.motion.omega_h):.3g}"
+        title = rf"{region.method.name}, forced errors at $\omega h$ = {omega_h:.3g}"
         figure, axes = new_axes(*plane_words(title, h))
         axes.set(xscale="log", yscale="log")
         axes.grid(visible=False)
@@ -248,8 +242,8 @@ def verdict_figure(verdicts: VerdictMap, region: Region) -> Figure:
         plot.region(region, axes, color="black", linestyle="-", label=r"$|z_p| = 1$")
         if verdicts.disagrees.any():
             rows, columns = np.nonzero(verdicts.disagrees)
-            crosses = verdicts.alpha_hat[columns], verdicts.beta_hat[rows]
-            axes.plot(*crosses, "x", color=ACCENT, markersize=3, label="disagree")
+            x, y = verdicts.alpha_hat[columns], verdicts.beta_hat[rows]
+            axes.plot(x, y, "x", color=ACCENT, markersize=3, label="disagree")
         return with_legend(figure)
 
 
@@ -275,8 +269,8 @@ def held_figure(answer: HeldAnswer, points: int) -> Figure:
             law = kp_of_one * found.law
             axes.plot(kd, law, color="white", linestyle=(0, (4, 4)), linewidth=1.0, label="closed form")
         own = float(question.drive.kd), float(question.drive.kp)
-        star = {"marker": "*", "markersize": 11, "color": ACCENT, **WHOLE}
-        plot.point(own, axes, label=f"kp = {own[1]:g}, kd = {own[0]:g}", **star)
+        label = f"kp = {own[1]:g}, kd = {own[0]:g}"
+        plot.point(own, axes, label=label, marker="*", markersize=11, color=ACCENT, **WHOLE)
         axes.set(xlim=(min(0.0, kd[0]), kd[-1]), ylim=(min(0.0, kp[0]), kp[-1]), facecolor="0.93")
         across = axes.secondary_xaxis("top", functions=(partial(mul, 1 / kd_of_one), partial(mul, kd_of_one)))
         across.set_xlabel(r"$\hat\alpha = $ kd $h$ / inertia")

@@ -734,10 +734,7 @@ CHOICES = RowKind(
         BETA,
         VERDICT,
         SAFE,
-        Z_REAL,
-        Z_IMAG,
-        Z_ABS,
-        Z_ANGLE_DEG,
+        *POLE,
         number(
             "worst",
             "Largest modulus of the dominant pole with alpha and beta off by the spread",
@@ -1172,7 +1169,7 @@ PROBED = RowKind(
     added=(*LIKENESS, *LIKE_POINT[1:]),
     sometimes=(
         "samples",
-        *(field.key for field in (Z_REAL, Z_IMAG, Z_ABS, Z_ANGLE_DEG, REASON, *LIKENESS, *LIKE_POINT)),
+        *(field.key for field in (*POLE, REASON, *LIKENESS, *LIKE_POINT)),
     ),
 )
 # printed by `tradeoff`

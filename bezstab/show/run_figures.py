@@ -41,8 +41,6 @@ COST_LABELS: Mapping[Cost, str] = {
 }
 """Of a run's errors and costs, for axes."""
 
-MARKER = {"markersize": 3.5, "markeredgewidth": 0.7}
-
 TIMES = 5  # intervals between the times that are written below a history: times of milliseconds have six digits
 
 
@@ -108,8 +106,8 @@ def projection_figure(swept: SweptRuns, scene: str) -> Figure:
             for (place, method), (held, (name, marker)) in product(enumerate(methods), TREATMENTS.items()):
                 own = [run for run in swept.runs if (run.method, run.stabilise, run.advised) == (method, *held)]
                 if own:
-                    line = {"label": f"{method.name}, {name}", **MARKER, **line_at(place), **marker}
-                    _draw_runs(swept, own, error, axes, **line)
+                    line = {"markersize": 3.5, "markeredgewidth": 0.7, **line_at(place), **marker}
+                    _draw_runs(swept, own, error, axes, label=f"{method.name}, {name}", **line)
             axes.label_outer()
         figure.suptitle(title_lines(scene))
         return with_legend(figure, handles=panels[0].lines)

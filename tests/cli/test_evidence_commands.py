@@ -1,7 +1,7 @@
 import csv
-import importlib.util
 import io
 import json
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -56,7 +56,7 @@ def test_tradeoff_writes_a_table_without_times_and_two_figures_and_the_same_agai
 
 @pytest.mark.parametrize("command", ["simulate", "paper"])
 def test_without_numba_compiled_runs_are_refused_in_a_line(command: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
+    monkeypatch.setitem(sys.modules, "numba", None)
     refused = run(command, "--compiled yes")
     assert refused.exit_code == 2
     assert refused.stderr == "bezstab: compiled runs need an optional package: pip install 'bezstab[fast]'\n"

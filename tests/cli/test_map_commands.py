@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from bezstab.methods import lookup
-from bezstab.stability import combined_error
+from bezstab.stability import combined_error, region
 from tests.cli.running import arrays, rows, run
 
 
@@ -36,7 +36,9 @@ def test_the_tables_of_a_map_and_of_compared_boundaries(tmp_path: Path) -> None:
     )
     assert list(points[0]) == ["alpha_hat", "beta_hat", "z_abs", "z_angle_deg"]
     assert len(points) == 50**2
-    assert {row["method"] for row in boundaries} == {"B4", "RK4@5"}
+    for name in ("B4", "RK4@5"):
+        drawn = [[float(row["alpha_hat"]), float(row["beta_hat"])] for row in boundaries if row["method"] == name]
+        assert drawn == np.concatenate(region(lookup(name), 0.9).boundary).tolist()
 
 
 @pytest.mark.slow

@@ -95,28 +95,38 @@ def test_a_point_written_in_an_engines_words_is_read_back(name: str, data: st.Da
     assert tuple(map(float, back.point)) == pytest.approx(tuple(map(float, point)), rel=1e-6)  # nine digits
 
 
-DEFAULTS: dict[str, tuple[tuple[str | int | Fraction, ...], Fraction, float]] = {
-    "box2d": ((60, 2), Fraction(1, 240), 0.746948),  # measured on a compiled Box2D
-    "rapier": ((1_000_000, 1), Fraction(1, 240), 1 - 0.99992),
-    "jolt": (("0.2",), Fraction(1, 60), 0.64),  # measured
-    "brax-positional": (("0.5",), Fraction(1, 100), math.sqrt(0.5)),
-    "bullet": (("0.2",), Fraction(1, 240), 0.8),
-    "chipmunk": ((Fraction("0.9") ** 60,), Fraction(1, 60), 0.9),
-    "chrono-linearized": ((), Fraction(1, 100), 0.0),
-    "drake-sap": ((), Fraction(1, 100), 0.49987),
-    "mujoco": ((Fraction(1, 50), 1, "0.9", "0.9"), Fraction(1, 100), 0.75),
-    "pbd": ((1,), Fraction(1, 60), 0.0),
+DEFAULTS: dict[str, tuple[str, Fraction, float]] = {
+    "box2d": ("Box2D joints: 60 Hz, 2", Fraction(1, 240), 0.746948),  # measured on a compiled Box2D
+    "rapier": ("Rapier joints: 1e6 Hz, 1", Fraction(1, 240), 1 - 0.99992),
+    "jolt": ("Jolt: 0.2, 2 position steps", Fraction(1, 60), 0.64),  # measured
+    "brax-positional": ("Brax positional: 0.5", Fraction(1, 100), math.sqrt(0.5)),
+    "bullet": ("bullet: ERP = 0.2", Fraction(1, 240), 0.8),
+    "chipmunk": ("Chipmunk: errorBias = 0.9^60", Fraction(1, 60), 0.9),
+    "drake-sap": ("Drake SAP: near rigid", Fraction(1, 100), 0.49987),
+    "mujoco": ("MuJoCo: timeconst = 2h", Fraction(1, 500), 0.75),
+    "pbd": ("PBD: stiffness 1", Fraction(1, 60), 0.0),
 }
-"""What an engine does unless told otherwise: its values, a step (s), and |z_p|, known from its source or from a run."""
+"""What an engine does unless told otherwise: its setting, a step (s), and |z_p|, known from its source or a run."""
 
 
 @pytest.mark.parametrize("name", DEFAULTS)
 def test_the_pole_of_an_engines_defaults_is_the_known_one(name: str) -> None:
-    typed, h, z_abs = DEFAULTS[name]
+    label, h, z_abs = DEFAULTS[name]
     engine = ENGINES[name]
-    point = engine.applied(tuple(Fraction(value) for value in typed), h).point
     assert engine.method
-    assert spectral_radius(lookup(engine.method), *map(float, point)) == pytest.approx(z_abs, abs=5e-6)
+    found = spectral_radius(lookup(engine.method), *map(float, engine.marked(h)[label]))
+    assert found == pytest.approx(z_abs, abs=5e-6)
+
+
+@settings(max_examples=20, deadline=None)
+@given(st.floats(0.1, 1e4), st.floats(0.1, 100), st.floats(1e-4, 0.05))
+def test_a_spring_and_damper_as_erp_and_cfm_is_implicit_euler(kp: float, kd: float, h: float) -> None:
+    # ODE's manual: ERP = h kp / (h kp + kd) and CFM = 1 / (h kp + kd) are an implicit spring and damper
+    values = tuple(map(Fraction, (h * kp / (h * kp + kd), 1 / (h * kp + kd), 1.0)))
+    a, b = map(float, ENGINES["ode"].read(Fraction(h), *values))
+    implicit = poles(lookup("implicit-euler"), kd * h, kp * h * h)
+    ours = poles(lookup("SYM"), a, b)
+    assert (ours.sum().real, ours.prod().real) == pytest.approx((implicit.sum().real, implicit.prod().real), rel=1e-9)
 
 
 @pytest.mark.parametrize(("name", "last"), [("bullet", "2"), ("pbd", "4/3"), ("brax-positional", "4/3"), ("jolt", "2")])

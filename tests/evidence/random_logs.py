@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
-from itertools import chain
+from itertools import chain, pairwise
 
 import numpy as np
 
@@ -28,7 +28,6 @@ DIGITS = 9
 LARGEST = 1.0  # m: beyond it a simulator has long stopped
 KICK, SMALL_KICK = 1e-4, 1e-8  # m: the smaller one where it grows
 LASTS = 0.25  # s: of a log of 250 rows
-SPARSE, TINY = 8, 1e-30  # of the motion's points every eighth; of the complex step
 FORMS = ("up and down", "kicked and not", "one run")
 # Andrews's mechanism breaks down at this step; a chain of 40 bodies takes minutes where each step solves equations.
 LEFT_OUT = ("andrews", "n_four_bar")
@@ -99,10 +98,9 @@ def _turning(scene: str) -> float:
     mechanism = _mechanism(scene)
     along = motion(mechanism, LASTS)
     root = np.sqrt(np.array(mechanism.equations.mass, float))
+    jacobians = [constraint_jacobian(mechanism, t, q) / root for t, q in zip(along.t.tolist(), along.q, strict=True)]
     rates = [turning_normals(mechanism, LASTS).largest_norm]
-    for t, q, v in zip(along.t[::SPARSE].tolist(), along.q[::SPARSE], along.v[::SPARSE], strict=True):
-        jacobian = constraint_jacobian(mechanism, t, q) / root
-        ahead = constraint_jacobian(mechanism, t + 1j * TINY, q + 1j * TINY * v)
-        own_units = np.linalg.inv(np.linalg.cholesky(jacobian @ jacobian.T))
-        rates.append(float(np.linalg.norm(own_units @ (ahead.imag / TINY) / root, ord=2)))
+    for (before, after), passed in zip(pairwise(jacobians), np.diff(along.t), strict=True):
+        own_units = np.linalg.inv(np.linalg.cholesky(before @ before.T))
+        rates.append(float(np.linalg.norm(own_units @ (after - before) / passed, ord=2)))
     return max(rates)

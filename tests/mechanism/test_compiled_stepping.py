@@ -40,13 +40,10 @@ def test_runs_are_compiled_where_that_pays_or_is_asked_for(monkeypatch: pytest.M
         runs_compiled(10)
 
 
-def test_without_numba_runs_are_pythons_unless_it_is_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_numba_runs_are_pythons(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
     monkeypatch.delenv(COMPILED_CHOICE, raising=False)
     assert not runs_compiled(10**8)
-    monkeypatch.setenv(COMPILED_CHOICE, "yes")
-    with pytest.raises(InputError, match=r"pip install 'bezstab\[fast\]'"):
-        runs_compiled(10)
 
 
 KEPT_SCENES = """

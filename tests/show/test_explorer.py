@@ -32,7 +32,9 @@ def key(canvas: Any, letter: str) -> None:
 
 def test_moving_shows_poles_decay_and_numbers() -> None:
     explorer, canvas, _ = window("B4")
+    before = bytes(canvas.buffer_rgba())
     mouse(explorer, canvas, "motion_notify_event", 1.2345, 0.3456)
+    assert bytes(canvas.buffer_rgba()) != before
     point = [float(number) for number in explorer.typed]
     assert point == pytest.approx([1.2345, 0.3456], rel=1e-5)
     z = poles(lookup("B4"), *point)
