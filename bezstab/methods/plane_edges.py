@@ -276,14 +276,11 @@ def _limits(
             most = 1 / max(ONE, sign * inside)
             at_end = without_zeros([row[0] for row in in_t])
             roots = list(real_roots(_polynomial(at_end).sqf_part()))
-        elif level in lost[number]:
+        else:
             in_t = [[c * (-sign) ** k for k, c in enumerate(shifted(row, level))] for row in tables[number]]
             most = abs(inside - level)
-            at_end = [row[0] for row in in_t[: len(in_t) - lost[number][level]]]
+            at_end = [row[0] for row in in_t[: len(in_t) - lost[number].get(level, 0)]]
             roots = []
-        else:
-            limits |= dict.fromkeys(((number, k) for k in range(count)), None)
-            continue
         beyond = 1 + max((abs(c / at_end[-1]) for c in at_end[:-1]), default=ZERO)  # Cauchy's bound of the roots
         fences = [-beyond, *(_shortest_between(*pair) for pair in pairwise(roots)), beyond]
         places: list[Limit] = [-inf, *map(float, roots), inf] if roots else [-inf, None, inf]

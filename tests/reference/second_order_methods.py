@@ -3,23 +3,6 @@
 from bezstab.methods import Method, lookup, recipe
 
 RECIPES = {
-    "half": {"x1": "x0 + v0 + 1/2 a0", "vh": "v0 + 1/2 a0", "a1": "acceleration(x1, vh)", "v1": "vh + 1/2 a1"},
-    "predicted": {
-        "x1": "x0 + v0 + 1/2 a0",
-        "vp": "v0 + a0",
-        "a1": "acceleration(x1, vp)",
-        "v1": "v0 + 1/2 a0 + 1/2 a1",
-    },
-    "old": {"x1": "x0 + v0 + 1/2 a0", "a1": "acceleration(x1, v0)", "v1": "v0 + 1/2 a0 + 1/2 a1"},
-    "implicit": {"x1": "x0 + v0 + 1/2 a0", "a1": "acceleration(x1, v1)", "v1": "v0 + 1/2 a0 + 1/2 a1"},
-    "kdk": {
-        "a0": "acceleration(x0, v0)",
-        "vh": "v0 + 1/2 a0",
-        "x1": "x0 + vh",
-        "b1": "acceleration(x1, vh)",
-        "v1": "vh + 1/2 b1",
-    },
-    "imex": {"a1": "acceleration(x0, v1)", "v1": "v0 + a1", "x1": "x0 + v1"},
     "implicit euler": {"a1": "acceleration(x1, v1)", "v1": "v0 + a1", "x1": "x0 + v1"},
     "beeman": {
         "x1": "x0 + v0 + 2/3 a0 - 1/6 a[-1]",
@@ -43,13 +26,6 @@ RECIPES = {
 def second_order(name: str) -> Method:
     """Return one of the recipes as a method."""
     return Method(name, recipe(RECIPES[name]), "")
-
-
-def newmark(by_position: str, rest: str) -> Method:
-    """Return Newmark's method with g = 1/2: the share of the new acceleration in the position, and that of the old."""
-    position = f"x0 + v0 + {rest} a0 + {by_position} a1"
-    equations = {"x1": position, "v1": "v0 + 1/2 a0 + 1/2 a1", "a1": "acceleration(x1, v1)"}
-    return Method(f"newmark {by_position}", recipe(equations), "")
 
 
 def as_second_order(name: str) -> Method:

@@ -21,7 +21,7 @@ from tests.reference.companion_poles import radius
 from tests.reference.least_by_descent import least_within, modulus_of, random_implicit_runge_kutta
 from tests.reference.made_methods import multistep, runge_kutta
 from tests.reference.random_methods import other_random_method
-from tests.reference.second_order_methods import as_second_order, newmark, second_order
+from tests.reference.second_order_methods import as_second_order, second_order
 
 F = Fraction
 KINKS = [f"B{n}" for n in range(3, 13)] + [f"AB{n}" for n in range(3, 9)]
@@ -112,10 +112,10 @@ RK4_ZEROS = np.array([(3.45888846213, 3.78125278982), (0.541111537865, 6.3471027
         (lookup("RK3"), [(3.19214327596, 2.54744467359), (1.40392836202, 3.75922975962)]),
         (lookup("RK4"), RK4_ZEROS),
         (lookup("RK4@5"), RK4_ZEROS / (5, 25)),
-        (second_order("half"), [(1, 1)]),  # z^2 = 0 where 1 - alpha = 0 and alpha + beta = 2
-        (second_order("implicit"), [(2, 2)]),  # alpha = 2, 2 beta = 4
-        (second_order("kdk"), [(2, 2)]),  # (1 - alpha / 2)^2 = 0
-        (newmark("1/4", "1/4"), [(4, 4)]),  # average acceleration
+        (lookup("verlet-half"), [(1, 1)]),  # z^2 = 0 where 1 - alpha = 0 and alpha + beta = 2
+        (lookup("verlet-implicit"), [(2, 2)]),  # alpha = 2, 2 beta = 4
+        (lookup("verlet-kdk"), [(2, 2)]),  # (1 - alpha / 2)^2 = 0
+        (lookup("average-acceleration"), [(4, 4)]),
     ],
     ids=str,
 )
@@ -129,7 +129,7 @@ def test_where_every_pole_is_zero(method: Method, points: list[tuple[float, floa
 def test_multiple_poles_may_be_the_least() -> None:
     """ABM2's are a double root of pi. With the old velocity 2 z^3 + (a + 2b - 4) z^2 + 2 z - a = 2 (z - p)^3 asks for
     3 p^2 = 1, a = 2 p^3, 2 b = 4 - a - 6 p; with the predicted one three meet at a negative place."""
-    of_pi, old, predicted = best(lookup("ABM2")), best(second_order("old")), best(second_order("predicted"))
+    of_pi, old, predicted = best(lookup("ABM2")), best(lookup("verlet-old")), best(lookup("verlet-predicted"))
     assert (of_pi.z_abs, of_pi.alpha_hat, of_pi.beta_hat) == pytest.approx((1 / 3, 4 / 3, 4 / 9), rel=1e-9)
     assert old.z_abs == pytest.approx(P, rel=1e-12)
     assert (old.alpha_hat, old.beta_hat) == pytest.approx((2 * P**3, 2 - P**3 - 3 * P), rel=1e-11)
@@ -193,13 +193,13 @@ def test_some_have_no_best_point_because_the_modulus_falls_on(method: Method) ->
 
 def test_it_may_fall_along_one_ratio_of_both_parameters_alone() -> None:
     """Damping implicit, spring explicit: (1 + a) z^2 - (2 + a - b) z + 1, which tends to z^2 - (1 - b / a) z."""
-    limit = falls_towards(second_order("imex"))
+    limit = falls_towards(lookup("imex-euler"))
     assert limit
     assert (limit.z_abs, limit.direction) == (0, (1, 1))
     assert limit.ratio == pytest.approx(1)
 
 
-@pytest.mark.parametrize("method", [second_order("half"), lookup("trapezoid"), lookup("generalized-alpha")], ids=str)
+@pytest.mark.parametrize("method", [lookup("verlet-half"), lookup("trapezoid"), lookup("generalized-alpha")], ids=str)
 def test_what_has_a_best_point_falls_towards_nothing_less(method: Method) -> None:
     assert falls_towards(method) is None
     angle = np.linspace(0, np.pi / 2, 201)

@@ -5,12 +5,17 @@ import numpy as np
 import pytest
 
 from bezstab.errors import NumericalError
-from bezstab.methods import Method, closed_loop_at
+from bezstab.methods import Method, closed_loop_at, lookup
 from bezstab.stability import dominant_pole, poles, spectral_radius, verdict
 from tests.reference.companion_poles import eigenvalues
 from tests.reference.second_order_methods import RECIPES, as_second_order, second_order
 
-METHODS = [second_order(name) for name in RECIPES] + [as_second_order(name) for name in ("SYM", "B2", "RK4", "AB3")]
+METHODS = [
+    *map(second_order, RECIPES),
+    *map(lookup, ("verlet-half", "verlet-predicted", "verlet-old", "verlet-implicit", "verlet-kdk", "imex-euler")),
+    lookup("SYM"),
+    *map(as_second_order, ("B2", "RK4", "AB3")),
+]
 
 
 @pytest.mark.parametrize("method", METHODS, ids=str)
@@ -25,7 +30,7 @@ def test_poles_are_eigenvalues_of_the_companion(method: Method) -> None:
 
 
 @pytest.mark.parametrize("method", METHODS, ids=str)
-@pytest.mark.slow_except("Method(name='SYM", "Method(name='kdk", "Method(name='half", "Method(name='implicit")
+@pytest.mark.slow_except("='SYM", "='verlet-kdk", "='verlet-half", "='verlet-implicit")
 def test_dominant_poles_are_right_to_fifty_digits_but_for_their_condition(method: Method) -> None:
     generator = np.random.default_rng(5)
     for alpha_hat, beta_hat in generator.uniform(0.01, 2, (25, 2)):
@@ -43,7 +48,7 @@ def test_dominant_poles_are_right_to_fifty_digits_but_for_their_condition(method
 
 def test_where_two_poles_meet_no_digits_are_lost() -> None:
     # the half-step recipe is SYM: (alpha + beta - 2)^2 = 4 (1 - alpha); one digit of alpha more parts the poles by 1e-8
-    method = second_order("half")
+    method = lookup("verlet-half")
     alpha_hat = Fraction(3, 4)
     z = poles(method, 0.75, 0.25)  # (1 - 2)^2 = 4 / 4
     assert np.abs(z - 0.5).max() == 0
@@ -53,4 +58,4 @@ def test_where_two_poles_meet_no_digits_are_lost() -> None:
 def test_the_place_is_named_where_a_pole_leaves_the_range() -> None:
     alpha_hat, beta_hat = np.array([0.5, 1e308, 0.25]), np.array([0.1, 1.5e308, 0.3])
     with pytest.raises(NumericalError, match=r"alpha_hat = 1e\+308, beta_hat = 1.5e\+308 a pole leaves the range"):
-        poles(second_order("old"), alpha_hat, beta_hat)
+        poles(lookup("verlet-old"), alpha_hat, beta_hat)
