@@ -3,7 +3,6 @@
 from fractions import Fraction
 
 from bezstab.engines.conversions import (
-    NO_FEEDBACK,
     Applied,
     Curve,
     Engine,
@@ -12,7 +11,7 @@ from bezstab.engines.conversions import (
     in_words,
 )
 from bezstab.errors import InputError
-from bezstab.rationals import ONE
+from bezstab.rationals import ONE, ZERO
 from bezstab.units import feedback_gains, from_dimensionless, from_feedback_gains, to_dimensionless
 
 
@@ -240,7 +239,7 @@ CHRONO_EXPLICIT = Engine(
     method=None,
     parameters=(),
     units=(),
-    read=lambda h: NO_FEEDBACK,
+    read=lambda h: (ZERO, ZERO),
     write=lambda point, h: (),
     reaches="(0, 0), as it has no stabilisation",
     source="Chrono source, ChIntegrable.cpp (StateSolveA: c'' = 0 by differences), ChTimestepperExplicit.cpp",

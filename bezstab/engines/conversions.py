@@ -7,15 +7,13 @@ from typing import Any, Literal
 
 from bezstab.engines.sweeping import Sweeping
 from bezstab.errors import InputError
-from bezstab.rationals import ZERO, rational, within_float64
+from bezstab.rationals import rational, within_float64
 from bezstab.units import feedback_gains
 
 Level = Literal["acceleration", "velocity", "position"]
 
 Point = tuple[Fraction, Fraction]
 """alpha_hat and beta_hat."""
-
-NO_FEEDBACK: Point = (ZERO, ZERO)
 
 READ_BACK = 1e-7
 """Of a point, and beside one: what is read of the nine digits that are pasted differs by less from what was asked."""

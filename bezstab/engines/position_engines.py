@@ -33,9 +33,6 @@ def _write_share(point: Point, h: Fraction) -> tuple[str, ...]:
 # Box2D up to version 2.4: velocities are swept without error, then each sweep over positions takes back all of it
 
 
-BOX2D_V2_POSITION_SWEEPS = 3
-
-
 BOX2D_V2 = engine_without_parameters(
     (ONE, ONE),
     name="box2d-v2",
@@ -43,9 +40,7 @@ BOX2D_V2 = engine_without_parameters(
     source="Box2D 2.4 source, b2_revolute_joint.cpp (SolvePositionConstraints), b2_island.cpp",
     excludes="joints; contacts take back a fifth; errors within the slop of 5 mm, which end the sweeps; joint springs",
     sweeping=Sweeping(
-        lambda iterations, h: SweptStep(
-            1.0, (Pass("velocity", iterations), Move(), Pass("position", BOX2D_V2_POSITION_SWEEPS, 1.0))
-        ),
+        lambda iterations, h: SweptStep(1.0, (Pass("velocity", iterations), Move(), Pass("position", 3, 1.0))),
         iterations=8,
         word="velocityIterations",
         source="Box2D 2.4 source, b2_island.cpp, b2_revolute_joint.cpp; its testbed's 8 velocity and 3 position sweeps",

@@ -30,7 +30,6 @@ from bezstab.errors import InputError
 from bezstab.rationals import ONE, ZERO
 from bezstab.units import from_feedback_gains
 
-ONLY_HARD = "α̂ = 1"
 STIFFEST = 0.999
 """The alpha_hat that soft constraints are chosen with: rigid but for a thousandth; beyond, their words are huge."""
 
@@ -52,7 +51,7 @@ def _engine_with_erp(name: str, default: str, word: str = "ERP", **facts: Any) -
         units=("-",),
         read=lambda h, erp: (ONE, erp),
         write=lambda point, h: (in_words(float(point[1])),),
-        reaches=ONLY_HARD,
+        reaches="α̂ = 1",
         marks=((f"{name}: {word} = {default}", default),),
         curve=hard,
         **facts,

@@ -108,24 +108,19 @@ def _condition(table: Sequence[Sequence[mp.mpf]], mu: mp.mpc, z: mp.mpc) -> mp.m
 def different_roots(polynomial: Sequence[mp.mpf], starts: Sequence[mp.mpc], count: int) -> list[mp.mpc]:
     """Return the different roots to which Newton's method leads from the starts; NumericalError if fewer than `count`.
 
-    The polynomial's coefficients stand in descending powers.
+    The polynomial's coefficients stand in descending powers. A start that is too far away leads nowhere.
     """
     roots: list[mp.mpc] = []
     for start in starts:
-        root = _polished(polynomial, start)
-        if root is not None and all(abs(root - other) > SAME * abs(other) for other in roots):
-            roots.append(root)
+        z = start
+        for _ in range(DIGITS * 4):  # quadratic, but linear on the way out of a cluster
+            value, slope = mp.polyval(polynomial, z, derivative=True)
+            step = value / (slope or mp.mpc(1, 1))  # a start on a saddle is moved off it
+            z -= step
+            if abs(step) <= mp.mpf(10) ** (10 - DIGITS) * abs(z):
+                if all(abs(z - other) > SAME * abs(other) for other in roots):
+                    roots.append(z)
+                break
     if len(roots) < count:
         raise NumericalError(f"only {len(roots)} of {count} roots were found")
     return roots
-
-
-def _polished(polynomial: Sequence[mp.mpf], z: mp.mpc) -> mp.mpc | None:
-    """Return the root that Newton's method reaches from z, at the precision in force; None from too far away."""
-    for _ in range(DIGITS * 4):  # quadratic, but linear on the way out of a cluster
-        value, slope = mp.polyval(polynomial, z, derivative=True)
-        step = value / (slope or mp.mpc(1, 1))  # a start on a saddle is moved off it
-        z -= step
-        if abs(step) <= mp.mpf(10) ** (10 - DIGITS) * abs(z):
-            return z
-    return None
