@@ -194,11 +194,12 @@ def _step(name: str, times: float) -> Check:
     with_kick, without = (constraint_errors(mechanism, 0.0, run.q[end].tolist()) for run in (kicked, calm))
     left = float(np.abs(with_kick - without).max())
     seen = kicked.failure or f"what the kick of {KICK:g} m changes in c: {left:.0e} m"
-    case = f"{name}, {times:g} of the largest"
     if times < 1:
-        return Check("steps", case, "the kick's effect on c falls below a hundredth", seen, left < KICK / 100)
-    held = kicked.failure is not None or left > 100 * KICK
-    return Check("steps", case, "it grows a hundredfold, or failure reported", seen, held)
+        expected, held = "the kick's effect on c falls below a hundredth", left < KICK / 100
+    else:
+        expected = "it grows a hundredfold, or failure reported"
+        held = kicked.failure is not None or left > 100 * KICK
+    return Check("steps", f"{name}, {times:g} of the largest", expected, seen, held)
 
 
 def _passage(h: float) -> Check:
@@ -252,8 +253,8 @@ def _masses(ratio: float) -> Check:
     q, v = initial_state(mechanism)
     seen = observe(mechanism, np.zeros(1), q[np.newaxis], v[np.newaxis], *gains).multipliers[0]
     with mp.workdps(DIGITS):
-        precise = [list(map(mp.mpf, each)) for each in (gains, q.tolist(), v.tolist())]
-        found = state_function(mechanism, "observations", mp.mp)([mp.mpf(0), *precise[0], *precise[1], *precise[2]])
+        precise = list(map(mp.mpf, (0, *gains, *q.tolist(), *v.tolist())))
+        found = state_function(mechanism, "observations", mp.mp)(precise)
         exact = found[2 * m : 3 * m]
         error = max(abs(a - b) for a, b in zip(seen.tolist(), exact, strict=True))
         digits = float(-mp.log10(error / max(map(abs, exact)) + mp.mpf(10) ** -17))

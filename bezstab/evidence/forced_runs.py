@@ -215,18 +215,14 @@ def _errors_along(
 
 def _derivative(along: Motion, power: int, h: float) -> FloatArray:
     """Return q^(power) along a motion, its last time left out: SI units, shape (times, n)."""
-    fading = np.ones(len(along.t) - 1) if along.closed else _fading(len(along.t) - 1)
-    omega = 2 * np.pi * np.fft.fftfreq(len(along.t) - 1, along.t[1])
+    count = len(along.t) - 1
+    from_an_end = np.minimum(np.arange(count), np.arange(count)[::-1])
+    fading = np.ones(count) if along.closed else _rising(from_an_end / (FADED * count))
+    omega = 2 * np.pi * np.fft.fftfreq(count, along.t[1])
     followed = _rising((1 - np.abs(omega * h) / LARGEST_OMEGA_H) / FADED)  # beyond, derivatives are noise
     spectrum = np.fft.fft(along.a[:-1] * fading[:, np.newaxis], axis=0)
     factors = followed * (1j * omega) ** (power - 2)
     return np.fft.ifft(spectrum * factors[:, np.newaxis], axis=0).real
-
-
-def _fading(count: int) -> FloatArray:
-    """Return factors that rise from zero to one at the start of a stretch, and fall at its end."""
-    from_an_end = np.minimum(np.arange(count), np.arange(count)[::-1])
-    return _rising(from_an_end / (FADED * count))
 
 
 def _rising(x: FloatArray) -> FloatArray:

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from bezstab.evidence.exact_rates import OwnMotions
 from bezstab.evidence.kicks import kicked_states, steps_before_a_kick
-from bezstab.stability import BoolArray, FloatArray
+from bezstab.stability import FloatArray
 
 KICK_OF_GROWTH, KICK_OF_DECAY = 1e-9, 1e-4  # m, rad: up and down together only cubic terms are left, of about 1e-8
 LARGEST, SMALLEST = 1e-3, 1e-9  # m, rad: a difference that is linear, and one that is a million times its rounding
@@ -39,27 +39,18 @@ def rates_of_kicked_revolutions(motions: OwnMotions) -> FloatArray:
     known = 1 + steps_before_a_kick(stepped.method)
     if known > stepped.steps or not there.size:
         return rates
-    following = np.full(there.size, True)
     with np.errstate(all="ignore"):  # of runs that run into infinity
-        for before, after in pairwise(_differences(motions, there, known)):
-            following &= _in_range(before) & _in_range(after)
-            if not following.any():
+        differences = np.array(list(_differences(motions, there, known)))
+    for point, of_point in zip(there, differences.swapaxes(0, 1), strict=True):
+        for before, after in pairwise(of_point):
+            largest = np.abs([before, after]).max(axis=(1, 2))
+            if not ((largest > SMALLEST) & (largest < LARGEST)).all():
                 break
-            multipliers = _largest_multipliers(before[following], after[following])
-            rates[there[following]] = multipliers ** (1 / stepped.steps)
+            # A in after = A before, on what of `before` stands out of its rounding
+            lost = DIRECTION / np.linalg.norm(before, 2)
+            multiplier = np.abs(np.linalg.eigvals(after @ np.linalg.pinv(before, lost))).max()
+            rates[point] = multiplier ** (1 / stepped.steps)
     return rates
-
-
-def _in_range(differences: FloatArray) -> BoolArray:
-    """Return at which points differences are linear and above their rounding; shape (points,)."""
-    largest = np.abs(differences).max(axis=(1, 2))
-    return np.asarray((largest > SMALLEST) & (largest < LARGEST))
-
-
-def _largest_multipliers(before: FloatArray, after: FloatArray) -> FloatArray:
-    """Return the largest |eigenvalue| of A in after = A before, on what of `before` stands out of its rounding."""
-    lost = DIRECTION / np.linalg.norm(before, 2, axis=(1, 2))
-    return np.asarray(np.abs(np.linalg.eigvals(after @ np.linalg.pinv(before, lost))).max(axis=1))
 
 
 def _differences(motions: OwnMotions, there: NDArray[np.intp], known: int) -> Iterator[FloatArray]:

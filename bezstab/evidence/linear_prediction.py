@@ -193,12 +193,10 @@ def fit_window(samples: FloatArray, order: int, start: int = 0) -> Fit | None:
 def _formal_error(before: FloatArray, left_over: FloatArray, coefficients: FloatArray, pole: complex) -> float:
     """Return the standard error of a root of z^p - c_(p-1) z^(p-1) - ... - c_0 if what least squares left is noise.
 
-    A change dc of the coefficients moves a root by sum_j dc_j z^j / p'(z); infinite at a double root.
+    A change dc of the coefficients moves a root by sum_j dc_j z^j / p'(z).
     """
     terms = len(coefficients)
     slope = np.polyval(np.polyder(np.array([1.0, *-coefficients[::-1]])), pole)
-    if slope == 0:
-        return float("inf")
     deviation = np.linalg.norm(left_over) / np.sqrt(len(left_over) - terms)
     response = (pole ** np.arange(terms) / slope) @ np.linalg.pinv(before)
     return float(deviation * np.linalg.norm(response))

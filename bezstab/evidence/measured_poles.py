@@ -149,29 +149,24 @@ def measurement_summary(measurements: Sequence[Measurement]) -> MeasurementSumma
     errors = [abs(each.difference_abs) for each in measurements if each.difference_abs is not None]
     agreements = [each.verdicts_agree for each in measurements]
     followed = [each for each in measurements if math.isfinite(each.measured_rate)]
-    shown = np.array([each.measured_rate for each in followed])
+    shown = np.array([[each.measured_rate] for each in followed])
     rates = np.array([(abs(each.predicted), each.moving.z_abs_moving, each.floquet_abs) for each in followed])
-    predicted = rates.reshape(-1, 3).T
-    map_error, law_error, floquet_error = (_median(np.abs(each - shown).tolist()) for each in predicted)
-    wrong_sides = [str(((each > 1) != (shown > 1)).sum()) for each in predicted]
+    off = np.median(np.abs(rates - shown), axis=0).tolist() if followed else [None] * 3
+    wrong_sides = ((rates > 1) != (shown > 1)).sum(axis=0).tolist() if followed else []
     return MeasurementSummary(
         method=measurements[0].method,
         points=len(measurements),
         measured=len(errors),
-        median_error=_median(errors),
+        median_error=median(errors) if errors else None,
         largest_error=max(errors, default=None),
         called=sum(agree is not None for agree in agreements),
         wrong=sum(agree is False for agree in agreements),
         followed=len(followed),
-        map_error=map_error,
-        law_error=law_error,
-        floquet_error=floquet_error,
-        wrong_sides=", ".join(wrong_sides) if followed else "",
+        map_error=off[0],
+        law_error=off[1],
+        floquet_error=off[2],
+        wrong_sides=", ".join(map(str, wrong_sides)),
     )
-
-
-def _median(values: Sequence[float]) -> float | None:
-    return median(values) if values else None
 
 
 def random_points(method: Method, count: int) -> tuple[FloatArray, FloatArray]:

@@ -25,7 +25,7 @@ from bezstab.stability import BoolArray, ComplexArray, FloatArray, bisected
 LAW_HOLDS = 0.1  # rad, kappa h: at twice that terms beside chi, too, have been seen to turn 0.94 into 1.05
 
 LARGEST_CHI = 32.0  # of the table: ten times what is seen on a boundary; further out the law does not hold at any speed
-RADII, ANGLES = 101, 61
+RADII, ANGLES = LARGEST_CHI * np.linspace(0, 1, 101) ** 2, np.linspace(0, np.pi, 61)  # of the table: half the circle
 AT_A_TIME = 1024  # chi whose Y stay in a core's cache through all steps, and points with the distances of their poles
 
 Value = TypeVar("Value", bound=np.generic)
@@ -115,47 +115,37 @@ def _growth_rates_of_row(turning: TurningNormals, chi: ComplexArray) -> FloatArr
     return beyond * (np.log([multiplied, sure]) + log_scale) / turning.duration
 
 
-class _GrowthTable:
-    """Lambda (1/s) at |chi| = `radii` and arg chi = `angles`, over half the circle, of one motion.
+@cache
+def _growth_table(turning: TurningNormals) -> FloatArray:
+    """Return the table of one motion, of shape (RADII, ANGLES), which `growth_between` fills as it is asked.
 
-    A search asks for few entries, and each takes long where there are many constraints: it is filled as it is asked.
+    A search asks for few entries, and each takes long where there are many constraints. Others are not numbers.
     """
-
-    def __init__(self, turning: TurningNormals) -> None:
-        self.turning = turning
-        self.radii = LARGEST_CHI * np.linspace(0, 1, RADII) ** 2
-        self.angles = np.linspace(0, np.pi, ANGLES)
-        self.rates = np.full((RADII, ANGLES), np.nan)  # not a number: not asked for yet
-
-    def between(self, chi: ComplexArray) -> FloatArray:
-        """Return `growth_rates` for very many chi, between the entries of the table; shape of chi, a row.
-
-        Lambda depends on the motion and chi alone, is the same at conjugates, and grows in proportion far out. Linear
-        between neighbours, which are 2 % apart in |chi| and 3 degrees in angle: good to about 1e-3 of Lambda, where the
-        law itself leaves out terms of |chi| kappa h.
-        """
-        radius = np.abs(chi)
-        beyond = np.maximum(1, radius / LARGEST_CHI)
-        row = np.interp(radius / beyond, self.radii, np.arange(RADII))
-        column = np.interp(np.abs(np.angle(chi)), self.angles, np.arange(ANGLES))
-        i, k = np.minimum(row.astype(int), RADII - 2), np.minimum(column.astype(int), ANGLES - 2)
-        u, v = row - i, column - k
-        corners = np.array([[i, i, i + 1, i + 1], [k, k + 1, k, k + 1]])
-        shares = np.array([(1 - u) * (1 - v), (1 - u) * v, u * (1 - v), u * v])
-        return np.asarray(beyond * (shares * self._entries(*corners)).sum(axis=0))
-
-    def _entries(self, i: NDArray[np.intp], k: NDArray[np.intp]) -> FloatArray:
-        """Return the entries of radii i and angles k, of one shape."""
-        wanted = np.zeros(self.rates.shape, bool)
-        wanted[i, k] = True
-        rows, columns = np.nonzero(wanted & np.isnan(self.rates))
-        if rows.size:
-            chi = self.radii[rows] * np.exp(1j * self.angles[columns])
-            self.rates[rows, columns], _ = growth_rates(self.turning, chi)
-        return self.rates[i, k]
+    return np.full((RADII.size, ANGLES.size), np.nan)
 
 
-_growth_table = cache(_GrowthTable)
+def growth_between(turning: TurningNormals, chi: ComplexArray) -> FloatArray:
+    """Return Lambda (1/s) for very many chi, between the entries of a table; shape of chi, a row.
+
+    Lambda depends on the motion and chi alone, is the same at conjugates, and grows in proportion far out. Linear
+    between neighbours, which are 2 % apart in |chi| and 3 degrees in angle: good to about 1e-3 of Lambda, where the
+    law itself leaves out terms of |chi| kappa h.
+    """
+    radius = np.abs(chi)
+    beyond = np.maximum(1, radius / LARGEST_CHI)
+    row = np.interp(radius / beyond, RADII, np.arange(RADII.size))
+    column = np.interp(np.abs(np.angle(chi)), ANGLES, np.arange(ANGLES.size))
+    i, k = np.minimum(row.astype(int), RADII.size - 2), np.minimum(column.astype(int), ANGLES.size - 2)
+    u, v = row - i, column - k
+    corners = np.array([i, i, i + 1, i + 1]), np.array([k, k + 1, k, k + 1])
+    shares = np.array([(1 - u) * (1 - v), (1 - u) * v, u * (1 - v), u * v])
+    table = _growth_table(turning)
+    wanted = np.zeros(table.shape, bool)
+    wanted[corners] = True
+    missing = wanted & np.isnan(table)
+    if missing.any():
+        table[missing], _ = growth_rates(turning, np.multiply.outer(RADII, np.exp(1j * ANGLES))[missing])
+    return np.asarray(beyond * (shares * table[corners]).sum(axis=0))
 
 
 def momentary_rates(turning: TurningNormals, chi: ComplexArray) -> FloatArray:
@@ -254,7 +244,7 @@ def first_order_law(
     growth, sure = np.where(counts, 0.0, -np.inf), np.full(z.shape, -np.inf)
     if tabulated:
         matters = known & (np.abs(at_rest) < np.abs(np.where(known, chi, 0)) * turning.largest_norm * step)
-        growth[matters] = step * _growth_table(turning).between(chi[matters])
+        growth[matters] = step * growth_between(turning, chi[matters])
     else:
         growth[known], sure[known] = step * np.array(growth_rates(turning, chi[known]))
     return Law(nearest, turned, at_rest, chi, counts, known, growth, sure)

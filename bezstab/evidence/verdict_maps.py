@@ -141,6 +141,17 @@ def simulated_verdicts(rows: MapRows) -> dict[str, NDArray[Any]]:
     """
     alpha_grid, beta_grid = np.meshgrid(rows.alpha_hat, rows.beta_hat)
     alpha_hat, beta_hat = alpha_grid.ravel(), beta_grid.ravel()
+    diverges, undecided = _simulated(rows, alpha_hat, beta_hat)
+    z_abs = np.abs(np.concatenate(list(pole_map(rows.method, rows.alpha_hat, rows.beta_hat))))
+    nearest = nearest_poles(rows.method, alpha_hat, beta_hat)
+    with np.errstate(invalid="ignore"):  # zero times infinite: nothing is known
+        furthest = (np.abs(nearest.z) + np.abs(nearest.shift) * _turning_of_a_step(rows)).max(axis=1)
+    found = {"diverges": diverges, "undecided": undecided, "moved": furthest - z_abs.ravel(), "z_abs": z_abs}
+    return {name: values.reshape(alpha_grid.shape) for name, values in found.items()}
+
+
+def _simulated(rows: MapRows, alpha_hat: FloatArray, beta_hat: FloatArray) -> tuple[BoolArray, BoolArray]:
+    """Return where runs diverge, and where they give no verdict; shape (points,) each."""
     mechanism, method, h = compiled_mechanism(rows.scene), rows.method, rows.h
     masses = np.array(mechanism.equations.mass, float)
     sizes, errors, distances = [], [], []
@@ -151,13 +162,7 @@ def simulated_verdicts(rows: MapRows) -> dict[str, NDArray[Any]]:
             distances.append(np.sqrt(np.einsum("i,kip->kp", masses, (q[:, :, 0, 0] - q[:, :, 1, 0]) ** 2)))
         size, error, distance = (np.concatenate(each) for each in (sizes, errors, distances))
         apart = thrown_apart(mechanism, method, h, size)
-        diverges, undecided = fates(size, error, distance / distance[0], apart)
-    z_abs = np.abs(np.concatenate(list(pole_map(method, rows.alpha_hat, rows.beta_hat))))
-    nearest = nearest_poles(method, alpha_hat, beta_hat)
-    with np.errstate(invalid="ignore"):  # zero times infinite: nothing is known
-        furthest = (np.abs(nearest.z) + np.abs(nearest.shift) * _turning_of_a_step(rows)).max(axis=1)
-    found = {"diverges": diverges, "undecided": undecided, "moved": furthest - z_abs.ravel(), "z_abs": z_abs}
-    return {name: values.reshape(alpha_grid.shape) for name, values in found.items()}
+        return fates(size, error, distance / distance[0], apart)
 
 
 def verdict_map(chunks: Sequence[MapRows], found: Sequence[Mapping[str, NDArray[Any]]]) -> VerdictMap:

@@ -126,7 +126,7 @@ def region_row(answer: RegionAnswer) -> Row:
     no edge attains, only comes near far out. NumericalError where a pole leaves the range of float64.
     """
     region, inside = answer.region, answer.inside
-    reason = None if inside else f"not known: {answer.trouble}" if answer.trouble else _nowhere(answer)
+    reason = None if inside else _nowhere(answer)
     where = best_point_words(inside) if inside else reason
     only_near = [near for ends in region.approached for near in ends]
     approached = ", ".join(key for key, near in zip(LIMITS, only_near, strict=True) if near) or None
@@ -148,9 +148,11 @@ def map_rows(answer: MapAnswer) -> list[Row]:
 
 
 def _nowhere(answer: RegionAnswer) -> str | None:
-    """Return why there is no best point in a region: |z_p| is not that small, falls on, or a pole cannot be moved."""
+    """Return why a region has no best point: not known, |z_p| is not so small, falls on, or a pole cannot be moved."""
     from bezstab.stability import pole_place
 
+    if answer.trouble:
+        return f"not known: {answer.trouble}"
     if answer.best:
         return f"none: |z_p| is {answer.best.z_abs:.6g} at least"
     if answer.falls_towards is not None:

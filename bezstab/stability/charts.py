@@ -112,9 +112,7 @@ def plane_chart(pencil: PlanePencil, view: Extent, curves: Sequence[FloatArray],
         return np.asarray(polyval2d(points[..., 0], points[..., 1], np.moveaxis(pencil.table, 0, -1)))
 
     def modulus(points: FloatArray) -> FloatArray:
-        alpha_hat, beta_hat = points.reshape(-1, 2).T
-        z = pencil.largest_poles(alpha_hat, beta_hat, (1, alpha_hat.size))
-        return np.abs(z).reshape(points.shape[:-1])
+        return np.abs(pencil.largest_poles(points[..., 0], points[..., 1]))
 
     return Chart(
         name=pencil.method.name,

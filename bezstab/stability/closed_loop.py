@@ -1,8 +1,8 @@
 """Closed-loop poles over any broadcastable alpha_hat and beta_hat, and the proven verdict at one exact point."""
 
+from collections.abc import Iterator
 from fractions import Fraction
 from functools import lru_cache
-from itertools import product
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -16,12 +16,13 @@ from bezstab.methods import (
     recursion_verdict,
 )
 from bezstab.stability.arrays import EPS, ComplexArray, FloatArray, plane_arrays
-from bezstab.stability.neighbourhoods import SIDE
 from bezstab.stability.pencils import Pencil, pencil_of
 from bezstab.stability.root_finding import CHUNK
 
-BLOCK = 16 * CHUNK  # points whose poles are followed in one go: enough to outweigh the calls for their middles,
-POLES = 7  # each of so many poles; of more poles as many fewer points, so that work arrays stay below 50 MB
+BLOCK = 16 * CHUNK  # points whose poles are followed in one go: their work arrays stay below 50 MB
+
+QUALITY = {"fast": 50, "balanced": 200, "fine": 1000}
+"""Points per axis of a map (tests/bench/test_map_costs.py): B4's boundary is read off to 1e-4, 4e-6, 2e-7."""
 
 
 def verdict(method: Method, alpha_hat: Fraction, beta_hat: Fraction) -> Verdict:
@@ -86,20 +87,28 @@ def spectral_radius(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike) -
     return largest_modulus(pencil_of(method), alpha_hat, beta_hat)
 
 
+def pole_map(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray) -> Iterator[ComplexArray]:
+    """Yield the dominant pole over the grid of two axes, a block of rows (constant beta_hat) at a time.
+
+    So a progress bar and an interrupt have something to hold on. Stacked, the blocks have shape (beta_hat.size,
+    alpha_hat.size); dimensionless. NumericalError if a root of paper Eq. 17 leaves the range of float64.
+    """
+    pencil = pencil_of(method)
+    rows = max(1, BLOCK // alpha_hat.size)
+    for start in range(0, beta_hat.size, rows):
+        yield largest_pole(pencil, alpha_hat, beta_hat[start : start + rows, np.newaxis])
+
+
 def largest_pole(pencil: Pencil, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> ComplexArray:
     """Return what dominant_pole does, from a pencil; infinite where an implicit step has no solution."""
     alpha_hat, beta_hat = plane_arrays(alpha_hat, beta_hat)
-    alphas, betas = (each if each.ndim == 2 else each.reshape(1, -1) for each in (alpha_hat, beta_hat))
-    dominant = np.empty(alphas.shape, complex)
-    most = BLOCK * POLES // max(POLES, pencil.degree)
-    columns = max(1, min(most, alphas.shape[1]))
-    rows = max(1, most // columns // SIDE * SIDE)
-    for i, j in product(range(0, alphas.shape[0], rows), range(0, alphas.shape[1], columns)):
-        tile = np.s_[i : i + rows, j : j + columns]
-        height, width = alphas[tile].shape
-        found = pencil.largest_poles(alphas[tile].ravel(), betas[tile].ravel(), (height, width))
-        dominant[tile] = found.reshape(height, width)
-    return _without_rounding(dominant).reshape(alpha_hat.shape)
+    alphas, betas = (each if each.ndim == 2 else each.reshape(-1, 1) for each in (alpha_hat, beta_hat))
+    z = np.empty(alphas.shape, complex)
+    rows = max(1, BLOCK // max(1, alphas.shape[1]))
+    for start in range(0, len(z), rows):
+        some = slice(start, start + rows)
+        z[some] = pencil.largest_poles(alphas[some], betas[some])
+    return _without_rounding(z).reshape(alpha_hat.shape)
 
 
 def largest_modulus(pencil: Pencil, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> FloatArray:

@@ -3,7 +3,7 @@
 pi(z, mu) is the polynomial of one step on y' = lambda y, mu = h lambda. At the two roots mu of the feedback its roots z
 are the poles. Compared with the roots of P that halves the degree, needs one solve where the mu are conjugate, and
 keeps all digits on beta_hat = alpha_hat^2/4, where the roots of P pair up. On grids the largest pole is the largest
-root of P all the same, followed among neighbours (real_factors), but for explicit one-step methods, whose R(mu) is
+root of P all the same, followed over the grid (real_factors), but for explicit one-step methods, whose R(mu) is
 known, and next to beta_hat = alpha_hat^2/4.
 """
 
@@ -19,9 +19,9 @@ from bezstab.methods import Method
 from bezstab.stability.arrays import DOUBLE, EPS, SAME, BoolArray, ComplexArray, FloatArray
 from bezstab.stability.exact_sums import feedback_roots
 from bezstab.stability.low_degrees import largest_quadratic_root, polynomial_of_pair
-from bezstab.stability.neighbourhoods import FEWEST
 from bezstab.stability.plane_pencils import CANCELS, PlanePencil, out_of_range
-from bezstab.stability.root_finding import CHUNK, horner, inside_circle, roots_of_table
+from bezstab.stability.real_factors import FEWEST
+from bezstab.stability.root_finding import horner, in_chunks, inside_circle, roots_of_table
 
 Mu = NDArray[np.inexact] | complex
 """Complex or real, one or many."""
@@ -101,23 +101,23 @@ class MuPencil:
         within[real] = all_inside(self, second[real], level)
         return within
 
-    def largest_poles(self, alpha_hat: FloatArray, beta_hat: FloatArray, shape: tuple[int, int]) -> ComplexArray:
-        """Return the pole of largest modulus, Im >= 0, at each point of a grid of a shape, row by row; in a row.
+    def largest_poles(self, alpha_hat: FloatArray, beta_hat: FloatArray) -> ComplexArray:
+        """Return the pole of largest modulus, Im >= 0, at points of a grid or along a line; their shape.
 
         Infinite where an implicit step has no solution. NumericalError if a finite pole leaves the range of float64.
         """
         explicit_one_step = self.steps == 1 and not self.implicit
         if alpha_hat.size < FEWEST or (self.degree > MOST_FOLLOWED and not explicit_one_step):
-            return self._largest_by_mu(alpha_hat, beta_hat)
+            return in_chunks(self._largest_by_mu, alpha_hat, beta_hat)
         with np.errstate(all="ignore"):
             if explicit_one_step:
-                z = self._larger_of_two(alpha_hat, beta_hat)
+                z = in_chunks(self._larger_of_two, alpha_hat, beta_hat)
             else:
-                z = self.plane.followed_poles(alpha_hat, beta_hat, shape)
+                z = self.plane.followed_poles(alpha_hat, beta_hat)
             square = alpha_hat * alpha_hat / 4
             kept = np.abs(square - beta_hat) > CANCELS * square  # else P's roots have less than 12 digits
-        rest = np.flatnonzero(~(kept & np.isfinite(z)))
-        z[rest] = self._largest_by_mu(alpha_hat[rest], beta_hat[rest])
+        rest = ~(kept & np.isfinite(z))
+        z[rest] = in_chunks(self._largest_by_mu, alpha_hat[rest], beta_hat[rest])
         return z
 
     def _larger_of_two(self, alpha_hat: FloatArray, beta_hat: FloatArray) -> ComplexArray:
@@ -127,13 +127,8 @@ class MuPencil:
         """
         in_mu = -self.table[0] / self.table[1, 0]
         stability_function = (in_mu * self.multiple ** np.arange(in_mu.size)).tolist()  # of the user's mu
-        z = np.empty(alpha_hat.size, complex)
-        for start in range(0, alpha_hat.size, CHUNK):
-            chunk = slice(start, start + CHUNK)
-            alphas, betas = alpha_hat[chunk], beta_hat[chunk]
-            middle, factor = polynomial_of_pair(stability_function, alphas, betas)
-            z[chunk] = largest_quadratic_root(-middle, factor * factor * (alphas * alphas / 4 - betas))
-        return z
+        middle, factor = polynomial_of_pair(stability_function, alpha_hat, beta_hat)
+        return largest_quadratic_root(-middle, factor * factor * (alpha_hat * alpha_hat / 4 - beta_hat))
 
     def _largest_by_mu(self, alpha_hat: FloatArray, beta_hat: FloatArray) -> ComplexArray:
         """Return the dominant pole, Im >= 0, of each point of a row: of all roots of pi at both mu.
@@ -141,10 +136,10 @@ class MuPencil:
         Conjugate mu have conjugate poles, so one of the two is enough; of two real mu both are looked at.
         """
         first_mu, second_mu = self.feedback_roots(alpha_hat, beta_hat)
-        some = np.flatnonzero(first_mu.imag == 0)
-        both = largest_root_in_z(self, np.concatenate([first_mu, second_mu[some]]))
-        found, others = both[: first_mu.size], both[first_mu.size :]
-        found[some] = np.where(np.abs(others) > np.abs(found[some]), others, found[some])
+        found = largest_root_in_z(self, first_mu)
+        real = first_mu.imag == 0
+        others = largest_root_in_z(self, second_mu[real])
+        found[real] = np.where(np.abs(others) > np.abs(found[real]), others, found[real])
         found.imag = np.abs(found.imag)
         return found
 

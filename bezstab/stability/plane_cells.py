@@ -27,10 +27,11 @@ from bezstab.rationals import exact
 from bezstab.stability.arrays import DOUBLE, ROUNDING, SAME, ComplexArray, Extent, FloatArray
 from bezstab.stability.exact_sums import double_polynomial, split
 from bezstab.stability.quadratures import integrals
-from bezstab.stability.root_finding import STEPS, companion_roots
+from bezstab.stability.root_finding import companion_roots
 from bezstab.stability.searches import least_between
 from bezstab.stability.shapes import USUAL_SIZE, Approached, Shape, joined
 
+STEPS = 2  # of Newton's method from a start that is nearly exact: the second settles a root smaller than others
 DRAWN = 160  # points of an edge along its strip
 FAR_APART = 100.0  # ends of a strip, one so many times the other: what an edge does near the lower one needs its share
 FAR_OUT = 1e8  # of a level, or USUAL_SIZE: from so near to a strip's end up to so far from it turns are looked for

@@ -2,7 +2,7 @@
 
 A second-order scheme has no pi(z, mu), and its P is not a product over two mu. Its poles are the roots of P itself: two
 for most of these schemes, which a formula gives, or more, the farther it looks back. On grids the largest root of more
-than three is followed among neighbours (real_factors).
+than three is followed over the grid (real_factors).
 """
 
 from dataclasses import dataclass
@@ -16,9 +16,8 @@ from bezstab.methods import Method, closed_loop_table, reduced_table
 from bezstab.stability.arrays import BoolArray, ComplexArray, FloatArray
 from bezstab.stability.exact_sums import double_polynomial, double_product, double_sum, split
 from bezstab.stability.low_degrees import largest_cubic_root, largest_quadratic_root, quadratic_roots, signed_root
-from bezstab.stability.neighbourhoods import FEWEST, blocks_of_neighbours
-from bezstab.stability.real_factors import largest_in_upper_half, largest_of_blocks
-from bezstab.stability.root_finding import CHUNK, horner, inside_circle, roots_of_rows
+from bezstab.stability.real_factors import largest_factors
+from bezstab.stability.root_finding import horner, in_chunks, inside_circle, roots_of_rows
 
 CANCELS = 1e-5  # of (b/2)^2: where the discriminant is below it, its root would be good to 1e-13 or less
 
@@ -65,7 +64,7 @@ class PlanePencil:
                 half, last, discriminant = self._quadratics(coefficients, alpha_hat, beta_hat)
                 z = quadratic_roots(half, last, signed_root(discriminant))
             else:
-                z = roots_of_rows(np.stack(coefficients).astype(complex))
+                z = roots_of_rows(np.stack(coefficients))
         self._check_finite(z, alpha_hat, beta_hat)
         return z
 
@@ -76,35 +75,25 @@ class PlanePencil:
         """
         return inside_circle(self.coefficients_at(alpha_hat, beta_hat), level)
 
-    def largest_poles(self, alpha_hat: FloatArray, beta_hat: FloatArray, shape: tuple[int, int]) -> ComplexArray:
-        """Return the pole of largest modulus, Im >= 0, at each point of a grid of a shape, row by row; in a row.
+    def largest_poles(self, alpha_hat: FloatArray, beta_hat: FloatArray) -> ComplexArray:
+        """Return the pole of largest modulus, Im >= 0, at points of a grid or along a line; their shape.
 
         Infinite where an implicit step has no solution. NumericalError if a finite pole leaves the range of float64.
         """
-        z = self.followed_poles(alpha_hat, beta_hat, shape)
-        lost = np.flatnonzero(~np.isfinite(z))
-        if lost.size:
+        z = self.followed_poles(alpha_hat, beta_hat)
+        lost = ~np.isfinite(z)
+        if lost.any():
             leading = self.coefficients_at(alpha_hat[lost], beta_hat[lost])[-1]
-            z[lost] = np.where(leading == 0, 0, np.nan)
-            self._check_finite(z[np.newaxis], alpha_hat, beta_hat)
+            self._check_finite(np.where(leading == 0, 0, z[lost])[np.newaxis], alpha_hat[lost], beta_hat[lost])
             z[lost] = np.inf
         return z
 
-    def followed_poles(self, alpha_hat: FloatArray, beta_hat: FloatArray, shape: tuple[int, int]) -> ComplexArray:
+    def followed_poles(self, alpha_hat: FloatArray, beta_hat: FloatArray) -> ComplexArray:
         """Return the same without a check; not finite where a pole is infinite, or leaves the range of float64."""
         with np.errstate(all="ignore"):
-            if self.degree > 3 and alpha_hat.size < FEWEST:
-                coefficients = self.coefficients_at(alpha_hat, beta_hat)
-                return largest_in_upper_half(roots_of_rows(np.stack(coefficients).astype(complex)))
-            z = np.empty(alpha_hat.size, complex)
             if self.degree > 3:
-                blocks = blocks_of_neighbours(*shape)
-                z[blocks] = largest_of_blocks(self.coefficients_at, alpha_hat[blocks], beta_hat[blocks])
-                return z
-            for start in range(0, alpha_hat.size, CHUNK):
-                chunk = slice(start, start + CHUNK)
-                z[chunk] = self._largest_of_few(alpha_hat[chunk], beta_hat[chunk])
-            return z
+                return largest_factors(self.coefficients_at, alpha_hat, beta_hat)[2]
+            return in_chunks(self._largest_of_few, alpha_hat, beta_hat)
 
     def _largest_of_few(self, alpha_hat: FloatArray, beta_hat: FloatArray) -> ComplexArray:
         """Return the largest pole of two or three, by formula."""

@@ -1,10 +1,7 @@
-"""All roots of many polynomials at once: of sum_kj table[k, j] y^k x^j in y, for every x of a row.
+"""All roots of many polynomials at once, by Aberth's iteration, and whether all are in a circle."""
 
-Along a row of a map neighbouring x have neighbouring roots. So one x in STRIDE is solved from scratch, with starts
-from the Newton polygon, and its roots start Aberth's iteration for the others.
-"""
-
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from itertools import combinations
 from typing import Any, TypeVar
 
 import numpy as np
@@ -16,79 +13,45 @@ Number = TypeVar("Number", FloatArray, ComplexArray)
 Coefficients = Sequence[Any] | NDArray[np.inexact]
 
 CHUNK = 16384  # points at a time: all the work arrays of one chunk stay in a core's cache
-STRIDE = 16  # of a row of points one in so many has all its roots solved for, the others start from them
-FEW = 2 * STRIDE  # polynomials: to solve them in two turns would take longer than all at once
-STEPS = 2  # of Newton's method from a start that is nearly exact: the second settles a root smaller than others
-MORE_STEPS = 8  # at most, from a neighbour's root
 ITERATIONS = 200  # Aberth's iteration needs about ten; a multiple root, where it is linear, about sixty
 FAR = 1e15  # |z| whose 16th power still fits float64
-NEAR = 0.2  # relative distance of x within which the roots of a neighbour are better starts than the polygon's
 TOLD = 1e-10  # relative: Schur's recursion tells apart what differs by more
-NUDGE = 1e-3  # about a step of a map's grid, so it costs no iteration
+
+
+def in_chunks(values_at: Callable[..., ComplexArray], alpha_hat: FloatArray, beta_hat: FloatArray) -> ComplexArray:
+    """Return a function of points at so many as CHUNK at a time; shape of both."""
+    rows = alpha_hat.reshape(-1), beta_hat.reshape(-1)
+    starts = range(0, max(1, alpha_hat.size), CHUNK)
+    return np.concatenate([values_at(*(row[k : k + CHUNK] for row in rows)) for k in starts]).reshape(alpha_hat.shape)
 
 
 def roots_of_table(table: FloatArray, x: ComplexArray) -> ComplexArray:
     """Return the roots y of sum_kj table[k, j] y^k x^j for each x; shape (table rows - 1, x.size) for a row of x.
 
-    Not finite where a root is at infinity or leaves the range of float64: that is for the caller to judge.
+    Not finite where a root is at infinity or leaves the range of float64: that is for the caller to judge. Where
+    |x| > 1 the polynomials are taken times x^-d, lest x^d overflow: a common factor moves no root.
     """
     with np.errstate(all="ignore"):
-        chunks = [_roots_of_chunk(table, x[start : start + CHUNK]) for start in range(0, x.size, CHUNK)]
-    if not chunks:
-        return np.empty((len(table) - 1, 0), complex)
-    return np.concatenate(chunks, axis=1)
+        large = np.abs(x) > 1
+        small_x = np.where(large, 0, x)
+        inverse = np.divide(1, x, out=np.zeros_like(x), where=large)
+        coefficients = np.stack([np.where(large, horner(row[::-1], inverse), horner(row, small_x)) for row in table])
+        if len(table) == 2:
+            return np.asarray(-coefficients[:1] / coefficients[1])
+    return roots_of_rows(coefficients)
 
 
-def roots_of_rows(coefficients: ComplexArray) -> ComplexArray:
-    """Return the roots of sum_k a_k z^k for a row of polynomials with alike neighbours, none of degree zero.
+def roots_of_rows(coefficients: NDArray[np.inexact]) -> ComplexArray:
+    """Return the roots of sum_k a_k z^k for a row of polynomials, none of degree zero.
 
     Coefficients of shape (n + 1, points), roots (n, points). Not finite where one is at infinity, or beyond float64.
     """
     with np.errstate(all="ignore"):
-        solved = np.repeat(coefficients[:, ::STRIDE], STRIDE, axis=1)[:, : coefficients.shape[1]]
-        too_far: BoolArray = np.any(np.abs(coefficients - solved) >= NEAR * np.abs(coefficients), axis=0)
-        return _roots_from_neighbours(coefficients, too_far)
-
-
-def _roots_of_chunk(table: FloatArray, x: ComplexArray) -> ComplexArray:
-    """Return the roots as roots_of_table does, the polynomials scaled by x^-d where |x| > 1."""
-    linear = len(table) == 2
-    if linear and table[1, 0] == 1 and not table[1, 1:].any():  # y = R(x)
-        return -np.full((1, x.size), horner(table[0], x), complex)
-    coefficients = _coefficients(table, x)
-    if linear:
-        single: ComplexArray = -coefficients[:1] / coefficients[1]
-        return single
-    solved_x = np.repeat(x[::STRIDE], STRIDE)[: x.size]
-    return _roots_from_neighbours(coefficients, np.abs(x - solved_x) >= NEAR * np.abs(x))
-
-
-def _roots_from_neighbours(coefficients: ComplexArray, too_far: BoolArray) -> ComplexArray:
-    """Return the roots of a row of polynomials: one in STRIDE from scratch, others near it from its roots."""
-    points = coefficients.shape[1]
-    if points <= FEW:
-        return _aberth(coefficients, _starts_of_few(coefficients))
-    solved_coefficients = coefficients[:, ::STRIDE]
-    solved = _aberth(solved_coefficients, _starts_of_few(solved_coefficients))
-    # Nudged apart: coinciding starts would never part, and real ones never leave the axis of a real polynomial.
-    solved += NUDGE * np.abs(solved) * _spread_directions(len(solved))
-    starts = np.repeat(solved, STRIDE, axis=1)[:, :points]
-    has_root_zero = coefficients[0] == 0  # an exact zero starts, and stays, at 0
-    no_start = ~np.isfinite(np.repeat(solved.sum(axis=0), STRIDE)[:points])  # a root of the neighbour is infinite
-    alone = too_far | has_root_zero | no_start
-    starts[:, alone] = newton_polygon_starts(coefficients[:, alone])
-    return _aberth(coefficients, starts)
-
-
-def _coefficients(table: FloatArray, x: ComplexArray) -> ComplexArray:
-    """Return the coefficients in y, ascending, shape (table rows, x.size); times x^-d where |x| > 1, lest x^d overflow.
-
-    The common factor of a polynomial's coefficients does not move its roots.
-    """
-    large = np.abs(x) > 1
-    small_x = np.where(large, 0, x)
-    inverse = np.divide(1, x, out=np.zeros_like(x), where=large)
-    return np.stack([np.where(large, horner(row[::-1], inverse), horner(row, small_x)) for row in table])
+        chunks = [
+            _aberth(coefficients[:, start : start + CHUNK].astype(complex))
+            for start in range(0, max(1, coefficients.shape[1]), CHUNK)
+        ]
+    return np.concatenate(chunks, axis=1)
 
 
 def horner(ascending: Coefficients, x: Number) -> Any:
@@ -161,25 +124,6 @@ def newton_polygon_starts(coefficients: ComplexArray) -> ComplexArray:
     return starts
 
 
-def _starts_of_few(coefficients: ComplexArray) -> ComplexArray:
-    """Return starting points: of few polynomials eigenvalues of companion matrices, roots but for their rounding.
-
-    Those spare Aberth's iteration ten steps, of which each takes as long for one polynomial as for a dozen. Where a
-    leading coefficient vanishes, or eigenvalues coincide or vanish, starts might never part: there, and of more
-    polynomials, they are those of the Newton polygon.
-    """
-    if coefficients.shape[1] > FEW:
-        return newton_polygon_starts(coefficients)
-    try:
-        starts = companion_roots(coefficients)
-    except np.linalg.LinAlgError:
-        return newton_polygon_starts(coefficients)
-    rest = ~(np.diff(np.sort(starts, axis=0), axis=0).all(axis=0) & starts.all(axis=0))
-    if rest.any():
-        starts[:, rest] = newton_polygon_starts(coefficients[:, rest])
-    return starts
-
-
 def companion_roots(coefficients: NDArray[np.inexact]) -> ComplexArray:
     """Return eigenvalues of companion matrices, the roots of polynomials but for rounding; shape (n, points).
 
@@ -196,12 +140,13 @@ def companion_roots(coefficients: NDArray[np.inexact]) -> ComplexArray:
     return np.linalg.eigvals(companion).T.astype(complex)
 
 
-def _aberth(coefficients: ComplexArray, starts: ComplexArray) -> ComplexArray:
-    """Return the roots of sum_k a_k z^k, coefficients of shape (n + 1, points), from starts of shape (n, points).
+def _aberth(coefficients: ComplexArray) -> ComplexArray:
+    """Return the roots of sum_k a_k z^k, coefficients of shape (n + 1, points), from the Newton polygon's starts.
 
     Aberth's simultaneous Newton iteration (O. Aberth, Math. Comp. 27, 1973), cubic at simple roots; points leave as
     they converge. At a multiple root the last digits cannot settle: there ITERATIONS ends the walk.
     """
+    starts = newton_polygon_starts(coefficients)
     solution = starts.copy()
     active = np.arange(starts.shape[1])
     z = starts
@@ -253,29 +198,14 @@ def _quotient(numerator: ComplexArray, denominator: ComplexArray) -> ComplexArra
 
 def _repulsion(z: ComplexArray) -> ComplexArray:
     """Return the sums of 1 / (z_i - z_j) over the other roots j, coinciding ones left out."""
-    if z.size * len(z) <= CHUNK:  # one call for all pairs is faster than one for each
-        differences = z[:, np.newaxis] - z
-        own = np.arange(len(z))
-        differences[own, own] = np.inf
-        repulsion = np.asarray((1 / differences).sum(axis=1))
-    else:
-        repulsion = np.zeros_like(z)
-        for i in range(len(z)):
-            for j in range(i):
-                reciprocal = 1 / (z[i] - z[j])
-                repulsion[i] += reciprocal
-                repulsion[j] -= reciprocal
-    infinite = ~np.isfinite(repulsion).all(axis=0)  # rare: to ask beforehand takes longer than all the rest
-    if infinite.any():
-        repulsion[:, infinite] = _repulsion_of_others(z[:, infinite])
+    repulsion = np.zeros_like(z)
+    for i, j in combinations(range(len(z)), 2):
+        difference = z[i] - z[j]
+        difference[difference == 0] = np.inf
+        reciprocal = 1 / difference
+        repulsion[i] += reciprocal
+        repulsion[j] -= reciprocal
     return repulsion
-
-
-def _repulsion_of_others(z: ComplexArray) -> ComplexArray:
-    """Return the same where some roots coincide."""
-    differences = z[:, np.newaxis] - z
-    reciprocals = np.divide(1, differences, out=np.zeros_like(differences), where=differences != 0)
-    return np.asarray(reciprocals.sum(axis=1))
 
 
 def inside_circle(ascending: Coefficients, radius: FloatArray | float) -> BoolArray:

@@ -25,6 +25,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from bezstab.evidence import MapRows, map_rows, model_xml, simulated_verdicts
+from bezstab.evidence.exact_rates import find_own_motions
 from bezstab.mechanism import (
     Mechanism,
     T,
@@ -52,7 +53,6 @@ from bezstab.stability.boundary_locus import bounds_of
 from bezstab.stability.mu_pencils import MuPencil
 from bezstab.stability.pencils import pencil_of
 from bezstab.stability.region_checks import check_region
-from tests.evidence.exact_rates import own_motion_rates
 
 HERE = Path(__file__).parent
 sys.path.insert(0, str(HERE.parent.parent))  # run as a script, the tests are no package yet
@@ -239,7 +239,7 @@ def moving_mechanisms() -> Iterator[Line]:
         stable = points[:, spectral_radius(method, *points) < 1]
         one = float(stable[0, 0]), float(stable[1, 0])
         batches = [
-            partial(own_motion_rates, mechanism, method, h, stable[0, :count], stable[1, :count], 1.0)
+            partial(find_own_motions, mechanism, method, h, stable[0, :count], stable[1, :count], 1.0)
             for count in FLOQUET_POINTS
         ]
         (theirs, found), *times = interleaved(partial(runner_motion, mechanism, method, STEPS_A_TURN, *one), *batches)

@@ -5,7 +5,6 @@ runs share. Keys are those of today; what rows have got since is not there. Whic
 """
 
 import json
-import math
 import re
 from dataclasses import dataclass
 from pathlib import Path
@@ -87,18 +86,14 @@ def tolerance(command: str, key: str) -> Tolerance:
 
 def assert_agrees(command: str, key: str, printed: Any, expected: Any) -> None:
     """Fail unless a value is as before: numbers within their tolerance, everything else exactly."""
-    if _is_number(expected) and _is_number(printed):
+    if isinstance(expected, float):
         allowed = tolerance(command, key)
-        close = math.isclose(printed, expected, rel_tol=allowed.relative, abs_tol=allowed.absolute)
-        assert close, f"{key}: {printed!r}, expected {expected!r} ({allowed.reason})"
+        close = pytest.approx(expected, rel=allowed.relative, abs=allowed.absolute)
+        assert printed == close, f"{key} ({allowed.reason})"
     elif command.startswith("extremes") and key == "seen":  # digits and rounding errors differ between machines
         assert _without_numbers(str(printed)) == _without_numbers(str(expected))
     else:
         assert printed == expected, key
-
-
-def _is_number(value: object) -> bool:
-    return isinstance(value, float | int) and not isinstance(value, bool)
 
 
 def _without_numbers(text: str) -> str:

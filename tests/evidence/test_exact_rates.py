@@ -8,7 +8,7 @@ from bezstab.mechanism import Mechanism, compiled_mechanism, load_scene
 from bezstab.methods import lookup
 from bezstab.stability import spectral_radius
 from tests.evidence.driven_four_bar import four_bar, swinging_four_bar
-from tests.evidence.exact_rates import floquet_rates, own_motion_rates
+from tests.evidence.exact_rates import floquet_rates
 from tests.evidence.samples import of_campaign
 from tests.reference.perturbed_revolutions import runner_motion, settled_multiplier
 
@@ -50,7 +50,7 @@ def both_rates(
 ) -> tuple[float, float]:
     """Return |z| on the method's own motion, and on that of the mechanism, by default the four-bar; h in s."""
     at = mechanism or four_bar(), lookup(name), h, np.array([alpha_hat]), np.array([beta_hat]), 1.0
-    return float(own_motion_rates(*at)[0]), float(floquet_rates(*at)[0])
+    return float(find_own_motions(*at).rates[0]), float(floquet_rates(*at)[0])
 
 
 @pytest.mark.promise("Rates over the method's own motion")
@@ -85,13 +85,13 @@ def test_without_such_a_motion_the_rate_is_that_on_the_motion(
     scene: str, name: str, alpha_hat: float, beta_hat: float
 ) -> None:
     at = compiled_mechanism(load_scene(scene)), lookup(name), 0.005, np.array([alpha_hat]), np.array([beta_hat]), 0.2
-    assert own_motion_rates(*at) == floquet_rates(*at)
+    assert find_own_motions(*at).rates == floquet_rates(*at)
 
 
 def test_a_batch_gives_what_single_points_give() -> None:
     """Of points of which some need more corrections, and the last has no such motion; to the square of 1e-9."""
     alpha_hat, beta_hat = np.array([0.3, 0.05, 0.2, 1.5]), np.array([0.115, 0.01, 0.08, 2.0])
-    together = own_motion_rates(four_bar(), lookup("AB4"), 1 / 60, alpha_hat, beta_hat, 1.0)
+    together = find_own_motions(four_bar(), lookup("AB4"), 1 / 60, alpha_hat, beta_hat, 1.0).rates
     alone = [both_rates("AB4", 1 / 60, *point)[0] for point in zip(alpha_hat, beta_hat, strict=True)]
     assert together == pytest.approx(alone, rel=1e-11)
 
@@ -100,7 +100,7 @@ def test_a_batch_gives_what_single_points_give() -> None:
 def test_no_point_and_no_step_is_too_extreme_for_a_number(name: str, count: int) -> None:
     """No feedback, hardly any, and so much that a step multiplies errors by 1e38; fewer steps than are carried."""
     gains = np.array([0.0, 1e-8, 0.3, 1e3, 1e10])
-    assert np.isfinite(own_motion_rates(four_bar(), lookup(name), 1 / count, gains, gains, 1.0)).all()
+    assert np.isfinite(find_own_motions(four_bar(), lookup(name), 1 / count, gains, gains, 1.0).rates).all()
 
 
 @pytest.mark.parametrize("name", ["B4", "RK4", "SYM", "ABM3", "trapezoid", "verlet-half", "newmark(1/4,1/2)"])
