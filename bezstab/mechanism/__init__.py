@@ -15,11 +15,10 @@ from bezstab.mechanism.constraint_normals import (
     turned_across,
     turning_normals,
 )
-from bezstab.mechanism.energies import energy_balance
 from bezstab.mechanism.equations import Equations, T, equations_of_motion
 from bezstab.mechanism.linearized import StepsTaken, changes_handed_on, steps_taken
 from bezstab.mechanism.motions import Motion, motion, motion_over, regular_motion
-from bezstab.mechanism.observation import Observation, observe, singular_passages
+from bezstab.mechanism.observation import Observation, energy_balance, observe, singular_passages
 from bezstab.mechanism.runner import (
     Block,
     How,

@@ -22,7 +22,7 @@ def array_steps(mechanism: Mechanism, lanes: int) -> TakeSteps:
         np.einsum("ijl,jl->il", inverse[:size, :size], right, out=left)
 
     own: dict[str, Any] = {"N": n, "STRIDE": lanes, "WIDTH": n * lanes, "every": every, "multiply": multiply}
-    own |= {"combine": combine, "scale": scale, "invert": invert}
+    own |= {"combine": combine, "scale": scale, "copy": copy, "invert": invert}
     own |= _one_run(mechanism) if lanes == 1 else _many_runs(mechanism, lanes)
     taken = read(own)
 
@@ -47,13 +47,19 @@ def every(_count: int) -> tuple[slice]:
 
 def combine(rows: FloatArray, registers: FloatArray, into: FloatArray) -> None:
     """Write the sums of registers that rows of a program stand for."""
-    for row, combined in zip(rows, into, strict=False):  # one by one: together they take longer in batches
-        np.dot(row, registers[: len(row)], out=combined)
+    known = registers[: rows.shape[1]]
+    for number in range(len(rows)):  # one by one: together they take longer in batches
+        np.dot(rows[number], known, out=into[number])
 
 
 def scale(factor: float, source: FloatArray, into: FloatArray) -> None:
     """Write a register times a factor."""
     np.multiply(source, factor, out=into)
+
+
+def copy(source: FloatArray, into: FloatArray) -> None:
+    """Copy a register."""
+    into[:] = source
 
 
 def invert(matrices: FloatArray, size: int, lanes: BoolArray, found: FloatArray) -> None:

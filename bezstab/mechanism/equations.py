@@ -6,7 +6,18 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from bezstab.mechanism.scenes import GROUND, Between, Body, Distance, Driver, Joint, PointOnLine, Revolute, Scene
+from bezstab.mechanism.scenes import (
+    COORDINATES,
+    GROUND,
+    Between,
+    Body,
+    Distance,
+    Driver,
+    Joint,
+    PointOnLine,
+    Revolute,
+    Scene,
+)
 
 T = sp.Symbol("t")
 """Time (s)."""
@@ -96,13 +107,11 @@ def _gradient(expression: sp.Expr, q: Sequence[sp.Symbol]) -> sp.Matrix:
 
 
 def _frame(body: Body, symbol_of: dict[str, sp.Symbol]) -> Frame:
-    def position(axis: str) -> sp.Expr:
-        coordinate = f"{body.name}.{axis}"
-        if coordinate in symbol_of:
-            return symbol_of[coordinate]
-        return sp.nsimplify(body.locked.get(axis, 0.0), rational=True)
-
-    return Frame(position("x"), position("y"), position("theta"))
+    places = []
+    for axis in COORDINATES:
+        locked = sp.nsimplify(body.locked.get(axis, 0.0), rational=True)
+        places.append(symbol_of.get(f"{body.name}.{axis}", locked))
+    return Frame(*places)
 
 
 def _turned(vector: tuple[float, float], theta: sp.Expr) -> tuple[sp.Expr, sp.Expr]:

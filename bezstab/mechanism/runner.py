@@ -263,18 +263,12 @@ def resume(
     how = how or How()
     given = [np.asarray(state) for state in (*history, history[-1] if undisturbed is None else undisturbed)]
     batch = np.broadcast_shapes(*(state.shape[1:] for state in given), *map(np.shape, gains))
-    *states, calm = (_for_batch(state, batch) for state in given)
+    *states, calm = (np.stack([np.broadcast_to(row, batch) for row in state]) for state in given)
     carried = carried_quantities(mechanism, method, h, gains, states, calm, how.counts)
     of_lanes = np.array([np.broadcast_to(gain, batch).ravel() for gain in gains], np.float64)
     times = h * np.arange(len(states) - 1, len(states) - 1 + count, dtype=np.float64)
     steps = Steps(times, np.broadcast_to(np.float64(h), count), np.broadcast_to(of_lanes, (count, *of_lanes.shape)))
     yield from steps_in_blocks(mechanism, method, steps, carried, batch, how)
-
-
-def _for_batch(state: FloatArray, batch: tuple[int, ...]) -> FloatArray:
-    """Return a state, shape (2n, *axes), for a batch that has these axes last."""
-    missing = len(batch) + 1 - state.ndim
-    return np.broadcast_to(state.reshape(len(state), *(1,) * missing, *state.shape[1:]), (len(state), *batch))
 
 
 def steps_in_blocks(

@@ -88,8 +88,5 @@ def _shares(motions: Motions, quantity: Quantity, steps_later: int) -> Shares:
         at_rest, steady, accelerated = (Fraction(int(quantity.name == name)) for name in STATE)
         return at_rest, steady, accelerated
     here = ((Fraction(1), Quantity(quantity.name, steps_later)),)
-    return (
-        value_at_start(motions, here, AT_REST),
-        value_at_start(motions, here, STEADY),
-        value_at_start(motions, here, ACCELERATED),
-    )
+    at_rest, steady, accelerated = (value_at_start(motions, here, motion) for motion in (AT_REST, STEADY, ACCELERATED))
+    return at_rest, steady, accelerated

@@ -10,8 +10,14 @@ import numpy as np
 
 from bezstab.errors import InputError
 from bezstab.mechanism.compiled import Mechanism
-from bezstab.mechanism.energies import NODES, energy_balance
-from bezstab.mechanism.observation import FloatArray, Observation, observe, singular_passages
+from bezstab.mechanism.observation import (
+    NODES,
+    FloatArray,
+    Observation,
+    energy_balance,
+    observe,
+    singular_passages,
+)
 from bezstab.mechanism.programs import Steps
 from bezstab.mechanism.runner import Start, Trajectory, simulate, simulate_steps
 from bezstab.mechanism.start import perturbed_state

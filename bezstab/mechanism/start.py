@@ -22,8 +22,8 @@ MOST_NAMED = 3  # dependences in a message: one tells where to look, and a long 
 
 
 @cache
-def matrix_function(mechanism: Mechanism, name: str) -> Callable[[Any, Any], NDArray[Any]]:
-    """Return the function of q (n of them) and t (s) that gives a matrix of the equations of motion, by its name there.
+def equation_function(mechanism: Mechanism, name: str) -> Callable[[Any, Any], NDArray[Any]]:
+    """Return the function of q (n of them) and t (s) that gives what `Equations` has under that name.
 
     It takes floats, complex numbers or, for matrices of one column, arrays; SI units.
     """
@@ -34,12 +34,12 @@ def matrix_function(mechanism: Mechanism, name: str) -> Callable[[Any, Any], NDA
 
 def constraint_errors(mechanism: Mechanism, t: float | FloatArray, q: Sequence[FloatArray] | FloatArray) -> FloatArray:
     """Return c at time t (s) for a batch, one array of q per coordinate; shape (m, *shape of these), SI units."""
-    return matrix_function(mechanism, "constraints")(q, t)[:, 0]
+    return equation_function(mechanism, "constraints")(q, t)[:, 0]
 
 
 def constraint_jacobian(mechanism: Mechanism, t: complex, q: NDArray[Any]) -> NDArray[Any]:
     """Return C_q at time t (s) for one q of shape (n,), floats or complex numbers; shape (m, n), SI units."""
-    return 1.0 * matrix_function(mechanism, "jacobian")(q, t)
+    return 1.0 * equation_function(mechanism, "jacobian")(q, t)
 
 
 def initial_state(mechanism: Mechanism) -> tuple[FloatArray, FloatArray]:
@@ -56,7 +56,7 @@ def initial_state(mechanism: Mechanism) -> tuple[FloatArray, FloatArray]:
 
 def _refuse_springs_without_direction(mechanism: Mechanism, q: FloatArray) -> None:
     """Raise InputError if a spring's ends meet and its force, other than by its stiffness alone, has no direction."""
-    lengths = sp.lambdify((mechanism.equations.q,), mechanism.equations.spring_lengths, "numpy")(q)
+    lengths = equation_function(mechanism, "spring_lengths")(q, 0.0)
     for number, (spring, length) in enumerate(zip(mechanism.scene.springs, lengths, strict=True), start=1):
         has_direction = length > CLOSED or spring.free_length == spring.damping == 0
         if not has_direction:
@@ -114,7 +114,7 @@ def _consistent_velocity(mechanism: Mechanism, q: FloatArray) -> FloatArray:
     """Return qdot at t = 0: the scene's velocities, completed by C_q qdot = -c_t, linear in the unknown ones."""
     scene = mechanism.scene
     jacobian = constraint_jacobian(mechanism, 0.0, q)
-    c_t = matrix_function(mechanism, "constraints_t")(q, 0.0)[:, 0]
+    c_t = equation_function(mechanism, "constraints_t")(q, 0.0)[:, 0]
     v = np.array([scene.velocity.get(name, 0.0) for name in scene.coordinates])
     _check_number(mechanism, "velocity", scene.velocity)
     unknown = np.array([name not in scene.velocity for name in scene.coordinates])

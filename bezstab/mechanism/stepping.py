@@ -106,6 +106,12 @@ def scale(factor: float, source: FloatArray, into: FloatArray) -> None:
         into[place] = factor * source[place]
 
 
+def copy(source: FloatArray, into: FloatArray) -> None:
+    """Copy a register."""
+    for place in every(WIDTH):
+        into[place] = source[place]
+
+
 def take(lanes: BoolArray, source: FloatArray, into: FloatArray) -> None:
     """Copy some lanes of a register."""
     for first in range(0, WIDTH, STRIDE):
@@ -189,10 +195,10 @@ def finish(program: Program, h: float, room: Room, state: FloatArray) -> None:
     """Combine, write the new state, and move on."""
     new = room.registers[program.table.shape[1] :]
     combine(program.table[2 * len(program.moments) :], room.registers, new)
-    scale(1.0, new[0], state[0])
+    copy(new[0], state[0])
     scale(1 / h, new[1], state[1])
     for number in range(len(program.moved)):
-        scale(1.0, room.registers[program.moved[number]], room.registers[number])
+        copy(room.registers[program.moved[number]], room.registers[number])
 
 
 def take_steps(program: Program, steps: Steps, room: Room, states: FloatArray, told: FloatArray) -> None:
@@ -391,7 +397,7 @@ def project(
 
 
 TEXT = (
-    *(accelerations, combine, take, add_sizes, any_of, multiply, invert, invert_one, scale),
+    *(accelerations, combine, take, add_sizes, any_of, multiply, invert, invert_one, scale, copy),
     *(accelerations_at, finish, solve, guess, residual, correct, renew, advance, shift, project, take_steps),
 )
 """What is read in two ways."""

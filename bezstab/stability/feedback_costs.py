@@ -9,7 +9,6 @@ import numpy as np
 from bezstab.errors import InputError, NumericalError
 from bezstab.methods import Method, accuracy, leading_error
 from bezstab.rationals import exact
-from bezstab.stability.arrays import FloatArray
 from bezstab.stability.choices import choose
 from bezstab.stability.closed_loop import converges
 from bezstab.stability.forced_errors import OMEGA_H, check_omega_h, forced_error
@@ -73,23 +72,21 @@ def order_left(method: Method) -> int:
     return min(order, leading_error(method).power)
 
 
-Shares = tuple[float | None, float | None, float | None]
-"""Errors at a point: of the position, in total, of the velocity; None for what is not finite, or not decaying."""
+def _shares(
+    method: Method, alpha_hat: float | Fraction, beta_hat: float | Fraction, omega_h: Fraction
+) -> list[float | None]:
+    """Return the errors at a point: of the position, in total, of the velocity.
 
-
-def _shares(method: Method, alpha_hat: float | Fraction, beta_hat: float | Fraction, omega_h: Fraction) -> Shares:
-    """Return the errors at a point."""
+    None for what is not finite, or not decaying.
+    """
     check_omega_h(omega_h)
     a, b = (each if isinstance(each, Fraction) else exact(each) for each in (alpha_hat, beta_hat))
     if not converges(method, a, b):
-        return None, None, None
+        return [None, None, None]
     with np.errstate(over="ignore", invalid="ignore"):  # found below
         errors = forced_error(method, float(a), float(b), omega_h)
-    return _finite(errors.position), _finite(errors.total), _finite(errors.velocity)
-
-
-def _finite(error: FloatArray) -> float | None:
-    return float(error) if np.isfinite(error) else None
+    of_each = (errors.position, errors.total, errors.velocity)
+    return [float(error) if np.isfinite(error) else None for error in of_each]
 
 
 def _times(error: float | None, least: float | None) -> float | None:

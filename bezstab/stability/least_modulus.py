@@ -26,7 +26,7 @@ from itertools import combinations
 
 import numpy as np
 
-from bezstab.stability.arrays import DOUBLE, EPS, SAME, TRIPLE, ComplexArray, FloatArray
+from bezstab.stability.arrays import DOUBLE, SAME, TRIPLE, ComplexArray, FloatArray
 from bezstab.stability.charts import Chart, Place
 from bezstab.stability.root_finding import companion_roots
 from bezstab.stability.searches import lowest_minima
@@ -52,19 +52,13 @@ class Cluster:
     real: bool = False
 
 
-@dataclass(frozen=True)
-class Solved:
-    """A place, the means of an active set's clusters there, and all other poles."""
+def solved(
+    chart: Chart, start: Place, active: Sequence[Cluster], edges: Sequence[int]
+) -> tuple[Place, ComplexArray] | None:
+    """Return what Newton's method reaches from a start: a place, and the means of an active set's clusters there.
 
-    place: Place
-    z: ComplexArray
-    others: ComplexArray
-
-
-def solved(chart: Chart, start: Place, active: Sequence[Cluster], edges: Sequence[int]) -> Solved | None:
-    """Return what Newton's method reaches from a start; None if it does not settle.
-
-    edges: the parameters, 0 or 1, that are zero. Whether the poles found are the largest the caller asks.
+    None if it does not settle. edges: the parameters, 0 or 1, that are zero. Whether the poles found are the largest
+    the caller asks.
     """
     scale = np.maximum(np.abs(start), SMALL)
     z = np.array([cluster.z for cluster in active])
@@ -95,18 +89,7 @@ def solved(chart: Chart, start: Place, active: Sequence[Cluster], edges: Sequenc
         return np.concatenate([conditions[:, :3], _without_slope(log_z[0].real, conditions)])
 
     place = newton(equations, start, scale)
-    if place is None:
-        return None
-    if _conditions(active, edges) < 2 and np.abs(np.subtract(place, start)).max() > NEARBY * max(scale):
-        return None  # what is flat leads further, to no minimum nearby
-    others = _poles_at(chart, np.array(place))
-    for about, cluster in zip(z, active, strict=True):
-        for pole_of_pair in {about, about if cluster.real or not chart.real else about.conj()}:
-            nearest_first = others[np.argsort(np.abs(others - pole_of_pair))]
-            if not abs(nearest_first[: cluster.count].mean() - pole_of_pair) <= DOUBLE * abs(pole_of_pair):
-                return None  # on the way it passed a place where it meets another
-            others = nearest_first[cluster.count :]
-    return Solved(place, z, others)
+    return None if place is None else (place, z)
 
 
 def _without_slope(least: FloatArray, conditions: FloatArray) -> FloatArray:
@@ -238,19 +221,27 @@ def _solutions(chart: Chart, start: FloatArray) -> Iterator[Least]:
     first = (float(start[0]), float(start[1]))
     yield from _all_zero(chart, first)
     z = _poles_at(chart, start)
-    if np.abs(z).max() < EPS**0.25:  # so near to all zero that nothing else is to be told
-        return
     for active, edges in _active_sets(chart, z):
         found = solved(chart, first, active, edges)
-        place = _folded(chart, found.place) if found else None
-        if found is None or place is None:
-            continue
-        z_abs = float(np.abs(found.z).max())
-        if np.abs(found.others).max(initial=0.0) <= z_abs * (1 + DOUBLE):
-            largest = np.append(found.z, found.others[np.abs(found.others) >= z_abs * (1 - DOUBLE)])
-            if found.place[1] < 0:
-                largest = largest.conj()
-            yield Least(z_abs, place, largest, max(each.count for each in active))
+        least = _least_at(chart, active, *found) if found else None
+        if least:
+            yield least
+
+
+def _least_at(chart: Chart, active: Sequence[Cluster], place: Place, z: ComplexArray) -> Least | None:
+    """Return what was solved for as a least |z|; None beyond an edge, and where these poles are not the largest."""
+    others = _poles_at(chart, np.array(place))
+    for about, cluster in zip(z, active, strict=True):
+        for pole_of_pair in {about, about if cluster.real or not chart.real else about.conj()}:
+            nearest_first = others[np.argsort(np.abs(others - pole_of_pair))]
+            if not abs(nearest_first[: cluster.count].mean() - pole_of_pair) <= DOUBLE * abs(pole_of_pair):
+                return None  # on the way it passed a place where it meets another
+            others = nearest_first[cluster.count :]
+    folded, z_abs = _folded(chart, place), float(np.abs(z).max())
+    if folded is None or np.abs(others).max(initial=0.0) > z_abs * (1 + DOUBLE):
+        return None
+    largest = np.append(z, others[np.abs(others) >= z_abs * (1 - DOUBLE)])
+    return Least(z_abs, folded, largest.conj() if place[1] < 0 else largest, max(each.count for each in active))
 
 
 def _folded(chart: Chart, parameters: Place) -> Place | None:

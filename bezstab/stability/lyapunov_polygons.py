@@ -9,9 +9,8 @@ Found in float64, as the largest growth still to come: with the norm |.| of a fr
 
 is a fixed point of V <- max(0, max over steps of log |M u| + V(direction of M u)), and its unit ball |x| exp V <= 1 is
 convex and invariant, as a supremum of norms. Its corners are rounded to rationals. Each step is taken a little too
-large, by a share of its own decay, so that what is found has room for the corners and the rounding. Steps too short to
-be sampled are a flow, M = 1 + s G: it takes a ray to the next with growth (u^T G u) / (n^T G u) times the angle, where
-n is normal to u.
+large, by a share of its own decay, so that what is found has room for the corners and the rounding, and for steps too
+short to be sampled.
 
 Proven in exact arithmetic: corner p, edge from e to f, M = N(s) / d(s). The image lies on the inner side of the edge
 if and only if (e x f) d(s) + (f - e) x N(s) p > 0, a polynomial in the length s of the step.
@@ -25,13 +24,12 @@ import numpy as np
 from bezstab.methods import StepMatrix
 from bezstab.rationals import whole_multiples
 from bezstab.stability.arrays import SAME, FloatArray
-from bezstab.stability.lyapunov_quadratics import coefficients_of, powers_of_two, rounded
+from bezstab.stability.lyapunov_quadratics import coefficients_of, rounded
 from bezstab.stability.positive_polynomials import ExactArray, positivity
 
 Corner = tuple[Fraction, Fraction]
 
 RAYS = 720  # directions in the half plane: linear interpolation of V errs by 1e-6 there
-FORWARDS_AND_BACK = np.array([[1], [-1]])  # rows of the rays that the flow goes to next
 RESERVES = (0.5, 0.2, 0.1, 0.05, 0.025)  # shares of each step's decay; the first that leaves V finite is taken
 SWEEPS = 3000  # V grows by a fixed amount each turn if it grows for ever: some hundred turns
 AT_ONCE = (2, 4, 8, 16, 32, 64)  # steps of the shortest length at once, so that V settles in fewer sweeps
@@ -43,15 +41,13 @@ def invariant_polygon(
     matrix: StepMatrix,
     steps: FloatArray,
     matrices: FloatArray,
-    flow: FloatArray | None,
     form: FloatArray,
     shortest: Fraction,
 ) -> list[Corner] | None:
     """Return corners of half a polygon that every step from `shortest` to 1 maps inside; None if none was found.
 
-    The other half is their negatives. `matrices` (steps, 2, 2) belong to the lengths `steps`, a sample of the range,
-    `flow` (2, 2) is the G of shorter ones where the range has them, and the root of a quadratic `form` (2, 2) maps the
-    state to where its motion is round. Proven for all of the range.
+    The other half is their negatives. `matrices` (steps, 2, 2) belong to the lengths `steps`, a sample of the range;
+    the root of a quadratic `form` (2, 2) maps the state to where its motion is round. Proven for all of the range.
     """
     frame = np.linalg.cholesky(form).T
     directions = np.arange(RAYS) * np.pi / RAYS
@@ -60,15 +56,13 @@ def invariant_polygon(
     decays = _decays(steps, matrices)
     for reserve in RESERVES:
         factors = np.exp(reserve * decays)[:, np.newaxis, np.newaxis]
-        between = None
-        if flow is not None:
-            between = frame @ flow @ back + reserve * decays[0] / steps[0] * np.eye(2)
-        growth = _growth_to_come(frame @ matrices @ back * factors, between, circle)
+        growth = _growth_to_come(frame @ matrices @ back * factors, circle)
         if growth is None:
             continue
         ball = back @ (circle * np.exp(-growth))
         for count in CORNERS:
-            corners = _rational(ball[:, np.arange(count) * RAYS // count])
+            some = ball[:, np.arange(count) * RAYS // count]
+            corners = [(x, v) for x, v in rounded(some / np.abs(some[0]).max()).T]
             if proves_decay(corners, matrix, shortest):
                 return corners
     return None
@@ -111,15 +105,12 @@ def _decays(steps: FloatArray, matrices: FloatArray) -> FloatArray:
     return slowest
 
 
-def _growth_to_come(matrices: FloatArray, flow: FloatArray | None, circle: FloatArray) -> FloatArray | None:
+def _growth_to_come(matrices: FloatArray, circle: FloatArray) -> FloatArray | None:
     """Return V on the rays, by sweeps; None where it does not settle."""
     several = [np.linalg.matrix_power(matrices[0], count) for count in AT_ONCE]
     images = np.concatenate([matrices, several]) @ circle
     gain = np.log(np.maximum(np.hypot(images[:, 0], images[:, 1]), np.finfo(np.float64).tiny))
     place = np.arctan2(images[:, 1], images[:, 0]) % np.pi * (RAYS / np.pi)
-    if flow is not None:
-        gain = np.concatenate([gain, _flow_to_next_ray(flow)])
-        place = np.concatenate([place, (np.arange(RAYS) + FORWARDS_AND_BACK) % RAYS])
     below = np.floor(place).astype(int)
     share = place - below
     below %= RAYS
@@ -135,25 +126,3 @@ def _growth_to_come(matrices: FloatArray, flow: FloatArray | None, circle: Float
         if growth.max() > MOST_GROWTH:
             return None
     return None
-
-
-def _flow_to_next_ray(flow: FloatArray) -> FloatArray:
-    """Return the growth of the flow from each ray to the next one forwards, and to the next one backwards.
-
-    Of shape (2, rays), -inf where the flow goes the other way. By the values half way between the rays, which is of
-    second order.
-    """
-    middle = (np.arange(RAYS) + FORWARDS_AND_BACK / 2) * np.pi / RAYS
-    x, v = np.cos(middle), np.sin(middle)
-    x_rate, v_rate = (row[0] * x + row[1] * v for row in flow)
-    radial = x * x_rate + v * v_rate
-    turning = FORWARDS_AND_BACK * (x * v_rate - v * x_rate)
-    rate: FloatArray = np.divide(radial, turning, out=np.full(turning.shape, -np.inf), where=turning > 0)
-    return rate * (np.pi / RAYS)
-
-
-def _rational(corners: FloatArray) -> list[Corner]:
-    """Return the corners rounded to rationals, each coordinate by its largest size."""
-    relative = corners / np.abs(corners[0]).max()
-    units = powers_of_two(np.abs(relative).max(axis=1))
-    return [(x, v) for x, v in rounded(relative, units[:, np.newaxis]).T]

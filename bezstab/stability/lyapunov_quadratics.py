@@ -18,7 +18,7 @@ from bezstab.rationals import ZERO, whole_multiples
 from bezstab.stability.arrays import SAME, SLOW, FloatArray
 from bezstab.stability.positive_polynomials import ExactArray, positivity, whole_rows
 
-DIGITS = 10**9  # denominator of what proves, in units of the state in which its largest numbers are about one
+DIGITS = 9  # significant ones of what proves
 NEWTON_STEPS = 40  # in each stage; some ten are taken
 STAGES = 24  # each halves what the barrier keeps away from the optimum
 
@@ -50,17 +50,13 @@ def centred_form(matrices: FloatArray, decays: FloatArray) -> FloatArray:
             hessian = np.einsum("akij,bkji->ab", scaled, scaled)
             change = -np.linalg.solve(hessian, gradient)
             decrement = -float(gradient @ change)
-            values = values + _share_of_step(decrement) * change
+            # the damped step keeps all conditions (Nesterov & Nemirovskii); rounding may leave a decrement below zero
+            values = values + change / (1 + math.sqrt(max(decrement, 0.0)))
             if decrement < SAME:
                 break
         weight *= 2
     form: FloatArray = unit + np.tensordot(values[:-1], basis, axes=1)
     return form
-
-
-def _share_of_step(decrement: float) -> float:
-    """Return the damped Newton step 1 / (1 + decrement^(1/2)), which keeps all conditions (Nesterov & Nemirovskii)."""
-    return 1.0 if decrement < 0.0625 else float(1 / (1 + np.sqrt(decrement)))
 
 
 def _symmetric_basis(size: int) -> FloatArray:
@@ -73,23 +69,9 @@ def _symmetric_basis(size: int) -> FloatArray:
     return np.array(found[:-1])  # the last diagonal entry follows from the others
 
 
-def rational_form(form: FloatArray) -> ExactArray:
-    """Return a positive symmetric matrix rounded to rationals, each entry by the sizes of those on the diagonal."""
-    relative = form / form[-1, -1]
-    sizes = powers_of_two(np.sqrt(np.diag(relative)))
-    return rounded(relative, np.outer(sizes, sizes))
-
-
-def powers_of_two(sizes: FloatArray) -> ExactArray:
-    """Return the powers of two nearest to some sizes: units that are exact."""
-    return np.array([Fraction(2) ** round(math.log2(size)) for size in sizes])
-
-
-def rounded(numbers: FloatArray, units: ExactArray) -> ExactArray:
-    """Return numbers rounded to rationals, to DIGITS parts of their units; shape of both broadcast."""
-    whole = np.rint(numbers / units.astype(float) * DIGITS)
-    shares = np.array([Fraction(int(each), DIGITS) for each in whole.flat]).reshape(whole.shape)
-    return np.asarray(shares * units)
+def rounded(numbers: FloatArray) -> ExactArray:
+    """Return numbers as rationals of DIGITS digits."""
+    return np.asarray(np.vectorize(lambda number: Fraction(f"{number:.{DIGITS - 1}e}"), otypes=[object])(numbers))
 
 
 def proves_decay(form: ExactArray, matrix: StepMatrix, shortest: Fraction) -> bool:

@@ -63,24 +63,33 @@ def bezier_limit() -> Limit:
     As for every B_n, complex mu lie inside the locus and real ones between mu(-1) and 0, and the smallest |z_p| is a
     double mu with roots z = +-r.
     """
-    length = -_limit_mapping(np.array([-1 + 0j]))[0].real  # of the real interval
+    length = 4 / np.expm1(2)  # of the real interval: -mu(-1)
     z = np.exp(1j * np.linspace(0, np.pi, FINE_POINTS + 1)[1:])
     fine = _limit_mapping(z)
     alpha_hat, beta_hat = -2 * fine.real, np.abs(fine) ** 2
+    arc = np.stack([alpha_hat, beta_hat], axis=-1)[::DRAWN_EVERY]
+    edge = [[2 * length, length**2], [length, 0]]  # on which one mu is held at -length, and the other goes to zero
+
+    def crossed(r: FloatArray) -> BoolArray:
+        z = r.astype(complex)
+        beyond: BoolArray = _limit_mapping(z).real >= _limit_mapping(-z).real
+        return beyond
+
+    opposite = first_where(crossed, np.array([0.1, 0.9]))
+    assert opposite
     return Limit(
         area=_conjugate_area(z, fine) + length**3 / 6,  # of conjugate pairs, and of real ones
         alpha_hat_max=float(max(2 * length, alpha_hat.max())),
         beta_hat_max=float(beta_hat.max()),
-        z_abs=_least_modulus(),
+        z_abs=opposite[1],
         error_constant=LIMIT_ERROR_CONSTANT,
-        boundary=_boundary(np.stack([alpha_hat, beta_hat], axis=-1)[::DRAWN_EVERY], length),
+        boundary=np.concatenate([[[0, 0]], arc, edge, [[0, 0]]]),
     )
 
 
 def _limit_mapping(z: ComplexArray) -> ComplexArray:
     """Return mu(z) of the limit."""
-    mu: ComplexArray = (z - 1) ** 2 / (z * np.expm1((z - 1) / z))
-    return mu
+    return np.asarray((z - 1) ** 2 / (z * np.expm1((z - 1) / z)))
 
 
 def _conjugate_area(z: ComplexArray, mu: ComplexArray) -> float:
@@ -91,24 +100,3 @@ def _conjugate_area(z: ComplexArray, mu: ComplexArray) -> float:
     w = (z - 1) / z
     slope = 1j * z * mu * (2 / (z - 1) - 1 / z - np.exp(w) / np.expm1(w) / z**2)  # d mu / d theta
     return float(abs(np.pi / len(z) * (2 * mu.imag**2 * slope.real).sum()))
-
-
-def _least_modulus() -> float:
-    """Return the smallest |z_p|: r with mu(r) = mu(-r), where the two cross."""
-
-    def crossed(r: FloatArray) -> BoolArray:
-        z = r.astype(complex)
-        beyond: BoolArray = _limit_mapping(z).real >= _limit_mapping(-z).real
-        return beyond
-
-    met = first_where(crossed, np.array([0.1, 0.9]))
-    assert met
-    return met[1]
-
-
-def _boundary(arc: FloatArray, length: float) -> FloatArray:
-    """Return the closed curve of the arc and the straight edge on which one mu is held at mu(-1) = -length."""
-    other_mu = np.linspace(length, 0, 3)[:, np.newaxis]
-    edge = np.concatenate([other_mu + length, other_mu * length], axis=1)
-    origin = np.zeros((1, 2))
-    return np.concatenate([origin, arc, edge, origin])

@@ -30,7 +30,7 @@ from bezstab.stability.lyapunov_quadratics import (
     coefficients_of,
     determinant,
     proves_decay,
-    rational_form,
+    rounded,
 )
 from bezstab.stability.positive_polynomials import positivity, whole_rows
 
@@ -40,8 +40,7 @@ Certificate = Literal["commuting", "quadratic", "polygon"]
 FIGURES = 4  # significant digits of the steps in a sequence, where it grows with as few
 LEAST_FRAME = 0.3  # of beta: as far as a frame for overdamped feedback is still stretched
 SAMPLES = 40  # of the range, evenly spaced; the proofs are of all of it
-SAMPLED_SHARE = 64  # the shortest step sampled, as a share of the longest: the limit of small steps to 2 %
-SHORT = Fraction(1, 10**6)  # a step from which the flow of shorter ones is told: to 1e-6
+SAMPLED_SHARE = 512  # the shortest step sampled, as a share of the longest: polygons of shorter ones differ by less
 LONGEST_RANGE = Fraction(10**12)  # h_max / h_min: beyond, steps so short are as good as zero
 
 
@@ -108,15 +107,14 @@ def varying_steps(
     matrices = np.array([matrix.at(s) for s in samples], np.float64)
     form = _form(matrices, *(float(each) for each in at_longest))
     if form is not None:
-        exact_form = rational_form(form)
+        exact_form = rounded(form / form[-1, -1])
         if proves_decay(exact_form, matrix, shortest):
             return replace(unknown, varying="proven", kind="quadratic", certificate=tuple(map(tuple, exact_form)))
     word = _growing_word(matrix, h_min, h_max)
     if word:
         return refuted(word)
     if matrix.size == 2 and form is not None:
-        flow = _flow(matrix) if not hold and shortest < samples[0] else None
-        corners = invariant_polygon(matrix, np.array(samples, np.float64), matrices, flow, form, shortest)
+        corners = invariant_polygon(matrix, np.array(samples, np.float64), matrices, form, shortest)
         if corners:
             return replace(unknown, varying="proven", kind="polygon", certificate=tuple(corners))
     return unknown
@@ -141,18 +139,13 @@ def _single_step(matrix: StepMatrix, shortest: Fraction) -> Fraction | bool:
 
 
 def _samples(shortest: Fraction, down: bool) -> list[Fraction]:
-    """Return lengths of steps from the shortest, or a sixty-fourth, to 1; with `down` shorter ones by halving, too."""
+    """Return lengths of steps from the shortest, or 1/SAMPLED_SHARE, to 1; with `down` shorter ones by halving, too."""
     low = max(shortest, Fraction(1, SAMPLED_SHARE))
     lengths = {low + (1 - low) * Fraction(k, SAMPLES - 1) for k in range(SAMPLES)}
     while down and low > shortest:
         low = max(low / 2, shortest)
         lengths.add(low)
     return sorted(lengths)
-
-
-def _flow(matrix: StepMatrix) -> FloatArray:
-    """Return the G of short steps, M = 1 + s G: its entries are those of M for a step without length, derived."""
-    return (np.array(matrix.at(SHORT), np.float64) - np.eye(2)) / float(SHORT)
 
 
 def _form(matrices: FloatArray, alpha_hat: float, beta_hat: float) -> FloatArray | None:
