@@ -42,6 +42,8 @@ APART, SLOWLY_APART = 0.1 * STEPS, 0.01 * STEPS
         ((1 + STEPS) * geometric(0.97), STILL, "converges"),
         (geometric(0.9) + 1e-6 * geometric(1.01), STILL, "none"),  # of a growing mode that the kick hardly excites
         (np.maximum(geometric(0.999), 10 * STEPS), 1e4 * STEPS, "none"),  # a difference of motions, no error's growth
+        (geometric(1.01), 1e3 * (geometric(1.01) - 1), "none"),  # the same, out of the linear range
+        (geometric(0.9) + 1e6 * (STEPS == 50), STILL, "none"),  # out of the linear range, and back
         # what lives to the end is judged by its halves
         (geometric(0.9985), STILL, "converges"),
         (geometric(1.0005), STILL, "diverges"),
