@@ -86,7 +86,7 @@ def test_a_branch_followed_twice_in_place_of_another_is_no_answer(monkeypatch: p
 
 SHAPES = [
     *(("B4", 1.0), ("RK4", 0.93), ("ABM2", 1.0)),
-    *(("kdk", 0.9), ("half", 0.9), ("ruth3", 0.25), ("bdf3", 1.0), ("imex", 1.0)),
+    *(("verlet-kdk", 0.9), ("verlet-half", 0.9), ("ruth3", 0.25), ("bdf3", 1.0), ("imex", 1.0)),
 ]
 
 
@@ -121,7 +121,7 @@ WRONG_SIZES: list[tuple[str, Callable[[Shape], Shape]]] = [
 
 @pytest.mark.promise("Every region, best point, choice and margin")
 @pytest.mark.parametrize(("name", "level"), SHAPES[:-2])
-@pytest.mark.slow_except("half")
+@pytest.mark.slow_except("verlet-half")
 def test_a_right_shape_passes_and_a_wrong_one_does_not(name: str, level: float) -> None:
     method, shape = found(name, level)
     check_region(method, level, shape)
