@@ -13,12 +13,6 @@ from bezstab.evidence.mujoco_models import Constraint, Feedback
 mujoco: Any = pytest.importorskip("mujoco")
 
 
-@pytest.fixture(autouse=True)
-def _away_from_here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """MuJoCo writes its warnings, of what diverges, into a file of the current directory."""
-    monkeypatch.chdir(tmp_path)
-
-
 ROBOT = """<mujoco><compiler angle="radian"/>
 <default>
   <equality solref="0.03 0.8" solimp="0.8 0.99 0.002 0.5 2"/>
