@@ -47,8 +47,8 @@ SplitCurve = list[list[tuple[float, float]]]
 class Edge:
     """An edge along a strip: of a curve the real root alpha_hat number k, of `count`, as a function of beta_hat.
 
-    It is known from `low` to `high`: the strip's ends, less what is so near to a level at which roots of the curve are
-    lost that one may show at the wrong infinity. `limits`: what alpha_hat comes to at either end.
+    It goes from `low` to `high`, the strip's ends. It is `known` but for what is so near to an end at which roots of the
+    curve are lost that one may show at the wrong infinity. `limits`: what alpha_hat comes to at either end.
     """
 
     curve: SplitCurve
@@ -56,6 +56,7 @@ class Edge:
     count: int
     low: float
     high: float
+    known: Range
     limits: tuple[Limit, Limit]
 
     def places(self, beta_hat: FloatArray) -> FloatArray:
@@ -63,7 +64,7 @@ class Edge:
 
         An eigenvalue is made exact by Newton's method with the curve's exact value, unless two roots meet.
         """
-        levels = np.clip(beta_hat.ravel(), self.low, self.high)
+        levels = np.clip(beta_hat.ravel(), *self.known)
         place = _most_real(self._roots(levels).T, self.count)[:, self.k]
         slope = polyder(self._table, axis=0)
         for _ in range(STEPS):
@@ -167,8 +168,12 @@ def stable_cells(strips: PlaneStrips) -> list[Cell]:
                 curves[number],
                 k,
                 sum(curve == number for curve, _ in strip.crossings),
-                low + ROUNDING * max(width, abs(low)) if strip.low in strips.lost[number] else low,
-                high - ROUNDING * max(width, abs(high)) if strip.high in strips.lost[number] else high,
+                low,
+                high,
+                (
+                    low + ROUNDING * max(width, abs(low)) if strip.low in strips.lost[number] else low,
+                    high - ROUNDING * max(width, abs(high)) if strip.high in strips.lost[number] else high,
+                ),
                 strip.limits[number, k],
             )
             for number, k in strip.crossings

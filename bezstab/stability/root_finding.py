@@ -15,6 +15,7 @@ Coefficients = Sequence[Any] | NDArray[np.inexact]
 CHUNK = 16384  # points at a time: all the work arrays of one chunk stay in a core's cache
 ITERATIONS = 200  # Aberth's iteration needs about ten; a multiple root, where it is linear, about sixty
 FAR = 1e15  # |z| whose 16th power still fits float64
+FEW = 32  # polynomials: of more, eigenvalues take longer than the ten steps that they spare
 TOLD = 1e-10  # relative: Schur's recursion tells apart what differs by more
 
 
@@ -140,13 +141,31 @@ def companion_roots(coefficients: NDArray[np.inexact]) -> ComplexArray:
     return np.linalg.eigvals(companion).T.astype(complex)
 
 
+def _starts(coefficients: ComplexArray) -> ComplexArray:
+    """Return starting points, shape (n, points): of few polynomials eigenvalues, which are roots but for rounding.
+
+    They lie on both sides of where two roots meet, whose last digits no iteration settles: the branches of a locus that
+    crosses itself end there together. Where a leading coefficient vanishes, or eigenvalues coincide or vanish, starts
+    might never part: there, and of more polynomials, they are those of the Newton polygon.
+    """
+    if coefficients.shape[1] > FEW:
+        return newton_polygon_starts(coefficients)
+    try:
+        starts = companion_roots(coefficients)
+    except np.linalg.LinAlgError:
+        return newton_polygon_starts(coefficients)
+    rest = ~(np.diff(np.sort(starts, axis=0), axis=0).all(axis=0) & starts.all(axis=0))
+    starts[:, rest] = newton_polygon_starts(coefficients[:, rest])
+    return starts
+
+
 def _aberth(coefficients: ComplexArray) -> ComplexArray:
-    """Return the roots of sum_k a_k z^k, coefficients of shape (n + 1, points), from the Newton polygon's starts.
+    """Return the roots of sum_k a_k z^k, coefficients of shape (n + 1, points).
 
     Aberth's simultaneous Newton iteration (O. Aberth, Math. Comp. 27, 1973), cubic at simple roots; points leave as
     they converge. At a multiple root the last digits cannot settle: there ITERATIONS ends the walk.
     """
-    starts = newton_polygon_starts(coefficients)
+    starts = _starts(coefficients)
     solution = starts.copy()
     active = np.arange(starts.shape[1])
     z = starts

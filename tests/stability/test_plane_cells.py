@@ -51,6 +51,13 @@ def test_newmarks_limits_hold_for_any_damping(name: str) -> None:
     assert stable.extent == ((0, np.inf), (0, LIMITS[name]))
 
 
+def test_where_an_edge_is_lost_at_the_level_zero_nothing_is_looked_for_next_to_it() -> None:
+    """At rounding's distance from that level alpha_hat of a double root is known to 2e-3."""
+    extent = region(other_random_method(447)).extent
+    assert extent
+    assert np.array(extent) == pytest.approx(np.array([(0, 30), (0, 25 / 3)]), rel=1e-13)
+
+
 def test_where_two_crossings_meet_the_extent_keeps_its_digits() -> None:
     """At its furthest alpha_hat a double root lies on a level: float64 alone knows it to 5e-8."""
     extent = region(other_random_method(3)).extent

@@ -1,5 +1,5 @@
 from fractions import Fraction
-from math import atan, inf, pi, sin, sqrt
+from math import asinh, atan, inf, pi, sin, sqrt
 
 import numpy as np
 import pytest
@@ -41,6 +41,14 @@ def test_midpoint_has_the_area_of_a_disc_in_a_wedge(level: float) -> None:
     phi = atan(sqrt(max(2 * level - 1, 0)))
     exact = 4 * level**2 * (pi - 2 * phi + sin(2 * phi))
     assert region(lookup("RK2"), level).area == pytest.approx(exact, rel=1e-12)  # sqrt(eps)^2 at the double points
+
+
+@pytest.mark.promise("Area of a region")
+def test_a_locus_that_touches_itself_has_the_area_of_a_lemniscate_in_the_plane() -> None:
+    # z = (w^2 - c) / 7, w = mu + 7/2, c = 21/4: at |z| = 3/4 = c/7 the locus |w^2 - c| = c is Bernoulli's lemniscate.
+    # Pairs of real w add 8 sqrt(2)/3 c^(3/2), conjugate ones (asinh(2 sqrt(2)) - 2 sqrt(2)/3) c^(3/2).
+    exact = (21 / 4) ** 1.5 * (2 * sqrt(2) + asinh(2 * sqrt(2)))
+    assert region(runge_kutta("touching itself", "2/7", "1/2 1/2"), 0.75).area == pytest.approx(exact, rel=1e-12)
 
 
 @pytest.mark.promise("Area of a region")
