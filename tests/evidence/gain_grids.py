@@ -10,11 +10,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from bezstab.evidence.forced_runs import COMPARED, settled_error
-from bezstab.mechanism import compiled_mechanism, constraint_motion, load_scene, motion, observe, simulate
+from bezstab.mechanism import compiled_mechanism, constraint_motion, load_scene, motion, simulated
 from bezstab.methods import Method, lookup
 from bezstab.rationals import exact
 from bezstab.stability import FloatArray, Goal, choose, spectral_radius
-from bezstab.units import feedback_gains
 
 METHODS = ("RK4", "dopri5", "bs3", "B4", "AB2", "AB4", "ABM4", "SYM", "verlet-half", "bdf2", "hht", "gauss4")
 SCENES = {"slider_crank_light": (0.004, 2.0), "driven_four_bar": (0.003, 1.0), "andrews": (1e-4, 0.03)}
@@ -66,14 +65,13 @@ def measured(scene: str, method: Method, point: Point) -> FloatArray:
     """Return the two errors of one run."""
     h, duration = SCENES[scene]
     mechanism = compiled_mechanism(load_scene(scene))
-    gains = feedback_gains(*point, h)
-    run = simulate(mechanism, method, h, duration, gains)
+    alpha_hat, beta_hat = point
+    run = simulated(mechanism, method, h=h, duration=duration, alpha_hat=alpha_hat, beta_hat=beta_hat)
     if run.failure:
         return np.full(2, np.inf)
     later = run.t >= COMPARED * duration
     exactly, _, _ = motion(mechanism, duration).at(run.t[later])
-    seen = observe(mechanism, run.t, run.q, run.v, *gains)
-    return np.array([settled_error(seen, run.t), np.abs(run.q[later] - exactly).max()])
+    return np.array([settled_error(run.observation, run.t), np.abs(run.q[later] - exactly).max()])
 
 
 def print_table(names: Sequence[str]) -> None:

@@ -140,27 +140,6 @@ def test_a_cluster_does_the_same_work(cluster: str, tmp_path: Path) -> None:
     assert os.getpid() not in {int(arrays["by"]) for arrays in found.values()}
 
 
-@pytest.mark.slow
-def test_a_killed_map_resumes_to_the_same_bytes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("PYTHONPATH", str(Path(__file__).parent.parent.parent))
-    whole, killed = tmp_path / "whole", tmp_path / "killed"
-    for folder in (whole, killed):
-        folder.mkdir()
-    mapped = "verify --map 50 --method SYM --scene pendulum --workers 1"
-    command = [sys.executable, "-m", "bezstab", *mapped.split()]
-    subprocess.run(command, cwd=whole, check=True, capture_output=True, timeout=120)
-    chunks = killed / "verify_pendulum_SYM.chunks"
-    with subprocess.Popen(command, cwd=killed, stderr=subprocess.DEVNULL) as running:
-        while not list(chunks.glob("[0-9]*.npz")):
-            assert running.poll() is None
-            time.sleep(0.01)
-        running.kill()
-    subprocess.run([*command, "--resume"], cwd=killed, check=True, capture_output=True, timeout=120)
-    assert sorted(path.name for path in killed.iterdir()) == sorted(path.name for path in whole.iterdir())
-    for path in whole.iterdir():
-        assert (killed / path.name).read_bytes() == path.read_bytes()
-
-
 SQUARES = {"square": np.array([1, 4, 9]), "name": np.array(["a", "b"])}
 
 

@@ -13,12 +13,6 @@ from bezstab.evidence.mujoco_models import Constraint, Feedback
 mujoco: Any = pytest.importorskip("mujoco")
 
 
-@pytest.fixture(autouse=True)
-def _away_from_here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """MuJoCo writes its warnings, of what diverges, into a file of the current directory."""
-    monkeypatch.chdir(tmp_path)
-
-
 ROBOT = """<mujoco><compiler angle="radian"/>
 <default>
   <equality solref="0.03 0.8" solimp="0.8 0.99 0.002 0.5 2"/>
@@ -47,17 +41,13 @@ MARBLES = "".join(f'<body pos="{number} 0 0"><freejoint/><geom size=".1"/></body
 
 
 @pytest.fixture(scope="module")
-def robot() -> ModelData:
-    return model_data(mujoco, mujoco.MjModel.from_xml_string(ROBOT))
+def contacts() -> dict[str, tuple[float, float]]:
+    """Return the solref of each contact that the robot can make."""
+    return {each.element: each.solref for each in read("").of(Constraint) if each.kind == "contact"}
 
 
-def solrefs(robot: ModelData, kind: str) -> dict[str, tuple[float, float]]:
-    return {each.element: each.solref for each in robot.of(Constraint) if each.kind == kind}
-
-
-def test_mixtures_of_contacts_are_mujocos_own(robot: ModelData) -> None:
+def test_mixtures_of_contacts_are_mujocos_own(contacts: dict[str, tuple[float, float]]) -> None:
     """By weight, by priority, the smaller of direct ones; a listed pair has its own."""
-    contacts = solrefs(robot, "contact")
     assert contacts["geom 'floor' and geom 'a'"] == pytest.approx((0.08 / 3, 1))  # 2 : 1
     assert contacts["geom 'floor' and geom 'd'"] == (-900, -40)  # direct: the smaller
     assert contacts["geom 'floor' and geom 'e'"] == (0.07, 1)  # by priority
@@ -80,10 +70,9 @@ def test_geoms_of_all_shapes_meet_however_far_apart_they_are() -> None:
     assert model.geom_margin.max() == 0  # the model itself is left as it was
 
 
-def test_geoms_that_cannot_touch_make_no_contact(robot: ModelData) -> None:
+def test_geoms_that_cannot_touch_make_no_contact(contacts: dict[str, tuple[float, float]]) -> None:
     """Parent and child, excluded bodies, and what is welded to the world."""
-    pairs = {each.element for each in robot.of(Constraint) if each.kind == "contact"}
-    assert not pairs & {"geom 'a' and geom 'b'", "geom 'a' and geom 'c'", "geom 'b' and geom 'c'"}
+    assert not contacts.keys() & {"geom 'a' and geom 'b'", "geom 'a' and geom 'c'", "geom 'b' and geom 'c'"}
 
 
 def read(option: str, robot: str = ROBOT) -> ModelData:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from bezstab.evidence import probed_pole
-from bezstab.evidence.noisy_prediction import NoisyFit, fit_in_noise
+from bezstab.evidence.noisy_prediction import fit_in_noise
 from bezstab.methods import REGISTRY, lookup
 from bezstab.stability import FloatArray, poles, region, window
 from tests.evidence.samples import of_campaign
@@ -16,11 +16,6 @@ ROWS = 120
 
 def white(random: np.random.Generator, size: float, rows: int = ROWS) -> FloatArray:
     return np.asarray(size * random.normal(size=rows))
-
-
-def fitted(samples: FloatArray) -> NoisyFit | None:
-    """Return what a response shows."""
-    return fit_in_noise(samples, order=8)
 
 
 @pytest.mark.parametrize(("noise", "runs", "angle"), [(1e-9, 1, 0.5), (1e-7, 1, 0.0), (1e-7, 2, 0.5)])
@@ -81,7 +76,7 @@ def test_where_there_is_nothing_but_noise_that_is_said() -> None:
     for _ in range(of_campaign(25, 10)):
         size = float(10 ** random.uniform(-12, 0))
         c = white(random, size, int(random.integers(60, 400)))
-        fit = fitted(c)
+        fit = fit_in_noise(c, order=8)
         assert fit is not None
         assert not fit.poles
         assert fit.noise == pytest.approx(size, rel=0.35)  # four times 1 / sqrt(2 * 60)
@@ -106,7 +101,7 @@ def test_noise_does_not_end_with_the_stretch() -> None:
     random = np.random.default_rng(4)
     k = np.arange(300)
     smooth = np.where(k < 40, white(random, 1e-6, 300), 0.0) + 1e-4 * geometric(300, 0.6) + np.exp(-k / 500)
-    assert fitted(smooth) is None
+    assert fit_in_noise(smooth, order=8) is None
 
 
 def test_of_several_responses_the_one_that_shows_the_pole_best_counts() -> None:

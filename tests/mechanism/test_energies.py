@@ -84,7 +84,7 @@ def test_a_damper_takes_what_the_oscillation_loses() -> None:
     spring = {"bodies": ["ground", "bob"], "points": [[0, 0], [0, 0]], "stiffness": 10, "free_length": 2, "damping": 2}
     initial = {"position": {"bob.x": 3.0}, "velocity": {"bob.x": 0.0}}
     run = run_of({**pendulum(spring=[spring], initial=initial), "joint": [line]}, duration=3.0)
-    # x = 2 + e^(-t) (cos 3 t + sin(3 t) / 3), as tests/mechanism/test_runner.py has it
+    # x - 2, of x'' + 2 x' + 10 (x - 2) = 0 released at x = 3
     x = np.exp(-run.t) * (np.cos(3 * run.t) + np.sin(3 * run.t) / 3)
     rate = -np.exp(-run.t) * np.sin(3 * run.t) * 10 / 3
     assert run.force_work == pytest.approx(rate**2 / 2 + 10 * x**2 / 2 - 5, abs=1e-10)

@@ -1,4 +1,4 @@
-"""Methods as programs: rows over registers, as one writes them by hand."""
+"""Methods as programs: rows over registers, what a projection changes, and what is solved together."""
 
 import pytest
 
@@ -10,21 +10,6 @@ from bezstab.methods import lookup
 def program(name: str) -> Program:
     """Return the program of a built-in method."""
     return program_of(lookup(name).scheme.second_order)
-
-
-def test_velocity_verlet_is_the_program_of_the_books() -> None:
-    """Registers x0, v0, a0 | a1 | x1, v1; the velocity of the feedback is that at the half step."""
-    expected: dict[str, list[object]] = {
-        "powers": [0, 1, 2],
-        "table": [[1, 1, 0.5, 0], [0, 1, 0.5, 0], [1, 1, 0.5, 0], [0, 1, 0.5, 0.5]],
-        "moments": [1],
-        "guesses": [0],
-        "groups": [[0, 1, False]],
-        "moved": [4, 5, 3],
-        "corrected": [[1, 0], [0, 1], [0, 0]],
-    }
-    for name, value in expected.items():
-        assert getattr(program("verlet-half"), name).tolist() == value, name
 
 
 def test_a_projection_changes_what_is_carried_of_the_newest_state_and_nothing_older() -> None:

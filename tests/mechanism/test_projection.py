@@ -9,6 +9,7 @@ import pytest
 from bezstab.errors import InputError
 from bezstab.mechanism import (
     Mechanism,
+    Simulation,
     compiled_mechanism,
     constraint_jacobian,
     initial_state,
@@ -19,7 +20,7 @@ from bezstab.mechanism import (
     state_function,
 )
 from bezstab.methods import Method, evaluations, implicit, lookup
-from bezstab.stabilising import after_step
+from bezstab.stabilising import AfterStep, after_step
 from tests.evidence.samples import of_campaign
 from tests.mechanism.test_runner import measured_order
 from tests.mechanism.test_second_order_memory import LEAPFROG
@@ -36,17 +37,23 @@ def scene(name: str) -> Mechanism:
     return compiled_mechanism(load_scene(name))
 
 
+def projected(
+    mechanism: Mechanism, method: Method, h: float, duration: float, after: AfterStep = PROJECTED
+) -> Simulation:
+    """Return a run that has no feedback."""
+    return simulated(mechanism, method, h=h, duration=duration, alpha_hat=0.0, beta_hat=0.0, after=after)
+
+
 @pytest.mark.promise("Projection (`--stabilise projection`)")
 @pytest.mark.parametrize("name", ["slider_crank", "driven_four_bar", "andrews"])
 @pytest.mark.parametrize("method", KINDS)
 @pytest.mark.slow_except("ABM2-slider_crank")
 def test_after_each_step_the_constraints_hold(name: str, method: str) -> None:
-    mechanism, h = scene(name), step_for(name)
-    run = simulate(mechanism, lookup(method), h, 50 * h, (0.0, 0.0), after=PROJECTED)
-    seen = observe(mechanism, run.t, run.q, run.v, 0.0, 0.0)
+    h = step_for(name)
+    run = projected(scene(name), lookup(method), h, 50 * h)
     assert run.failure is None
-    assert abs(seen.c).max() <= WITHIN
-    assert abs(seen.cdot).max() <= WITHIN * max(1, abs(run.v).max())
+    assert abs(run.c).max() <= WITHIN
+    assert abs(run.cdot).max() <= WITHIN * max(1, abs(run.v).max())
 
 
 @pytest.mark.promise(
@@ -78,9 +85,8 @@ def test_what_is_carried_of_a_velocity_is_projected_with_it() -> None:
     mechanism, errors = scene("slider_crank_light"), []
     fine = simulate(mechanism, lookup("RK4"), 1e-4, 0.2, (0.0, 0.0))
     for h in (2e-3, 1e-3):
-        run = simulate(mechanism, method, h, 0.2, (0.0, 0.0), after=PROJECTED)
-        seen = observe(mechanism, run.t, run.q, run.v, 0.0, 0.0)
-        assert max(abs(seen.c).max(), abs(seen.cdot).max()) <= 1e-11
+        run = projected(mechanism, method, h, 0.2)
+        assert max(abs(run.c).max(), abs(run.cdot).max()) <= 1e-11
         errors.append(abs(run.q[-1] - fine.q[-1]).max())
     assert shown_order(errors) == pytest.approx(2, abs=0.1)
 
@@ -117,26 +123,26 @@ def test_the_cost_is_counted() -> None:
     """A projection that moves the state computes a correction twice: the second says that it is enough."""
     mechanism, count = scene("driven_four_bar"), 40
     for name in ("SYM", "RK2", "hht"):
-        run = simulate(mechanism, lookup(name), H, count * H, (0.0, 0.0), after=ONCE)
+        run = projected(mechanism, lookup(name), H, count * H, ONCE).trajectory
         assert run.projections == 2 * count
         assert run.factorizations == run.evaluations + 2 * count
         if name in ("SYM", "RK2"):
             assert run.evaluations == count * evaluations(lookup(name))
     plain = simulate(mechanism, lookup("SYM"), H, count * H, (0.0, 0.0))
     assert (plain.projections, plain.factorizations) == (0, plain.evaluations)
-    ab4 = simulate(mechanism, lookup("AB4"), H, count * H, (0.0, 0.0), after=PROJECTED)
+    ab4 = projected(mechanism, lookup("AB4"), H, count * H).trajectory
     assert 2 * (count - 3) <= ab4.projections <= 2 * count  # those of its start are counted, too
 
 
 def test_more_iterations_come_closer() -> None:
     """Each iteration of Newton's method squares what is left."""
-    mechanism, errors = scene("driven_four_bar"), []
-    for iterations in (1, 2, 3):
-        run = simulate(mechanism, lookup("SYM"), 0.02, 1.0, (0.0, 0.0), after=after_step("projection", iterations))
-        errors.append(abs(observe(mechanism, run.t, run.q, run.v, 0.0, 0.0).c).max())
-    assert errors[0] > 1e-7
-    assert errors[1] < errors[0] ** 1.5
-    assert errors[2] <= WITHIN
+    first, second, third = (
+        abs(projected(scene("driven_four_bar"), lookup("SYM"), 0.02, 1.0, after_step("projection", iterations)).c).max()
+        for iterations in (1, 2, 3)
+    )
+    assert first > 1e-7
+    assert second < first**1.5
+    assert third <= WITHIN
 
 
 def test_steps_of_different_lengths_are_projected_too() -> None:
@@ -171,13 +177,15 @@ def test_a_singular_configuration_ends_a_run_and_says_when(compiled: bool) -> No
 def test_a_position_from_which_newtons_method_finds_none_ends_a_run() -> None:
     """The crank is driven half a revolution on in a step; so many iterations as are asked for are no promise."""
     mechanism = scene("driven_four_bar")
-    run = simulate(mechanism, lookup("RK1"), 0.5, 20.0, (0.0, 0.0), after=PROJECTED)
+    run = projected(mechanism, lookup("RK1"), 0.5, 20.0)
     assert "at t = 1.5 s: projection: Newton's method for the position did not converge in 25 iterations" in str(
         run.failure
     )
-    given_up = simulate(mechanism, lookup("RK1"), 0.5, 1.5, (0.0, 0.0), after=TWICE)
+    assert repr(run).endswith(", failed)")
+    assert len(run.t) == len(run.c) == len(run.driver_work)  # all that is told of it ends with it
+    given_up = projected(mechanism, lookup("RK1"), 0.5, 1.5, TWICE)
     assert given_up.failure is None
-    assert abs(observe(mechanism, given_up.t, given_up.q, given_up.v, 0.0, 0.0).c).max() > 1e-3
+    assert abs(given_up.c).max() > 1e-3
 
 
 def test_bad_input_is_refused() -> None:

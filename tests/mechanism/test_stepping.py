@@ -143,7 +143,7 @@ def test_a_singular_configuration_ends_a_run(compiled: bool) -> None:
 
 @pytest.mark.promise("Compiled runs (`--compiled`)")
 @pytest.mark.parametrize("name", ["SYM", "gauss4"])
-@pytest.mark.slow
+@pytest.mark.slow_except("SYM")
 def test_kicked_runs_are_the_same_in_a_batch_compiled_and_alone(name: str) -> None:
     """With SYM on a scene that is driven: where the time matters. Some diverge, and are no numbers alike."""
     scene = "driven_slider_crank" if name == "SYM" else "slider_crank"
