@@ -213,9 +213,7 @@ class Law:
         if self.turned == 0:
             return np.where(decays, np.inf, np.nan)
         fastest = np.full(decays.shape, LAW_HOLDS / self.turned)
-        speeds, _ = bisected(
-            lambda times: self.furthest(times.reshape(-1, 1)).max(axis=1)[np.newaxis] >= 0, 0 * fastest, fastest
-        )
+        speeds, _ = bisected(lambda times: self.furthest(times[:, np.newaxis]).max(axis=1) >= 0, 0 * fastest, fastest)
         return np.where(decays, speeds, np.nan)
 
 

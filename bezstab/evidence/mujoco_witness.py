@@ -151,7 +151,7 @@ def _boundary_points(method: Method) -> FloatArray:
     angles = np.radians(RAYS)
     rays = np.stack([np.cos(angles), np.sin(angles)], axis=-1) * [largest for _, largest in view]
     stable, unstable = (np.full(len(RAYS), times) for times in ALONG_A_RAY)
-    _, met = bisected(lambda times: spectral_radius(method, *(times * rays.T[:, np.newaxis])) >= 1, stable, unstable)
+    _, met = bisected(lambda times: spectral_radius(method, *(times * rays.T)) >= 1, stable, unstable)
     return np.asarray(met[:, np.newaxis] * rays)
 
 

@@ -39,7 +39,7 @@ from bezstab.stability.arrays import DOUBLE, ROUNDING, SAME, BoolArray, FloatArr
 from bezstab.stability.locus_tracks import Arc, tracks
 from bezstab.stability.mu_pencils import MuPencil, all_inside, roots_in_mu
 from bezstab.stability.root_finding import roots_of_table
-from bezstab.stability.searches import AT_ONCE, bisected, least_between
+from bezstab.stability.searches import bisected, least_between
 
 ARC_POINTS = 400  # drawn per arc: chords stay within 1e-5 of the curve
 RIM = 64.0  # times everything finite: far enough out to tell how the region goes on, near enough to be checked
@@ -71,10 +71,9 @@ class Bounds:
         arcs = []
         for arc in self.arcs:
             kept = np.abs(arc.mu) < radius
-            if kept.any():
-                arcs.append(Arc(arc.pencil, arc.level, arc.theta[kept], arc.mu[kept]))
+            arcs.append(Arc(arc.pencil, arc.level, arc.theta[kept], arc.mu[kept]))
         intervals = tuple((max(start, -radius), min(end, radius)) for start, end in self.intervals)
-        return Bounds(tuple(arcs), tuple((start, end) for start, end in intervals if start < end), radius)
+        return Bounds(tuple(arcs), intervals, radius)
 
 
 @cache
@@ -113,7 +112,6 @@ def _size(branches: list[Arc]) -> float:
 
 def _bounding_arcs(track: Arc, radius: float) -> Iterator[Arc]:
     """Yield the arcs of one branch, theta in [0, pi], that bound S_r's upper half within |mu| < radius."""
-    one_step = track.pencil.steps == 1  # the root on the circle is the only one
 
     def height(theta: FloatArray) -> FloatArray:
         return np.asarray(track.at(theta).imag)
@@ -121,25 +119,20 @@ def _bounding_arcs(track: Arc, radius: float) -> Iterator[Arc]:
     def outside(theta: FloatArray) -> FloatArray:
         return _largest_other(track, theta) + ROUNDING
 
+    def beyond(theta: FloatArray) -> FloatArray:
+        return np.asarray(np.abs(track.at(theta)) - radius)
+
     inner = track.theta[1:-1]
-    cuts = [track.theta[[0, -1]], sign_changes(height, inner)]
-    if not one_step:
-        cuts.append(sign_changes(outside, inner))
-    if isfinite(radius):
-        cuts.append(sign_changes(lambda theta: np.abs(track.at(theta)) - radius, inner))
-    for start, end in pairwise(np.unique(np.concatenate(cuts)).tolist()):
+    cuts = [sign_changes(each, inner) for each in (height, outside, beyond)]
+    for start, end in pairwise(np.unique(np.concatenate([track.theta[[0, -1]], *cuts])).tolist()):
         middle = np.array([(start + end) / 2])
-        if not one_step and outside(middle)[0] >= 0:
-            continue
-        theta = _drawn_angles(track, start, end)
-        mu = track.at(theta)
         mu_middle = complex(track.at(middle)[0])
+        if outside(middle)[0] >= 0 or abs(mu_middle) > radius:
+            continue
         if abs(mu_middle.imag) <= SAME * abs(mu_middle):
             continue  # along the real axis
-        if abs(mu_middle) > radius:
-            continue
-        if np.abs(mu - mu_middle).max() <= SAME * abs(mu_middle):
-            continue  # rounding, where several roots meet on the circle
+        theta = _drawn_angles(track, start, end)
+        mu = track.at(theta)
         if mu_middle.imag > 0:
             yield Arc(track.pencil, track.level, theta, mu)
         else:
@@ -150,9 +143,8 @@ def _largest_other(track: Arc, theta: FloatArray) -> FloatArray:
     """Return by what share of the level the largest root besides that on the circle lies outside it; shape of theta."""
     z = track.level * np.exp(1j * theta)
     roots = roots_of_table(track.pencil.table, track.at(theta))
-    off = np.abs(roots - z)
-    modulus = np.where(np.isfinite(off), np.abs(roots), np.inf)
-    own = np.argmin(np.where(np.isfinite(off), off, np.inf), axis=0)
+    modulus = np.abs(roots)
+    own = np.argmin(np.abs(roots - z), axis=0)
     np.put_along_axis(modulus, own[np.newaxis], 0, axis=0)
     return np.asarray(modulus.max(axis=0) / track.level - 1)
 
@@ -171,41 +163,32 @@ def _drawn_angles(track: Arc, start: float, end: float) -> FloatArray:
 
 def sign_changes(values_at: Callable[[FloatArray], FloatArray], samples: FloatArray) -> FloatArray:
     """Return where a continuous function changes sign along ascending samples, to rounding; shape (changes,)."""
-    theta, values = _with_dips(values_at, samples)
-    positive = values >= 0
+    theta = _with_dips(values_at, samples)
+    positive = values_at(theta) >= 0  # all in one go: dips judged alone may be noise, and would pass for changes
     change = np.flatnonzero(positive[1:] != positive[:-1])
-    if not change.size:
-        return np.empty(0)
     after = positive[change + 1]
 
-    def has_changed(inside: FloatArray) -> BoolArray:
-        return np.asarray((values_at(inside.ravel()).reshape(inside.shape) >= 0) == after)
+    def has_changed(middle: FloatArray) -> BoolArray:
+        return np.asarray((values_at(middle) >= 0) == after)
 
-    low, high = bisected(has_changed, theta[change], theta[change + 1], at_once=AT_ONCE)
+    low, high = bisected(has_changed, theta[change], theta[change + 1])
     return (low + high) / 2
 
 
-def _with_dips(values_at: Callable[[FloatArray], FloatArray], theta: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return theta with a sample more wherever the function has the other sign only between two of them, and values."""
+def _with_dips(values_at: Callable[[FloatArray], FloatArray], theta: FloatArray) -> FloatArray:
+    """Return theta with a sample more wherever the function has the other sign only between two of them."""
     values = values_at(theta)
-    size = np.abs(values)
-    same_sign = (values[:-2] >= 0) == (values[1:-1] >= 0)
-    same_sign &= (values[2:] >= 0) == (values[1:-1] >= 0)
+    size, positive = np.abs(values), values >= 0
+    same_sign = (positive[:-2] == positive[1:-1]) & (positive[2:] == positive[1:-1])
     dip = 1 + np.flatnonzero(same_sign & (size[1:-1] < size[:-2]) & (size[1:-1] <= size[2:]))
-    if not dip.size:
-        return theta, values
-    sign = np.where(values[dip] >= 0, 1.0, -1.0)
+    sign = np.where(positive[dip], 1.0, -1.0)
     low, high = theta[dip - 1], theta[dip + 1]
 
     def towards_zero(points: FloatArray) -> FloatArray:
         return sign[:, np.newaxis] * values_at(points.ravel()).reshape(points.shape)
 
     found, least = least_between(towards_zero, low, high)
-    found_dips = found[least < 0]
-    if not found_dips.size:
-        return theta, values
-    theta = np.sort(np.append(theta, found_dips))
-    return theta, values_at(theta)  # all in one go: dips judged alone may be noise, and would pass for changes
+    return np.sort(np.append(theta, found[least < 0]))
 
 
 def _real_intervals(pencil: MuPencil, level: float, arcs: tuple[Arc, ...], radius: float) -> list[Interval]:
@@ -219,19 +202,11 @@ def _real_intervals(pencil: MuPencil, level: float, arcs: tuple[Arc, ...], radiu
         points = np.array([-radius, *points[np.abs(points) < radius], radius])
     middle = (points[1:] + points[:-1]) / 2
     inside = all_inside(pencil, middle.astype(complex), level * (1 - ROUNDING))
-    through = all_inside(pencil, points.astype(complex), level * (1 - SAME))  # no end after all
-    merged: list[Interval] = []
-    for k in np.flatnonzero(inside).tolist():
-        start, end = float(points[k]), float(points[k + 1])
-        if merged and merged[-1][1] == start and through[k]:
-            merged[-1] = (merged[-1][0], end)
-        else:
-            merged.append((start, end))
-    return merged
+    return [(float(points[k]), float(points[k + 1])) for k in np.flatnonzero(inside)]
 
 
 def _ends_on_the_axis(pencil: MuPencil, level: float, arcs: tuple[Arc, ...]) -> FloatArray:
-    """Return all mu where an interval of the axis may end, ascending, of those that coincide one.
+    """Return all mu where an interval of the axis may end, ascending.
 
     A mu with a root at +-level is solved for, good to rounding: far out, at a zero of R, S_r may be as narrow as 1e-10
     of mu and yet hold the furthest alpha_hat. Where an arc with a pair on the circle meets the axis it is good to SAME.
@@ -239,20 +214,9 @@ def _ends_on_the_axis(pencil: MuPencil, level: float, arcs: tuple[Arc, ...]) -> 
     at_real_z = roots_in_mu(pencil, np.array([level, -level], complex)).ravel()
     at_real_z = at_real_z[np.isfinite(at_real_z)]
     real = np.abs(at_real_z.imag) <= DOUBLE * np.abs(at_real_z)
-    solved = _distinct(at_real_z[real].real, ROUNDING)
-    arrived: list[float] = []
+    ends = at_real_z[real].real.tolist()
     for arc in arcs:
         for theta, mu in ((arc.theta[0], arc.mu[0]), (arc.theta[-1], arc.mu[-1])):
             if abs(mu.imag) <= DOUBLE * abs(mu) and 0 < abs(theta) < pi:
-                arrived.append(float(mu.real))
-    ends = _distinct(np.array(arrived), SAME)
-    if solved.size:
-        apart = np.abs(ends[:, np.newaxis] - solved).min(axis=1) > SAME * np.abs(ends)
-        ends = ends[apart]
-    return np.sort(np.append(solved, ends))
-
-
-def _distinct(points: FloatArray, closeness: float) -> FloatArray:
-    """Return points ascending, without those closer to the next than a share of their size."""
-    ascending = np.sort(points)
-    return ascending[np.diff(ascending, append=np.inf) > closeness * np.abs(ascending)]
+                ends.append(float(mu.real))
+    return np.sort(ends)

@@ -29,14 +29,13 @@ from numpy.polynomial.polynomial import polyder, polyval
 
 from bezstab.errors import NumericalError
 from bezstab.stability.arrays import DOUBLE, EPS, ROUNDING, SAME, Extent, FloatArray
-from bezstab.stability.boundary_locus import AT_INFINITY, RIM, Bounds, bounds_of
+from bezstab.stability.boundary_locus import RIM, Bounds, bounds_of
 from bezstab.stability.mu_pencils import MuPencil, deadbeat_mu, roots_in_mu
 from bezstab.stability.shapes import USUAL_SIZE, Shape, joined
 
 MEETING = 1e-4  # of the curves' size: where branches meet on the circle an arc ends the root of SHORTEST from it
 GROWN = RIM ** (1 / 5)  # times the range, from a rim to one RIM further out: with the fourth root it would grow by more
 NO_DIGITS = 0.05  # of mu, lost on the locus: nothing else would find that out, or after minutes
-WELL_WIDE = 1e-11  # of |mu|: about a zero of R that narrow a part of S_r is a hundredfold above rounding of its ends
 NOISE_ANGLES: FloatArray = np.linspace(0.1, 3.1, 16)  # at which the rounding of crossings is estimated
 
 
@@ -56,10 +55,6 @@ def locus_shape(pencil: MuPencil, level: float) -> Shape | None:
     if extent is None:
         return None
     area = _area(pencil, far) if far.bounded else None
-    mu_abs = max((float(np.abs(arc.mu).max()) for arc in far.arcs), default=0.0)
-    noise = ROUNDING * (mu_abs / pencil.multiple) ** np.array([1, 2])
-    if area is not None and (area <= 0 or (np.ptp(extent, axis=1) <= noise).any()):
-        return None  # where two roots on the circle meet
     edges = [arc.plane() for arc in near.arcs] + straight_edges(pencil, near)
     curves = joined(edges, most=MEETING * np.abs(np.concatenate(edges)).max(axis=0))
     if far.bounded:
@@ -74,28 +69,20 @@ def _edge_noise(pencil: MuPencil, level: float) -> float:
     many stages they cancel: of twenty implicit Euler steps composed, z = (1 - mu / 20)^-20, their squares to nothing.
     """
     mu = roots_in_mu(pencil, level * np.exp(1j * NOISE_ANGLES)).ravel()
-    mu = mu[np.isfinite(mu) & (np.abs(mu) < AT_INFINITY)]
     numerator, denominator = pencil.table
-    with np.errstate(all="ignore"):
-        size = sum(polyval(np.abs(mu), np.abs(row)) for row in pencil.table)
-        n, d = polyval(mu, numerator), polyval(mu, denominator)
-        rate = np.abs(mu * (polyval(mu, polyder(numerator)) / n - polyval(mu, polyder(denominator)) / d))
-        noise = EPS * (size / np.abs(d)) ** 2 / rate
-    return float(noise[np.isfinite(noise)].max(initial=0))
+    size = sum(polyval(np.abs(mu), np.abs(row)) for row in pencil.table)
+    n, d = polyval(mu, numerator), polyval(mu, denominator)
+    rate = np.abs(mu * (polyval(mu, polyder(numerator)) / n - polyval(mu, polyder(denominator)) / d))
+    return float((EPS * (size / np.abs(d)) ** 2 / rate).max())
 
 
 def _check_zeros(pencil: MuPencil, level: float, bounds: Bounds) -> None:
     """Raise NumericalError unless each real zero of a one-step method's R lies in an interval.
 
-    Each part of S_r has a zero of R, by the maximum principle. Parts too narrow for float64, of a size of about
-    level / |R'|, are left out.
+    Each part of S_r has a zero of R, by the maximum principle.
     """
     zeros = deadbeat_mu(pencil)
-    with np.errstate(all="ignore"):
-        size = level * np.abs(polyval(zeros, pencil.table[-1]) / polyval(zeros, polyder(pencil.table[0])))
-    wide = size > WELL_WIDE * np.abs(zeros)
-    real = np.abs(zeros.imag) <= SAME * np.abs(zeros)
-    for zero in zeros[wide & real].real.tolist():
+    for zero in zeros[np.abs(zeros.imag) <= SAME * np.abs(zeros)].real.tolist():
         if not any(start < zero < end for start, end in bounds.intervals):
             raise NumericalError(f"{pencil.method.name}: |z_p| < {level:g} around mu = {zero:.6g} was not found")
 
@@ -156,10 +143,7 @@ def _unbounded_extent(pencil: MuPencil, near: Bounds, far: Extent) -> Extent:
     def limit(axis: int, end: int) -> float:
         nearer, further = nearer_ends[axis][end], far[axis][end]
         sign = -1 if end == 0 else 1
-        if sign * further > GROWN * max(sign * nearer, scales[axis]):
-            return sign * math.inf
-        # so far out an arc along the imaginary axis is good to no more
-        return nearer if abs(further - nearer) <= DOUBLE * scales[axis] else further
+        return sign * math.inf if sign * further > GROWN * max(sign * nearer, scales[axis]) else nearer
 
     return (limit(0, 0), limit(0, 1)), (limit(1, 0), limit(1, 1))
 

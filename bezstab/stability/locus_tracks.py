@@ -50,8 +50,7 @@ class Arc:
         left_is_nearer = theta - self.theta[right - 1] < self.theta[right] - theta
         samples = self.mu[np.where(left_is_nearer, right - 1, right)]
         candidates = roots_in_mu(self.pencil, self.level * np.exp(1j * theta))
-        distance = np.abs(candidates - samples)
-        closest = np.argmin(np.where(np.isnan(distance), np.inf, distance), axis=0)
+        closest = np.argmin(np.abs(candidates - samples), axis=0)
         found: ComplexArray = candidates[closest, np.arange(theta.size)]
         return found
 
@@ -68,16 +67,12 @@ class Arc:
         """Return every theta where that coordinate turns, by narrowing in on the samples where it does."""
         values = self.plane()[:, axis]
         turning = np.flatnonzero(np.diff(np.sign(np.diff(values)))) + 1
-        if not turning.size:
-            return np.empty(0)
         upwards = np.where(values[turning] > values[turning - 1], 1.0, -1.0)[:, np.newaxis]
-        low = self.theta[turning - 1]
-        high = self.theta[np.minimum(turning + 1, len(self.theta) - 1)]
 
         def below_the_turn(theta: FloatArray) -> FloatArray:
             return -upwards * self.coordinate(theta.ravel(), axis).reshape(theta.shape)
 
-        theta, _ = least_between(below_the_turn, low, high)
+        theta, _ = least_between(below_the_turn, self.theta[turning - 1], self.theta[turning + 1])
         return theta
 
     def area(self) -> float:
@@ -94,11 +89,9 @@ class Arc:
         """Return -2 y^2 dx/dtheta, shape (1, *that of theta), with dmu/dz = -(d pi/dz) / (d pi/dmu)."""
         z = self.level * np.exp(1j * theta.ravel())
         mu = self.at(theta.ravel())
-        with np.errstate(all="ignore"):  # at an end, of no weight, two branches may meet
-            by_z, by_mu = self.pencil.slopes(z, mu)
-            slope = -1j * z * by_z / by_mu
-            density = -2 * mu.imag**2 * slope.real
-        return np.where(np.isfinite(density), density, 0).reshape(1, *theta.shape)
+        by_z, by_mu = self.pencil.slopes(z, mu)
+        slope = -1j * z * by_z / by_mu
+        return np.asarray(-2 * mu.imag**2 * slope.real).reshape(1, *theta.shape)
 
 
 def tracks(pencil: MuPencil, level: float) -> Iterator[Arc]:

@@ -11,7 +11,7 @@ Nothing is asked of where its edges come from, and three things must be true:
                +---------------- alpha_hat
 
 Where float64 contradicts a region, Schur's recursion in rationals decides: rounding of a double root is no error. And
-some points of every edge, and what is stable within an end and far out, are proven so in any case.
+what is stable within an end and far out is proven so in any case.
 """
 
 import math
@@ -30,7 +30,7 @@ from bezstab.stability.closed_loop import decays_faster, largest_modulus
 from bezstab.stability.pencils import Pencil, pencil_of
 from bezstab.stability.quadratures import integrals
 from bezstab.stability.root_finding import TOLD
-from bezstab.stability.searches import AT_ONCE, bisected, least_between
+from bezstab.stability.searches import bisected, least_between
 from bezstab.stability.shapes import GOES_ON, Shape
 
 THIN = 1e-4  # of its distance: around a double mu a curve of that size is known to less, as rounding parts the two
@@ -92,12 +92,12 @@ def _check_closed(name: str, shape: Shape, curve: FloatArray) -> None:
     """Raise NumericalError unless a curve is closed, or of a region that goes on has its ends out of view."""
     ends = curve[[0, -1]]
     is_open = (ends[0] != ends[1]).any()
-    if is_open and (shape.area is not None or _seen(shape, ends).any()):
+    if is_open and _seen(shape, ends).any():
         raise NumericalError(f"{name}: an edge was not found: it is very short, or several roots share it")
 
 
 def _seen(shape: Shape, points: FloatArray) -> BoolArray:
-    """Return which points lie where a region that goes on is looked at."""
+    """Return which points lie where a region is looked at: all, unless it goes on."""
     return np.asarray((np.abs(points) <= (1 + GOES_ON) * np.abs(shape.view).max(axis=1)).all(axis=1))
 
 
@@ -106,15 +106,13 @@ def _check_edge(name: str, shape: Shape, curve: FloatArray, inside: Verdicts, pr
     size, away = np.ptp(curve, axis=0), np.abs(curve).max(axis=0)
     if (size <= THIN * away).all():
         return
-    if shape.area is None:  # what lies out of view may be a thousandfold larger, and is drawn by few points
-        size, away = (np.minimum(each, np.abs(shape.view).max(axis=1)) for each in (size, away))
+    # what lies out of view may be a thousandfold larger, and is drawn by few points
+    size, away = (np.minimum(each, np.abs(shape.view).max(axis=1)) for each in (size, away))
     points = _with_points_between(curve, size)
     along = (points[2:] - points[:-2]) / size
     length = np.hypot(*along.T)
-    kept = (length > SAME) & (_seen(shape, points[1:-1]) | (shape.area is not None))
+    kept = (length > SAME) & _seen(shape, points[1:-1])
     points, along = points[1:-1][kept], along[kept] / length[kept, np.newaxis]
-    if len(points) <= CORNER:
-        return
     # just to either side, as far as verdicts tell; of a small curve that is far away points are known to less
     offset = np.maximum(TOLD * size, ROUNDING * away) * np.stack([-along[:, 1], along[:, 0]], axis=1)
 
@@ -123,10 +121,10 @@ def _check_edge(name: str, shape: Shape, curve: FloatArray, inside: Verdicts, pr
         left, right, middle = (verdicts(*(points[some] + sign * offset[some]).T) for sign in (1, -1, 0))
         return np.asarray((left == right) & (left == (left & middle)))
 
-    every = np.arange(len(points))
-    doubtful = np.flatnonzero(is_no_edge(inside, every))
-    asked = doubtful if len(doubtful) > CORNER + CORNERS * len(points) else every
-    asked = asked[:: 1 + len(asked) // PROVEN]
+    doubtful = np.flatnonzero(is_no_edge(inside, np.arange(len(points))))
+    if len(doubtful) <= CORNER + CORNERS * len(points):
+        return
+    asked = doubtful[:: 1 + len(doubtful) // PROVEN]
     wrong = asked[is_no_edge(proven, asked)]
     if len(wrong) > len(asked) / 2:
         place = "({:.6g}, {:.6g})".format(*points[wrong[0]])
@@ -190,7 +188,7 @@ def _looked_at(shape: Shape, axis: int, place: float, outwards: int) -> FloatArr
     if shape.curves:
         drawn = np.concatenate(shape.curves)
         bases.append(drawn[[np.argmax(outwards * drawn[:, axis])], 1 - axis])
-        (crossed,) = _crossings(shape, np.array([place]), axis)
+        crossed = _crossings(shape, place, axis)
         bases.append((crossed[1:] + crossed[:-1]) / 2)
     away = np.ptp(shape.view[1 - axis]) * np.concatenate([-TOWARDS, [0.0], TOWARDS])
     return np.unique(np.add.outer(np.concatenate(bases), away))
@@ -216,9 +214,8 @@ def _lowest(modulus: Callable[[FloatArray], FloatArray], samples: FloatArray) ->
 
 def _check_lines(name: str, shape: Shape, inside: Verdicts, proven: Verdicts) -> None:
     """Raise NumericalError unless lengths of lines add up to the area, and to what the curves enclose, within view."""
-    efforts = [*((inside, AT_ONCE, *effort) for effort in EFFORTS), (proven, 1, *PROVEN_EFFORT)]
-    for verdicts, at_once, rough, points in efforts:
-        area, between = _area_by_lines(shape, verdicts, at_once, rough, points)
+    for verdicts, rough, points in [*((inside, *effort) for effort in EFFORTS), (proven, *PROVEN_EFFORT)]:
+        area, between = _area_by_lines(shape, verdicts, rough, points)
         size = area if shape.area is None else shape.area
         if abs(area - size) <= DOUBLE * size and between <= CURVE_ERROR * size:
             return
@@ -227,15 +224,14 @@ def _check_lines(name: str, shape: Shape, inside: Verdicts, proven: Verdicts) ->
     raise NumericalError(f"{name}: the area {shape.area:.9g} is {area:.9g} by slices")
 
 
-def _area_by_lines(shape: Shape, verdicts: Verdicts, at_once: int, rough: float, points: int) -> tuple[float, float]:
+def _area_by_lines(shape: Shape, verdicts: Verdicts, rough: float, points: int) -> tuple[float, float]:
     """Return the area by the poles' verdicts, and how much of it is between the curves and the poles' own edges.
 
-    Panels are halved where half the nodes give another integral, by the share `rough` of the area. `points`: on a line;
-    at_once: of a bracket.
+    Panels are halved where half the nodes give another integral, by the share `rough` of the area. `points`: on a line.
     """
 
     def lengths(lines: FloatArray) -> FloatArray:
-        by_poles, by_curves = _lengths(shape, lines.ravel(), verdicts, at_once, points)
+        by_poles, by_curves = _lengths(shape, lines.ravel(), verdicts, points)
         return np.stack([by_poles, np.abs(by_poles - by_curves)]).reshape(2, *lines.shape)
 
     def allowed(own: FloatArray, total: float) -> FloatArray:
@@ -250,31 +246,24 @@ def _panels(shape: Shape) -> FloatArray:
     first, last = shape.view[0]
     ends = [np.array([first, last])]
     for curve in shape.curves:
-        size = np.ptp(curve, axis=0)
-        apart = np.append(True, (np.abs(np.diff(curve, axis=0)) > SAME * size).any(axis=1))
-        points = curve[apart]
-        if (curve[0] == curve[-1]).all():
-            points = np.concatenate([points, points[1:2]])
-        chords = np.diff(points, axis=0)
-        angle = np.arctan2(*(chords / size).T[::-1])
+        chords = np.diff(curve, axis=0)
+        angle = np.arctan2(*(chords / np.ptp(curve, axis=0)).T[::-1])
         turned = np.abs((np.diff(angle) + np.pi) % (2 * np.pi) - np.pi) > TURNED
         turning = chords[:-1, 0] * chords[1:, 0] <= 0  # where it turns between two points hardly differs
-        ends += [points[[0, -1], 0], points[1:-1][turned | turning, 0]]
+        ends += [curve[[0, -1], 0], curve[1:-1][turned | turning, 0]]
     places = np.unique(np.concatenate(ends))
     places = places[(places >= first) & (places <= last)]
     places = places[np.append(True, np.diff(places) > SAME * (last - first))]
     return np.stack([places[:-1], places[1:]], axis=1)
 
 
-def _lengths(
-    shape: Shape, lines: FloatArray, verdicts: Verdicts, at_once: int, points: int
-) -> tuple[FloatArray, FloatArray]:
+def _lengths(shape: Shape, lines: FloatArray, verdicts: Verdicts, points: int) -> tuple[FloatArray, FloatArray]:
     """Return how much of each line of constant alpha_hat is stable within view: by the poles, and by the curves.
 
     Verdicts are asked for at so many points of the line, and between crossings of the curves; where they turn is found
-    by bisection. A region that goes on may be stable where a line begins to be looked at.
+    by bisection. Where a line begins to be looked at nothing is stable.
     """
-    crossings = _crossings(shape, lines)
+    crossings = [_crossings(shape, line) for line in lines.tolist()]
     low, high = shape.view[1]
     margin = (high - low) / points
     grid = np.linspace(low - margin, high + margin, points)
@@ -286,18 +275,12 @@ def _lengths(
     entering = stable[turn + 1]
 
     def arrived(place: FloatArray) -> BoolArray:
-        line = np.broadcast_to(lines[which[turn]], place.shape)
-        return np.asarray(verdicts(line, place) == entering)
+        return np.asarray(verdicts(lines[which[turn]], place) == entering)
 
-    place = bisected(arrived, beta_hat[turn], beta_hat[turn + 1], CROSSING_HALVINGS, at_once)[1]
-    by_poles, by_curves = np.zeros(len(lines)), np.zeros(len(lines))
-    starts = np.searchsorted(which, np.arange(len(lines)))
-    for line, crossed in enumerate(crossings):
-        begins = bool(stable[starts[line]])
-        below = (crossed < grid[0]).sum() % 2 == 1
-        by_poles[line] = _inside(place[which[turn] == line], begins, grid)
-        by_curves[line] = _inside(crossed, begins if shape.area is None else below, grid)
-    return by_poles, by_curves
+    place = bisected(arrived, beta_hat[turn], beta_hat[turn + 1], CROSSING_HALVINGS)[1]
+    by_poles = [_length_inside(place[which[turn] == line], grid) for line in range(len(lines))]
+    by_curves = [_length_inside(crossed, grid) for crossed in crossings]
+    return np.array(by_poles), np.array(by_curves)
 
 
 def _with_middles(grid: FloatArray, places: FloatArray) -> FloatArray:
@@ -306,32 +289,21 @@ def _with_middles(grid: FloatArray, places: FloatArray) -> FloatArray:
     return np.unique(np.append(grid, middles[(middles > grid[0]) & (middles < grid[-1])]))
 
 
-def _inside(places: FloatArray, begins: bool, grid: FloatArray) -> float:
-    """Return the length of a line inside, along a grid, from where it is crossed and whether it begins inside."""
-    ends = np.concatenate([grid[:1] if begins else [], places[(places > grid[0]) & (places < grid[-1])]])
+def _length_inside(places: FloatArray, grid: FloatArray) -> float:
+    """Return the length of a line inside, along a grid that begins outside, from where it is crossed."""
+    ends = places[(places > grid[0]) & (places < grid[-1])]
     if len(ends) % 2:
         ends = np.append(ends, grid[-1])
     return float(ends[1::2].sum() - ends[::2].sum())
 
 
-def _crossings(shape: Shape, lines: FloatArray, axis: int = 0) -> list[FloatArray]:
-    """Return for each line of constant alpha_hat, or beta_hat (axis 1), where the curves cross it, ascending."""
-    order = np.argsort(lines)
-    found: list[list[FloatArray]] = [[np.zeros(0)] for _ in lines]
+def _crossings(shape: Shape, line: float, axis: int = 0) -> FloatArray:
+    """Return where the curves cross a line of constant alpha_hat, or beta_hat (axis 1), ascending."""
+    found = [np.zeros(0)]
     for curve in shape.curves:
-        row, step = crossed_levels(lines[order], curve[:, axis])
+        beyond = curve[:, axis] > line
+        step = np.flatnonzero(beyond[1:] != beyond[:-1])
         start, end = curve[step], curve[step + 1]
-        across = (lines[order][row] - start[:, axis]) / (end[:, axis] - start[:, axis])
-        place = start[:, 1 - axis] + across * (end[:, 1 - axis] - start[:, 1 - axis])
-        for line in np.unique(row):
-            found[order[line]].append(place[row == line])
-    return [np.sort(np.concatenate(places)) for places in found]
-
-
-def crossed_levels(levels: FloatArray, values: FloatArray) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Return every (i, k) such that the step from values[k] to values[k + 1] crosses levels[i], which ascend."""
-    below = np.searchsorted(levels, values)  # how many levels lie below each value
-    number = np.abs(np.diff(below))
-    step = np.repeat(np.arange(len(number)), number)
-    first = np.repeat(np.minimum(below[:-1], below[1:]) - np.cumsum(number) + number, number)
-    return first + np.arange(number.sum()), step
+        across = (line - start[:, axis]) / (end[:, axis] - start[:, axis])
+        found.append(start[:, 1 - axis] + across * (end[:, 1 - axis] - start[:, 1 - axis]))
+    return np.sort(np.concatenate(found))

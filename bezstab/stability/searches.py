@@ -6,7 +6,6 @@ need smooth functions to be fast, while |z_p| has kinks just where it is least. 
 package for a few short functions. Bisecting until the ends are neighbours keeps the last digit.
 """
 
-import math
 from collections.abc import Callable, Sequence
 from typing import Any, TypeVar
 
@@ -21,7 +20,6 @@ SHRINK = 0.5  # from one of them to the next
 ROUNDS = 18  # of them, to 8e-6 of the first: a smooth valley is flat to rounding there, and Newton's method starts
 FINER = 3  # times the points of a search whose first answer failed its check
 WELL_INSIDE = 0.8  # of the reach: a best point further out says that the valley may lead on
-AT_ONCE = 15  # places of a bracket: to ask about one takes as long as about a dozen
 GRID = 33  # points of a bracket in which a least value is looked for, and then of its best two gaps
 ZOOMS = 8  # such grids, each narrower by 1/16: to where a smooth least value is flat to rounding
 GOLDEN_ANGLE = 2.4  # rad, about pi (3 - sqrt 5): grids turned by it from one to the next never line up again
@@ -41,28 +39,18 @@ def checked(search: Callable[[int], Found]) -> Found:
 
 
 def bisected(
-    holds: Callable[[FloatArray], BoolArray],
-    before: FloatArray,
-    after: FloatArray,
-    halvings: int = BISECTIONS,
-    at_once: int = 1,
+    holds: Callable[[FloatArray], BoolArray], before: FloatArray, after: FloatArray, halvings: int = BISECTIONS
 ) -> tuple[FloatArray, FloatArray]:
     """Return brackets narrowed, by default to float64's spacing: at `before` the condition fails, at `after` it holds.
 
-    `before` and `after` have one shape, that of the returned ends. `holds` takes and returns arrays of shape (at_once,
-    *that shape): each round asks for so many places inside every bracket, and narrows it `at_once` + 1 fold. More
-    than one is faster where a call takes longer than what it has to do.
+    `before` and `after` have one shape, which is that of the returned ends, and of what `holds` takes and returns.
     """
-    shares = (np.arange(1, at_once + 1) / (at_once + 1)).reshape(-1, *[1] * before.ndim)
-    for _ in range(math.ceil(halvings / math.log2(at_once + 1))):
-        inside = before + shares * (after - before)
-        if ((inside == before) | (inside == after)).all():
+    for _ in range(halvings):
+        middle = before + (after - before) / 2
+        if ((middle == before) | (middle == after)).all():
             break  # neighbours all
-        held = holds(inside)
-        places = np.concatenate([before[np.newaxis], inside, after[np.newaxis]])
-        last_before = np.where(held.any(axis=0), np.argmax(held, axis=0), at_once)[np.newaxis]
-        before = np.take_along_axis(places, last_before, axis=0)[0]
-        after = np.take_along_axis(places, last_before + 1, axis=0)[0]
+        held = holds(middle)
+        before, after = np.where(held, before, middle), np.where(held, middle, after)
     return before, after
 
 
@@ -77,7 +65,7 @@ def first_where(holds: Callable[[FloatArray], BoolArray], samples: FloatArray) -
         return None
     before = samples[max(0, found[0] - 1)]
     after = samples[found[0]]
-    ends = bisected(lambda inside: holds(inside[0])[np.newaxis], np.array([before]), np.array([after]))
+    ends = bisected(holds, np.array([before]), np.array([after]))
     return float(ends[0][0]), float(ends[1][0])
 
 

@@ -116,6 +116,7 @@ WRONG_SIZES: list[tuple[str, Callable[[Shape], Shape]]] = [
     ("the extent", lambda shape: with_extent(shape, 0, 0.9999 * shape.extent[0][1])),
     ("the extent", lambda shape: with_extent(shape, 0, 1.0001 * shape.extent[0][1])),
     ("the extent", lambda shape: with_extent(shape, 1, np.inf)),
+    ("an edge was not found", lambda shape: replace(shape, curves=tuple(curve[:-2] for curve in shape.curves))),
 ]
 
 
