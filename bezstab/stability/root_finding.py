@@ -15,7 +15,6 @@ Coefficients = Sequence[Any] | NDArray[np.inexact]
 CHUNK = 16384  # points at a time: all the work arrays of one chunk stay in a core's cache
 ITERATIONS = 200  # Aberth's iteration needs about ten; a multiple root, where it is linear, about sixty
 FAR = 1e15  # |z| whose 16th power still fits float64
-FEW = 32  # polynomials: of more, eigenvalues take longer than the ten steps that they spare
 TOLD = 1e-10  # relative: Schur's recursion tells apart what differs by more
 
 
@@ -47,9 +46,10 @@ def roots_of_rows(coefficients: NDArray[np.inexact]) -> ComplexArray:
 
     Coefficients of shape (n + 1, points), roots (n, points). Not finite where one is at infinity, or beyond float64.
     """
+    roots = _quadratic_roots if len(coefficients) == 3 else _aberth
     with np.errstate(all="ignore"):
         chunks = [
-            _aberth(coefficients[:, start : start + CHUNK].astype(complex))
+            roots(coefficients[:, start : start + CHUNK].astype(complex))
             for start in range(0, max(1, coefficients.shape[1]), CHUNK)
         ]
     return np.concatenate(chunks, axis=1)
@@ -141,31 +141,27 @@ def companion_roots(coefficients: NDArray[np.inexact]) -> ComplexArray:
     return np.linalg.eigvals(companion).T.astype(complex)
 
 
-def _starts(coefficients: ComplexArray) -> ComplexArray:
-    """Return starting points, shape (n, points): of few polynomials eigenvalues, which are roots but for rounding.
+def _quadratic_roots(coefficients: ComplexArray) -> ComplexArray:
+    """Return both roots of quadratics, shape (2, points).
 
-    They lie on both sides of where two roots meet, whose last digits no iteration settles: the branches of a locus that
-    crosses itself end there together. Where a leading coefficient vanishes, or eigenvalues coincide or vanish, starts
-    might never part: there, and of more polynomials, they are those of the Newton polygon.
+    Where they meet, their last digits are lost, but not where their middle is: branches that meet go through it.
     """
-    if coefficients.shape[1] > FEW:
-        return newton_polygon_starts(coefficients)
-    try:
-        starts = companion_roots(coefficients)
-    except np.linalg.LinAlgError:
-        return newton_polygon_starts(coefficients)
-    rest = ~(np.diff(np.sort(starts, axis=0), axis=0).all(axis=0) & starts.all(axis=0))
-    starts[:, rest] = newton_polygon_starts(coefficients[:, rest])
-    return starts
+    last, half, leading = coefficients[0], coefficients[1] / 2, coefficients[2]
+    size = np.maximum(np.abs(half), np.sqrt(np.abs(last)) * np.sqrt(np.abs(leading)))  # squares stay in range
+    scale = np.where(size > 0, size, 1.0)
+    root = np.sqrt((half / scale) ** 2 - (last / scale) * (leading / scale)) * scale
+    larger = -(half + np.where((half * root.conj()).real >= 0, root, -root))
+    smaller = np.divide(last, larger, out=np.zeros_like(larger), where=larger != 0)  # without cancellation
+    return np.stack([larger / leading, smaller])
 
 
 def _aberth(coefficients: ComplexArray) -> ComplexArray:
-    """Return the roots of sum_k a_k z^k, coefficients of shape (n + 1, points).
+    """Return the roots of sum_k a_k z^k, coefficients of shape (n + 1, points), from the Newton polygon's starts.
 
     Aberth's simultaneous Newton iteration (O. Aberth, Math. Comp. 27, 1973), cubic at simple roots; points leave as
     they converge. At a multiple root the last digits cannot settle: there ITERATIONS ends the walk.
     """
-    starts = _starts(coefficients)
+    starts = newton_polygon_starts(coefficients)
     solution = starts.copy()
     active = np.arange(starts.shape[1])
     z = starts
