@@ -307,15 +307,21 @@ def _slowest(method: Method, modulus: Modulus, within: Within, spread: float) ->
         decay = modulus(shares * a, shares**2 * b) ** (1 / shares)
         return np.asarray(np.maximum(of_small_steps(a, b), decay.max(axis=(0, 1))))
 
+    reached = math.inf  # by any point so far
+
     def objective(alpha_hat: FloatArray, beta_hat: FloatArray) -> FloatArray:
+        nonlocal reached
         a, b = of_alpha * alpha_hat, of_beta**2 * beta_hat  # (spreads, points)
-        of_scouts = of_all_steps(a[:, ::SCOUTS], b[:, ::SCOUTS])
-        reached = float(of_scouts.min()) * (1 + TOLD)
-        left = np.flatnonzero(of_small_steps(a, b) <= reached)
-        left = left[within(a[:, left], b[:, left], reached).all(axis=0)]
+        if math.isinf(reached):
+            reached = float(of_all_steps(a[:, ::SCOUTS], b[:, ::SCOUTS]).min())
+        left = kept = np.flatnonzero(of_small_steps(a, b) <= reached)
+        for share in shares.ravel().tolist():
+            level = (reached * (1 + TOLD)) ** share
+            kept = kept[within(share * a[:, kept], share**2 * b[:, kept], level).all(axis=0)]
+        left = kept if kept.size else left  # next to a double pole even the point that was reached may seem larger
         worst = np.full(alpha_hat.shape, np.inf)
         worst[left] = of_all_steps(a[:, left], b[:, left])
-        worst[::SCOUTS] = of_scouts  # next to a double pole even the point that was reached may seem larger
+        reached = min(reached, float(worst.min()))
         return worst
 
     return objective

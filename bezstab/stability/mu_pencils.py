@@ -136,9 +136,9 @@ class MuPencil:
         Conjugate mu have conjugate poles, so one of the two is enough; of two real mu both are looked at.
         """
         first_mu, second_mu = self.feedback_roots(alpha_hat, beta_hat)
-        found = largest_root_in_z(self, first_mu)
         real = first_mu.imag == 0
-        others = largest_root_in_z(self, second_mu[real])
+        both = largest_root_in_z(self, np.concatenate([first_mu, second_mu[real]]))
+        found, others = both[: first_mu.size], both[first_mu.size :]
         found[real] = np.where(np.abs(others) > np.abs(found[real]), others, found[real])
         found.imag = np.abs(found.imag)
         return found

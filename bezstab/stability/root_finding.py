@@ -1,7 +1,6 @@
 """All roots of many polynomials at once, by Aberth's iteration, and whether all are in a circle."""
 
 from collections.abc import Callable, Sequence
-from itertools import combinations
 from typing import Any, TypeVar
 
 import numpy as np
@@ -47,10 +46,11 @@ def roots_of_rows(coefficients: NDArray[np.inexact]) -> ComplexArray:
     Coefficients of shape (n + 1, points), roots (n, points). Not finite where one is at infinity, or beyond float64.
     """
     roots = _quadratic_roots if len(coefficients) == 3 else _aberth
+    at_once = CHUNK // len(coefficients)
     with np.errstate(all="ignore"):
         chunks = [
-            roots(coefficients[:, start : start + CHUNK].astype(complex))
-            for start in range(0, max(1, coefficients.shape[1]), CHUNK)
+            roots(coefficients[:, start : start + at_once].astype(complex))
+            for start in range(0, max(1, coefficients.shape[1]), at_once)
         ]
     return np.concatenate(chunks, axis=1)
 
@@ -212,14 +212,13 @@ def _quotient(numerator: ComplexArray, denominator: ComplexArray) -> ComplexArra
 
 
 def _repulsion(z: ComplexArray) -> ComplexArray:
-    """Return the sums of 1 / (z_i - z_j) over the other roots j, coinciding ones left out."""
+    """Return the sums of 1 / (z_i - z_j) over the other roots j; none for what coincides with another."""
     repulsion = np.zeros_like(z)
-    for i, j in combinations(range(len(z)), 2):
-        difference = z[i] - z[j]
-        difference[difference == 0] = np.inf
-        reciprocal = 1 / difference
-        repulsion[i] += reciprocal
-        repulsion[j] -= reciprocal
+    for k in range(1, len(z)):
+        reciprocal = 1 / (z[k:] - z[:-k])
+        repulsion[k:] += reciprocal
+        repulsion[:-k] -= reciprocal
+    repulsion[~np.isfinite(repulsion)] = 0
     return repulsion
 
 
