@@ -212,10 +212,11 @@ def _closed_motions(stepped: SteppedMotion, gains: FloatArray) -> tuple[Revoluti
             correction = _closing(around, around.handed_on - starts - turn)
             starts = starts + correction
             amplified = np.maximum(1, np.abs(around.product).max(axis=(1, 2)) * np.exp(around.log_scale))
-            last, beside = (amplified * np.abs(each).max(axis=(1, 2)) for each in (correction, starts - along))
-            if not (last >= SOLVED).any():
+            last, beside = (np.abs(each).max(axis=(1, 2)) for each in (correction, starts - along))
+            solved = amplified * last < SOLVED
+            if not (~solved & (beside < BESIDE)).any():  # further off there may be another motion, but not the method's
                 break
-    return around, (last < SOLVED) & (beside < BESIDE)
+    return around, solved & (amplified * beside < BESIDE)
 
 
 def _closing(around: Revolution, missing: FloatArray) -> FloatArray:

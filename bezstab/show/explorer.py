@@ -15,7 +15,7 @@ from bezstab.methods import Method
 from bezstab.questions import kick_response
 from bezstab.show import plot
 from bezstab.show.fields import formatted
-from bezstab.show.style import ABOVE_THE_AXES, ACCENT, COLOURS, styled
+from bezstab.show.style import ACCENT, COLOURS, styled
 from bezstab.stability import poles, region, useful_window, verdict
 from bezstab.units import alpha_and_beta
 
@@ -39,12 +39,14 @@ class Explorer:
         self.map, circle, decay = panels["map"], panels["poles"], panels["decay"]
         circle.add_patch(Circle((0, 0), 1, fill=False, edgecolor="0.6"))
         circle.set(xlim=(-1.6, 1.6), ylim=(-1.6, 1.6), aspect="equal", title="poles z")
-        (self.poles,) = circle.plot([], [], "o", color=ACCENT, markersize=4, zorder=ABOVE_THE_AXES)
+        (self.poles,) = circle.plot([], [], "o", color=ACCENT, markersize=4, animated=True)
         decay.set(xlim=(0, STEPS), ylim=(1e-6, 1e3), yscale="log", xlabel="step", title="|c| after a unit kick")
-        (self.decay,) = decay.plot([], [], color=COLOURS[0], zorder=ABOVE_THE_AXES)
-        self.text = figure.text(0.01, 0.02, "", linespacing=1.5)
+        (self.decay,) = decay.plot([], [], color=COLOURS[0], animated=True)
+        self.text = figure.text(0.01, 0.02, "", linespacing=1.5, animated=True)
         figure.suptitle(KEYS, fontsize=8)
         figure.subplots_adjust(left=0.09, right=0.97, top=0.88, bottom=0.22, wspace=0.25, hspace=0.55)
+        self.background: object = None  # all that does not move, as pixels: to draw it anew takes four times as long
+        figure.canvas.mpl_connect("draw_event", self._remember_background)
         figure.canvas.mpl_connect("motion_notify_event", self._follow_mouse)
         figure.canvas.mpl_connect("button_press_event", partial(self._follow_mouse, prove=True))
         figure.canvas.mpl_connect("key_press_event", self._answer_key)
@@ -58,8 +60,9 @@ class Explorer:
         plot.spectral_radius(self.method, alpha_range, beta_range, POINTS, axes)
         plot.region(stable, axes, color="black", linestyle="-", label="")
         axes.set(xlim=alpha_range, ylim=beta_range, facecolor="0.93", title=self.method.name)
-        (self.cross,) = axes.plot([], [], "+", color="white", markeredgecolor="red", markersize=10)
+        (self.cross,) = axes.plot([], [], "+", color="white", markeredgecolor="red", markersize=10, animated=True)
         self.look(float(self.typed[0]), float(self.typed[1]))
+        self.figure.canvas.draw_idle()
 
     def look(self, alpha_hat: float, beta_hat: float, prove: bool = False) -> None:
         """Show what a point means: poles, the linear recursion's answer to a unit kick, and the numbers.
@@ -80,11 +83,24 @@ class Explorer:
             f"α = {alpha:.6g}   β = {formatted(beta, '.6g')} 1/s at h = {self.h:g} s\n"
             f"$|z_p|$ = {abs(z[0]):.6f}   ∠$z_p$ = {np.angle(z[0], deg=True):.2f}°   {judgement}"
         )
-        self.figure.canvas.draw_idle()
+
+    def _show(self) -> None:
+        """Draw what moves over what does not."""
+        canvas = self.figure.canvas
+        if self.background is not None:
+            canvas.restore_region(self.background)  # type: ignore[attr-defined]  # every Agg canvas has it
+            for artist in (self.cross, self.poles, self.decay, self.text):
+                self.figure.draw_artist(artist)
+            canvas.blit(self.figure.bbox)
+
+    def _remember_background(self, _: object) -> None:
+        self.background = self.figure.canvas.copy_from_bbox(self.figure.bbox)  # type: ignore[attr-defined]
+        self._show()
 
     def _follow_mouse(self, event: MouseEvent, prove: bool = False) -> None:
         if event.inaxes is self.map and event.xdata is not None and event.ydata is not None:
             self.look(event.xdata, event.ydata, prove)
+            self._show()
 
     def _answer_key(self, event: KeyEvent) -> None:
         if event.key == "n":
