@@ -50,7 +50,7 @@ from bezstab.units import feedback_gains
 FIRST_SHARE = 1 / 3  # of the steps in which errors stand out: there the lesser poles still count
 VISIBLE = 1e-7  # of the change of the coordinates: the free motion of a method has a constraint error of this size
 ITERATIONS = 12  # of Newton's method: each squares the error, more only find nothing
-SOLVED = 1e-9  # m, rad: the last correction of a motion, grown over a revolution; the next would be about its square
+SOLVED = 1e-8  # m, rad: the last correction of a motion, grown over a revolution; the next would be about its square
 BESIDE = 1.0  # m, rad, from the motion of the mechanism: weak feedback drifts by 0.3, other closures lie further off
 
 
@@ -155,11 +155,7 @@ def find_own_motions(
     rates = rates_on_the_motion(stepped, gains)
     states = np.full((stepped.steps, alpha_hat.size, 2, mechanism.size), np.nan)
     if stepped.along.closed:
-        around, found = _closed_motions(stepped, gains)
-        rates[found] = around.rates(found)
-        as_steps_begin = np.roll(around.states[:, found], 1, axis=0)
-        as_steps_begin[0, :, 0] -= stepped.whole_turn
-        states[:, found] = as_steps_begin / [[1], [stepped.step]]
+        _find_motions(stepped, gains, rates, states)
     return OwnMotions(stepped, gains, rates, states)
 
 
@@ -201,22 +197,29 @@ def _revolution(stepped: SteppedMotion, gains: FloatArray, first: FloatArray | N
     return Revolution(product, after.log_scale, after.taken.handed_on, np.array(states))
 
 
-def _closed_motions(stepped: SteppedMotion, gains: FloatArray) -> tuple[Revolution, BoolArray]:
-    """Return a revolution at points with these gains, (2, points), and at which it is one of the method's own."""
+def _find_motions(stepped: SteppedMotion, gains: FloatArray, rates: FloatArray, states: FloatArray) -> None:
+    """Fill in rates and states of the points with these gains, shape (2, points), that have a motion of their own."""
     along = stepped.starts[0]
     turn = stepped.starts[-1] - along
     starts = np.repeat(along[np.newaxis], gains.shape[1], axis=0)
-    with np.errstate(all="ignore"):  # of what runs into infinity; what is not a number is not less
-        for _ in range(ITERATIONS):
-            around = _revolution(stepped, gains, starts)
+    left = np.arange(gains.shape[1])
+    for _ in range(ITERATIONS):
+        with np.errstate(all="ignore"):  # of what runs into infinity; what is not a number is not less
+            around = _revolution(stepped, gains[:, left], starts)
             correction = _closing(around, around.handed_on - starts - turn)
             starts = starts + correction
             amplified = np.maximum(1, np.abs(around.product).max(axis=(1, 2)) * np.exp(around.log_scale))
             last, beside = (np.abs(each).max(axis=(1, 2)) for each in (correction, starts - along))
-            solved = amplified * last < SOLVED
-            if not (~solved & (beside < BESIDE)).any():  # further off there may be another motion, but not the method's
-                break
-    return around, solved & (amplified * beside < BESIDE)
+            ended = amplified * last < SOLVED
+            closed = ended & (amplified * beside < BESIDE)
+        rates[left[closed]] = around.rates(closed)
+        as_steps_begin = np.roll(around.states[:, closed], 1, axis=0)
+        as_steps_begin[0, :, 0] -= stepped.whole_turn
+        states[:, left[closed]] = as_steps_begin / [[1], [stepped.step]]
+        going_on = ~ended & (beside < BESIDE)
+        left, starts = left[going_on], starts[going_on]
+        if not left.size:
+            break
 
 
 def _closing(around: Revolution, missing: FloatArray) -> FloatArray:

@@ -47,8 +47,8 @@ SplitCurve = list[list[tuple[float, float]]]
 class Edge:
     """An edge along a strip: of a curve the real root alpha_hat number k, of `count`, as a function of beta_hat.
 
-    It goes from `low` to `high`, the strip's ends. It is `known` but for what is so near to an end at which roots of the
-    curve are lost that one may show at the wrong infinity. `limits`: what alpha_hat comes to at either end.
+    It goes from `low` to `high`, the strip's ends. It is `known` but for what is so near to an end at which roots of
+    the curve are lost that one may show at the wrong infinity. `limits`: what alpha_hat comes to at either end.
     """
 
     curve: SplitCurve
