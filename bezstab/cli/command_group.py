@@ -128,7 +128,7 @@ def _loaded(name: str) -> click.Command:
 
 def _complain(message: str) -> None:
     """Print bad news in one line."""
-    from bezstab.cli.output import say  # which loads more than --help needs
+    from bezstab.cli.output import say  # which loads more than --version needs
 
     say(f"bezstab: {' '.join(message.split())}")
 

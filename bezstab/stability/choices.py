@@ -292,8 +292,8 @@ def _slowest(method: Method, modulus: Modulus, within: Within, spread: float) ->
 
     A step of share s of the largest turns (alpha_hat, beta_hat) into (s alpha_hat, s^2 beta_hat) and takes 1/s steps;
     in the limit of small steps what remains is exp(Re mu), the continuous decay. Of the spread the corners and the
-    centre are taken. The least of all values is exact. A point that is slower than some other with small or with the
-    largest steps alone, which takes no poles to tell, has infinity.
+    centre are taken. The least of all values is exact. A point that is slower than some other with small, half or whole
+    steps alone, which takes no poles to tell, has infinity.
     """
     of_alpha, of_beta = np.array([(-1, -1), (-1, 1), (0, 0), (1, -1), (1, 1)]).T[:, :, np.newaxis] * spread + 1
     shares = np.linspace(1, 0, SHARES + 1)[:-1, np.newaxis, np.newaxis]
