@@ -1,8 +1,9 @@
 """What a sweep over methods and steps says, method by method and in words."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from operator import truediv
 from typing import Literal
 
 import numpy as np
@@ -32,32 +33,6 @@ ALIKE = 1.05
 """Ratios nearer to one are neither won nor lost."""
 
 
-@dataclass(frozen=True)
-class Summary:
-    """What a sweep says of one method; None where it says nothing.
-
-    order: observed between the two smallest steps whose error is well above the reference's. alpha_step: the largest
-    alpha h per evaluation with alpha = beta up to which all are stable, None for an implicit method, whose evaluations
-    are not so many for each step; `unlimited` where there is no largest. costs: evaluations and trajectory errors (SI)
-    of the runs that did not fail, the largest step first, down to those that are as near as the reference itself.
-    largest_step: in s, of the runs that did not fail.
-    """
-
-    method: Method
-    stated_order: int
-    order: float | None
-    area: float | None
-    alpha_step: float | None
-    unlimited: bool
-    costs: Sequence[tuple[int, float]]
-    largest_step: float | None
-
-    @property
-    def least_error(self) -> float | None:
-        """The least trajectory error (SI) that is told of."""
-        return min((error for _, error in self.costs), default=None)
-
-
 def cost_for(error: float, costs: Sequence[tuple[float, float]]) -> float | None:
     """Return the cost at which an error falls to `error`, from pairs of cost and error, the largest step's first.
 
@@ -71,45 +46,36 @@ def cost_for(error: float, costs: Sequence[tuple[float, float]]) -> float | None
     return None
 
 
-def summary(runs: Sequence[Run]) -> Summary:
-    """Return the summary of one method's runs, the largest step first.
+def largest_alpha_step(method: Method) -> float | None:
+    """Return the largest alpha h per evaluation with alpha = beta up to which all are stable, dimensionless.
 
-    NumericalError where the method's region cannot be traced.
+    None where there is no largest, and for an implicit method, whose evaluations are not so many for each step.
     """
-    method = runs[0].method
-    ended = [run for run in runs if run.failure is None]
-    orders = [run.order for run in runs if run.order is not None]
-    stated_order, _ = accuracy(method)
     limit = critical_damping_limit(method)
-    return Summary(
-        method=method,
-        stated_order=stated_order,
-        order=orders[-1] if orders else None,
-        area=region(method).area,
-        alpha_step=None if limit is None or implicit(method) else limit / evaluations(method),
-        unlimited=limit is None,
-        costs=[
-            (run.evaluations, run.trajectory_error)
-            for run in ended
-            if run.trajectory_error and (run.order is not None or run is ended[0])  # else it is the reference's error
-        ],
-        largest_step=ended[0].h if ended else None,
-    )
+    return None if limit is None or implicit(method) else limit / evaluations(method)
+
+
+def known_costs(ended: Sequence[Run]) -> list[tuple[float, float]]:
+    """Return evaluations and trajectory errors (SI) of one method's runs, none of which failed, as they stand.
+
+    Those are left out that are as near as the reference itself: what they show is the reference's error.
+    """
+    return _costs([run for run in ended if run.order is not None or run is ended[0]], "evaluations")
 
 
 def sweep_sentences(runs: Sequence[Run], tolerance: float, held: Held) -> list[str]:
     """Return the answers as sentences: the cheapest run within the tolerance (SI), orders kept and lost, comparisons.
 
     The runs of each method stand with the largest step first; `held` says by what each has its point. The Bezier method
-    of most steps is compared with each that is none.
+    of most steps is compared with each that is none. NumericalError where a method's region cannot be traced.
     """
     methods = dict.fromkeys(run.method for run in runs)
-    summaries = [summary([run for run in runs if run.method == method]) for method in methods]
-    bezier = [one for one in summaries if is_bezier(one.method.scheme) and one.method.step_multiple == 1]
-    sentences = [_cheapest_sentence(runs, tolerance), *_order_sentences(summaries, held), *_prediction_sentence(runs)]
+    ended = {method: [run for run in runs if run.method == method and run.trajectory_error] for method in methods}
+    bezier = [method for method in methods if is_bezier(method.scheme) and method.step_multiple == 1]
+    sentences = [_cheapest_sentence(runs, tolerance), *_order_sentences(ended, held), *_prediction_sentence(runs)]
     if bezier and held != "no feedback":
-        most_steps = max(bezier, key=lambda one: steps(one.method))
-        sentences += [_comparison_sentence(most_steps, other) for other in summaries if other not in bezier]
+        most_steps = max(bezier, key=steps)
+        sentences += [_comparison_sentence(most_steps, other, ended) for other in methods if other not in bezier]
     return sentences
 
 
@@ -127,17 +93,24 @@ def _cheapest_sentence(runs: Sequence[Run], tolerance: float) -> str:
     )
 
 
-def _order_sentences(summaries: Sequence[Summary], held: Held) -> Iterator[str]:
-    """Yield the orders of accuracy that are lost, and those that are kept, if there are any."""
-    for verb, is_lost in (("lost", True), ("kept", False)):
-        texts = [
-            f"{one.method.name} {one.order:.1f} (of {one.stated_order})"
-            for one in summaries
-            if one.order is not None and _lost(one) is is_lost
-        ]
-        if texts:
-            yield f"Order of accuracy {HELD_WORDS[held]}, {verb}: {', '.join(texts)}."
-    started = [one.method.name for one in summaries if _lost(one) and _has_start_of_stages(one.method)]
+def _order_sentences(ended: Mapping[Method, Sequence[Run]], held: Held) -> Iterator[str]:
+    """Yield the orders of accuracy that are lost, and those that are kept, if there are any.
+
+    That of a method is observed between the two smallest steps whose error is well above the reference's.
+    """
+    texts: dict[str, list[str]] = {"lost": [], "kept": []}
+    started = []
+    for method, runs in ended.items():
+        orders = [run.order for run in runs if run.order is not None]
+        if orders:
+            stated, _ = accuracy(method)
+            lost = orders[-1] < stated - ORDER_LOST
+            texts["lost" if lost else "kept"].append(f"{method.name} {orders[-1]:.1f} (of {stated})")
+            if lost and _has_start_of_stages(method):
+                started.append(method.name)
+    for verb, those in texts.items():
+        if those:
+            yield f"Order of accuracy {HELD_WORDS[held]}, {verb}: {', '.join(those)}."
     if started and held in ("own choice", "alpha_hat and beta_hat"):
         yield (
             f"{' and '.join(started)} would keep the order; the start by RK4 loses it, and in a short run its error is "
@@ -162,41 +135,39 @@ def _has_start_of_stages(method: Method) -> bool:
     return steps(method) > 1 and not implicit(method) and kept >= accuracy(method)[0]
 
 
-def _lost(one: Summary) -> bool:
-    """Return whether the observed order is well below the stated one."""
-    return one.order is not None and one.order < one.stated_order - ORDER_LOST
-
-
-def _comparison_sentence(bezier: Summary, other: Summary) -> str:
+def _comparison_sentence(bezier: Method, other: Method, ended: Mapping[Method, Sequence[Run]]) -> str:
     """Return where a Bezier method wins and where it loses against another, with the numbers."""
     wins, loses = [], []
-    for times_better, text in _advantages(bezier, other):
+    for times_better, text in _advantages(bezier, other, ended):
         if times_better > ALIKE:
             wins.append(text)
         elif times_better < 1 / ALIKE:
             loses.append(text)
     clauses = [f"{verb}: {', '.join(texts)}" for verb, texts in (("wins", wins), ("loses", loses)) if texts]
-    return f"{bezier.method.name} against {other.method.name} {'; '.join(clauses) or 'does as well'}."
+    return f"{bezier.name} against {other.name} {'; '.join(clauses) or 'does as well'}."
 
 
-def _advantages(bezier: Summary, other: Summary) -> Iterator[tuple[float, str]]:
+def _advantages(bezier: Method, other: Method, ended: Mapping[Method, Sequence[Run]]) -> Iterator[tuple[float, str]]:
     """Yield how many times better the Bezier method is (less than one: worse), and in what."""
-    if bezier.area is not None and other.area:
-        ratio = bezier.area / other.area
+    areas = [region(method).area for method in (bezier, other)]
+    if all(areas):  # or one is unbounded, or empty
+        ratio = truediv(*areas)
         yield ratio, f"region {ratio:.2g} times as large"
-    if other.unlimited:
+    if critical_damping_limit(other) is None:
         yield 0.0, "stable up to some α = β, the other at every"
-    if other.alpha_step and bezier.alpha_step:
-        ratio = other.alpha_step / bezier.alpha_step
+    alpha_steps = [largest_alpha_step(method) for method in (other, bezier)]
+    if all(alpha_steps):
+        ratio = truediv(*alpha_steps)
         yield 1 / ratio, f"stable at one α = β with {ratio:.2g} times the evaluations"
-    if bezier.largest_step and other.largest_step:
-        ends = f"runs through up to h = {bezier.largest_step:g} s, the other up to {other.largest_step:g} s"
-        yield bezier.largest_step / other.largest_step, ends
-    if bezier.least_error and other.least_error:
-        error = max(bezier.least_error, other.least_error)  # the least that runs of both have reached
-        needed, by_other = cost_for(error, bezier.costs), cost_for(error, other.costs)
-        if needed and by_other:
-            ratio = needed / by_other
+    if ended[bezier] and ended[other]:
+        largest, by_other = ended[bezier][0].h, ended[other][0].h
+        yield largest / by_other, f"runs through up to h = {largest:g} s, the other up to {by_other:g} s"
+        costs = [known_costs(ended[method]) for method in (bezier, other)]
+        # the least that runs of both have reached
+        error = max(min(error for _, error in of_method) for of_method in costs)
+        needed = [cost_for(error, of_method) for of_method in costs]
+        if all(needed):
+            ratio = truediv(*needed)
             yield 1 / ratio, f"a trajectory error of {error:.1e} with {ratio:.2g} times the evaluations"
 
 

@@ -10,11 +10,10 @@ from bezstab.evidence import (
     Run,
     measured_runs,
     projection_sentences,
-    summary,
     sweep_sentences,
     swept_runs,
 )
-from bezstab.evidence.sweep_summaries import Comparison, comparisons, cost_for
+from bezstab.evidence.sweep_summaries import Comparison, comparisons, cost_for, known_costs, largest_alpha_step
 from bezstab.methods import lookup
 from bezstab.stabilising import Stabilise, after_step
 from bezstab.stability import spectral_radius
@@ -60,7 +59,7 @@ def test_an_order_lost_by_the_start_is_not_put_down_to_a_multistep_method() -> N
 
 @pytest.mark.promise("What methods cost against each other (`tradeoff`)")
 def test_evaluations_for_an_error_follow_the_power_law_within_the_runs_and_are_unknown_beyond() -> None:
-    costs = summary(made_up("B4", [(1000, 1e-3), (10000, 1e-6)])).costs
+    costs = known_costs(made_up("B4", [(1000, 1e-3), (10000, 1e-6)]))
     for error in (1e-3, 3e-5, 1e-6):
         assert cost_for(error, costs) == pytest.approx((1e6 / error) ** (1 / 3))
     assert cost_for(0.99e-6, costs) is None
@@ -69,7 +68,7 @@ def test_evaluations_for_an_error_follow_the_power_law_within_the_runs_and_are_u
 
 @pytest.mark.parametrize(("name", "evaluations"), [("B4", 1), ("RK4", 4)])
 def test_the_largest_stable_alpha_step_is_where_critical_damping_leaves_the_region(name: str, evaluations: int) -> None:
-    per_evaluation = summary(made_up(name)).alpha_step
+    per_evaluation = largest_alpha_step(lookup(name))
     assert per_evaluation is not None
     for share, stable in ((1 - 1e-6, True), (1 + 1e-6, False)):
         alpha_step = share * evaluations * per_evaluation
