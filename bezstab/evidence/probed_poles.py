@@ -61,21 +61,8 @@ BEYOND_THE_LAW = 1.5
 DIFFERENCES = 3
 """Times that samples are differenced at most: each takes off a factor omega h of what a motion forces."""
 
-IN_NOISE = "in noise of {}, which shows two poles very close together as one"
-FORCED_IN_NOISE = (
-    "noise of {}, beside what hardly changes: forced by the motion, or a slow pole; two runs, kicked and not, tell "
-    "them apart"
-)
-ALL_NOISE = f"noise of {{}}: nothing that decays or grows stands out of it for {VISIBLE} rows"
-HIDDEN_IN_NOISE = "noise of {} hides the pole: it may be {:.4g}, but off by {:.1g}"
-DIFFERENCED = "what changes slowly or not at all was taken off by differences"
 ON_THE_CIRCLE = (
     "|z| is one as far as can be told: forced by the motion, or marginal; two runs, kicked and not, tell them apart"
-)
-SLOWLY = "a pole so near to 1 may be forced by the motion; two runs, kicked and not, would tell"
-FORCED = (
-    "what is left after the start hardly decays: forced by the motion, or a slow pole; two runs, kicked and not, "
-    "tell them apart"
 )
 
 
@@ -205,7 +192,7 @@ def _told(samples: FloatArray, rounding: float, of_two_runs: bool) -> Told:
         fit, reason = fit_dominant_pole(changes, ORDER, limits=_linear_limits(changes), floor=floor)
         fits.append((fit, reason))
         if fit and not _on_the_circle(fit) and (of_two_runs or _is_not_forced(fit, changes)):
-            return fit, DIFFERENCED if times else ""
+            return fit, "what changes slowly or not at all was taken off by differences" if times else ""
         changes, floor = np.diff(changes, axis=0), 2 * floor  # each of two roundings adds to that of a difference
     (as_given, reason), (of_changes, _) = fits[:2]
     if as_given and of_two_runs:  # or it had been claimed
@@ -213,15 +200,16 @@ def _told(samples: FloatArray, rounding: float, of_two_runs: bool) -> Told:
     if as_given and of_changes and _is_slow_pole(as_given, of_changes, samples):
         # Only as far as differences, which are forced less, show the same pole, is it known to be none that is forced.
         uncertainty = max(as_given.uncertainty, abs(as_given.pole - of_changes.pole) + of_changes.uncertainty)
-        return replace(as_given, uncertainty=uncertainty), SLOWLY
+        believed = replace(as_given, uncertainty=uncertainty)
+        return believed, "a pole so near to 1 may be forced by the motion; two runs, kicked and not, would tell"
     if len(_linear_limits(samples)) == 1:  # else it leaves the linear range: what is left over looks like noise
-        in_noise = filter(None, (fit_in_noise(response, ORDER) for response in samples.T))
-        # Of several responses that which shows its pole best.
-        best = min(in_noise, key=lambda fit: next(iter(fit.poles.values()), np.inf), default=None)
-        if best:
+        in_noise = list(filter(None, (fit_in_noise(response, ORDER) for response in samples.T)))
+        if in_noise:  # of several responses that which shows its pole best
+            best = min(in_noise, key=lambda fit: next(iter(fit.poles.values()), np.inf))
             return _told_in_noise(best, of_two_runs)
     if as_given:
-        reason = ON_THE_CIRCLE if _on_the_circle(as_given) else FORCED
+        slow = "what is left after the start hardly decays: forced by the motion, or a slow pole"
+        reason = ON_THE_CIRCLE if _on_the_circle(as_given) else f"{slow}; two runs, kicked and not, tell them apart"
     return None, reason
 
 
@@ -245,18 +233,22 @@ def _told_in_noise(fit: NoisyFit, of_two_runs: bool) -> Told:
 
     In one run a pole near 1 is what the motion forces, and one on the circle may be.
     """
-    noise = f"{fit.noise:.2g}"
+    noise = f"noise of {fit.noise:.2g}"
+    if not fit.poles:
+        return None, f"{noise}: nothing that decays or grows stands out of it for {VISIBLE} rows"
     poles = {z: error for z, error in fit.poles.items() if of_two_runs or abs(z - 1) > RESOLVED}
     if not poles:
-        return None, (FORCED_IN_NOISE if fit.poles else ALL_NOISE).format(noise)
+        slow = "beside what hardly changes: forced by the motion, or a slow pole"
+        return None, f"{noise}, {slow}; two runs, kicked and not, tell them apart"
     (dominant, uncertainty), *_ = poles.items()
     if uncertainty > RESOLVED:
-        return None, HIDDEN_IN_NOISE.format(noise, dominant, uncertainty)
+        return None, f"{noise} hides the pole: it may be {dominant:.4g}, but off by {uncertainty:.1g}"
     no_recursion = np.nan
     found = Fit(tuple(poles), no_recursion, 0, fit.samples, uncertainty)
+    seen = f"in {noise}, which shows two poles very close together as one"
     if not _on_the_circle(found):
-        return found, IN_NOISE.format(noise)
-    return (found, f"{IN_NOISE.format(noise)}; {ON_THE_CIRCLE}") if of_two_runs else (None, ON_THE_CIRCLE)
+        return found, seen
+    return (found, f"{seen}; {ON_THE_CIRCLE}") if of_two_runs else (None, ON_THE_CIRCLE)
 
 
 def _is_not_forced(fit: Fit, samples: FloatArray) -> bool:
@@ -332,10 +324,10 @@ def kicked_responses(
 ) -> FloatArray:
     """Return half the difference of constraint errors after kicks up and down, shape (steps + 1, kicks).
 
-    `step` takes a state, an array of any shape, to the next, and is not to change it in place; `constraint` is the
-    error in a state. The state is kicked by `kick`, of its shape, and by small parts of it (SHARES): decay is seen
-    longest after the largest, growth after the smallest. From where an error is not finite all is nan, and no step is
-    taken. InputError for a kick of another shape.
+    `step` takes a state, an array of any shape, to the next; `constraint` is the error in a state. The state is kicked
+    by `kick`, of its shape, and by small parts of it (SHARES): decay is seen longest after the largest, growth after
+    the smallest. From where an error is not finite all is nan, and no step is taken. InputError for a kick of another
+    shape.
     """
     start, change = np.asarray(state, np.float64), np.asarray(kick, np.float64)
     if start.shape != change.shape:
@@ -343,12 +335,13 @@ def kicked_responses(
     responses = np.full((steps + 1, len(SHARES)), np.nan)
     with np.errstate(all="ignore"):  # what diverges runs into infinity, and is cut off there
         for place, share in enumerate(SHARES):
-            up, down = start + share * change, start - share * change
+            states = [start + share * change, start - share * change]
             for k in range(steps + 1):
-                responses[k, place] = (float(constraint(up)) - float(constraint(down))) / 2
+                up, down = (float(constraint(each)) for each in states)
+                responses[k, place] = (up - down) / 2
                 if not np.isfinite(responses[k, place]):
                     break
-                up, down = (np.asarray(step(each.copy())) for each in (up, down))
+                states = [np.asarray(step(each)) for each in states]
     return responses
 
 
@@ -401,75 +394,73 @@ def _motion_shift(
     return float(shift)
 
 
-def points_like(probed: ProbedPole, method: Method, between: int = 1) -> list[LikePoint]:
-    """Return the points at which a method has the probed pole for its dominant one; `between` as in `likenesses`.
+def points_like(probed: ProbedPole, method: Method, between: int = 1) -> tuple[list[LikePoint], str]:
+    """Return the points at which a method has the probed pole for its dominant one, and why there are none.
 
     A complex pole and its conjugate are two equations P(z; alpha_hat, beta_hat) = 0 for the two unknowns, and so are
     two real poles; there may be several solutions, that nearest to what an exact integrator would have first, or none.
-    Of z per row the root per step of least angle is taken. InputError where the poles leave a curve of points: one real
-    pole does, and so do poles that belong to one mu. Newton's method, from places all over the method's region;
+    So many steps lie `between` two rows: of z per row the root per step of least angle is taken. One real pole leaves a
+    curve of points, and so do poles that belong to one mu. Newton's method, from places all over the method's region;
     NumericalError as `region`.
     """
     if probed.pole is None or probed.uncertainty is None:
-        return []
+        return [], ""
     step_poles = [z ** (1 / between) for z in probed.poles]
     error = probed.uncertainty / (between * abs(step_poles[0]) ** (between - 1))
     pairs = [(step_poles[0], step_poles[0].conjugate())]
     if step_poles[0].imag <= error:
         real = [complex(z.real) for z in step_poles if z.imag <= error]
         pairs = [(real[0], other) for other in real[1:]]
-    solutions = [_solutions(method, np.array(pair), error) for pair in pairs]
-    found = [point for regular, _ in solutions for point in regular]
-    if not found and (not pairs or any(singular for _, singular in solutions)):
-        raise InputError(f"what shows of {method.name}'s poles leaves a curve of points (α̂, β̂): another pole is needed")
-    exact_alpha, exact_beta = _exact_integrators_point(np.array(pairs[0]))
-    return sorted(found, key=lambda one: abs(one.alpha_hat - exact_alpha) + abs(one.beta_hat - exact_beta))
+    solutions = [point for pair in pairs for point in _solutions(method, np.array(pair), error)]
+    found = [point for point in solutions if np.isfinite(point.alpha_hat_error)]
+    if found:
+        exact_alpha, exact_beta = _exact_integrators_point(np.array(pairs[0]))
+        return sorted(found, key=lambda one: abs(one.alpha_hat - exact_alpha) + abs(one.beta_hat - exact_beta)), ""
+    if solutions or not pairs:
+        return [], f"what shows of {method.name}'s poles leaves a curve of points (α̂, β̂): another pole is needed."
+    return [], f"{method.name} has this pole for its dominant one nowhere."
 
 
-def _solutions(method: Method, z: ComplexArray, error: float) -> tuple[list[LikePoint], bool]:
+def _solutions(method: Method, z: ComplexArray, error: float) -> list[LikePoint]:
     """Return the points at which both z are poles, the first the dominant one; shape of z (2,), `error` of each.
 
-    And whether there is a curve of such points, instead.
+    Where there is a curve of such points instead, some of it are returned, with infinite errors.
     """
     table = np.array(closed_loop_table(method), float)  # by powers of z, alpha_hat and beta_hat
     equations = np.moveaxis(np.tensordot(z[:, np.newaxis] ** np.arange(len(table)), table, axes=1), 0, -1)
     largest = abs(z[0]) + 10 * error + SAME  # of a point at which the first z is the dominant pole
-    singular = False
     found: list[LikePoint] = []
-    for start in _starting_points(method, z):
-        point, slopes = _newton(equations, start)
+    for point, slopes in filter(None, (_common_zero(equations, start) for start in _starting_points(method, z))):
         a, b = point.tolist()
-        if np.isnan(a) or spectral_radius(method, a, b) > largest:
+        known = any(abs(a - one.alpha_hat) + abs(b - one.beta_hat) < SAME * (1 + abs(a) + abs(b)) for one in found)
+        if known or spectral_radius(method, a, b) > largest:
             continue
-        if np.linalg.cond(slopes) > 1 / SAME:  # where one mu, a real one, has both z, so has all its straight line
-            singular = True
-        elif not any(abs(a - one.alpha_hat) + abs(b - one.beta_hat) < SAME * (1 + abs(a) + abs(b)) for one in found):
+        inverse = np.full((2, 2), np.inf)
+        if np.linalg.cond(slopes) < 1 / SAME:  # where one mu, a real one, has both z, so has all its straight line
             inverse = np.linalg.inv(slopes)
-            by_pole = np.abs([polyval3d(pole, a, b, polyder(table)) for pole in z])  # each may be off
-            errors = (np.abs(inverse.real) + np.abs(inverse.imag)) @ (by_pole * error)
-            found.append(LikePoint(method, a, b, *errors.tolist()))
-    return found, singular
+        by_pole = np.abs([polyval3d(pole, a, b, polyder(table)) for pole in z])  # each may be off
+        errors = (np.abs(inverse.real) + np.abs(inverse.imag)) @ (by_pole * error)
+        found.append(LikePoint(method, a, b, *errors.tolist()))
+    return found
 
 
-def _newton(equations: ComplexArray, point: FloatArray) -> tuple[FloatArray, ComplexArray]:
-    """Return the point, (2,), where two equations hold, and their slopes there, (2, 2); nan where it does not settle.
+def _common_zero(equations: ComplexArray, point: FloatArray) -> tuple[FloatArray, ComplexArray] | None:
+    """Return the point, (2,), to which Newton's method leads, and the slopes there, (2, 2); None if to none.
 
-    `equations` are polynomials in alpha_hat and beta_hat, shape (powers, powers, 2). Along a curve of points the slopes
-    are singular: there the least change is taken.
+    Two `equations` hold there: polynomials in alpha_hat and beta_hat, shape (powers, powers, 2). Along a curve of
+    points the slopes are singular: there the least change is taken.
     """
-    for _ in range(ITERATIONS):
-        a, b = point.tolist()
-        with np.errstate(all="ignore"):  # what leaves the range is left out
-            values = np.asarray(polyval2d(a, b, equations))
-            by_each = [polyval2d(a, b, polyder(equations, axis=axis)) for axis in range(2)]
-        slopes = np.stack(by_each, axis=1)
-        if not (np.isfinite(values).all() and np.isfinite(slopes).all()):
-            break
-        change = (np.linalg.pinv(slopes, rcond=SAME) @ values).real
-        point = point - change
-        if np.abs(change).max() < SAME * (1 + np.abs(point).max()):
-            return point, slopes
-    return np.full(2, np.nan), slopes
+    derivatives = [polyder(equations, axis=axis) for axis in range(2)]
+    with suppress(np.linalg.LinAlgError), np.errstate(all="ignore"):  # what leaves the range is left out
+        for _ in range(ITERATIONS):
+            a, b = point.tolist()
+            values, *by_each = (np.asarray(polyval2d(a, b, each)) for each in (equations, *derivatives))
+            slopes = np.stack(by_each, axis=1)
+            change = (np.linalg.pinv(slopes, rcond=SAME) @ values).real
+            point = point - change
+            if np.abs(change).max() < SAME * (1 + np.abs(point).max()):
+                return point, slopes
+    return None
 
 
 def _starting_points(method: Method, z: ComplexArray) -> FloatArray:

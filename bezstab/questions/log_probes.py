@@ -54,8 +54,11 @@ class PoleQuestion:
 
     def __post_init__(self) -> None:
         _ = self.groups
-        if self.minus and self.log:
-            _check_same_step(self.minus, self.log)
+        if self.log and self.minus:
+            own, others = (row_step(each, time_column(each)) for each in (self.log, self.minus))
+            if own and others and abs(own - others) > SAME_STEP * own:
+                other = f"{self.minus.name} has rows every {others:.6g} s"
+                raise InputError(f"--minus: {other}, {self.log.name} every {own:.6g} s")
         _ = self.turned
         row = self.row_step
         if self.h is None or row is None:
@@ -137,30 +140,18 @@ class Probe:
     @property
     def points(self) -> list[LikePoint]:
         """Where the methods have the pole, if no point was given."""
-        return self._points_and_remarks[0]
+        return [point for points, _ in self._points_and_remarks for point in points]
 
     @property
     def remarks(self) -> list[str]:
         """Why a method has the pole nowhere."""
-        return self._points_and_remarks[1]
+        return [remark for _, remark in self._points_and_remarks if remark]
 
     @cached_property
-    def _points_and_remarks(self) -> tuple[list[LikePoint], list[str]]:
-        found: list[LikePoint] = []
-        remarks: list[str] = []
-        if self.question.point is not None or self.pole is None:
-            return found, remarks
-        steps = self.question.steps
-        for method in self.question.compared:
-            try:
-                points = points_like(self.found, method, steps[method]) if method in steps else []
-            except InputError as error:
-                remarks.append(f"{error}.")
-                continue
-            found += points
-            if not points:
-                remarks.append(f"{method.name} has this pole for its dominant one nowhere.")
-        return found, remarks
+    def _points_and_remarks(self) -> list[tuple[list[LikePoint], str]]:
+        if self.question.point is not None:
+            return []
+        return [points_like(self.found, *method_and_steps) for method_and_steps in self.question.steps.items()]
 
     @property
     def told(self) -> bool:
@@ -187,16 +178,10 @@ def log_answers(question: PoleQuestion) -> Iterator[Probe]:
 
 def check_told(found: Sequence[Probe]) -> None:
     """Raise NumericalError, which says why, if no column tells a pole that fits."""
+    if any(answer.told and answer.fits for answer in found):
+        return
     untold = [f"{answer.column}: {answer.found.reason}" for answer in found if not answer.told]
-    unfit = [answer.column for answer in found if answer.told and not answer.fits]
-    if len(untold) + len(unfit) == len(found):
-        failures = [f"no pole can be told: {'; '.join(untold)}"] if untold else []
-        failures += [f"nothing fits {', '.join(unfit)}"] if unfit else []
-        raise NumericalError("; ".join(failures))
-
-
-def _check_same_step(other: Log, log: Log) -> None:
-    """Raise InputError where two logs have columns of times with different steps."""
-    own, others = row_step(log, time_column(log)), row_step(other, time_column(other))
-    if own is not None and others is not None and abs(own - others) > SAME_STEP * own:
-        raise InputError(f"--minus: {other.name} has rows every {others:.6g} s, {log.name} every {own:.6g} s")
+    unfit = [answer.column for answer in found if answer.told]
+    failures = [f"no pole can be told: {'; '.join(untold)}"] if untold else []
+    failures += [f"nothing fits {', '.join(unfit)}"] if unfit else []
+    raise NumericalError("; ".join(failures))

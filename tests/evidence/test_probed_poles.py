@@ -65,7 +65,7 @@ def test_rows_several_steps_apart_have_powers_of_the_poles() -> None:
     like = likenesses(found, dict.fromkeys(ALL, 3), Fraction(1, 20), Fraction(1, 100), turned=0.0)
     assert like[0].fits
     assert "SYM" in (like[0].method.name, like[0].same_as)
-    (point,) = points_like(found, lookup("SYM"), 3)
+    (point,), _ = points_like(found, lookup("SYM"), 3)
     assert (point.alpha_hat, point.beta_hat) == pytest.approx((0.05, 0.01), abs=1e-6)
 
 
@@ -108,7 +108,7 @@ def test_the_point_is_the_one_that_was_set(name: str, point: tuple[float, float]
     """To the stated error of it where the pole is off by the stated error."""
     method, point, error = lookup(name), point or random_point(name), 1e-9
     z = complex(dominant_pole(method, *point))
-    points = points_like(with_pole(z + error * np.exp(0.7j), error), method)
+    points, _ = points_like(with_pole(z + error * np.exp(0.7j), error), method)
     assert any(
         abs(one.alpha_hat - point[0]) < 1.01 * one.alpha_hat_error < 1e-5
         and abs(one.beta_hat - point[1]) < 1.01 * one.beta_hat_error < 1e-5
@@ -124,14 +124,15 @@ def test_two_real_poles_give_a_point_and_one_or_two_of_one_mu_leave_a_curve() ->
     sym, bdf3 = lookup("SYM"), lookup("bdf3")
     first, second = (complex(pole) for pole in poles(sym, 0.9, 0.1))
     assert first.imag == second.imag == 0
-    (point,) = points_like(with_pole(first, 1e-7, others=(second,)), sym)
+    (point,), _ = points_like(with_pole(first, 1e-7, others=(second,)), sym)
     assert (point.alpha_hat, point.beta_hat) == pytest.approx((0.9, 0.1), abs=1e-9)
     assert 0 < point.alpha_hat_error < 1e-5
     of_pair = complex(dominant_pole(bdf3, 5.385535894453755, 4.792894556078089))
     assert of_pair.imag != 0
     for method, pole in ((sym, first), (bdf3, of_pair)):
-        with pytest.raises(InputError, match="curve of points"):
-            points_like(with_pole(pole), method)
+        none, reason = points_like(with_pole(pole), method)
+        assert not none
+        assert "curve of points" in reason
 
 
 # Logs that show less than one would like
