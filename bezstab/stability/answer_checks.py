@@ -61,17 +61,16 @@ def check_least(
     least: float,
     extents: Sequence[Extent],
     cut: bool = False,
-    anywhere: bool = False,
 ) -> None:
     """Raise NumericalError unless an objective is as said at a point, and smaller at none sampled over the extents.
 
-    Only points with alpha, beta > 0 are answers, or those `anywhere`; cut: only those within the first extent.
+    Only points with alpha, beta > 0 are answers; cut: only those within the first extent.
     """
     here = float(objective(*np.reshape(point, (2, 1)))[0])
     if abs(here - least) > MULTIPLE:
         raise NumericalError(f"{method.name}: the point chosen has {here:.9g}, not {least:.9g}")
     alpha_hat, beta_hat = np.concatenate([sampled_points(extent, *point) for extent in extents], axis=1)
-    answers = anywhere | ((alpha_hat > 0) & (beta_hat > 0))
+    answers = (alpha_hat > 0) & (beta_hat > 0)
     if cut:
         answers &= (alpha_hat <= extents[0][0][1]) & (beta_hat <= extents[0][1][1])
     alpha_hat, beta_hat = alpha_hat[answers], beta_hat[answers]

@@ -30,9 +30,6 @@ DOUBLE = 1e-6
 MULTIPLE = 1e-3
 """Relative: a root of multiplicity m is known to eps^(1/m), and so is all that is near one; m is four at most."""
 
-TRIPLE = 1e-4
-"""The same of a triple root: where poles pass for one, beside a kink of other kinds."""
-
 SLOW = 4096 * EPS
 """1 - |z_p| of which rounding leaves three digits: such a decay takes 1e13 steps, and counts as none."""
 

@@ -57,10 +57,9 @@ class BestPoint:
 def best_point(method: Method) -> BestPoint | None:
     """Return the smallest |z_p| and its place, to about 1e-12; None if no parameters have |z_p| < 1, or the least.
 
-    The latter where |z_p| falls on as they grow: `falls_towards` says so. Dimensionless, of the poles of paper Eq. 17;
-    of implicit and second-order methods among alpha_hat, beta_hat >= 0. NumericalError if no solution of the defining
-    equations is as small as a sampled |z_p|, or a point or slice of the region is better than what was found
-    (answer_checks).
+    The latter where |z_p| falls on as they grow: `falls_towards` says so. Dimensionless, of the poles of paper Eq. 17,
+    among alpha_hat, beta_hat >= 0. NumericalError if no solution of the defining equations is as small as a sampled
+    |z_p|, or a point or slice of the region is better than what was found (answer_checks).
     """
     found = _best_or_limit(method)
     return found if isinstance(found, BestPoint) else None
@@ -111,32 +110,30 @@ def _searched(pencil: Pencil, stable: Region) -> BestPoint | FarLimit:
 def _from_grid(pencil: Pencil, stable: Region, limit: FarLimit, finer: int) -> BestPoint | FarLimit:
     """Return the same from one search; NumericalError if it fails its check."""
     chart = chart_of(pencil, stable, finer)
-    sampled, least = least_on(chart)
-    if limit.z_abs < min(sampled, least.z_abs if least else math.inf) * (1 - DOUBLE):
+    sampled, alike = least_on(chart)
+    if limit.z_abs < min([sampled, *(each.z_abs for each in alike)]) * (1 - DOUBLE):
         return limit
-    if least is None or least.z_abs > sampled * (1 + SAME) + EPS**0.5 * (sampled < EPS**0.25):
-        raise NumericalError(f"{chart.name}: |z_p| = {sampled:.6g} was sampled, but no kink as low could be solved for")
-    alpha_hat, beta_hat = chart.user_point(least.place)
-    end = chart.other_end(least.z_abs, least.place)
+    if not alike or alike[0].z_abs > sampled * (1 + SAME) + EPS**0.5 * (sampled < EPS**0.25):
+        name = pencil.method.name
+        raise NumericalError(f"{name}: |z_p| = {sampled:.6g} was sampled, but no kink as low could be solved for")
+    least, modulus = alike[0], partial(largest_modulus, pencil)
+    here, *others = (chart.user_point(each.place) for each in alike)
+    # B2 and AB2 are as fast along a whole line, where two poles have the least modulus: so it is in its middle
+    end = max(others, key=partial(math.dist, here), default=here)
+    middle = np.add(here, end) / 2
+    arc = math.dist(here, end) > DOUBLE * math.hypot(*here) and modulus(*middle) <= least.z_abs * (1 + SAME)
     assert stable.view
     near = [(0.0, min(high, strongest)) for (_, high), strongest in zip(stable.view, NEAR, strict=True)]
-    check_least(
-        pencil.method,
-        partial(largest_modulus, pencil),
-        (alpha_hat, beta_hat),
-        least.z_abs,
-        [stable.view, (near[0], near[1])],
-        anywhere=chart.anywhere,
-    )
+    check_least(pencil.method, modulus, here, least.z_abs, [stable.view, (near[0], near[1])])
     return BestPoint(
         method=stable.method,
         z_abs=least.z_abs,
-        alpha_hat=alpha_hat,
-        beta_hat=beta_hat,
+        alpha_hat=here[0],
+        beta_hat=here[1],
         meeting=_different(least.z, least.z_abs),
         double=not chart.real and least.place[1] == 0,
-        elsewhere=() if end is None else (chart.user_point(end),),
-        arc=end is not None,
+        elsewhere=(end,) if arc else (),
+        arc=bool(arc),
         multiplicity=least.multiplicity if chart.real else 1,
     )
 

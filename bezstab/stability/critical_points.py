@@ -8,9 +8,9 @@ mu are the same; elsewhere P and P' are zero on it.
 import numpy as np
 from numpy.polynomial.polynomial import polydiv, polyfromroots, polyroots
 
-from bezstab.stability.arrays import EPS, ComplexArray, Extent, FloatArray
+from bezstab.stability.arrays import EPS, ComplexArray, Extent
 from bezstab.stability.charts import Chart, Place
-from bezstab.stability.least_modulus import newton, taylor
+from bezstab.stability.least_modulus import of_multiple_root, stationary
 
 STEP = 1 / 100  # of the pole, from one place to the next; the last is halved until it is rounding
 ASIDE = 1e-7  # of mu: a double mu splits by 1e-8 in float64, which must not let a rival of equal modulus win
@@ -37,21 +37,16 @@ def critical_place(chart: Chart, box: Extent) -> Place | None:
 
 def _double_at(chart: Chart, pole: float, near: Place) -> Place | None:
     """Return the place near another one where a pole is double; None if there is none, or a larger pole."""
-    powers = np.arange(len(chart.coefficients(np.array(near))))
     multiplicity = 2 if chart.real else 1  # of a method with a mu two real mu meet
 
-    def at_pole(points: ComplexArray) -> ComplexArray:
-        """Return the polynomial at the pole, and its slope where that is to be zero, too."""
-        coefficients = np.moveaxis(chart.coefficients(points), 0, -1)
-        return np.stack([(coefficients * powers**k) @ pole**powers for k in range(multiplicity)])
+    def functions(points: ComplexArray) -> ComplexArray:
+        """Return zero, as nothing is to be least, and what vanishes."""
+        at_pole = of_multiple_root(chart.coefficients(points), pole, multiplicity)
+        return np.stack([0 * at_pole[0], *at_pole, *([] if chart.real else [points[..., 1]])])
 
-    def equations(place: FloatArray) -> FloatArray:
-        rows = taylor(at_pole, place, scale)[:, :3].real
-        return rows if chart.real else np.array([rows[0], [place[1] / scale[1], 0, 1]])
-
-    scale = np.maximum(np.abs(near), 1.0)
-    place = newton(equations, near, scale)
-    if place is None or np.abs(np.subtract(place, near)).max() > NEARBY * (1 + np.abs(near).max()):
+    found = stationary(functions, np.array(near))
+    if found is None or np.abs(found - near).max() > NEARBY * (1 + np.abs(near).max()):
         return None
+    place = float(found[0]), float(found[1])
     others, _ = polydiv(chart.coefficients(np.array(place)).real, polyfromroots(multiplicity * [pole]))
     return place if np.abs(polyroots(others)).max(initial=0.0) < pole else None
