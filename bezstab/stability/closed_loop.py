@@ -36,13 +36,8 @@ def verdict(method: Method, alpha_hat: Fraction, beta_hat: Fraction) -> Verdict:
 
 
 @lru_cache  # a margin's end is asked for when it is found, and when it is checked
-def converges(method: Method, alpha_hat: Fraction, beta_hat: Fraction) -> bool:
-    """Return whether the verdict is 'converges': proven as `verdict`, without asking what else it might be."""
-    return decays_faster(method, Fraction(1), alpha_hat, beta_hat)
-
-
-def decays_faster(method: Method, level: Fraction, alpha_hat: Fraction, beta_hat: Fraction) -> bool:
-    """Return whether |z_p| < level at one exact, dimensionless point: Schur's recursion in rationals, a proof."""
+def converges(method: Method, alpha_hat: Fraction, beta_hat: Fraction, level: Fraction = Fraction(1)) -> bool:
+    """Return whether |z_p| < level at one exact, dimensionless point: proven as `verdict`, at level 1 'converges'."""
     polynomial = closed_loop_at(method, alpha_hat, beta_hat)
     return polynomial[-1] != 0 and is_schur([c * level**k for k, c in enumerate(polynomial)])
 
@@ -56,6 +51,7 @@ def poles(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> ComplexA
     alpha_hat, beta_hat = plane_arrays(alpha_hat, beta_hat)
     rows = pencil_of(method).poles(alpha_hat.ravel(), beta_hat.ravel())
     z = rows.T.reshape(*alpha_hat.shape, len(rows))
+    _check_solved(method, alpha_hat, beta_hat, z)
     order = np.lexsort((-z.imag, -np.abs(z)), axis=-1)
     return _without_rounding(np.take_along_axis(z, order, axis=-1))
 
@@ -66,16 +62,20 @@ def dominant_pole(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> 
     Dimensionless; a root of paper Eq. 17. Of poles equal in modulus to rounding, one is taken. NumericalError if a
     root leaves the range of float64, or is infinite, where an implicit step has no solution.
     """
-    pencil = pencil_of(method)
-    found = largest_pole(pencil, alpha_hat, beta_hat)
-    infinite = ~np.isfinite(found)
+    alpha_hat, beta_hat = plane_arrays(alpha_hat, beta_hat)
+    found = largest_pole(pencil_of(method), alpha_hat, beta_hat)
+    _check_solved(method, alpha_hat, beta_hat, found[..., np.newaxis])
+    return found
+
+
+def _check_solved(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray, z: ComplexArray) -> None:
+    """Raise NumericalError unless the poles z are finite, shape (*that of the points, poles)."""
+    infinite = ~np.isfinite(z).all(axis=-1)
     if infinite.any():
-        alpha_hat, beta_hat = plane_arrays(alpha_hat, beta_hat)
         worst = f"({alpha_hat[infinite][0]:.6g}, {beta_hat[infinite][0]:.6g})"
         raise NumericalError(
             f"{method.name}: a pole is infinite at {worst}: the equations of an implicit step have no solution there"
         )
-    return found
 
 
 def spectral_radius(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> FloatArray:
@@ -101,14 +101,7 @@ def pole_map(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray) -> Ite
 
 def largest_pole(pencil: Pencil, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> ComplexArray:
     """Return what dominant_pole does, from a pencil; infinite where an implicit step has no solution."""
-    alpha_hat, beta_hat = plane_arrays(alpha_hat, beta_hat)
-    alphas, betas = (each if each.ndim == 2 else each.reshape(-1, 1) for each in (alpha_hat, beta_hat))
-    z = np.empty(alphas.shape, complex)
-    rows = max(1, BLOCK // max(1, alphas.shape[1]))
-    for start in range(0, len(z), rows):
-        some = slice(start, start + rows)
-        z[some] = pencil.largest_poles(alphas[some], betas[some])
-    return _without_rounding(z).reshape(alpha_hat.shape)
+    return _without_rounding(pencil.largest_poles(*plane_arrays(alpha_hat, beta_hat)))
 
 
 def largest_modulus(pencil: Pencil, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> FloatArray:

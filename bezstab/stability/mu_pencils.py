@@ -84,7 +84,7 @@ class MuPencil:
         return np.stack([-(first + second).real, (first * second).real], axis=-1)
 
     def poles(self, alpha_hat: FloatArray, beta_hat: FloatArray) -> ComplexArray:
-        """Return all poles at a row of points; shape (degree, points). Errors as `roots_in_z`."""
+        """Return all poles at a row of points; shape (degree, points). Infinite, and errors, as `roots_in_z`."""
         mu = np.stack(self.feedback_roots(alpha_hat, beta_hat))
         z = roots_in_z(self, mu.ravel())
         of_each_mu = z.reshape(len(z), *mu.shape).swapaxes(0, 1)
@@ -163,50 +163,25 @@ class MuPencil:
 def roots_in_z(pencil: MuPencil, mu: ComplexArray) -> ComplexArray:
     """Return all z with pi(z, mu) = 0; complex, shape (steps, mu.size) for a row of mu, dimensionless.
 
-    NumericalError if one leaves the range of float64, or is infinite: there an implicit step has no solution.
+    All infinite where one is, to rounding: the leading coefficient vanishes, and an implicit step has no solution.
+    NumericalError if a finite one leaves the range of float64.
     """
     z = roots_of_table(pencil.table, mu)
-    finite = np.isfinite(z).all(axis=0) & ~has_infinite_root(pencil, mu)
-    if not finite.all():
-        raise_not_finite(pencil, mu[~finite])
+    with np.errstate(all="ignore"):  # of mu whose powers overflow
+        leading = polyval(mu, pencil.table[-1])
+        size = polyval(np.abs(mu), np.abs(pencil.table[-1]))
+        infinite = (np.abs(leading) <= LEADING * size) & np.isfinite(size)
+    z[:, infinite] = np.inf
+    lost = ~(infinite | np.isfinite(z).all(axis=0))
+    if lost.any():
+        raise NumericalError(f"{pencil.method.name}: at mu = {mu[lost][0]:.6g} a pole leaves the range of float64")
     return z
 
 
 def largest_root_in_z(pencil: MuPencil, mu: ComplexArray) -> ComplexArray:
-    """Return the root z of pi(., mu) of largest modulus for each of a row of mu; complex, dimensionless.
-
-    Infinite where an implicit step has no solution. NumericalError if a finite root leaves the range of float64.
-    """
-    z = roots_of_table(pencil.table, mu)
-    largest: ComplexArray = np.take_along_axis(z, np.argmax(np.abs(z), axis=0)[np.newaxis], axis=0)[0]
-    bad = np.flatnonzero(~np.isfinite(largest))  # argmax prefers nan
-    if bad.size:
-        infinite = has_infinite_root(pencil, mu[bad])
-        if not infinite.all():
-            raise_not_finite(pencil, mu[bad[~infinite]])
-        largest[bad] = np.inf
-    return largest
-
-
-def raise_not_finite(pencil: MuPencil, mu: ComplexArray) -> None:
-    """Raise NumericalError for a row of mu (one at least) at which a root is not finite."""
-    name, worst = pencil.method.name, mu[0]
-    if has_infinite_root(pencil, mu[:1])[0]:
-        raise NumericalError(
-            f"{name}: at mu = {worst:.6g} a pole is infinite: the equations of an implicit step have no solution there"
-        )
-    raise NumericalError(f"{name}: at mu = {worst:.6g} a pole leaves the range of float64")
-
-
-def has_infinite_root(pencil: MuPencil, mu: ComplexArray) -> BoolArray:
-    """Return at which of a row of finite mu a root z is infinite, to rounding: the leading coefficient vanishes."""
-    if not pencil.implicit:
-        return np.zeros(mu.shape, bool)
-    with np.errstate(all="ignore"):  # of mu whose powers overflow
-        leading = polyval(mu, pencil.table[-1])
-        size = polyval(np.abs(mu), np.abs(pencil.table[-1]))
-        vanishes: BoolArray = (np.abs(leading) <= LEADING * size) & np.isfinite(size)
-    return vanishes
+    """Return the root z of pi(., mu) of largest modulus for each of a row of mu; complex. Errors as `roots_in_z`."""
+    z = roots_in_z(pencil, mu)
+    return np.asarray(z[np.argmax(np.abs(z), axis=0), range(mu.size)])
 
 
 def roots_in_mu(pencil: MuPencil, z: ComplexArray) -> ComplexArray:

@@ -14,7 +14,6 @@ import numpy as np
 
 from bezstab.stability.arrays import ROUNDING, SAME, FloatArray
 
-HALVINGS = 30  # of a panel towards a corner, to 1e-9 of it
 MOST_PANELS = 96  # at once: towards a corner two are left after each halving; more are noise
 
 FINE_STEP = 1 / 16
@@ -24,50 +23,40 @@ LAST = 3.2
 """Of t: beyond it the weights are below 1e-16."""
 
 
-def tanh_sinh(
-    low: float | FloatArray, high: float | FloatArray, step: float = FINE_STEP
-) -> tuple[FloatArray, FloatArray]:
-    """Return nodes and weights over an interval, or over many in a column; every other of them serve as well."""
+def tanh_sinh(low: FloatArray, high: FloatArray, step: float) -> tuple[FloatArray, FloatArray]:
+    """Return nodes and weights over many intervals, in a column; every other of them serve as well."""
     number = round(LAST / step / 2) * 2
     t = step * np.arange(-number, number + 1)
     share = 1 / (1 + np.exp(np.pi * np.sinh(-t)))  # of the way from low to high
-    other = 1 / (1 + np.exp(np.pi * np.sinh(t)))
+    other = share[::-1]
     width = high - low
     nodes = np.where(share < other, low + width * share, high - width * other)
     weights = step * width * np.pi * np.cosh(t) * share * other
     return nodes, weights
 
 
-def good_to_rounding(own: FloatArray, total: float) -> FloatArray:
-    """Return by how much half the nodes may be off for all of them to be good to rounding.
-
-    own: of each panel the sum of its terms' sizes.
-    """
-    return np.asarray(SAME * own + ROUNDING * abs(total))
-
-
 def integrals(
     values_at: Callable[[FloatArray], FloatArray],
     panels: FloatArray,
-    allowed: Callable[[FloatArray, float], FloatArray] = good_to_rounding,
+    rough: float = ROUNDING,
     step: float = FINE_STEP,
 ) -> tuple[FloatArray, float]:
     """Return the integrals of several functions over panels together, and by how much the first may still be off.
 
     values_at: takes places of shape (panels, nodes), returns values of shape (functions, panels, nodes). panels: their
-    ends, shape (panels, 2). allowed: by how much half the nodes of the first function may be off.
+    ends, shape (panels, 2). A panel is halved where half the nodes of the first function are off by the share `rough`
+    of the total, and by SAME of the panel's own terms: else all of them are good to the square of that.
     """
     total: FloatArray | float = 0.0
-    for halving in range(HALVINGS + 1):
+    while True:
         nodes, weights = tanh_sinh(panels[:, :1], panels[:, 1:], step)
         terms = weights * values_at(nodes)
         sums = terms.sum(axis=-1)
         off = np.abs(sums[0] - 2 * terms[0, :, ::2].sum(axis=-1))
         known = total + sums.sum(axis=-1)
-        rough = off > allowed(np.abs(terms[0]).sum(axis=-1), float(known[0]))
-        if not rough.any() or halving == HALVINGS or 2 * rough.sum() > MOST_PANELS:
-            break
-        total = total + sums[:, ~rough].sum(axis=-1)
-        low, high = panels[rough].T
+        halved = off > SAME * np.abs(terms[0]).sum(axis=-1) + rough * abs(known[0])
+        if not halved.any() or 2 * halved.sum() > MOST_PANELS:
+            return known, float(off[halved].sum())
+        total = total + sums[:, ~halved].sum(axis=-1)
+        low, high = panels[halved].T
         panels = np.stack([low, (low + high) / 2, (low + high) / 2, high], axis=1).reshape(-1, 2)
-    return known, float(off[rough].sum())

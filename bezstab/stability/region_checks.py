@@ -26,7 +26,7 @@ from bezstab.errors import NumericalError
 from bezstab.methods import Method
 from bezstab.rationals import exact
 from bezstab.stability.arrays import DOUBLE, ROUNDING, SAME, BoolArray, FloatArray, even_points
-from bezstab.stability.closed_loop import decays_faster, largest_modulus
+from bezstab.stability.closed_loop import converges, largest_modulus
 from bezstab.stability.pencils import Pencil, pencil_of
 from bezstab.stability.quadratures import integrals
 from bezstab.stability.root_finding import TOLD
@@ -64,7 +64,7 @@ def check_region(method: Method, level: float, shape: Shape | None) -> None:
     if shape is None:
         _check_nothing(name, inside, proven)
         return
-    for curve in shape.curves:
+    for curve in shape.boundary:
         _check_closed(name, shape, curve)
         _check_edge(name, shape, curve, inside, proven)
     _check_ends(name, shape, pencil, inside, proven)
@@ -74,7 +74,7 @@ def check_region(method: Method, level: float, shape: Shape | None) -> None:
 def _proven(method: Method, level: Fraction, alpha_hat: FloatArray, beta_hat: FloatArray) -> BoolArray:
     """Return verdicts in rationals, each a proof."""
     points = zip(alpha_hat.ravel().tolist(), beta_hat.ravel().tolist(), strict=True)
-    found = [decays_faster(method, level, Fraction(a), Fraction(b)) for a, b in points]
+    found = [converges(method, Fraction(a), Fraction(b), level) for a, b in points]
     return np.array(found, bool).reshape(alpha_hat.shape)
 
 
@@ -144,7 +144,7 @@ def _with_points_between(curve: FloatArray, size: FloatArray) -> FloatArray:
 def _check_ends(name: str, shape: Shape, pencil: Pencil, inside: Verdicts, proven: Verdicts) -> None:
     """Raise NumericalError unless the region comes to the ends of the extent, and no further, or goes on far out."""
     sizes = np.ptp(shape.view, axis=1)
-    drawn = np.concatenate([np.zeros((0, 2)), *shape.curves])
+    drawn = np.concatenate([np.zeros((0, 2)), *shape.boundary])
     for axis in (0, 1):
         for end, outwards in zip(shape.extent[axis], (-1, 1), strict=True):
             stable_at = partial(_stable_on_line, shape, pencil, inside, proven, axis, outwards)
@@ -185,8 +185,8 @@ def _looked_at(shape: Shape, axis: int, place: float, outwards: int) -> FloatArr
     That is zero, the finite ends of the other parameter, where the curves are furthest, and between their crossings.
     """
     bases = [np.array([0.0, *(each for each in shape.extent[1 - axis] if math.isfinite(each))])]
-    if shape.curves:
-        drawn = np.concatenate(shape.curves)
+    if shape.boundary:
+        drawn = np.concatenate(shape.boundary)
         bases.append(drawn[[np.argmax(outwards * drawn[:, axis])], 1 - axis])
         crossed = _crossings(shape, place, axis)
         bases.append((crossed[1:] + crossed[:-1]) / 2)
@@ -234,10 +234,7 @@ def _area_by_lines(shape: Shape, verdicts: Verdicts, rough: float, points: int) 
         by_poles, by_curves = _lengths(shape, lines.ravel(), verdicts, points)
         return np.stack([by_poles, np.abs(by_poles - by_curves)]).reshape(2, *lines.shape)
 
-    def allowed(own: FloatArray, total: float) -> FloatArray:
-        return np.full_like(own, rough * (total if shape.area is None else shape.area))
-
-    (area, between), _ = integrals(lengths, _panels(shape), allowed, PANEL_STEP)
+    (area, between), _ = integrals(lengths, _panels(shape), rough, PANEL_STEP)
     return float(area), float(between)
 
 
@@ -245,7 +242,7 @@ def _panels(shape: Shape) -> FloatArray:
     """Return the ends of panels of alpha_hat between the corners and turns of all curves; shape (panels, 2)."""
     first, last = shape.view[0]
     ends = [np.array([first, last])]
-    for curve in shape.curves:
+    for curve in shape.boundary:
         chords = np.diff(curve, axis=0)
         angle = np.arctan2(*(chords / np.ptp(curve, axis=0)).T[::-1])
         turned = np.abs((np.diff(angle) + np.pi) % (2 * np.pi) - np.pi) > TURNED
@@ -300,7 +297,7 @@ def _length_inside(places: FloatArray, grid: FloatArray) -> float:
 def _crossings(shape: Shape, line: float, axis: int = 0) -> FloatArray:
     """Return where the curves cross a line of constant alpha_hat, or beta_hat (axis 1), ascending."""
     found = [np.zeros(0)]
-    for curve in shape.curves:
+    for curve in shape.boundary:
         beyond = curve[:, axis] > line
         step = np.flatnonzero(beyond[1:] != beyond[:-1])
         start, end = curve[step], curve[step + 1]

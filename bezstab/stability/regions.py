@@ -21,7 +21,7 @@ MARGIN = 0.05  # of what is to be seen of a bounded region
 
 @dataclass(frozen=True, repr=False)
 class Region(ReadOnlyArrays):
-    """The set |z_p| < level for one method, in alpha_hat and beta_hat, all dimensionless.
+    """The set |z_p| < level for one method, in alpha_hat and beta_hat, all dimensionless: by default empty.
 
     `boundary` holds curves as arrays of shape (points, 2), closed but where they run to infinity; `extent` is
     ((alpha_hat_min, alpha_hat_max), (beta_hat_min, beta_hat_max)), infinite where there is no limit, None if the set
@@ -33,11 +33,11 @@ class Region(ReadOnlyArrays):
 
     method: Method
     level: float
-    area: float | None
-    boundary: tuple[FloatArray, ...]
-    extent: Extent | None
     fixed_poles: tuple[complex, ...] = ()
+    area: float | None = 0.0
+    extent: Extent | None = None
     view: Extent | None = None
+    boundary: tuple[FloatArray, ...] = ()
     approached: Approached = ATTAINED
 
     def __repr__(self) -> str:
@@ -76,24 +76,13 @@ def region(method: Method, level: float = 1.0) -> Region:
     if not 0 < level <= 1:
         raise InputError(f"level {level:g}: expected above 0 and at most 1, the stability boundary")
     stuck = fixed_poles(method)
-    empty = Region(method, level, 0.0, (), None, stuck)
+    empty = Region(method, level, stuck)
     if stuck and abs(stuck[0]) >= level * (1 - ROUNDING):
         return empty
 
     shape = pencil_of(method, free=True).shape(level)
     check_region(method, level, shape)
-    if shape is None:
-        return empty
-    return Region(
-        method,
-        level,
-        shape.area,
-        shape.curves,
-        shape.extent,
-        stuck,
-        view=shape.view,
-        approached=shape.approached,
-    )
+    return Region(method, level, stuck, **vars(shape)) if shape else empty
 
 
 def chart_of(pencil: Pencil, stable: Region, finer: int = 1) -> Chart:

@@ -13,7 +13,7 @@ Coefficients = Sequence[Any] | NDArray[np.inexact]
 
 CHUNK = 16384  # points at a time: all the work arrays of one chunk stay in a core's cache
 ITERATIONS = 200  # Aberth's iteration needs about ten; a multiple root, where it is linear, about sixty
-FAR = 1e15  # |z| whose 16th power still fits float64
+LOG_OF_ZERO = -1e15  # finite, but below every logarithm of a float64
 TOLD = 1e-10  # relative: Schur's recursion tells apart what differs by more
 
 
@@ -115,7 +115,7 @@ def newton_polygon_starts(coefficients: ComplexArray) -> ComplexArray:
     root, however small or large, has a start of its size.
     """
     n = len(coefficients) - 1
-    size = np.maximum(np.log(np.abs(coefficients)), -FAR)  # finite, but below every logarithm of a float64
+    size = np.maximum(np.log(np.abs(coefficients)), LOG_OF_ZERO)
     log_radii = np.full((n, coefficients.shape[1]), -np.inf)
     for lower in range(n):
         chords = (size[lower] - size[lower + 1 :]) / np.arange(1, n - lower + 1)[:, np.newaxis]
@@ -147,9 +147,7 @@ def _quadratic_roots(coefficients: ComplexArray) -> ComplexArray:
     Where they meet, their last digits are lost, but not where their middle is: branches that meet go through it.
     """
     last, half, leading = coefficients[0], coefficients[1] / 2, coefficients[2]
-    size = np.maximum(np.abs(half), np.sqrt(np.abs(last)) * np.sqrt(np.abs(leading)))  # squares stay in range
-    scale = np.where(size > 0, size, 1.0)
-    root = np.sqrt((half / scale) ** 2 - (last / scale) * (leading / scale)) * scale
+    root = np.sqrt(half * half - last * leading)
     larger = -(half + np.where((half * root.conj()).real >= 0, root, -root))
     smaller = np.divide(last, larger, out=np.zeros_like(larger), where=larger != 0)  # without cancellation
     return np.stack([larger / leading, smaller])
@@ -159,15 +157,16 @@ def _aberth(coefficients: ComplexArray) -> ComplexArray:
     """Return the roots of sum_k a_k z^k, coefficients of shape (n + 1, points), from the Newton polygon's starts.
 
     Aberth's simultaneous Newton iteration (O. Aberth, Math. Comp. 27, 1973), cubic at simple roots; points leave as
-    they converge. At a multiple root the last digits cannot settle: there ITERATIONS ends the walk.
+    they converge: Newton's correction N = p/p' is repelled by the other roots, N / (1 - N sum 1/(z_i - z_j)). At a
+    multiple root the last digits cannot settle: there ITERATIONS ends the walk. Not a number where p leaves float64.
     """
     starts = newton_polygon_starts(coefficients)
     solution = starts.copy()
     active = np.arange(starts.shape[1])
     z = starts
-    step_from = _far_aberth_step if np.abs(z).max(initial=0.0) > FAR else _aberth_step
     for _ in range(ITERATIONS):
-        step = step_from(coefficients, z)
+        value, slope = horner_with_slope(coefficients, z)
+        step = _quotient(value, slope - value * _repulsion(z))
         settled = np.all(np.abs(step) <= SAME * np.abs(z), axis=0)
         z = z - step
         solution[:, active[settled]] = z[:, settled]
@@ -182,28 +181,6 @@ def _aberth(coefficients: ComplexArray) -> ComplexArray:
     return solution
 
 
-def _aberth_step(coefficients: ComplexArray, z: ComplexArray) -> ComplexArray:
-    """Return Newton's correction N = p/p' repelled by the other roots: N / (1 - N sum 1/(z_i - z_j))."""
-    value, slope = horner_with_slope(coefficients, z)
-    return _quotient(value, slope - value * _repulsion(z))
-
-
-def _far_aberth_step(coefficients: ComplexArray, z: ComplexArray) -> ComplexArray:
-    """Return the same step where powers of z may overflow: for |z| > 1 by q with p(z) = z^n q(1/z), relative to z."""
-    n = len(z)
-    far = np.abs(z) > 1
-    inverse = np.divide(1, z, out=z.copy(), where=far)  # 1/z where z is far, else z itself
-    value = np.zeros_like(z)
-    slope = np.zeros_like(z)
-    for coefficient, reverse in zip(coefficients[::-1], coefficients, strict=True):
-        slope = slope * inverse + value
-        value = value * inverse + np.where(far, reverse, coefficient)
-    repulsion = _repulsion(z)
-    near_step = _quotient(value, slope - value * repulsion)
-    far_step = z * _quotient(value, n * value - inverse * slope - value * (z * repulsion))
-    return np.where(far, far_step, near_step)
-
-
 def _quotient(numerator: ComplexArray, denominator: ComplexArray) -> ComplexArray:
     """Return the quotient, and 0 where the numerator is 0."""
     quotient: ComplexArray = numerator / denominator
@@ -212,13 +189,13 @@ def _quotient(numerator: ComplexArray, denominator: ComplexArray) -> ComplexArra
 
 
 def _repulsion(z: ComplexArray) -> ComplexArray:
-    """Return the sums of 1 / (z_i - z_j) over the other roots j; none for what coincides with another."""
+    """Return the sums of 1 / (z_i - z_j) over the other roots j, without those that coincide or are no numbers."""
     repulsion = np.zeros_like(z)
     for k in range(1, len(z)):
         reciprocal = 1 / (z[k:] - z[:-k])
+        reciprocal[~np.isfinite(reciprocal)] = 0
         repulsion[k:] += reciprocal
         repulsion[:-k] -= reciprocal
-    repulsion[~np.isfinite(repulsion)] = 0
     return repulsion
 
 

@@ -34,7 +34,7 @@ class Shape:
     area: float | None
     extent: Extent
     view: Extent
-    curves: tuple[FloatArray, ...]
+    boundary: tuple[FloatArray, ...]
     approached: Approached = ATTAINED
 
 

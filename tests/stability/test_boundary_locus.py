@@ -38,7 +38,7 @@ def test_two_roots_that_meet_on_the_circle_outside_every_region_leave_none() -> 
 def test_roots_that_stay_on_the_circle_leave_no_region() -> None:
     # leapfrog: z1 z2 = -1
     leapfrog = multistep("leapfrog", "1 0 -1", "0 2 0")
-    assert region(leapfrog) == Region(leapfrog, 1.0, 0.0, (), None)
+    assert region(leapfrog) == Region(leapfrog, 1.0)
 
 
 def test_a_region_of_which_a_strip_lies_far_away_is_not_empty() -> None:

@@ -32,7 +32,7 @@ def test_a_method_of_mu_written_as_second_order_has_the_same_region(name: str, l
     assert by_strips.area == pytest.approx(by_locus.area, rel=rel, abs=absolute)
     if name in OF_MU:
         assert np.array(by_strips.extent) == pytest.approx(np.array(by_locus.extent), rel=1e-11, abs=1e-12)
-        assert len(by_strips.curves) == len(by_locus.boundary)
+        assert len(by_strips.boundary) == len(by_locus.boundary)
 
 
 def test_where_the_feedback_sees_the_old_velocity_half_the_region_needs_negative_damping() -> None:

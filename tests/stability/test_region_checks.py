@@ -100,8 +100,8 @@ def found(name: str, level: float) -> tuple[Method, Shape]:
 
 def stretched(shape: Shape, number: int) -> Shape:
     """Return a shape with one of its curves off by a millionth."""
-    curves = [curve * [1, 1 + 1e-6 if k == number else 1] for k, curve in enumerate(shape.curves)]
-    return replace(shape, curves=tuple(curves))
+    curves = [curve * [1, 1 + 1e-6 if k == number else 1] for k, curve in enumerate(shape.boundary)]
+    return replace(shape, boundary=tuple(curves))
 
 
 def with_extent(shape: Shape, axis: int, end: float) -> Shape:
@@ -116,7 +116,7 @@ WRONG_SIZES: list[tuple[str, Callable[[Shape], Shape]]] = [
     ("the extent", lambda shape: with_extent(shape, 0, 0.9999 * shape.extent[0][1])),
     ("the extent", lambda shape: with_extent(shape, 0, 1.0001 * shape.extent[0][1])),
     ("the extent", lambda shape: with_extent(shape, 1, np.inf)),
-    ("an edge was not found", lambda shape: replace(shape, curves=tuple(curve[:-2] for curve in shape.curves))),
+    ("an edge was not found", lambda shape: replace(shape, boundary=tuple(curve[:-2] for curve in shape.boundary))),
 ]
 
 
@@ -133,12 +133,12 @@ def test_a_right_shape_passes_and_a_wrong_one_does_not(name: str, level: float) 
     for said, wrong in WRONG_SIZES:
         with pytest.raises(NumericalError, match=said):
             check_region(method, level, wrong(shape))
-    for number in range(len(shape.curves)):
+    for number in range(len(shape.boundary)):
         with pytest.raises(NumericalError, match="where none is"):
             check_region(method, level, stretched(shape, number))
-        others = shape.curves[:number] + shape.curves[number + 1 :]
+        others = shape.boundary[:number] + shape.boundary[number + 1 :]
         with pytest.raises(NumericalError):
-            check_region(method, level, replace(shape, curves=others))
+            check_region(method, level, replace(shape, boundary=others))
 
 
 @pytest.mark.parametrize(("name", "level"), SHAPES[-2:])
@@ -146,7 +146,7 @@ def test_a_right_shape_passes_and_a_wrong_one_does_not(name: str, level: float) 
 def test_an_unbounded_shape_passes_but_not_with_a_wrong_edge_or_a_wrong_way_out(name: str, level: float) -> None:
     method, shape = found(name, level)
     check_region(method, level, shape)
-    wrong: list[Shape | None] = [None, replace(shape, curves=()), stretched(shape, 0)]
+    wrong: list[Shape | None] = [None, replace(shape, boundary=()), stretched(shape, 0)]
     for axis, (low, high) in enumerate(shape.extent):
         wrong.append(with_extent(shape, axis, 10.0 if np.isinf(high) else np.inf))
         if np.isfinite(low):
@@ -163,4 +163,4 @@ def test_an_edge_through_what_is_stable_is_no_answer() -> None:
     method, shape = found("SYM", 1.0)
     line = np.array([[0.5, 0.5], [0.5, 0.5], [0.6, 0.6], [0.6, 0.6], [0.5, 0.5], [0.5, 0.5]])
     with pytest.raises(NumericalError, match="where none is"):
-        check_region(method, 1.0, replace(shape, curves=(*shape.curves, line)))
+        check_region(method, 1.0, replace(shape, boundary=(*shape.boundary, line)))

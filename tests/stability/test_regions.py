@@ -95,7 +95,7 @@ LEAST_SQUARED = {"B2": 1 / 3, "B3": 7 / 19, "AB3": 11 / 23, "B4": (66 + sqrt(505
 def test_a_region_is_empty_exactly_below_the_least_modulus(name: str) -> None:
     method, least = lookup(name), sqrt(LEAST_SQUARED[name])
     for level in (least - 1e-6, 0.9 * least):
-        assert region(method, level) == Region(method, level, 0.0, (), None)
+        assert region(method, level) == Region(method, level)
     above = region(method, least + 1e-6)
     assert above.area
     (a_low, a_high), (b_low, b_high) = found_extent(above)

@@ -3,9 +3,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from bezstab.stability.root_finding import (
-    roots_of_table,
-)
+from bezstab.stability.root_finding import roots_of_rows, roots_of_table
 
 
 def test_roots_of_very_different_size_keep_their_digits() -> None:
@@ -21,8 +19,10 @@ def test_roots_of_very_different_size_keep_their_digits() -> None:
     assert np.sort(found.real) == pytest.approx(exact, rel=1e-13)
 
 
-def test_roots_whose_powers_leave_float64_keep_their_digits() -> None:
-    exact = np.array([1e-120, 1.0, 1e120])
-    ascending = [-1.0, 1e120, -1e120, 1.0]  # of the product, where each coefficient is one term and trifles
-    found = roots_of_table(np.array(ascending)[:, np.newaxis], np.array([0j]))[:, 0]
-    assert np.sort(found.real) == pytest.approx(exact, rel=1e-13)
+def test_where_one_root_is_infinite_or_beyond_float64_the_others_are_found() -> None:
+    # (z - 1) (z - 2) (z - 3) as a cubic of a quartic's form; and times (z - 1e120), whose powers overflow
+    ascending = np.array([[-6.0, 11.0, -6.0, 1.0, 0.0], [6e120, -11e120, 6e120, -1e120, 1.0]]).T
+    found = roots_of_rows(ascending)
+    assert np.isfinite(found).sum(axis=0).tolist() == [3, 3]
+    for column in found.T:
+        assert np.sort(column[np.isfinite(column)].real) == pytest.approx([1, 2, 3], rel=1e-13)
