@@ -54,13 +54,12 @@ if TYPE_CHECKING:
     from bezstab.methods.orders import accuracy, accuracy_by_force
     from bezstab.methods.path_edges import turning_factors
     from bezstab.methods.plane_edges import (
-        Crossing,
         CurveTable,
         Limit,
-        PlaneStrips,
-        Strip,
+        PlaneCell,
+        PlaneEdge,
         crossing_polynomials,
-        plane_strips,
+        stable_cells,
     )
     from bezstab.methods.recipes import recipe
     from bezstab.methods.shared_factors import fixed_poles, reduced_table, without_shared_factor

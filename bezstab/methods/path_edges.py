@@ -12,99 +12,74 @@ mu = rho / sigma on the circle z = e^(i theta). With t = 1 - cos theta all of th
        -----o-------0-- Re mu          the path's two where mu^2 + s^i alpha_hat mu + s^j beta_hat = 0
 """
 
+from collections import defaultdict
 from collections.abc import Sequence
 from fractions import Fraction
 
 import sympy as sp
-from sympy.polys.rings import PolyElement
+from sympy.polys.rings import PolyElement, ring
 
 from bezstab.methods.derivation import rho_and_sigma
 from bezstab.methods.determinants import as_fraction
 from bezstab.methods.plane_edges import crossing_polynomials
+from bezstab.methods.polynomials import horner
 from bezstab.methods.root_isolation import real_roots
 from bezstab.methods.schemes import Method
 from bezstab.methods.shared_factors import reduced_table, without_shared_factor
-from bezstab.rationals import ZERO
 
-VARIABLE = sp.Symbol("s")
-RING = sp.QQ[VARIABLE]
-S = RING.from_sympy(VARIABLE)
+_, S = ring("s", sp.QQ)
+_, T = ring("t", sp.QQ)
 
 
 def turning_factors(method: Method, alpha_hat: Fraction, beta_hat: Fraction, powers: tuple[int, int]) -> list[Fraction]:
     """Return, ascending, every factor s > 0 at which a root may pass |z| = 1 on the path (s^i alpha_hat, s^j beta_hat).
 
     (i, j) are the powers, each 0, 1 or 2; everything is dimensionless. Rational places with a short denominator are
-    exact, others good to 70 bits. Poles that no parameters move are left out.
+    exact, others good to 70 bits. There may be others among them. Poles that no parameters move are left out.
     """
-    method = without_shared_factor(method)
-    coefficients = _along_path(method, alpha_hat, beta_hat, powers)
-    mapping = rho_and_sigma(method)
-    edges = crossing_polynomials(coefficients, RING, pairs=mapping is None)
-    found: list[Fraction] = []
+    i, j = powers
+    in_s = alpha_hat * S**i, beta_hat * S**j
+    coefficients = [horner([horner(row, in_s[1]) for row in in_plane], in_s[0]) for in_plane in reduced_table(method)]
+    mapping = rho_and_sigma(without_shared_factor(method))
+    edges = crossing_polynomials(coefficients, pairs=mapping is None)
     if mapping:
         m = method.step_multiple
-        found = _factors_on_the_circle(*mapping, m * alpha_hat, m**2 * beta_hat, powers)
-    return sorted({*found, *(root for edge in edges for root in _positive_roots(edge))} - {ZERO})
+        edges += _edges_of_pairs(*mapping, m * alpha_hat, m**2 * beta_hat, powers)
+    return sorted({root for edge in edges for root in real_roots(edge) if root > 0})
 
 
-def _along_path(method: Method, alpha_hat: Fraction, beta_hat: Fraction, powers: tuple[int, int]) -> list[PolyElement]:
-    """Return P's coefficients in z, ascending, as polynomials in s."""
-    i, j = powers
-    return [
-        sum(
-            (
-                S ** (i * k + j * m) * (c * alpha_hat**k * beta_hat**m)
-                for k, row in enumerate(in_plane)
-                for m, c in enumerate(row)
-            ),
-            RING.zero,
-        )
-        for in_plane in reduced_table(method)
-    ]
-
-
-def _positive_roots(polynomial: PolyElement) -> list[Fraction]:
-    """Return the different positive roots of a polynomial, ascending: none of zero, which vanishes everywhere."""
-    if not polynomial:
-        return []
-    free = sp.Poly.from_dict(dict(polynomial), VARIABLE, domain=sp.QQ).sqf_part()
-    return [root for root in real_roots(free) if root > 0]
-
-
-def _value(polynomial: PolyElement, x: Fraction) -> Fraction:
-    return as_fraction(polynomial.evaluate(0, x))
-
-
-def _factors_on_the_circle(
+def _edges_of_pairs(
     rho: Sequence[Fraction],
     sigma: Sequence[Fraction],
     alpha_hat: Fraction,
     beta_hat: Fraction,
     powers: tuple[int, int],
-) -> list[Fraction]:
-    """Return the factors at which a linear multistep method has a pair of roots on the circle, in steps of its own."""
+) -> list[PolyElement]:
+    """Return polynomials in s that vanish where a linear multistep method has a pair of roots on the circle.
+
+    alpha_hat and beta_hat belong to steps of its own.
+    """
     rho_rho, sigma_sigma = (_on_the_circle(each, each)[0] for each in (rho, sigma))
     rho_sigma, imaginary_part = _on_the_circle(rho, sigma)
     i, j = powers
     if i and j:  # on the path alpha_hat^2 / beta_hat is one number
-        on_path = rho_sigma**2 * (4 * beta_hat) - rho_rho * sigma_sigma * alpha_hat**2 if alpha_hat else rho_sigma
+        on_path = rho_sigma**2 * (4 * beta_hat) - rho_rho * sigma_sigma * alpha_hat**2
     else:
         on_path = rho_rho - sigma_sigma * beta_hat if i else 2 * rho_sigma + sigma_sigma * alpha_hat
-    found: list[Fraction] = []
-    for t in _positive_roots(on_path):
-        size = _value(sigma_sigma, t)
-        if t > 2 or not size:
-            continue
-        alpha_of_locus, beta_of_locus = -2 * _value(rho_sigma, t) / size, _value(rho_rho, t) / size
-        if i and alpha_of_locus * alpha_hat < 0:
-            continue  # on the path of a negative s
-        found += _positive_roots(S**j * beta_hat - beta_of_locus if j else S**i * alpha_hat - alpha_of_locus)
-    for t in _positive_roots(imaginary_part):
-        if t <= 2 and _value(sigma_sigma, t):
-            mu = _value(rho_sigma, t) / _value(sigma_sigma, t)
-            found += _positive_roots(S**i * (mu * alpha_hat) + S**j * beta_hat + mu**2)
-    return found
+    edges = []
+    for t in _angles(on_path):
+        of_rho, of_both, of_sigma = (as_fraction(part.evaluate(T, t)) for part in (rho_rho, rho_sigma, sigma_sigma))
+        edges.append(S**j * (beta_hat * of_sigma) - of_rho if j else S**i * (alpha_hat * of_sigma) + 2 * of_both)
+    for t in _angles(imaginary_part):
+        of_both, of_sigma = (as_fraction(part.evaluate(T, t)) for part in (rho_sigma, sigma_sigma))
+        # mu^2 + s^i alpha_hat mu + s^j beta_hat at mu = of_both / of_sigma
+        edges.append(S**i * (alpha_hat * of_both * of_sigma) + S**j * (beta_hat * of_sigma**2) + of_both**2)
+    return edges
+
+
+def _angles(polynomial: PolyElement) -> list[Fraction]:
+    """Return the roots t = 1 - cos theta of a polynomial in t that belong to an angle; z = 1 is for P(1) to tell."""
+    return [t for t in real_roots(polynomial) if 0 < t <= 2]
 
 
 def _on_the_circle(first: Sequence[Fraction], second: Sequence[Fraction]) -> tuple[PolyElement, PolyElement]:
@@ -113,18 +88,15 @@ def _on_the_circle(first: Sequence[Fraction], second: Sequence[Fraction]) -> tup
     p and q are polynomials in z, ascending. The one is a sum of cos(k theta), Chebyshev's polynomials T_k of cos theta,
     the other of sin(k theta) / sin theta, his U_(k-1).
     """
-    cosines, sines = [RING.zero] * len(first), [RING.zero] * len(first)
+    cosine = 1 - T
+    cosines, sines = [T**0, cosine], [0 * T, T**0]  # of k theta, sines / sin theta
+    for each in (cosines, sines):
+        for _ in first:
+            each.append(2 * cosine * each[-1] - each[-2])
+    by_lag: defaultdict[int, Fraction] = defaultdict(Fraction)
     for k, c in enumerate(first):
         for m, d in enumerate(second):
-            cosines[abs(k - m)] += c * d
-            sines[abs(k - m)] += c * d if k > m else -c * d
-    last, before = _clenshaw(cosines)
-    return last - (1 - S) * before, _clenshaw(sines[1:])[0]
-
-
-def _clenshaw(lags: Sequence[PolyElement]) -> tuple[PolyElement, PolyElement]:
-    """Return b_0 and b_1 of the sums b_k = c_k + 2 (1 - t) b_(k+1) - b_(k+2) (C. W. Clenshaw, MTAC 9, 1955)."""
-    last, before = RING.zero, RING.zero
-    for c in reversed(lags):
-        last, before = c + 2 * (1 - S) * last - before, last
-    return last, before
+            by_lag[k - m] += c * d
+    real = sum(c * cosines[abs(lag)] for lag, c in by_lag.items())
+    imaginary = sum((c if lag > 0 else -c) * sines[abs(lag)] for lag, c in by_lag.items())
+    return real, imaginary

@@ -24,196 +24,165 @@ Where a crossing comes to at a strip's end, a number or an infinite alpha_hat, a
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cache, reduce
+from functools import reduce
 from itertools import combinations, pairwise
 from math import ceil, floor, inf
-from typing import Any
 
-import sympy as sp
 from sympy.polys.matrices import DomainMatrix
 from sympy.polys.rings import PolyElement
 
 from bezstab.errors import NumericalError
-from bezstab.methods.derivation import ALPHA_HAT, BETA_HAT, PLANE, plane_elements
+from bezstab.methods.derivation import PLANE, plane_elements
 from bezstab.methods.determinants import as_fraction
-from bezstab.methods.polynomials import PlaneTable, horner, without_zeros
-from bezstab.methods.root_isolation import BITS, primitive, real_roots, shifted, size_in_bits
+from bezstab.methods.root_isolation import BITS, real_roots
 from bezstab.methods.schemes import Method
 from bezstab.methods.schur import is_schur
 from bezstab.methods.shared_factors import reduced_table
 from bezstab.rationals import ONE, ZERO
 
-A, B = ALPHA_HAT, BETA_HAT
+ALPHA, BETA = PLANE.ring.gens
 
 LONG, HIGH = 10 * BITS, 8  # bits of a coefficient, degree in alpha_hat: discriminants of such curves take minutes
 
 CurveTable = tuple[tuple[Fraction, ...], ...]
 """A polynomial in alpha_hat and beta_hat: table[i][j] belongs to alpha_hat^i beta_hat^j."""
 
-Crossing = tuple[int, int]
-"""(A curve's number, the crossing's number among those of the curve, from left to right)."""
-
 Limit = float | None
 """What alpha_hat comes to as beta_hat goes to a strip's end: +-inf, or a number; None: a number on a finite level."""
 
+End = Fraction | float
+"""Of a strip: a level, or an infinite beta_hat, which is a float."""
 
-@dataclass(frozen=True)
-class Strip:
-    """The plane between two levels of beta_hat (None: unbounded): on each line the crossings are in one order.
 
-    crossings: from left to right. stable: whether |z_p| < r left of the first, between each two, and right of the last:
-    one more than crossings. limits: what each crossing's alpha_hat comes to at the lower and at the upper end; empty
-    where nothing is stable.
+@dataclass(frozen=True, eq=False)
+class PlaneEdge:
+    """A crossing along its strip: of the curve's real roots alpha_hat, `count` on each line, number k from the left.
+
+    limits: what alpha_hat comes to at the strip's lower and upper end. lost: whether at these ends some of the curve's
+    roots, perhaps complex ones, run to infinity.
     """
 
-    low: Fraction | None
-    high: Fraction | None
-    crossings: tuple[Crossing, ...]
-    stable: tuple[bool, ...]
-    limits: Mapping[Crossing, tuple[Limit, Limit]]
+    curve: CurveTable
+    k: int
+    count: int
+    low: float
+    high: float
+    limits: tuple[Limit, Limit]
+    lost: tuple[bool, bool]
 
 
 @dataclass(frozen=True)
-class PlaneStrips:
-    """The whole plane in strips, from below to above, and the curves whose crossings they count.
+class PlaneCell:
+    """A part of a strip, from `low` to `high`, where |z_p| < r: between two edges (None: it goes on to infinity)."""
 
-    Levels are exact to 70 bits, everything else is exact. `lost[i]` has for curve number i the levels at which
-    crossings run to infinity, with their number, complex ones included.
-    """
-
-    curves: tuple[CurveTable, ...]
-    strips: tuple[Strip, ...]
-    lost: tuple[dict[Fraction, int], ...]
+    low: float
+    high: float
+    left: PlaneEdge | None
+    right: PlaneEdge | None
 
 
-@cache
-def plane_strips(method: Method, level: Fraction) -> PlaneStrips | None:
-    """Return the plane of a second-order scheme cut where |z_p| < level may begin or end; None if that is nowhere.
+def stable_cells(method: Method, level: Fraction) -> list[PlaneCell]:
+    """Return the cells of a second-order scheme's plane where |z_p| < level, strip by strip from below to above.
 
-    Proven: Schur's recursion in rationals decides one point of each cell. Roots that no feedback moves are left out.
+    Proven: Schur's recursion in rationals decides one point of each cell, levels are exact to 70 bits and everything
+    else is exact, but for what is rounded to float64 here. Roots that no feedback moves are left out.
     NumericalError where numbers have so many digits that it would take minutes.
     """
-    coefficients = _coefficients(reduced_table(method), level)
-    edges = crossing_polynomials(coefficients, PLANE)
+    coefficients = _coefficients(method, level)
+    edges = crossing_polynomials(coefficients)
     if not all(edges):
-        return None  # a pair z_i z_j = r^2, or a root +-r, everywhere
-    factors = _factors([sp.Poly.from_dict(dict(edge), A, B, domain=sp.QQ) for edge in edges])
+        return []  # a pair z_i z_j = r^2, or a root +-r, everywhere
+    factors = _factors(edges)
     _refuse_what_takes_minutes(factors, method, level)
-    curves = [factor for factor in factors if factor.degree(A) > 0]
+    curves = [factor for factor in factors if factor.degree(ALPHA) > 0]
     levels = _levels(factors, curves)
-    lost = tuple(_lost(curve, levels) for curve in curves)
-    between = _between(list(levels))
-    ends = [None, *levels, None]
-    tables = tuple(_table(curve) for curve in curves)
-    planes = [_table(coefficient) for coefficient in coefficients]
-    strips = []
-    for (low, high), beta_hat in zip(pairwise(ends), between, strict=True):
-        crossings, places = _crossings(tables, beta_hat)
-        lines = [[horner(row, beta_hat) for row in plane] for plane in planes]  # by powers of alpha_hat
-        stable = tuple(is_schur([horner(line, alpha_hat) for line in lines]) for alpha_hat in _between(places))
-        limits = {}
+    ends: list[End] = [-inf, *levels, inf]
+    cells = []
+    for (low, high), beta_hat in zip(pairwise(ends), _between(list(levels)), strict=True):
+        lines = [real_roots(curve.evaluate(BETA, beta_hat)) for curve in curves]
+        crossings = sorted((root, number, k) for number, roots in enumerate(lines) for k, root in enumerate(roots))
+        stable = [
+            is_schur([as_fraction(c.evaluate([(ALPHA, alpha_hat), (BETA, beta_hat)])) for c in coefficients])
+            for alpha_hat in _between([root for root, _, _ in crossings])
+        ]
         if any(stable):
-            at_low = _limits(tables, lost, crossings, beta_hat, low, sign=-1)
-            at_high = _limits(tables, lost, crossings, beta_hat, high, sign=1)
-            limits = {crossing: (at_low[crossing], at_high[crossing]) for crossing in crossings}
-        strips.append(Strip(low, high, crossings, stable, limits))
-    return PlaneStrips(tables, tuple(strips), lost)
+            by_curve = [_edges(curve, levels, (low, high), beta_hat) for curve in curves]
+            between = pairwise([None, *(by_curve[number][k] for _, number, k in crossings), None])
+            cells += [
+                PlaneCell(float(low), float(high), *sides)
+                for sides, is_stable in zip(between, stable, strict=True)
+                if is_stable
+            ]
+    return cells
 
 
-def _coefficients(table: PlaneTable, level: Fraction) -> list[PolyElement]:
+def _coefficients(method: Method, level: Fraction) -> list[PolyElement]:
     """Return the coefficients of P(level z), ascending, without a factor that all of them share."""
-    coefficients = [c * level**k for k, c in enumerate(plane_elements(table))]
+    coefficients = [c * level**k for k, c in enumerate(plane_elements(reduced_table(method)))]
     shared = reduce(PLANE.gcd, coefficients)
     return [coefficient.exquo(shared) for coefficient in coefficients]
 
 
-def _table(polynomial: sp.Poly | PolyElement) -> CurveTable:
-    terms = {powers: as_fraction(c) for powers, c in polynomial.terms()}
-    highest = [max((powers[axis] for powers in terms), default=0) for axis in (0, 1)]
-    return tuple(tuple(terms.get((i, j), ZERO) for j in range(highest[1] + 1)) for i in range(highest[0] + 1))
-
-
-def crossing_polynomials(coefficients: Sequence[PolyElement], ring: Any, pairs: bool = True) -> list[PolyElement]:
+def crossing_polynomials(coefficients: Sequence[PolyElement], pairs: bool = True) -> list[PolyElement]:
     """Return the four polynomials that vanish where a root may pass |z| = 1: P(1), P(-1), c_n, and that of pairs.
 
-    `coefficients` of P in ascending powers of z, elements of a polynomial ring, or numbers. pairs: without it the
-    fourth is left out, a determinant that takes longer than all else.
+    `coefficients` of P in ascending powers of z, of one ring. pairs: without it the fourth is left out, a determinant
+    that takes longer than all else.
     """
     n = len(coefficients) - 1
-    at_one = sum(coefficients, ring.zero)
-    at_minus_one = sum((c if k % 2 == 0 else -c for k, c in enumerate(coefficients)), ring.zero)
-    edges = [at_one, at_minus_one, coefficients[n]]
-    if n < 2 or not pairs:
+    of_even, of_odd = sum(coefficients[::2]), sum(coefficients[1::2])
+    edges = [of_even + of_odd, of_even - of_odd, coefficients[n]]
+    if not pairs:
         return edges
-    rows = []
-    for i in range(n - 1):
-        row = []
-        for j in range(n - 1):
-            entry = ring.zero
-            if j >= i:
-                entry += coefficients[n - (j - i)]
-            if j >= n - 2 - i:
-                entry -= coefficients[j - (n - 2 - i)]
-            row.append(entry)
-        rows.append(row)
-    return [*edges, DomainMatrix(rows, (n - 1, n - 1), ring).det()]
+    c, ring = dict(enumerate(coefficients)), coefficients[n].ring
+    x_less_y = [
+        [c.get(n + i - j, ring.zero) - c.get(i + j + 2 - n, ring.zero) for j in range(n - 1)] for i in range(n - 1)
+    ]
+    return [*edges, DomainMatrix(x_less_y, (n - 1, n - 1), ring.to_domain()).det()]
 
 
-def _factors(polynomials: Iterable[sp.Poly]) -> list[sp.Poly]:
+def _factors(polynomials: Iterable[PolyElement]) -> list[PolyElement]:
     """Return polynomials without multiple or common factors whose product has the same zeros, with whole coefficients.
 
     What beta_hat alone moves is apart, and what alpha_hat alone moves, whose edges are vertical. They may be reducible:
     to find irreducible factors takes longer than all else.
     """
-    found: list[sp.Poly] = []
+    found: list[PolyElement] = []
     for polynomial in polynomials:
         for part, _ in polynomial.sqf_list()[1]:
-            beta_alone, rest = part.eject(B).primitive()
-            alpha_alone, rest = rest.inject().eject(A).primitive()
-            for factor in (beta_alone, alpha_alone, rest.as_expr()):
-                new = sp.Poly(factor, A, B, domain=sp.QQ)
-                for other in list(found):
-                    shared = sp.gcd(new, other)
-                    if not shared.is_ground:
-                        found.remove(other)
-                        found += [shared, other.exquo(shared)]
-                        new = new.exquo(shared)
-                found.append(new)
-    return [primitive(each) for each in found if not each.is_ground]
-
-
-def _refuse_what_takes_minutes(factors: list[sp.Poly], method: Method, level: Fraction) -> None:
-    for factor in factors:
-        bits = max(int(c).bit_length() for c in factor.coeffs())
-        if factor.degree(A) >= HIGH and bits > LONG:
-            raise NumericalError(
-                f"{method.name}: |z_p| < {float(level):.6g} has an edge of degree {factor.degree(A)} with coefficients "
-                f"of {bits} bits, which takes minutes; take a level, or coefficients, of fewer digits"
-            )
-
-
-def _levels(factors: list[sp.Poly], curves: list[sp.Poly]) -> dict[Fraction, sp.Poly]:
-    """Return the ascending beta_hat at which the crossings may change, each with the irreducible polynomial of it."""
-    in_beta = [factor.eject(B).LC() for factor in factors]  # where crossings are lost, or all of beta_hat alone
-    in_beta += [curve.discriminant() for curve in curves]
-    in_beta += [first.resultant(second) for first, second in combinations(curves, 2)]
-    polynomials = [sp.Poly(each, B, domain=sp.QQ) for each in in_beta]
-    irreducible = {factor for polynomial in polynomials for factor, _ in polynomial.factor_list()[1]}
-    return dict(sorted((root, factor) for factor in irreducible for root in real_roots(factor)))
-
-
-def _lost(curve: sp.Poly, levels: dict[Fraction, sp.Poly]) -> dict[Fraction, int]:
-    """Return the levels at which crossings of a curve run to infinity: so many leading coefficients vanish together."""
-    by_power = [sp.Poly(c, B, domain=sp.QQ) for c in curve.eject(B).all_coeffs()]
-    found = {}
-    for level, factor in levels.items():
-        number = next(k for k, coefficient in enumerate(by_power) if coefficient.rem(factor))
-        if number:
-            found[level] = number
+            contents = [reduce(PLANE.gcd, _by_power(part, variable)) for variable in (ALPHA, BETA)]
+            for factor in (*contents, part):
+                new = reduce(lambda left, other: left.exquo(PLANE.gcd(left, other)), found, factor)
+                if not new.is_ground:
+                    found.append(new.primitive()[1])
     return found
 
 
-def _between(ascending: list[Fraction]) -> list[Fraction]:
+def _by_power(polynomial: PolyElement, variable: PolyElement) -> list[PolyElement]:
+    """Return the coefficients by powers of one variable, descending."""
+    return [polynomial.coeff_wrt(variable, k) for k in range(polynomial.degree(variable), -1, -1)]
+
+
+def _refuse_what_takes_minutes(factors: Iterable[PolyElement], method: Method, level: Fraction) -> None:
+    for factor in factors:
+        bits = max(int(c).bit_length() for c in factor.coeffs())
+        if factor.degree(ALPHA) >= HIGH and bits > LONG:
+            raise NumericalError(
+                f"{method.name}: |z_p| < {float(level):.6g} has an edge of degree {factor.degree(ALPHA)} with "
+                f"coefficients of {bits} bits, which takes minutes; take a level, or coefficients, of fewer digits"
+            )
+
+
+def _levels(factors: Iterable[PolyElement], curves: Iterable[PolyElement]) -> dict[Fraction, PolyElement]:
+    """Return the ascending beta_hat at which the crossings may change, each with the irreducible polynomial of it."""
+    in_beta = [_by_power(factor, ALPHA)[0].drop(ALPHA) for factor in factors]  # crossings are lost, or beta alone
+    in_beta += [curve.discriminant() for curve in curves]
+    in_beta += [first.resultant(second) for first, second in combinations(curves, 2)]
+    irreducible = {factor for polynomial in in_beta for factor, _ in polynomial.factor_list()[1]}
+    return dict(sorted((root, factor) for factor in irreducible for root in real_roots(factor)))
+
+
+def _between(ascending: Sequence[Fraction]) -> list[Fraction]:
     """Return a number below all, one between each two, and one above all, with short numerators."""
     if not ascending:
         return [ONE]
@@ -223,31 +192,44 @@ def _between(ascending: list[Fraction]) -> list[Fraction]:
 
 def _shortest_between(low: Fraction, high: Fraction) -> Fraction:
     """Return a binary fraction in the middle third between two numbers."""
-    bits = max(0, 2 - size_in_bits(high - low))
+    bits = max(0, 2 - _size_in_bits(high - low))
     return Fraction(round((low + high) / 2 * (1 << bits)), 1 << bits)
 
 
-def _polynomial(ascending: Sequence[Fraction]) -> sp.Poly:
-    """Return the polynomial in alpha_hat with these coefficients."""
-    return sp.Poly(ascending[::-1], A, domain=sp.QQ)
+def _size_in_bits(x: Fraction) -> int:
+    """Return about log2 of a positive number, rounded down."""
+    return x.numerator.bit_length() - x.denominator.bit_length() - 1
 
 
-def _crossings(curves: Sequence[CurveTable], beta_hat: Fraction) -> tuple[tuple[Crossing, ...], list[Fraction]]:
-    """Return the crossings with a line between levels, from left to right, and numbers that are in their order."""
-    found = []
-    for number, curve in enumerate(curves):
-        line = _polynomial([horner(row, beta_hat) for row in curve])
-        for k, root in enumerate(real_roots(line)):
-            found.append((root, (number, k)))
-    found.sort()
-    return tuple(crossing for _, crossing in found), [root for root, _ in found]
+def _edges(
+    curve: PolyElement, levels: Mapping[Fraction, PolyElement], ends: tuple[End, End], inside: Fraction
+) -> list[PlaneEdge]:
+    """Return a curve's crossings along the strip between two levels, from left to right.
+
+    `inside` is a beta_hat within the strip.
+    """
+    lost = [_lost(curve, levels[end]) if isinstance(end, Fraction) else 0 for end in ends]
+    at_low, at_high = (_limits(curve, *end, inside) for end in zip(ends, (-1, 1), lost, strict=True))
+    most_alpha, most_beta = curve.degrees()
+    table = tuple(
+        tuple(as_fraction(curve.get((i, j), ZERO)) for j in range(most_beta + 1)) for i in range(most_alpha + 1)
+    )
+    return [
+        PlaneEdge(table, k, len(at_low), float(ends[0]), float(ends[1]), limits, (lost[0] > 0, lost[1] > 0))
+        for k, limits in enumerate(zip(at_low, at_high, strict=True))
+    ]
+
+
+def _lost(curve: PolyElement, level: PolyElement) -> int:
+    """Return how many roots run to infinity at a level: so many leading coefficients vanish with its polynomial."""
+    return next(k for k, c in enumerate(_by_power(curve, ALPHA)) if c.drop(ALPHA).rem(level))
 
 
 # Where crossings come to at a strip's end. There t = 0, where t > 0 is the distance in beta_hat to a level, or
 # 1 / |beta_hat| towards an infinite end. A crossing comes to a root of the curve's polynomial in alpha_hat at t = 0, or
 # to infinity if that has fewer roots. Lines of constant alpha_hat, "fences", are laid between those roots and beyond
 # all. As long as the curve passes none of them, that is up to its least t on any, crossings stay between their fences:
-# counting them at one such t tells where each comes to.
+# where they are at one such t tells where each comes to.
 #
 #      t |   .'  |   \      |                  fences at -M, between the roots, and at M
 #      --|-.'----|----\-----|----  this line
@@ -256,49 +238,31 @@ def _crossings(curves: Sequence[CurveTable], beta_hat: Fraction) -> tuple[tuple[
 #      to -inf  -M    root  M
 
 
-def _limits(
-    tables: tuple[CurveTable, ...],
-    lost: tuple[dict[Fraction, int], ...],
-    crossings: tuple[Crossing, ...],
-    inside: Fraction,
-    level: Fraction | None,
-    sign: int,
-) -> dict[Crossing, Limit]:
-    """Return where a strip's crossings come to at its lower (sign -1) or upper end, a level (None: infinite beta_hat).
+def _limits(curve: PolyElement, end: End, sign: int, lost: int, inside: Fraction) -> list[Limit]:
+    """Return where crossings come to at a strip's lower (sign -1) or upper end.
 
-    `inside` is a beta_hat within the strip.
+    There so many roots of the curve as are `lost` run to infinity. `inside` is a beta_hat within the strip.
     """
-    limits: dict[Crossing, Limit] = {}
-    for number in {number for number, _ in crossings}:
-        count = sum(curve == number for curve, _ in crossings)
-        if level is None:
-            in_t = _towards_infinity(tables[number], sign)
-            most = 1 / max(ONE, sign * inside)
-            at_end = without_zeros([row[0] for row in in_t])
-            roots = list(real_roots(_polynomial(at_end).sqf_part()))
-        else:
-            in_t = [[c * (-sign) ** k for k, c in enumerate(shifted(row, level))] for row in tables[number]]
-            most = abs(inside - level)
-            at_end = [row[0] for row in in_t[: len(in_t) - lost[number].get(level, 0)]]
-            roots = []
-        beyond = 1 + max((abs(c / at_end[-1]) for c in at_end[:-1]), default=ZERO)  # Cauchy's bound of the roots
-        fences = [-beyond, *(_shortest_between(*pair) for pair in pairwise(roots)), beyond]
-        places: list[Limit] = [-inf, *map(float, roots), inf] if roots else [-inf, None, inf]
-        t = min([most, *(_free_of_crossings(in_t, fence) for fence in fences)])
-        line = _polynomial([horner(row, t) for row in in_t])
-        left_of = [int(line.count_roots(None, fence)) for fence in fences]
-        for k in range(count):
-            limits[number, k] = places[sum(left <= k for left in left_of)]
-    return limits
+    if isinstance(end, float):  # infinite
+        height = curve.degree(BETA)
+        in_t = PLANE.ring.from_dict({(i, height - j): c * sign**j for (i, j), c in curve.terms()})  # times t^height
+        most = 1 / max(ONE, sign * inside)
+        roots = real_roots(in_t.evaluate(BETA, 0))
+    else:
+        in_t = curve.compose(BETA, end - sign * BETA)
+        most = abs(inside - end)
+        roots = []
+    at_end = {i: abs(c) for (i, j), c in in_t.terms() if j == 0 and i <= curve.degree(ALPHA) - lost}
+    beyond = 1 + as_fraction(max(at_end.values()) / at_end[max(at_end)])  # Cauchy's bound of the roots
+    fences = [-beyond, *(_shortest_between(*pair) for pair in pairwise(roots)), beyond]
+    places: list[Limit] = [-inf, *(map(float, roots) if roots else [None]), inf]
+    t = min([most, *(_free_of_crossings(in_t, fence) for fence in fences)])
+    return [places[sum(fence < root for fence in fences)] for root in real_roots(in_t.evaluate(BETA, t))]
 
 
-def _towards_infinity(table: CurveTable, sign: int) -> list[list[Fraction]]:
-    """Return a curve at beta_hat = sign / t, times the power of t that makes it a polynomial; row i for alpha_hat^i."""
-    return [[c * sign**j for j, c in enumerate(row)][::-1] for row in table]
-
-
-def _free_of_crossings(in_t: list[list[Fraction]], alpha_hat: Fraction) -> Fraction:
+def _free_of_crossings(in_t: PolyElement, alpha_hat: Fraction) -> Fraction:
     """Return a t > 0 up to which a curve does not pass this alpha_hat, by Cauchy's bound of the inverse roots."""
-    first, *others = [horner(column, alpha_hat) for column in zip(*in_t, strict=True)]
-    bound = abs(first) / (abs(first) + max(map(abs, others), default=ZERO))
-    return Fraction(2) ** (size_in_bits(bound) - 1)  # a short number
+    along_fence = in_t.evaluate(ALPHA, alpha_hat)
+    first = abs(along_fence.const())
+    bound = as_fraction(first / (first + along_fence.max_norm()))
+    return Fraction(2) ** (_size_in_bits(bound) - 1)  # a short number

@@ -5,12 +5,12 @@ Of a second-order scheme: roots that P(z; alpha_hat, beta_hat) has for every alp
 
 from dataclasses import replace
 from fractions import Fraction
-from functools import cache
+from functools import cache, reduce
 
 import sympy as sp
 
 from bezstab.methods.derivation import Z, closed_loop_table
-from bezstab.methods.polynomials import PlaneTable, polynomial_gcd, quotient_and_remainder, trimmed
+from bezstab.methods.polynomials import PlaneTable, polynomial_gcd, quotient_and_remainder
 from bezstab.methods.schemes import LinearMultistep, Method
 
 
@@ -24,10 +24,7 @@ def shared_factor(method: Method) -> tuple[Fraction, ...]:
     """
     scheme = method.scheme
     coefficients = scheme.mu_table or [[c for row in in_plane for c in row] for in_plane in scheme.second_order.table]
-    shared: list[Fraction] = []
-    for polynomial in zip(*coefficients, strict=True):
-        if any(polynomial):
-            shared = polynomial_gcd(shared, polynomial) if shared else trimmed(polynomial)
+    shared: list[Fraction] = reduce(polynomial_gcd, filter(any, zip(*coefficients, strict=True)), [])
     while len(shared) > 1 and shared[0] == 0:
         del shared[0]
     return tuple(shared)
@@ -59,10 +56,7 @@ def fixed_poles(method: Method) -> tuple[complex, ...]:
     a second-order scheme's P share; dimensionless. None for an ordinary method.
     """
     factor = sp.Poly(shared_factor(method)[::-1], Z, domain=sp.QQ)
-    poles: list[complex] = []
-    if factor.degree() > 0:
-        for part, _ in factor.sqf_list()[1]:  # without its multiple roots, which float64 would split
-            poles += [complex(root) for root in part.nroots()]
+    poles = map(complex, factor.sqf_part().nroots())  # without its multiple roots, which float64 would split
     return tuple(sorted(poles, key=lambda pole: (-round(abs(pole), 12), -pole.real, -pole.imag)))
 
 

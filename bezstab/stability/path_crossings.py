@@ -47,8 +47,6 @@ def crossing_factors(path: Path) -> tuple[Fraction, ...]:
 
     There may be more than those at which the verdict turns. Exact, or good to 70 bits.
     """
-    if path.alpha_hat == 0 and path.powers[1] == 0:
-        return ()  # all of the path is one point
     return tuple(turning_factors(path.method, path.alpha_hat, path.beta_hat, path.powers))
 
 

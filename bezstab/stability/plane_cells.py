@@ -1,6 +1,6 @@
 r"""The stable cells of a second-order scheme's plane in float64: their edges as functions, their area, extent, curves.
 
-plane_strips (methods) has proven which cells of each strip are stable and what bounds them. What remains is to follow
+plane_edges (methods) has proven which cells of each strip are stable and what bounds them. What remains is to follow
 edges: real roots alpha_hat of a polynomial whose coefficients depend on beta_hat, in their proven order.
 
       beta_hat |        ______________      level: what is stable below and not above is a level edge
@@ -15,14 +15,14 @@ tanh-sinh quadrature does not mind.
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from functools import lru_cache, partial
 from itertools import pairwise
 
 import numpy as np
 from numpy.polynomial.polynomial import polyder, polyval, polyval2d
 
 from bezstab.errors import NumericalError
-from bezstab.methods import CurveTable, Limit, Method, PlaneStrips, plane_strips
+from bezstab.methods import CurveTable, Limit, Method, PlaneCell, PlaneEdge, stable_cells
 from bezstab.rationals import exact
 from bezstab.stability.arrays import DOUBLE, ROUNDING, SAME, ComplexArray, Extent, FloatArray
 from bezstab.stability.exact_sums import double_polynomial, split
@@ -43,79 +43,62 @@ SplitCurve = list[list[tuple[float, float]]]
 """A curve's coefficients, the largest of size one, each as a sum of two float64."""
 
 
-@dataclass(frozen=True, eq=False)
-class Edge:
-    """An edge along a strip: of a curve the real root alpha_hat number k, of `count`, as a function of beta_hat.
+def strips_shape(method: Method, level: float) -> Shape | None:
+    """Return the region |z_p| < level from the exact strips of a method's plane; None if it is empty.
 
-    It goes from `low` to `high`, the strip's ends. It is `known` but for what is so near to an end at which roots of
-    the curve are lost that one may show at the wrong infinity. `limits`: what alpha_hat comes to at either end.
+    NumericalError if its area cannot be integrated.
     """
-
-    curve: SplitCurve
-    k: int
-    count: int
-    low: float
-    high: float
-    known: Range
-    limits: tuple[Limit, Limit]
-
-    def places(self, beta_hat: FloatArray) -> FloatArray:
-        """Return alpha_hat on lines, to rounding; the shape of beta_hat. Beyond where it is known: where it still is.
-
-        An eigenvalue is made exact by Newton's method with the curve's exact value, unless two roots meet.
-        """
-        levels = np.clip(beta_hat.ravel(), *self.known)
-        place = _most_real(self._roots(levels).T, self.count)[:, self.k]
-        slope = polyder(self._table, axis=0)
-        for _ in range(STEPS):
-            with np.errstate(all="ignore"):
-                high, rest = double_polynomial(self.curve, place, levels)
-                step = (high + rest) / polyval2d(place, levels, slope)
-            place = place - np.where(np.abs(step) < DOUBLE * np.abs(place), step, 0)
-        return place.reshape(beta_hat.shape)
-
-    def corner(self, level: float) -> float:
-        """Return alpha_hat at an end of the strip: where two meet, which float64 parts, the middle of both."""
-        place = float(self.places(np.array(level)))
-        roots = self._roots(np.array([level]))
-        meeting = roots[np.abs(roots - place) <= DOUBLE * abs(place)].real
-        return float(meeting.mean()) if len(meeting) > 1 else place
-
-    def furthest(self, low: float, high: float, sign: int) -> tuple[float, float]:
-        """Return the point between two levels that lies furthest to the right (sign 1) or left (-1)."""
-        level, least = least_between(lambda levels: -sign * self.places(levels), np.asarray(low), np.asarray(high))
-        return -sign * float(least), float(level)
-
-    @property
-    def _table(self) -> FloatArray:
-        return np.array(self.curve)[:, :, 0]
-
-    def _roots(self, levels: FloatArray) -> ComplexArray:
-        """Return all roots of the curve on lines, as eigenvalues; shape (roots, lines)."""
-        return companion_roots(polyval(levels, self._table.T))
+    cells = stable_cells(method, exact(level))
+    if not cells:
+        return None
+    edges = list(dict.fromkeys(edge for cell in cells for edge in (cell.left, cell.right) if edge))
+    corners = _turns(edges)
+    extent, approached = _extent(cells, corners)
+    view = _view(extent, corners)
+    bounded = bool(np.isfinite(extent).all())
+    area = _area(cells, f"{method.name}, |z_p| < {level:g}") if bounded else None
+    return Shape(area, extent, view, tuple(_curves(edges, cells, view)), approached)
 
 
-@dataclass(frozen=True)
-class Cell:
-    """A stable cell: between two levels, and between two edges (None: unbounded)."""
+def _places(edge: PlaneEdge, beta_hat: FloatArray) -> FloatArray:
+    """Return alpha_hat on lines, to rounding; the shape of beta_hat. Beyond where it is known: where it still is.
 
-    low: float
-    high: float
-    left: Edge | None
-    right: Edge | None
+    An eigenvalue is made exact by Newton's method with the curve's exact value, unless two roots meet.
+    """
+    levels = np.clip(beta_hat.ravel(), *_known(edge))
+    curve = _split(edge.curve)
+    place = _most_real(_roots(edge, levels).T, edge.count)[:, edge.k]
+    slope = polyder(_table(curve), axis=0)
+    for _ in range(STEPS):
+        with np.errstate(all="ignore"):
+            high, rest = double_polynomial(curve, place, levels)
+            step = (high + rest) / polyval2d(place, levels, slope)
+        place = place - np.where(np.abs(step) < DOUBLE * np.abs(place), step, 0)
+    return place.reshape(beta_hat.shape)
 
-    @property
-    def limits(self) -> tuple[tuple[Limit, Limit], tuple[Limit, Limit]]:
-        """What alpha_hat comes to at the lower and the upper end of the strip, along the left edge and the right."""
-        left = (-math.inf, -math.inf) if self.left is None else self.left.limits
-        right = (math.inf, math.inf) if self.right is None else self.right.limits
-        return left, right
 
-    def widths(self, beta_hat: FloatArray) -> FloatArray:
-        """Return the widths of a bounded cell, as one function of several; shape (1, *that of beta_hat)."""
-        assert self.left is not None
-        assert self.right is not None
-        return (self.right.places(beta_hat) - self.left.places(beta_hat))[np.newaxis]
+def _known(edge: PlaneEdge) -> Range:
+    """Return an edge's ends; where roots are lost, a little away from there: lest one show at the wrong infinity."""
+    width = edge.high - edge.low if math.isfinite(edge.high - edge.low) else 1.0
+    ends = zip((edge.low, edge.high), (1, -1), edge.lost, strict=True)
+    low, high = (end + sign * ROUNDING * max(width, abs(end)) if lost else end for end, sign, lost in ends)
+    return low, high
+
+
+@lru_cache  # many questions are asked of a curve, one after the other
+def _split(curve: CurveTable) -> SplitCurve:
+    """Return a curve's coefficients, the largest one: they may have hundreds of digits."""
+    largest = max(abs(c) for row in curve for c in row)
+    return [[split(c / largest) for c in row] for row in curve]
+
+
+def _table(curve: SplitCurve) -> FloatArray:
+    return np.array(curve)[:, :, 0]
+
+
+def _roots(edge: PlaneEdge, levels: FloatArray) -> ComplexArray:
+    """Return all roots of the edge's curve on lines, as eigenvalues; shape (roots, lines)."""
+    return companion_roots(polyval(levels, _table(_split(edge.curve)).T))
 
 
 def _most_real(roots: ComplexArray, count: int) -> FloatArray:
@@ -135,58 +118,18 @@ def _most_real(roots: ComplexArray, count: int) -> FloatArray:
     return np.sort(chosen, axis=1)
 
 
-def strips_shape(method: Method, level: float) -> Shape | None:
-    """Return the region |z_p| < level from the exact strips of a method's plane; None if it is empty.
-
-    NumericalError if its area cannot be integrated.
-    """
-    strips = plane_strips(method, exact(level))
-    cells = stable_cells(strips) if strips else []
-    if not cells:
-        return None
-    edges = list(dict.fromkeys(edge for cell in cells for edge in (cell.left, cell.right) if edge))
-    corners = _turns(edges)
-    extent, approached = _extent(cells, corners)
-    view = _view(extent, corners)
-    bounded = bool(np.isfinite(extent).all())
-    area = _area(cells, f"{method.name}, |z_p| < {level:g}") if bounded else None
-    return Shape(area, extent, view, tuple(_curves(edges, cells, view)), approached)
+def _corner(edge: PlaneEdge, level: float) -> float:
+    """Return alpha_hat at an end of the strip: where two meet, which float64 parts, the middle of both."""
+    place = float(_places(edge, np.array(level)))
+    roots = _roots(edge, np.array([level]))
+    meeting = roots[np.abs(roots - place) <= DOUBLE * abs(place)].real
+    return float(meeting.mean()) if len(meeting) > 1 else place
 
 
-def stable_cells(strips: PlaneStrips) -> list[Cell]:
-    """Return the stable cells of all strips, in float64."""
-    curves = [_split(curve) for curve in strips.curves]
-    cells = []
-    for strip in strips.strips:
-        if not any(strip.stable):
-            continue
-        low = -math.inf if strip.low is None else float(strip.low)
-        high = math.inf if strip.high is None else float(strip.high)
-        width = high - low if math.isfinite(high - low) else 1.0
-        edges = [
-            Edge(
-                curves[number],
-                k,
-                sum(curve == number for curve, _ in strip.crossings),
-                low,
-                high,
-                (
-                    low + ROUNDING * max(width, abs(low)) if strip.low in strips.lost[number] else low,
-                    high - ROUNDING * max(width, abs(high)) if strip.high in strips.lost[number] else high,
-                ),
-                strip.limits[number, k],
-            )
-            for number, k in strip.crossings
-        ]
-        between = pairwise([None, *edges, None])
-        cells += [Cell(low, high, *sides) for sides, stable in zip(between, strip.stable, strict=True) if stable]
-    return cells
-
-
-def _split(curve: CurveTable) -> SplitCurve:
-    """Return a curve's coefficients, the largest one: they may have hundreds of digits."""
-    largest = max(abs(c) for row in curve for c in row)
-    return [[split(c / largest) for c in row] for row in curve]
+def _furthest(edge: PlaneEdge, low: float, high: float, sign: int) -> tuple[float, float]:
+    """Return the point between two levels that lies furthest to the right (sign 1) or left (-1)."""
+    level, least = least_between(lambda levels: -sign * _places(edge, levels), np.asarray(low), np.asarray(high))
+    return -sign * float(least), float(level)
 
 
 def _drawn_levels(low: float, high: float) -> FloatArray:
@@ -207,28 +150,26 @@ def _levels_to_infinity(low: float, high: float) -> FloatArray:
     return np.unique([start + sign * away for sign in signs])
 
 
-def _turns(edges: list[Edge]) -> FloatArray:
+def _turns(edges: list[PlaneEdge]) -> FloatArray:
     """Return the corners of all cells and each edge's furthest points within its strip; shape (points, 2)."""
     points = []
     for edge in edges:
         bounded = math.isfinite(edge.high - edge.low)
         levels = _drawn_levels(edge.low, edge.high) if bounded else _levels_to_infinity(edge.low, edge.high)
-        place = edge.places(levels)
+        place = _places(edge, levels)
         ends = [levels[end] for end in (0, -1) if edge.limits[end] is None]
-        points += [(edge.corner(end), end) for end in ends]
-        if not ends and (place == place[0]).all():  # vertical
-            points.append((place[0], levels[0]))
+        points += [(_corner(edge, end), end) for end in ends]
         rounding = 0 if bounded else SAME * np.abs(place[1:-1])  # near a limit it turns by no more
         for sign in (1, -1):
             within = sign * place[1:-1] - rounding
             turning = 1 + np.flatnonzero((within > sign * place[:-2]) & (within > sign * place[2:]))
-            points += [edge.furthest(levels[k - 1], levels[k + 1], sign) for k in turning]
+            points += [_furthest(edge, levels[k - 1], levels[k + 1], sign) for k in turning]
     return np.array(points).reshape(-1, 2)
 
 
-def _extent(cells: list[Cell], corners: FloatArray) -> tuple[Extent, Approached]:
+def _extent(cells: list[PlaneCell], corners: FloatArray) -> tuple[Extent, Approached]:
     """Return the ranges of alpha_hat and beta_hat, infinite where there is no limit, and which ends no edge attains."""
-    towards = [limit for cell in cells for wall in cell.limits for limit in wall if limit is not None]
+    towards = [limit for cell in cells for wall in _limits(cell) for limit in wall if limit is not None]
     first, last = float(corners[:, 0].min(initial=math.inf)), float(corners[:, 0].max(initial=-math.inf))
     left, right = min([first, *towards]), max([last, *towards])
     rounding = ROUNDING * float(np.abs(corners[:, 0]).max(initial=0.0))
@@ -241,12 +182,12 @@ def _extent(cells: list[Cell], corners: FloatArray) -> tuple[Extent, Approached]
     return ((left, right), (low, high)), (beyond_corners, (_only_far_out(cells, low), _only_far_out(cells, high)))
 
 
-def _only_far_out(cells: list[Cell], level: float) -> bool:
+def _only_far_out(cells: list[PlaneCell], level: float) -> bool:
     """Return whether each cell that comes to a finite level does so at an infinite alpha_hat."""
     at_the_level = [
         walls
         for cell in cells
-        for at, walls in zip((cell.low, cell.high), zip(*cell.limits, strict=True), strict=True)
+        for at, walls in zip((cell.low, cell.high), zip(*_limits(cell), strict=True), strict=True)
         if at == level
     ]
     return math.isfinite(level) and all(
@@ -267,15 +208,29 @@ def _view(extent: Extent, corners: FloatArray) -> Extent:
     return (0.0, alpha_hat_max), (0.0, beta_hat_max)
 
 
-def _area(cells: list[Cell], name: str) -> float:
+def _limits(cell: PlaneCell) -> tuple[tuple[Limit, Limit], tuple[Limit, Limit]]:
+    """Return what alpha_hat comes to at the lower and the upper end of the strip, along the left edge and the right."""
+    left = (-math.inf, -math.inf) if cell.left is None else cell.left.limits
+    right = (math.inf, math.inf) if cell.right is None else cell.right.limits
+    return left, right
+
+
+def _area(cells: list[PlaneCell], name: str) -> float:
     """Return the sum over cells of the integral of their width. `name` is what an error is about."""
     area = off = 0.0
     for cell in cells:
-        (found,), may_be_off = integrals(cell.widths, np.array([[cell.low, cell.high]]))
+        (found,), may_be_off = integrals(partial(_widths, cell), np.array([[cell.low, cell.high]]))
         area, off = area + float(found), off + may_be_off
     if off > SAME * area:
         raise NumericalError(f"{name}: the area cannot be integrated")
     return area
+
+
+def _widths(cell: PlaneCell, beta_hat: FloatArray) -> FloatArray:
+    """Return the widths of a bounded cell, as one function of several; shape (1, *that of beta_hat)."""
+    assert cell.left is not None
+    assert cell.right is not None
+    return (_places(cell.right, beta_hat) - _places(cell.left, beta_hat))[np.newaxis]
 
 
 # The boundary: each edge, and along a level what is stable on one side only.
@@ -285,7 +240,7 @@ def _area(cells: list[Cell], name: str) -> float:
 #        below:   |---- |            |--- stable --|
 
 
-def _curves(edges: list[Edge], cells: list[Cell], view: Extent) -> list[FloatArray]:
+def _curves(edges: list[PlaneEdge], cells: list[PlaneCell], view: Extent) -> list[FloatArray]:
     """Return the boundary as curves of shape (points, 2): closed, or ending out of view where the region goes on."""
     sizes = [high - low for low, high in view]
     box = [(low - OUT_OF_VIEW * size, high + OUT_OF_VIEW * size) for (low, high), size in zip(view, sizes, strict=True)]
@@ -293,20 +248,20 @@ def _curves(edges: list[Edge], cells: list[Cell], view: Extent) -> list[FloatArr
     return joined(pieces, most=DOUBLE * np.ptp(box, axis=1))
 
 
-def _within_box(edge: Edge, across: Range, up: Range) -> Iterator[FloatArray]:
+def _within_box(edge: PlaneEdge, across: Range, up: Range) -> Iterator[FloatArray]:
     """Yield the pieces of an edge within the box."""
     low, high = max(edge.low, up[0]), min(edge.high, up[1])
     if low >= high:
         return
     levels = _drawn_levels(low, high)
-    place = edge.places(levels)
+    place = _places(edge, levels)
     seen = (place >= across[0]) & (place <= across[1])
     for run in np.split(np.arange(len(levels)), np.flatnonzero(np.diff(seen)) + 1):
         if seen[run[0]] and len(run) > 1:
             yield np.stack([place[run], levels[run]], axis=1)
 
 
-def _level_pieces(cells: list[Cell], across: Range, up: Range) -> list[FloatArray]:
+def _level_pieces(cells: list[PlaneCell], across: Range, up: Range) -> list[FloatArray]:
     """Return the pieces of levels that are stable on one side only, within the box."""
     left, right = across
     pieces = []
@@ -314,8 +269,8 @@ def _level_pieces(cells: list[Cell], across: Range, up: Range) -> list[FloatArra
         at_level = np.array(level)
         intervals = [
             (
-                left if cell.left is None else max(left, float(cell.left.places(at_level))),
-                right if cell.right is None else min(right, float(cell.right.places(at_level))),
+                left if cell.left is None else max(left, float(_places(cell.left, at_level))),
+                right if cell.right is None else min(right, float(_places(cell.right, at_level))),
             )
             for cell in cells
             if level in (cell.low, cell.high)

@@ -50,7 +50,7 @@ def stable_for_all(method: Method) -> StableForAll:
     polynomial = closed_loop_polynomial(method)
     if polynomial.degree() <= MOST_ROOTS:
         ascending = polynomial.rep.to_list()[::-1]
-        at_one, at_minus_one, _, of_pairs = crossing_polynomials(ascending, polynomial.domain)
+        at_one, at_minus_one, _, of_pairs = crossing_polynomials(ascending)
         edges = [polynomial.domain.to_sympy(edge) for edge in (at_one, at_minus_one, of_pairs)]
         if all(_positive(edge) or _positive(-edge) for edge in edges):
             return "proven"
