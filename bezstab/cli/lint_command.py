@@ -62,7 +62,7 @@ def lint(model: Path, gains: "Sequence[evidence.MotorGains]", every: int, late: 
     timing = stability.Timing(every, late)
     model_data = evidence.read_mujoco_model(model)
     linted = list(progress(evidence.linted_model(model_data, gains, timing), "lint", len(model_data.elements)))
-    heading = f"{model.name}: timestep {model_data.h:g} s, integrator {model_data.integrator}"
+    heading = f"{model.name}: timestep {float(model_data.h):g} s, integrator {model_data.integrator}"
     if linted or not for_reading():
         show_rows(LINTED, (LINTED.row(each, advice=each.advice or None) for each in linted), heading=heading)
     else:

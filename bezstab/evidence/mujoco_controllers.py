@@ -2,7 +2,7 @@
 
     l = direction . q      control = -kp l - kd l'      force = gain * control, along direction
 
-One step of the model is linear at qpos0: (x, h v) -> S (x, h v) + T (forces of the motors). Over the steps from one
+One step of the model is linear at qpos0: (x, h v) -> S (x, h v, forces of the motors). Over the steps from one
 computation of the controls to the next, that is one matrix over (x, h v) and the controls that are still to be applied.
 """
 
@@ -62,17 +62,17 @@ def controlled_motors(model: ModelData, gains: Sequence[MotorGains], timing: Tim
     for motor in motors:
         matching = [each for each in gains if re.fullmatch(each.pattern, motor.name)]
         if matching:
-            late = timing.late + exact(motor.delay) / exact(model.h)
+            late = timing.late + exact(motor.delay) / model.h
             found.append(Controlled(motor, matching[-1].kp, matching[-1].kd, Timing(timing.every, late)))
     return found
 
 
-def lifted_step(step: FloatArray, forces: FloatArray, controlled: Sequence[Controlled], h: float) -> FloatArray:
+def lifted_step(step: FloatArray, controlled: Sequence[Controlled], h: float) -> FloatArray:
     """Return the matrix over `every` steps of a model with controllers.
 
-    `step` (2 n, 2 n) takes (x, h v) over a step without them, `forces` (2 n, motors) is what each motor's force adds
-    (SI). The state is (x, h v), then the controls still to be applied, latest first. All controllers have the same
-    `every`, and see velocities without a filter.
+    `step` (2 n, 2 n + motors) takes (x, h v) and the force of each motor (SI) over a step. The state is (x, h v), then
+    the controls still to be applied, latest first. All controllers have the same `every`, and see velocities without a
+    filter.
     """
     dofs, motors = len(step) // 2, len(controlled)
     arms = np.array([each.motor.direction for each in controlled])
@@ -92,5 +92,5 @@ def lifted_step(step: FloatArray, forces: FloatArray, controlled: Sequence[Contr
                 for row, each in enumerate(controlled)
             ]
         )
-        moving = step @ moving + forces @ (force_gain * applied)
+        moving = step @ np.vstack([moving, force_gain * applied])
     return np.vstack([moving, *controls[:pending]])

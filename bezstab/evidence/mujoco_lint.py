@@ -18,15 +18,14 @@ IMEX-Euler where all damping is implicit, RK4 under RK4, else symplectic Euler, 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import cache, cached_property, partial
+from functools import partial
 from itertools import accumulate
 
 import numpy as np
 
 from bezstab.engines import ENGINES, Point
-from bezstab.errors import NumericalError
 from bezstab.evidence.mujoco_controllers import Controlled, MotorGains, controlled_motors, lifted_step
-from bezstab.evidence.mujoco_models import LEAST_SIZE, Constraint, Feedback, ModelData, Motor, Unjudged
+from bezstab.evidence.mujoco_models import DIGITS, LEAST_SIZE, Constraint, Feedback, ModelData, Motor, Unjudged
 from bezstab.methods import Method, Verdict, closed_loop_at, lookup, recursion_verdict
 from bezstab.rationals import ONE, ZERO, exact
 from bezstab.stability import (
@@ -38,9 +37,6 @@ from bezstab.stability import (
     poles,
 )
 
-FRESH = Timing()
-"""A controller as fast as the physics."""
-
 Points = Callable[[Fraction], list[tuple[Point, str]]]
 """Of a factor on the step: the points of an element there, always as many, and what makes each of them."""
 
@@ -49,9 +45,6 @@ IMPLICIT_IN_VELOCITY = lookup("imex-euler")
 
 DEFAULT_SOLREF = (0.02, 1.0)
 """What MuJoCo takes where one number of solref is positive and the other not."""
-
-DIGITS = 12
-"""Of a share: what linear algebra in float64 leaves of small matrices."""
 
 FACTORS = np.geomspace(1, 1e3, 120)
 """On the step, or its inverse, where an end of stability is looked for first: the maps here have no gap of 6 %."""
@@ -126,27 +119,26 @@ class Linted:
         return replace(self, safe_together=True, advice=SAFE_TOGETHER)
 
 
-def linted_model(model: ModelData, gains: Sequence[MotorGains] = (), timing: Timing = FRESH) -> Iterator[Linted]:
+def linted_model(model: ModelData, gains: Sequence[MotorGains], timing: Timing) -> Iterator[Linted]:
     """Yield what every constraint, spring, damper and drive of a model means, then all that hold both ways together.
 
     `gains` and `timing` are those of a controller that sets the model's motors; a motor without is not judged.
     InputError for gains of no motor, NumericalError where the mass matrix is singular, and where a pole leaves the
     range of float64.
     """
-    plant = _Plant(model)
     groups = _along_one_direction(model.of(Feedback))
     bilateral = [constraint for constraint in model.of(Constraint) if constraint.active]
     controlled = {each.motor.element: each for each in controlled_motors(model, gains, timing)}
     together = None
     if len(bilateral) + len(groups) + len(controlled) > 1:
-        together = _linted_together(plant, bilateral, list(controlled.values()))
+        together = _linted_together(model, bilateral, list(controlled.values()))
     for constraint in model.of(Constraint):
-        yield _linted_constraint(plant, constraint).beside(together if constraint.active else None)
+        yield _linted_constraint(model, constraint).beside(together if constraint.active else None)
     for group in groups:
-        yield _linted_group(plant, group).beside(together)
+        yield _linted_group(model, group).beside(together)
     for motor in model.of(Motor):
         if motor.element in controlled:
-            yield _linted_motor(plant, controlled[motor.element]).beside(together)
+            yield _linted_motor(model, controlled[motor.element]).beside(together)
         else:
             reason = f"its control comes from outside: --pd '{motor.name}=KP,KD' judges it"
             yield _not_judged(motor.element, "motor", reason)
@@ -158,58 +150,6 @@ def linted_model(model: ModelData, gains: Sequence[MotorGains] = (), timing: Tim
 
 def _not_judged(element: str, kind: str, reason: str) -> Linted:
     return Linted(element, kind, advice=f"not judged: {reason}")
-
-
-@dataclass(frozen=True, eq=False)
-class _Plant:
-    """A model, with what its integrator is for constraints and what that makes of its masses."""
-
-    model: ModelData
-
-    @property
-    def h(self) -> Fraction:
-        """The step in s."""
-        return exact(self.model.h)
-
-    @property
-    def method(self) -> Method:
-        """The method that the integrator is for constraints."""
-        return lookup("RK4" if self.model.integrator == "RK4" else "SYM")
-
-    @cached_property
-    def inverse_mass(self) -> Callable[[float], FloatArray]:
-        """(M + h D)^-1 by h (s), shape (dofs, dofs): what divides accelerations; that of the mass alone at h = 0.
-
-        D is the damping that the integrator treats implicitly. NumericalError where M is singular to rounding.
-        """
-        mass, feedbacks = self.model.mass, self.model.of(Feedback)
-        try:
-            np.linalg.cholesky(mass)
-        except np.linalg.LinAlgError:
-            raise NumericalError("the mass matrix at qpos0 is singular to rounding") from None
-        _, damping = _springs_and_dampers(mass, [each for each in feedbacks if self.is_implicit(each)])
-        return cache(lambda h: np.linalg.inv(mass + h * damping))
-
-    def is_implicit(self, feedback: Feedback) -> bool:
-        """Return whether the integrator treats a damping implicitly."""
-        if self.model.integrator == "Euler":
-            return self.model.euler_damping and feedback.euler_implicit
-        return self.model.integrator != "RK4"
-
-    def inertia_along(self, direction: FloatArray) -> Fraction:
-        """Return the inertia along a direction u with all else free, 1 / (u M^-1 u'), to DIGITS."""
-        inertia = 1 / float(direction @ self.inverse_mass(0.0) @ direction)
-        return exact(float(f"{inertia:.{DIGITS}g}"))
-
-
-def _springs_and_dampers(mass: FloatArray, feedbacks: Sequence[Feedback]) -> tuple[FloatArray, FloatArray]:
-    """Return the stiffness and the damping matrix of feedbacks; each of the shape of `mass`, (dofs, dofs), SI."""
-    stiffness, damping = np.zeros_like(mass), np.zeros_like(mass)
-    for each in feedbacks:
-        along = np.outer(each.direction, each.direction)
-        stiffness += each.stiffness * along
-        damping += each.damping * along
-    return stiffness, damping
 
 
 # One element
@@ -271,11 +211,11 @@ def _h_factor(unstable: Callable[[FloatArray], BoolArray]) -> float | None:
 
 @dataclass(frozen=True)
 class _Pull:
-    """What a constraint does with one impedance if it gets all of its reference, and where it has that."""
+    """What a constraint does with one impedance if it gets all of its reference, and what makes it do so."""
 
     constraint: Constraint
     impedance: float
-    where: str
+    reason: str
     point: Point
 
     @property
@@ -284,45 +224,45 @@ class _Pull:
         return np.maximum(LEAST_SIZE, self.constraint.diagonal * (1 - self.impedance) / self.impedance)
 
 
-def _pulls(plant: _Plant, constraint: Constraint, factor: Fraction) -> list[_Pull]:
+def _pulls(model: ModelData, constraint: Constraint, factor: Fraction) -> list[_Pull]:
     """Return what a constraint does at the constraint, and past solimp's width, at a factor on the step."""
-    h = plant.h * factor
-    in_force, _ = _in_force(plant.model, constraint.solref, h)
-    alpha_hat, beta_hat = ENGINES["mujoco"].read(h, *in_force)
+    h = model.h * factor
+    solref, why = (
+        (constraint.solref, "") if _of_one_sign(constraint.solref) else (DEFAULT_SOLREF, " as the signs differ")
+    )
+    first, second = map(exact, solref)
+    if model.refsafe and 0 < first < 2 * h:
+        first, why = 2 * h, why or " by refsafe"
+    alpha_hat, beta_hat = ENGINES["mujoco"].read(h, first, second)
     at_rest, largest, width = constraint.solimp
     impedances = [at_rest, largest] if width > 0 else [(at_rest + largest) / 2]
     if not constraint.positional:  # friction has no position to be off
         impedances, beta_hat = impedances[:1], ZERO
     share = 1 / exact(largest)
     return [
-        _Pull(constraint, impedance, where, (alpha_hat * share, beta_hat * exact(impedance) * share**2))
+        _Pull(
+            constraint,
+            impedance,
+            f'solref="{_numbers((first, second))}"{why}, d = {impedance:g} {where}',
+            (alpha_hat * share, beta_hat * exact(impedance) * share**2),
+        )
         for impedance, where in zip(impedances, ("at the constraint", "past solimp's width"), strict=False)
     ]
 
 
-def _in_force(model: ModelData, solref: tuple[float, float], h: Fraction) -> tuple[list[Fraction], str]:
-    """Return the solref that MuJoCo goes by at a step of h (s), and why it is another than what the model says."""
-    taken, why = (solref, "") if _of_one_sign(solref) else (DEFAULT_SOLREF, " as the signs differ")
-    first, second = map(exact, taken)
-    if model.refsafe and 0 < first < 2 * h:
-        first, why = 2 * h, why or " by refsafe"
-    return [first, second], why
-
-
-def _linted_constraint(plant: _Plant, constraint: Constraint) -> Linted:
+def _linted_constraint(model: ModelData, constraint: Constraint) -> Linted:
     setting = f'solref="{_numbers(constraint.solref)}" solimp="{_numbers(constraint.solimp)}"'
-    points_at = partial(_constraint_points, plant, constraint)
-    found = _linted(constraint.element, constraint.kind, setting, plant.method, points_at)
-    return replace(found, advice=_constraint_advice(plant, constraint, found))
+    points_at = partial(_constraint_points, model, constraint)
+    found = _linted(constraint.element, constraint.kind, setting, model.method, points_at)
+    return replace(found, advice=_constraint_advice(model, constraint, found))
 
 
-def _constraint_points(plant: _Plant, constraint: Constraint, factor: Fraction) -> list[tuple[Point, str]]:
+def _constraint_points(model: ModelData, constraint: Constraint, factor: Fraction) -> list[tuple[Point, str]]:
     """Return the points that a constraint takes, and what makes each of it."""
-    in_force, why = _in_force(plant.model, constraint.solref, plant.h)
     points = []
-    for pull in _pulls(plant, constraint, factor):
-        for share in _shares(plant, pull, float(factor) * plant.model.h):
-            reason = f'solref="{_numbers(in_force)}"{why}, d = {pull.impedance:g} {pull.where}'
+    for pull in _pulls(model, constraint, factor):
+        for share in _shares(model, pull, float(factor * model.h)):
+            reason = pull.reason
             if share == 1 and not len(constraint.jacobian):
                 reason += ", all of it where several contacts share it"
             elif abs(share - pull.impedance) >= SEEN * pull.impedance:
@@ -332,7 +272,7 @@ def _constraint_points(plant: _Plant, constraint: Constraint, factor: Fraction) 
     return points
 
 
-def _shares(plant: _Plant, pull: _Pull, h: float) -> tuple[float, float]:
+def _shares(model: ModelData, pull: _Pull, h: float) -> tuple[float, float]:
     """Return the least and the largest share of the reference that directions get at a step of h seconds.
 
     They are the eigenvalues of A' (A + R)^-1 of what moves: the impedance, but for MuJoCo's estimate of masses and for
@@ -341,17 +281,17 @@ def _shares(plant: _Plant, pull: _Pull, h: float) -> tuple[float, float]:
     jacobian = pull.constraint.jacobian
     if not len(jacobian):
         return pull.impedance, 1.0
-    regularized = jacobian @ plant.inverse_mass(0.0) @ jacobian.T + np.diag(pull.softening)
-    shares = np.linalg.eigvals(np.linalg.solve(regularized, jacobian @ plant.inverse_mass(h) @ jacobian.T)).real
+    regularized = jacobian @ model.inverse_mass(0.0) @ jacobian.T + np.diag(pull.softening)
+    shares = np.linalg.eigvals(np.linalg.solve(regularized, jacobian @ model.inverse_mass(h) @ jacobian.T)).real
     moving = shares[shares > ROUNDING]  # a direction that moves nothing has no error either
     return (float(moving.min()), float(moving.max())) if moving.size else (pull.impedance,) * 2
 
 
-def _constraint_advice(plant: _Plant, constraint: Constraint, found: Linted) -> str:
+def _constraint_advice(model: ModelData, constraint: Constraint, found: Linted) -> str:
     """Return what to write instead, and why; nothing where all is well."""
-    first, second = constraint.solref
-    least = 2 * plant.model.h
-    firm = _numbers((least, 1.0))
+    first, second = map(exact, constraint.solref)
+    least = 2 * model.h
+    firm = _numbers((least, ONE))
     if not _of_one_sign(constraint.solref):
         taken = _numbers(DEFAULT_SOLREF)
         return f'MuJoCo takes {taken}, as the signs differ: write solref="{taken}"'
@@ -359,18 +299,18 @@ def _constraint_advice(plant: _Plant, constraint: Constraint, found: Linted) -> 
         return f'no stiffness: errors stay; write solref="{firm}"'
     if found.verdict != "converges":
         return f'write solref="{firm}"'
-    if plant.model.refsafe and 0 < first < least:
+    if model.refsafe and 0 < first < least:
         return f'relies on refsafe, which raises its timeconst to 2h: write solref="{_numbers((least, second))}"'
-    return "" if constraint.kind in HARD else _softness(plant, constraint, found)
+    return "" if constraint.kind in HARD else _softness(model, constraint, found)
 
 
-def _softness(plant: _Plant, constraint: Constraint, found: Linted) -> str:
+def _softness(model: ModelData, constraint: Constraint, found: Linted) -> str:
     """Return whether a safe equality or limit is needlessly soft, and what would be firm."""
     if constraint.solimp[0] < LEAST_HOLD and constraint.solimp[2] > 0:
         return f"solimp leaves small errors alone: d = {constraint.solimp[0]:g} at the constraint itself"
-    firm = (2 * plant.model.h, 1.0)
-    points = [point for point, _ in _constraint_points(plant, replace(constraint, solref=firm), ONE)]
-    faster, now = np.log(np.maximum(ROUNDING, [_moduli(plant.method, points).max(), found.z_abs]))
+    firm = (float(2 * model.h), 1.0)
+    points = [point for point, _ in _constraint_points(model, replace(constraint, solref=firm), ONE)]
+    faster, now = np.log(np.maximum(ROUNDING, [_moduli(model.method, points).max(), found.z_abs]))
     times = faster / now
     return f'needlessly soft: solref="{_numbers(firm)}" settles {times:.0f} times as fast' if times > SOFT else ""
 
@@ -386,133 +326,124 @@ def _numbers(values: Iterable[float | Fraction]) -> str:
 # Springs, dampers and drives
 
 
-def _along_one_direction(feedbacks: Sequence[Feedback]) -> list[list[Feedback]]:
+def _along_one_direction(feedbacks: Sequence[Feedback]) -> Iterable[list[Feedback]]:
     """Return the feedbacks in groups that act along one joint or one tendon together."""
     groups: dict[tuple[float, ...], list[Feedback]] = {}
     for feedback in feedbacks:
-        moved = feedback.direction[feedback.direction != 0]
-        if moved.size:
-            shape = feedback.direction / moved[0]
-            groups.setdefault(tuple(shape.round(DIGITS).tolist()), []).append(feedback)
-    return list(groups.values())
+        shape = feedback.direction / feedback.direction[np.flatnonzero(feedback.direction)[0]]
+        groups.setdefault(tuple(shape.round(DIGITS).tolist()), []).append(feedback)
+    return groups.values()
 
 
 @dataclass(frozen=True)
 class _Drive:
-    """Stiffness and damping along one direction, the inertia there with all other joints free (SI), and its method."""
+    """Gains along one direction, the inertia there with all other joints free (SI), and the method that it is.
 
-    stiffness: Fraction
-    explicit_damping: Fraction
-    implicit_damping: Fraction
+    `implicit` is what the integrator treats implicitly of kd.
+    """
+
+    kp: Fraction
+    kd: Fraction
+    implicit: Fraction
     inertia: Fraction
     method: Method
-
-    @property
-    def damping(self) -> Fraction:
-        """All of it."""
-        return self.explicit_damping + self.implicit_damping
 
     def point(self, h: Fraction) -> Point:
         """Return its point at a step of h seconds."""
         inertia = self.inertia
-        if self.explicit_damping:  # else the method itself has what is implicit
-            inertia += self.implicit_damping * h
-        return self.damping * h / inertia, self.stiffness * h**2 / inertia
+        if self.method is not IMPLICIT_IN_VELOCITY:  # else the method itself has what is implicit
+            inertia += self.implicit * h
+        return self.kd * h / inertia, self.kp * h**2 / inertia
 
-    def linted(self, plant: _Plant, element: str, kind: str, setting: str, reason: str) -> Linted:
+    def linted(self, model: ModelData, element: str, kind: str, setting: str, reason: str) -> Linted:
         """Judge it, without advice; `reason` is what makes its point."""
         judged = f"{reason} with all other joints free"
-        return _linted(element, kind, setting, self.method, lambda factor: [(self.point(plant.h * factor), judged)])
+        return _linted(element, kind, setting, self.method, lambda factor: [(self.point(model.h * factor), judged)])
 
 
-def _linted_group(plant: _Plant, group: Sequence[Feedback]) -> Linted:
-    drive = _drive(plant, group)
+def _linted_group(model: ModelData, group: Sequence[Feedback]) -> Linted:
+    drive = _drive(model, group)
     if any(feedback.kind == "drive" for feedback in group):
-        kind = "position drive" if drive.stiffness else "velocity drive"
+        kind = "position drive" if drive.kp else "velocity drive"
     else:
-        kind = f"{group[0].kind} {'spring' if drive.stiffness else 'damping'}"
-    setting = f"kp {float(drive.stiffness):.6g}, kv {float(drive.damping):.6g}, inertia {float(drive.inertia):.6g}"
+        kind = f"{group[0].kind} {'spring' if drive.kp else 'damping'}"
+    setting = f"kp {float(drive.kp):.6g}, kv {float(drive.kd):.6g}, inertia {float(drive.inertia):.6g}"
     element = ", ".join(dict.fromkeys(feedback.element for feedback in group))
-    found = drive.linted(plant, element, kind, setting, setting)
-    return replace(found, advice=_drive_advice(plant, drive, found))
+    found = drive.linted(model, element, kind, setting, setting)
+    return replace(found, advice=_drive_advice(model, drive, found))
 
 
-def _drive(plant: _Plant, group: Sequence[Feedback]) -> _Drive:
+def _drive(model: ModelData, group: Sequence[Feedback]) -> _Drive:
     """Return what acts along the direction of a group, per unit of its one joint, else of its first element."""
     direction = group[0].direction
     if np.count_nonzero(direction) == 1:
         direction = np.sign(np.abs(direction))
-    stiffness, damping = 0.0, {True: 0.0, False: 0.0}
+    kp = kd = implicit = 0.0
     for feedback in group:
         arm = float(feedback.direction @ direction / (direction @ direction))
-        stiffness += arm**2 * feedback.stiffness
-        damping[plant.is_implicit(feedback)] += arm**2 * feedback.damping
-    explicit, implicit = exact(damping[False]), exact(damping[True])
-    method = IMPLICIT_IN_VELOCITY if implicit and not explicit else plant.method
-    return _Drive(exact(stiffness), explicit, implicit, plant.inertia_along(direction), method)
+        kp += arm**2 * feedback.stiffness
+        kd += arm**2 * feedback.damping
+        implicit += arm**2 * feedback.damping * feedback.implicit
+    method = IMPLICIT_IN_VELOCITY if implicit and implicit == kd else model.method
+    return _Drive(exact(kp), exact(kd), exact(implicit), model.inertia_along(direction), method)
 
 
-def _drive_advice(plant: _Plant, drive: _Drive, found: Linted) -> str:
+def _drive_advice(model: ModelData, drive: _Drive, found: Linted) -> str:
     """Return what to write instead where a drive is unsafe, and which gain uses up the limit of its map."""
-    if drive.stiffness < 0 or drive.damping < 0:
+    if drive.kp < 0 or drive.kd < 0:
         return "pushes away at any step: a gain has the wrong sign"
-    if not drive.damping:
-        return "undamped" if found.verdict != "diverges" else f"undamped; {_smaller_step(plant, found.h_factor)}"
+    smaller_step = _smaller_step(model, found.h_factor)
+    if not drive.kd:
+        return "undamped" if found.verdict != "diverges" else f"undamped; {smaller_step}"
     if found.verdict == "converges":
         return ""
-    used = _used_up(plant, drive)
-    all_implicit = replace(drive, explicit_damping=ZERO, implicit_damping=drive.damping)
-    if drive.explicit_damping and _verdict(IMPLICIT_IN_VELOCITY, all_implicit.point(plant.h)) == "converges":
+    used = ""
+    if model.integrator != "RK4":  # of symplectic Euler's limit, 2 alpha_hat + beta_hat < 4
+        alpha_hat, beta_hat = replace(drive, method=model.method).point(model.h)
+        used = f"kv takes {float(alpha_hat / 2):.0%} of the limit, kp {float(beta_hat / 4):.0%}; "
+    all_implicit = replace(drive, method=IMPLICIT_IN_VELOCITY).point(model.h)
+    if drive.method is not IMPLICIT_IN_VELOCITY and _verdict(IMPLICIT_IN_VELOCITY, all_implicit) == "converges":
         return f'{used}write integrator="implicitfast"'
-    return f"{used}{_smaller_step(plant, found.h_factor)}"
+    return f"{used}{smaller_step}"
 
 
-def _used_up(plant: _Plant, drive: _Drive) -> str:
-    """Return which share of symplectic Euler's limit, 2 alpha_hat + beta_hat < 4, damping and stiffness take."""
-    if plant.model.integrator == "RK4":
-        return ""
-    limit = 4 * (drive.inertia + drive.implicit_damping * plant.h)
-    damping, stiffness = 2 * drive.damping * plant.h / limit, drive.stiffness * plant.h**2 / limit
-    return f"kv takes {float(damping):.0%} of the limit, kp {float(stiffness):.0%}; "
-
-
-def _smaller_step(plant: _Plant, end: float | None) -> str:
+def _smaller_step(model: ModelData, end: float | None) -> str:
     """Return the line with a step that leaves a tenth to the limit."""
     if end is None:
         return "no step is small enough"
-    return f'write timestep="{0.9 * end * plant.model.h:.2g}"'
+    return f'write timestep="{0.9 * end * model.h:.2g}"'
 
 
-def _linted_motor(plant: _Plant, controlled: Controlled) -> Linted:
+def _linted_motor(model: ModelData, controlled: Controlled) -> Linted:
     """Judge a motor with its controller on the inertia along its direction: all other joints are free."""
     motor, timing, gain = controlled.motor, controlled.timing, exact(controlled.motor.gain)
-    inertia = plant.inertia_along(motor.direction)
-    method = held_method(plant.method.name, timing)
+    inertia = model.inertia_along(motor.direction)
+    method = held_method(model.method.name, timing)
     drive = _Drive(gain * controlled.kp, gain * controlled.kd, ZERO, inertia, method)
-    gains = f"kp {float(drive.stiffness):.6g}, kd {float(drive.damping):.6g}"
+    gains = f"kp {float(drive.kp):.6g}, kd {float(drive.kd):.6g}"
     setting = f"{gains}, every {timing.every}, late {float(timing.late):g}"
-    found = drive.linted(plant, motor.element, "motor", setting, f"{setting} on inertia {float(inertia):.6g}")
-    return found if found.verdict == "converges" else replace(found, advice=_smaller_step(plant, found.h_factor))
+    found = drive.linted(model, motor.element, "motor", setting, f"{setting} on inertia {float(inertia):.6g}")
+    return found if found.verdict == "converges" else replace(found, advice=_smaller_step(model, found.h_factor))
 
 
 # All together
 
 
-def _linted_together(plant: _Plant, constraints: Sequence[Constraint], controlled: Sequence[Controlled]) -> Linted:
+def _linted_together(model: ModelData, constraints: Sequence[Constraint], controlled: Sequence[Controlled]) -> Linted:
     """Judge what holds both ways, as one linear system at qpos0: what is safe alone need not be safe together.
 
     Nor is what is unsafe alone unsafe in a closed loop, where it has to move more. Without gravity, limits and
     contacts; in float64, so nothing is proven.
     """
-    dofs = len(plant.model.mass)
+    dofs = len(model.mass)
     if dofs > MOST_DOFS:
         return _not_judged("all at qpos0", "together", f"{dofs} degrees of freedom, at most {MOST_DOFS}")
 
     def modulus(factor: float) -> float:
         """Return |z| with impedances at the constraints or past solimp's width, whichever is worse."""
-        pulls = [_pulls(plant, each, exact(factor)) for each in constraints]
+        pulls = [_pulls(model, each, exact(factor)) for each in constraints]
         ends = {tuple(of_each[end] for of_each in pulls) for end in (0, -1)}
-        return max(_modulus(plant, held, controlled, factor) for held in ends)
+        return max(_modulus(model, held, controlled, factor) for held in ends)
 
     def unstable(factors: FloatArray) -> BoolArray:
         return np.array([modulus(factor) > 1 + ROUNDING for factor in factors.tolist()])
@@ -526,32 +457,30 @@ def _linted_together(plant: _Plant, constraints: Sequence[Constraint], controlle
         element="all at qpos0",
         kind="together",
         judged="all that hold both ways, as they are connected",
-        map=plant.method.name,
+        map=model.method.name,
         verdict=verdict,
         z_abs=z_abs,
         h_factor=end,
-        advice=_smaller_step(plant, end) if verdict == "diverges" else "",
+        advice=_smaller_step(model, end) if verdict == "diverges" else "",
     )
 
 
-def _modulus(plant: _Plant, held: Sequence[_Pull], controlled: Sequence[Controlled], factor: float) -> float:
+def _modulus(model: ModelData, held: Sequence[_Pull], controlled: Sequence[Controlled], factor: float) -> float:
     """Return the largest |z| of a step of all that holds, so many times the model's; 0 where nothing holds."""
-    step, forces = _step(plant, held, controlled, factor)
-    every = controlled[0].timing.every if controlled else 1
-    z = np.linalg.eigvals(lifted_step(step, forces, controlled, factor * plant.model.h) if controlled else step)
+    step, every = _step(model, held, controlled, factor), 1
+    if controlled:
+        step, every = lifted_step(step, controlled, factor * model.h), controlled[0].timing.every
+    z = np.linalg.eigvals(step)
     moduli = np.abs(z[np.abs(z - 1) > FREE]) ** (1 / every)
     return float(moduli.max(initial=0.0))
 
 
-def _step(
-    plant: _Plant, held: Sequence[_Pull], controlled: Sequence[Controlled], factor: float
-) -> tuple[FloatArray, FloatArray]:
-    """Return the matrices of one step: of (x, h v), shape (2 dofs, 2 dofs), and of motors' forces."""
-    model = plant.model
+def _step(model: ModelData, held: Sequence[_Pull], controlled: Sequence[Controlled], factor: float) -> FloatArray:
+    """Return the matrix of one step, from (x, h v, forces of motors) to (x, h v); shape (2 dofs, 2 dofs + motors)."""
     h, dofs, motors = factor * model.h, len(model.mass), len(controlled)
-    inverse = plant.inverse_mass(0.0)
+    inverse = model.inverse_mass(0.0)
     arms = np.array([each.motor.direction for each in controlled]).reshape(motors, dofs)
-    stiffness, damping = _springs_and_dampers(model.mass, model.of(Feedback))
+    stiffness, damping, _ = model.springs_and_dampers()
     # Times h^2, by positions, velocities times h, and forces.
     acceleration = inverse @ np.hstack([-stiffness * h * h, -damping * h, arms.T * h * h])
     # What constraints ask of it, J a = -alpha_hat J v - beta_hat J x, softened by R.
@@ -561,7 +490,7 @@ def _step(
     asked = np.hstack([-beta_hat * jacobian, -alpha_hat * jacobian, np.zeros((len(jacobian), motors))])
     regularized = jacobian @ inverse @ jacobian.T + np.diag(np.hstack([[], *(pull.softening for pull in held)]))
     acceleration += inverse @ jacobian.T @ np.linalg.solve(regularized, asked - jacobian @ acceleration)
-    slower = plant.inverse_mass(h) @ model.mass  # what implicit damping leaves of it
+    slower = model.inverse_mass(h) @ model.mass  # what implicit damping leaves of it
     whole = np.eye(2 * dofs + motors)
     change = np.zeros_like(whole)
     change[dofs : 2 * dofs] = slower @ acceleration
@@ -572,4 +501,4 @@ def _step(
     else:  # the velocity first, then the position with it
         whole += change
         whole[:dofs] += whole[dofs : 2 * dofs]
-    return whole[: 2 * dofs, : 2 * dofs], whole[: 2 * dofs, 2 * dofs :]
+    return np.asarray(whole[: 2 * dofs])

@@ -6,17 +6,21 @@ has them registered already. Everything is read at the model's own configuration
 """
 
 import types
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from copy import copy
 from dataclasses import dataclass, field
+from fractions import Fraction
+from functools import cache, cached_property
 from pathlib import Path
 from typing import Any, Literal, TypeVar, get_args
 
 import numpy as np
 
 from bezstab.engines import LEAST_IMPEDANCE, MOST_IMPEDANCE
-from bezstab.errors import InputError
+from bezstab.errors import InputError, NumericalError
+from bezstab.methods import Method, lookup
+from bezstab.rationals import exact
 from bezstab.stability import FloatArray
 
 LEAST_VERSION = (3, 7)
@@ -34,6 +38,9 @@ MOST_ROWS = 300
 
 ANY_DISTANCE = 1e6
 """m and rad: farther than anything is from a limit or a contact, and float64 still resolves what is near."""
+
+DIGITS = 12
+"""Of inertias and shares: what linear algebra in float64 leaves of small matrices."""
 
 Integrator = Literal["Euler", "RK4", "implicit", "implicitfast"]
 INTEGRATORS: tuple[Integrator, ...] = get_args(Integrator)
@@ -69,8 +76,8 @@ class Feedback:
     """A spring and damper along one direction of the joint space: a passive one, or an actuator's gains.
 
     `direction` (dofs,) is the moment arm, gear included; `stiffness` (N/m, N m/rad) and `damping` (N s/m, N m s/rad)
-    are those along it. `euler_implicit` is whether MuJoCo's Euler treats the damping implicitly: that of joints alone.
-    InputError for numbers that mean nothing.
+    are those along it. `implicit` is whether the integrator treats the damping implicitly. InputError for numbers that
+    mean nothing.
     """
 
     element: str
@@ -78,7 +85,7 @@ class Feedback:
     direction: FloatArray
     stiffness: float
     damping: float
-    euler_implicit: bool
+    implicit: bool
 
     def __post_init__(self) -> None:
         _require_sizes(f"{self.element}: kp, kv", (self.stiffness, self.damping))
@@ -111,23 +118,52 @@ class Unjudged:
 Element = TypeVar("Element", Constraint, Feedback, Motor, Unjudged)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class ModelData:
     """What a MuJoCo model says of its feedback; h in s, mass (dofs, dofs) in kg and kg m^2 with armatures, at qpos0.
 
-    `refsafe` raises a timeconst below 2h; `euler_damping` makes Euler implicit in the damping of joints.
+    `refsafe` raises a timeconst below 2h.
     """
 
-    h: float
+    h: Fraction
     integrator: Integrator
     refsafe: bool
-    euler_damping: bool
     mass: FloatArray
     elements: tuple[Constraint | Feedback | Motor | Unjudged, ...]
 
     def of(self, kind: type[Element]) -> list[Element]:
         """Return the elements of one kind."""
         return [each for each in self.elements if isinstance(each, kind)]
+
+    @property
+    def method(self) -> Method:
+        """The method that the integrator is for constraints."""
+        return lookup("RK4" if self.integrator == "RK4" else "SYM")
+
+    def springs_and_dampers(self) -> FloatArray:
+        """Return the matrices of stiffness, of damping, and of what is implicit of it, (3, dofs, dofs), SI units."""
+        feedbacks = self.of(Feedback)
+        directions = np.array([each.direction for each in feedbacks]).reshape(-1, len(self.mass))
+        strengths = np.array([(each.stiffness, each.damping, each.implicit * each.damping) for each in feedbacks])
+        return np.einsum("ks,ki,kj->sij", strengths.reshape(-1, 3), directions, directions)
+
+    @cached_property
+    def inverse_mass(self) -> Callable[[float], FloatArray]:
+        """(M + h D)^-1 by h (s), shape (dofs, dofs): what divides accelerations; that of the mass alone at h = 0.
+
+        D is the damping that the integrator treats implicitly. NumericalError where M is singular to rounding.
+        """
+        try:
+            np.linalg.cholesky(self.mass)
+        except np.linalg.LinAlgError:
+            raise NumericalError("the mass matrix at qpos0 is singular to rounding") from None
+        _, _, implicit_damping = self.springs_and_dampers()
+        return cache(lambda h: np.linalg.inv(self.mass + h * implicit_damping))
+
+    def inertia_along(self, direction: FloatArray) -> Fraction:
+        """Return the inertia along a direction u with all else free, 1 / (u M^-1 u'), to DIGITS."""
+        inertia = 1 / float(direction @ self.inverse_mass(0.0) @ direction)
+        return exact(float(f"{inertia:.{DIGITS}g}"))
 
 
 def mujoco_module(wanted_by: str) -> types.ModuleType:
@@ -197,10 +233,9 @@ def model_data(mujoco: types.ModuleType, model: Any) -> ModelData:
     if model.opt.timestep <= 0:
         raise InputError(f"timestep = {model.opt.timestep:g}: expected a positive number")
     return ModelData(
-        h=model.opt.timestep,
+        h=exact(model.opt.timestep),
         integrator=INTEGRATORS[model.opt.integrator],
         refsafe=loaded.has("REFSAFE"),
-        euler_damping=loaded.has("EULERDAMP"),
         mass=mass,
         elements=tuple(found),
     )
@@ -230,6 +265,11 @@ class _Loaded:
         """Return whether what the flag is called by is not switched off."""
         return not self.model.opt.disableflags & getattr(self.mujoco.mjtDisableBit, f"mjDSBL_{flag}")
 
+    def is_implicit(self, at_joint: bool) -> bool:
+        """Return whether the integrator treats a damping implicitly: RK4 none, Euler that of joints alone."""
+        integrator = INTEGRATORS[self.model.opt.integrator]
+        return at_joint and self.has("EULERDAMP") if integrator == "Euler" else integrator != "RK4"
+
     def named(self, kind: str, number: int) -> str:
         """Return what an element is called: joint 'elbow', and joint 3 (from zero) where it has no name."""
         name = self.mujoco.mj_id2name(self.model, getattr(self.mujoco.mjtObj, f"mjOBJ_{kind.upper()}"), number)
@@ -242,8 +282,7 @@ class _Loaded:
 def _constraint(element: str, kind: str, solref: FloatArray, solimp: FloatArray, **rows: Any) -> Constraint:
     """Return a constraint with MuJoCo's own solref and solimp, and what is known of its rows."""
     first, last = np.clip(solimp[:2], float(LEAST_IMPEDANCE), float(MOST_IMPEDANCE)).tolist()
-    (a, b), width = solref.tolist(), max(0.0, float(solimp[2]))
-    return Constraint(element, kind, (a, b), (first, last, width), **rows)
+    return Constraint(element, kind, tuple(solref.tolist()), (first, last, float(solimp[2])), **rows)
 
 
 def _of_rows(loaded: _Loaded) -> Iterator[Constraint | Unjudged]:
@@ -315,9 +354,9 @@ def _passive(loaded: _Loaded) -> Iterator[Feedback]:
     for kind, columns in (("joint", of_joints), ("tendon", of_tendons)):
         for number, spring, damper, direction in zip(*columns, loaded.directions[kind], strict=True):
             stiffness, damping = loaded.has("SPRING") * float(spring), loaded.has("DAMPER") * float(damper)
-            if stiffness or damping:
+            if (stiffness or damping) and direction.any():
                 element = loaded.named(kind, number)
-                yield Feedback(element, kind, direction, stiffness, damping, euler_implicit=kind == "joint")
+                yield Feedback(element, kind, direction, stiffness, damping, loaded.is_implicit(kind == "joint"))
 
 
 def _actuators(loaded: _Loaded) -> Iterator[Feedback | Motor | Unjudged]:
@@ -334,6 +373,9 @@ def _actuators(loaded: _Loaded) -> Iterator[Feedback | Motor | Unjudged]:
         if model.opt.disableactuator >> max(0, int(model.actuator_group[number])) & 1:
             continue  # its group is switched off
         element, direction = loaded.named("actuator", number), loaded.directions["actuator"][outputs[number]]
+        if not direction.any():
+            yield Unjudged(element, "drive", "it moves nothing at qpos0")
+            continue
         bias = mujoco.mjtBias(model.actuator_biastype[number]).name
         gain = mujoco.mjtGain(model.actuator_gaintype[number]).name
         if bias not in ("mjBIAS_NONE", "mjBIAS_AFFINE") or gain != "mjGAIN_FIXED":
@@ -342,7 +384,7 @@ def _actuators(loaded: _Loaded) -> Iterator[Feedback | Motor | Unjudged]:
         if bias == "mjBIAS_AFFINE":
             stiffness, damping = (-model.actuator_biasprm[number, 1:3]).tolist()
             if stiffness or damping:
-                yield Feedback(element, "drive", direction, stiffness, damping, euler_implicit=False)
+                yield Feedback(element, "drive", direction, stiffness, damping, loaded.is_implicit(at_joint=False))
         elif mujoco.mjtDyn(model.actuator_dyntype[number]).name != "mjDYN_NONE":
             yield Unjudged(element, "motor", "its activation filters what a controller sets")
         else:
@@ -350,7 +392,7 @@ def _actuators(loaded: _Loaded) -> Iterator[Feedback | Motor | Unjudged]:
             yield Motor(element, name, direction, float(model.actuator_gainprm[number, 0]), float(delays[number]))
         if dampings[number] and loaded.has("DAMPER"):  # added to that of its joint, if it has one
             at_joint = mujoco.mjtTrn(model.actuator_trntype[number]).name.startswith("mjTRN_JOINT")
-            yield Feedback(element, "drive", direction, 0.0, float(dampings[number]), euler_implicit=at_joint)
+            yield Feedback(element, "drive", direction, 0.0, float(dampings[number]), loaded.is_implicit(at_joint))
 
 
 def _flexes(loaded: _Loaded) -> Iterator[Unjudged]:

@@ -90,6 +90,16 @@ def test_a_motor_without_gains_is_named_and_not_judged() -> None:
         assert f"--pd '{name}=KP,KD' judges it" in row.advice
 
 
+def test_an_actuator_that_moves_nothing_is_named_and_not_judged() -> None:
+    """Alone it has no inertia at all."""
+    model = mujoco.MjModel.from_xml_string(
+        ARM.format(integrator="Euler", h=H, damping=0, delay="").replace('gear="2"', 'gear="0"')
+    )
+    *_, still = lint(model, ("knee.*", "10", "0.05"))
+    assert (still.element, still.verdict) == ("actuator 'hip_motor'", None)
+    assert still.advice == "not judged: it moves nothing at qpos0"
+
+
 def test_gains_are_for_the_motors_whose_whole_name_matches_and_the_last_decide() -> None:
     """Gains are the actuator's own, its gear is in the inertia; MuJoCo's own delay adds to what is late."""
     delayed = hasattr(mujoco.MjModel, "actuator_delay")

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from bezstab.evidence import Linted, linted_model, model_data
+from bezstab.stability import Timing
 from tests.evidence.samples import of_campaign
 from tests.reference.mujoco_steps import grown, settled, step_moduli
 
@@ -66,7 +67,7 @@ class Case:
 
 
 def lint(case: Case, integrator: str = "Euler", h: float = H) -> list[Linted]:
-    return list(linted_model(model_data(mujoco, case.model(integrator, h))))
+    return list(linted_model(model_data(mujoco, case.model(integrator, h)), (), Timing()))
 
 
 def modulus(case: Case, integrator: str, h: float = H) -> float:
