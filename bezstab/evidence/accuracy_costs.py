@@ -5,7 +5,7 @@ import time
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -274,13 +274,16 @@ def _predicted_error(sweep: Sweep, h: float, point: tuple[float, float]) -> floa
 
 def _timed_run(sweep: Sweep, h: float, gains: tuple[float, float]) -> tuple[Trajectory, list[float]]:
     """Return a run and the processor time (s) of each of its repeats, without what has to be compiled first."""
-    mechanism, method = compiled_mechanism(sweep.scene), sweep.method
-    one_step_of_its_own = (steps(method) + 1) * h * float(method.step_multiple)
-    how: dict[str, Any] = {"compiled": sweep.compiled, "after": sweep.after}
-    simulate(mechanism, method, h, one_step_of_its_own, gains, **how)  # compiles the method and what starts it
+    method = sweep.method
+
+    def taken(duration: float) -> Trajectory:
+        mechanism = compiled_mechanism(sweep.scene)
+        return simulate(mechanism, method, h, duration, gains, compiled=sweep.compiled, after=sweep.after)
+
+    taken((steps(method) + 1) * h * float(method.step_multiple))  # compiles the method and what starts it
     seconds = []
     for _ in range(sweep.repeats):
         begin = time.process_time()
-        run = simulate(mechanism, method, h, sweep.duration, gains, **how)
+        run = taken(sweep.duration)
         seconds.append(time.process_time() - begin)
     return run, seconds

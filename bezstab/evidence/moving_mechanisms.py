@@ -77,30 +77,16 @@ def growth_rates(turning: TurningNormals, chi: ArrayLike) -> tuple[FloatArray, F
     grow in proportion.
     """
     chi = np.asarray(chi, complex)
-    parts = np.array_split(chi.ravel(), chi.size // AT_A_TIME + 1)
-    rates, sure = np.concatenate([_growth_rates_of_row(turning, part) for part in parts], axis=1)
-    return rates.reshape(chi.shape), sure.reshape(chi.shape)
-
-
-def _growth_rates_of_row(turning: TurningNormals, chi: ComplexArray) -> FloatArray:
-    """Return both growth rates (1/s) of a row of chi, shape (2, chi.size)."""
     beyond = np.maximum(1, np.abs(chi) / LARGEST_CHI)
-    factor = chi / beyond
-    rates, size = turning.rates, turning.rates.shape[1]
-    step = 2 * turning.duration / (len(rates) - 1)
-    grown = np.zeros((size, size, chi.size), complex)  # chi last: K multiplies them all at once
-    grown[range(size), range(size)] = 1
-    log_scale = np.zeros(chi.size)
-
-    def change(k: FloatArray, y: ComplexArray) -> ComplexArray:
-        """Return step K (chi Y)."""
-        return np.asarray(step * np.tensordot(k, factor * y, 1))
-
-    for start, middle, end in zip(rates[:-1:2], rates[1::2], rates[2::2], strict=True):
-        first = change(start, grown)
-        second = change(middle, grown + first / 2)
-        third = change(middle, grown + second / 2)
-        fourth = change(end, grown + third)
+    size = turning.rates.shape[1]
+    unit = np.eye(size)[:, :, np.newaxis]  # chi last: K multiplies them all at once
+    grown, log_scale = unit + 0 * chi.ravel(), np.zeros(chi.size)
+    by_chi = 2 * turning.duration / (len(turning.rates) - 1) * (chi / beyond).ravel()
+    for start, middle, end in zip(turning.rates[:-1:2], turning.rates[1::2], turning.rates[2::2], strict=True):
+        first = np.tensordot(start, by_chi * grown, 1)
+        second = np.tensordot(middle, by_chi * (grown + first / 2), 1)
+        third = np.tensordot(middle, by_chi * (grown + second / 2), 1)
+        fourth = np.tensordot(end, by_chi * (grown + third), 1)
         grown = grown + (first + 2 * second + 2 * third + fourth) / 6
         largest = np.abs(grown).max(axis=(0, 1))  # or it would run into infinity
         grown /= largest
@@ -112,7 +98,8 @@ def _growth_rates_of_row(turning: TurningNormals, chi: ComplexArray) -> FloatArr
         before, after = (np.linalg.cholesky(metric) for metric in turning.metric)
         multiplied = np.linalg.norm(np.linalg.solve(after, grown @ before), ord=2, axis=(-2, -1))
         sure = np.minimum(multiplied, np.linalg.norm(grown, ord=2, axis=(-2, -1)))
-    return beyond * (np.log([multiplied, sure]) + log_scale) / turning.duration
+    rates, sure = (np.log([multiplied, sure]) + log_scale).reshape(2, *chi.shape) * beyond / turning.duration
+    return rates, sure
 
 
 @cache
@@ -162,8 +149,8 @@ class Law:
     """What the first-order law makes of the poles at a row of points; of shape (points, poles), the dominant one first.
 
     `at_rest` is ln|z| a step, `growth` h Lambda of each pole and `sure` what of it is sure (`growth_rates`),
-    minus infinity of a pole that does not count: too small ever to lead, or the conjugate of one that counts. Others
-    are `known` where chi is finite. `turned` is kappa h of the method's own step.
+    minus infinity of a pole that does not count: too small ever to lead, or the conjugate of one that counts. `turned`
+    is kappa h of the method's own step.
     """
 
     nearest: NearestPoles
@@ -171,7 +158,6 @@ class Law:
     at_rest: FloatArray
     chi: ComplexArray
     counts: BoolArray
-    known: BoolArray
     growth: FloatArray
     sure: FloatArray
 
@@ -245,7 +231,7 @@ def first_order_law(
         growth[matters] = step * growth_between(turning, chi[matters])
     else:
         growth[known], sure[known] = step * np.array(growth_rates(turning, chi[known]))
-    return Law(nearest, turned, at_rest, chi, counts, known, growth, sure)
+    return Law(nearest, turned, at_rest, chi, counts, growth, sure)
 
 
 def moving_poles(
@@ -259,7 +245,7 @@ def moving_poles(
     law = first_order_law(method, turning, h, *(np.atleast_1d(np.asarray(each)) for each in (alpha_hat, beta_hat)))
     nearest, turned = law.nearest, law.turned
     mixing, furthest = law.mixing(), law.furthest()
-    alone = law.known & ~mixing
+    alone = law.counts & np.isfinite(law.chi) & ~mixing
     worst = np.full(law.chi.shape, -np.inf)
     worst[alone] = law.at_rest[alone] + h * float(method.step_multiple) * momentary_rates(turning, law.chi[alone])
     highest = np.maximum(worst, furthest).max(axis=1)

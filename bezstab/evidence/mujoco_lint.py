@@ -15,7 +15,7 @@ A spring, damper or drive with stiffness kp and damping kv on inertia I is alpha
 IMEX-Euler where all damping is implicit, RK4 under RK4, else symplectic Euler, of a point that is divided likewise.
 """
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
@@ -288,31 +288,27 @@ def _shares(model: ModelData, pull: _Pull, h: float) -> tuple[float, float]:
 
 
 def _constraint_advice(model: ModelData, constraint: Constraint, found: Linted) -> str:
-    """Return what to write instead, and why; nothing where all is well."""
+    """Return what to write instead, and why: also where an equality or a limit is needlessly soft. Else nothing."""
     first, second = map(exact, constraint.solref)
-    least = 2 * model.h
-    firm = _numbers((least, ONE))
+    at_rest, _, width = constraint.solimp
+    firm = replace(constraint, solref=(float(2 * model.h), 1.0))
+    write_firm = f'solref="{_numbers(firm.solref)}"'
     if not _of_one_sign(constraint.solref):
         taken = _numbers(DEFAULT_SOLREF)
         return f'MuJoCo takes {taken}, as the signs differ: write solref="{taken}"'
-    if constraint.positional and not first:
-        return f'no stiffness: errors stay; write solref="{firm}"'
-    if found.verdict != "converges":
-        return f'write solref="{firm}"'
-    if model.refsafe and 0 < first < least:
-        return f'relies on refsafe, which raises its timeconst to 2h: write solref="{_numbers((least, second))}"'
-    return "" if constraint.kind in HARD else _softness(model, constraint, found)
-
-
-def _softness(model: ModelData, constraint: Constraint, found: Linted) -> str:
-    """Return whether a safe equality or limit is needlessly soft, and what would be firm."""
-    if constraint.solimp[0] < LEAST_HOLD and constraint.solimp[2] > 0:
-        return f"solimp leaves small errors alone: d = {constraint.solimp[0]:g} at the constraint itself"
-    firm = (float(2 * model.h), 1.0)
-    points = [point for point, _ in _constraint_points(model, replace(constraint, solref=firm), ONE)]
+    no_stiffness = "no stiffness: errors stay; " if constraint.positional and not first else ""
+    if no_stiffness or found.verdict != "converges":
+        return f"{no_stiffness}write {write_firm}"
+    if model.refsafe and 0 < first < 2 * model.h:
+        return f'relies on refsafe, which raises its timeconst to 2h: write solref="{_numbers((2 * model.h, second))}"'
+    if constraint.kind in HARD:
+        return ""
+    if at_rest < LEAST_HOLD and width > 0:
+        return f"solimp leaves small errors alone: d = {at_rest:g} at the constraint itself"
+    points = [point for point, _ in _constraint_points(model, firm, ONE)]
     faster, now = np.log(np.maximum(ROUNDING, [_moduli(model.method, points).max(), found.z_abs]))
     times = faster / now
-    return f'needlessly soft: solref="{_numbers(firm)}" settles {times:.0f} times as fast' if times > SOFT else ""
+    return f"needlessly soft: {write_firm} settles {times:.0f} times as fast" if times > SOFT else ""
 
 
 def _of_one_sign(solref: tuple[float, float]) -> bool:
@@ -326,7 +322,7 @@ def _numbers(values: Iterable[float | Fraction]) -> str:
 # Springs, dampers and drives
 
 
-def _along_one_direction(feedbacks: Sequence[Feedback]) -> Iterable[list[Feedback]]:
+def _along_one_direction(feedbacks: Sequence[Feedback]) -> Collection[list[Feedback]]:
     """Return the feedbacks in groups that act along one joint or one tendon together."""
     groups: dict[tuple[float, ...], list[Feedback]] = {}
     for feedback in feedbacks:

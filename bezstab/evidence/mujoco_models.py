@@ -145,7 +145,7 @@ class ModelData:
         feedbacks = self.of(Feedback)
         directions = np.array([each.direction for each in feedbacks]).reshape(-1, len(self.mass))
         strengths = np.array([(each.stiffness, each.damping, each.implicit * each.damping) for each in feedbacks])
-        return np.einsum("ks,ki,kj->sij", strengths.reshape(-1, 3), directions, directions)
+        return np.asarray(np.einsum("ks,ki,kj->sij", strengths.reshape(-1, 3), directions, directions))
 
     @cached_property
     def inverse_mass(self) -> Callable[[float], FloatArray]:
@@ -288,7 +288,6 @@ def _constraint(element: str, kind: str, solref: FloatArray, solimp: FloatArray,
 def _of_rows(loaded: _Loaded) -> Iterator[Constraint | Unjudged]:
     """Yield what MuJoCo has rows of: equalities, limits and frictions; it has none of kinds that are switched off."""
     mujoco, model, data = loaded.mujoco, loaded.model, loaded.data
-    equalities = {int(value): name.removeprefix("mjEQ_").lower() for name, value in mujoco.mjtEq.__members__.items()}
     kinds = {
         "EQUALITY": ("equality", model.eq_solref, model.eq_solimp),
         "LIMIT_JOINT": ("joint limit", model.jnt_solref, model.jnt_solimp),
@@ -304,12 +303,14 @@ def _of_rows(loaded: _Loaded) -> Iterator[Constraint | Unjudged]:
         for number in np.unique(data.efc_id[of_kind]).tolist():
             own = np.flatnonzero(of_kind & (data.efc_id == number))
             element = loaded.named(kind.split()[0], model.dof_jntid[number] if name == "FRICTION_DOF" else number)
-            full_kind = f"{equalities[model.eq_type[number]]} {kind}" if name == "EQUALITY" else kind
+            full_kind = kind
+            if name == "EQUALITY":
+                full_kind = f"{mujoco.mjtEq(model.eq_type[number]).name.removeprefix('mjEQ_').lower()} {kind}"
+            else:
+                own = own[:1]  # of a limit's two ends one
             if len(own) > MOST_ROWS:
                 yield Unjudged(element, full_kind, f"it has {len(own)} rows, at most {MOST_ROWS} are judged")
                 continue
-            if name != "EQUALITY":
-                own = own[:1]  # of a limit's two ends one
             yield _constraint(
                 element,
                 full_kind,
