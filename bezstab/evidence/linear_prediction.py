@@ -32,15 +32,11 @@ has found one and the same.
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
-from numpy.typing import NDArray
 
-from bezstab.stability import FloatArray
-
-InexactArray = NDArray[np.inexact[Any]]
+from bezstab.stability import ComplexArray, FloatArray
 
 ABOVE_FORCED = (1e2, 1e3, 1e4, 1e5, 1e6)
 """Least |d| of a window, in units of the largest |d| in the second half of the response: above what is forced."""
@@ -137,9 +133,7 @@ def fit_dominant_pole(
     return replace(median, uncertainty=max(farthest, median.uncertainty)), ""
 
 
-def response_windows(
-    response: FloatArray, size: FloatArray, limits: Sequence[float], floor: float = 0.0
-) -> Iterator[slice]:
+def response_windows(response: FloatArray, size: FloatArray, limits: Sequence[float], floor: float) -> Iterator[slice]:
     """Yield the stretches of one response, shape (samples,), that lie in the linear range and above what is forced.
 
     What is forced is at least `floor`, the rounding of the samples.
@@ -181,11 +175,11 @@ def fit_window(samples: FloatArray, order: int, start: int = 0) -> Fit | None:
         rows = rows / largest
         before, after = rows[:, :terms], rows[:, terms]
         coefficients = np.linalg.lstsq(before, after, rcond=None)[0]
-        residual = float(np.linalg.norm(before @ coefficients - after) / np.linalg.norm(after))
+        left_over = before @ coefficients - after
+        residual = float(np.linalg.norm(left_over) / np.linalg.norm(after))
         if residual < RESIDUAL:
-            z = np.roots([1.0, *-coefficients[::-1]])
-            poles = _poles_with_amplitude(samples, z)
-            error = _formal_error(before, before @ coefficients - after, coefficients, poles[0])
+            poles = _poles_with_amplitude(samples, np.roots([1.0, *-coefficients[::-1]]).astype(complex))
+            error = _formal_error(before, left_over, coefficients, poles[0])
             return Fit(poles, residual, start, len(samples), STANDARD_ERRORS * error)
     return None
 
@@ -202,7 +196,7 @@ def _formal_error(before: FloatArray, left_over: FloatArray, coefficients: Float
     return float(deviation * np.linalg.norm(response))
 
 
-def _poles_with_amplitude(samples: FloatArray, z: InexactArray) -> tuple[complex, ...]:
+def _poles_with_amplitude(samples: FloatArray, z: ComplexArray) -> tuple[complex, ...]:
     """Return those of the roots z that carry an amplitude in the samples, largest first, of the upper half plane."""
     k = np.arange(len(samples))
     growth = np.abs(z).max()
@@ -210,6 +204,5 @@ def _poles_with_amplitude(samples: FloatArray, z: InexactArray) -> tuple[complex
     powers = (z / growth) ** k[:, np.newaxis]
     scaled = samples * np.exp(-k * np.log(growth))
     amplitudes = np.abs(np.linalg.lstsq(powers, scaled, rcond=None)[0])
-    carrying = z[amplitudes > NEGLIGIBLE * amplitudes.max()]
-    upper = sorted((complex(root) for root in carrying if root.imag >= 0), key=abs, reverse=True)
-    return tuple(upper)
+    carrying = z[(amplitudes > NEGLIGIBLE * amplitudes.max()) & (z.imag >= 0)]
+    return tuple(sorted(carrying.tolist(), key=abs, reverse=True))

@@ -12,7 +12,6 @@ histories of c_1 is followed:
 Linear prediction finds the poles of that recursion.
 """
 
-import cmath
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -99,7 +98,7 @@ class Measurement:
         """The angle measured less that predicted, in degrees."""
         if self.measured is None:
             return None
-        return math.degrees(cmath.phase(self.measured)) - math.degrees(cmath.phase(self.predicted))
+        return float(np.angle(self.measured, deg=True) - np.angle(self.predicted, deg=True))
 
     @property
     def verdicts_agree(self) -> bool | None:

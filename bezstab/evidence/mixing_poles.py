@@ -75,7 +75,8 @@ class NearestPoles:
 def nearest_poles(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray) -> NearestPoles:
     """Return the poles at each of a row of points with the nearest to each; NumericalError as `poles`.
 
-    Where two poles have met the gains are changed by a share of MOVED_APART first, for which shifts have digits.
+    There are two at least, one of each mu. Where two have met the gains are changed by a share of MOVED_APART, for
+    which shifts have digits.
     """
     z = poles(method, alpha_hat, beta_hat)
     z_abs = np.abs(z[:, 0])
@@ -89,7 +90,7 @@ def nearest_poles(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray) -
     gap = gaps.min(axis=2)
     other = gaps.argmin(axis=2)
     other_z, other_shift, other_mu = (np.take_along_axis(values, other, axis=1) for values in (z, shift, mu))
-    has_other, same_mu = np.isfinite(gap), mu == other_mu
+    same_mu = mu == other_mu
     with np.errstate(all="ignore"):
         return NearestPoles(
             z_abs=z_abs,
@@ -98,9 +99,9 @@ def nearest_poles(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray) -
             shift=shift,
             gap=gap,
             room=gap * np.where(same_mu, NEAR, PASSED),
-            middle=np.where(has_other, np.abs(z + other_z) / 2, np.abs(z)),
+            middle=np.abs(z + other_z) / 2,
             common=np.where(same_mu, np.abs(shift + other_shift), np.abs(shift) + np.abs(other_shift)) / 2,
-            splitting=np.where(has_other, gap * np.abs(shift - other_shift) / 2, 0.0),
+            splitting=gap * np.abs(shift - other_shift) / 2,
         )
 
 

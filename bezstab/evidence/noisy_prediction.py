@@ -82,11 +82,19 @@ def _goes_on(noise: float, rest: FloatArray) -> bool:
     """
     if len(rest) < FREEDOM:
         return True
-    with np.errstate(all="ignore"):  # zero, and what is too large for float64, are no noise of that size
-        apart = np.abs(np.log(np.mean(np.diff(rest / noise, n=4) ** 2) / 70))
-    # White noise has logarithms of mean squares with the variance 2 / n, and that of its fourth differences some 4.5
-    # times as much, as they are related.
-    return bool(apart < STANDARD_ERRORS * np.sqrt(9 / len(rest)))
+    with np.errstate(all="ignore"):  # what is too large for float64 is no noise of that size
+        square = float(np.mean(np.diff(rest / noise, n=4) ** 2) / 70)
+    # The differences are related: the logarithm of their mean square has some 4.5 times the variance.
+    return _near(square, 1.0, 9 / len(rest))
+
+
+def _near(square: float, other: float, variance: float) -> bool:
+    """Return whether mean squares of noise may be of one size: of n samples the logarithm has the variance 2 / n.
+
+    `variance` is that of the logarithm of their quotient.
+    """
+    with np.errstate(all="ignore"):  # zero is no noise
+        return bool(abs(np.log(square / other)) < STANDARD_ERRORS * np.sqrt(variance))
 
 
 def _fit_stretch(samples: FloatArray, order: int) -> NoisyFit | None:
@@ -111,7 +119,7 @@ def _sums(samples: FloatArray, order: int) -> "list[_Sum]":
     for count in range(1, order + BEYOND):
         # Poles that nearly fit multiply sums of powers shifted by a row.
         z = np.linalg.eigvals(np.linalg.lstsq(vectors[:-1, :count], vectors[1:, :count], rcond=None)[0])
-        fitted = _fitted(samples, np.where(np.abs(z) < NEGLIGIBLE, NEGLIGIBLE, z).astype(complex))
+        fitted = _fitted(samples, z.astype(complex))
         if fitted.freedom < FREEDOM:
             break
         sums.append(fitted)
@@ -182,6 +190,8 @@ class _Sum:
 
 def _sum(samples: FloatArray, z: ComplexArray) -> _Sum:
     """Return the sum of powers of given poles that leaves least over."""
+    # What is gone with the next row may be anything so small, but for zero, which has no logarithm.
+    z = np.where(np.abs(z) < NEGLIGIBLE, NEGLIGIBLE, z)
     k = np.arange(len(samples))[:, np.newaxis]
     growth = (len(samples) - 1) * np.maximum(np.log(np.abs(z)), 0.0)  # so that what grows ends at one
     powers = np.exp(k * np.log(z) - growth)
@@ -206,10 +216,9 @@ def _fitted(samples: FloatArray, z: ComplexArray) -> _Sum:
 
 
 def _moved(z: ComplexArray, change: ComplexArray | FloatArray) -> ComplexArray:
-    """Return poles whose ln z is changed, by one at most; those that are real stay real, none comes to zero."""
+    """Return poles whose ln z is changed, by one at most; those that are real stay real."""
     change = np.where(z.imag == 0, change.real, change / np.maximum(1, np.abs(change)))
-    moved = z * np.exp(np.clip(change.real, -1, 1) + 1j * change.imag)
-    return np.asarray(moved * np.maximum(1, NEGLIGIBLE / np.abs(moved)))
+    return np.asarray(z * np.exp(np.clip(change.real, -1, 1) + 1j * change.imag))
 
 
 def _unrelated(noise: FloatArray) -> bool:
@@ -222,8 +231,6 @@ def _unrelated(noise: FloatArray) -> bool:
 
 
 def _even(noise: FloatArray) -> bool:
-    """Return whether both halves are of one size: the logarithm of a mean square of n has the variance 2 / n."""
+    """Return whether both halves are of one size."""
     half = len(noise) // 2
-    first, second = np.mean(noise[:half] ** 2), np.mean(noise[half:] ** 2)
-    with np.errstate(divide="ignore"):
-        return bool(abs(np.log(first) - np.log(second)) < STANDARD_ERRORS * np.sqrt(4 / half))
+    return _near(float(np.mean(noise[:half] ** 2)), float(np.mean(noise[half:] ** 2)), 4 / half)

@@ -140,8 +140,7 @@ def probed_pole(c: ArrayLike, minus: ArrayLike | None = None, differenced: bool 
     (`fit_dominant_pole`); where noise covers the samples, nonlinear least squares (`fit_in_noise`).
     """
     samples, rounding, cut = _responses(c, minus)
-    too_little = _too_little(samples, rounding)
-    fit, reason = (None, too_little) if too_little else _told(samples, rounding, differenced or minus is not None)
+    fit, reason = _told(samples, rounding, differenced or minus is not None)
     reason = "; ".join(filter(None, (reason, cut)))
     if fit is None:
         return ProbedPole(None, None, 0, len(samples), (), reason)
@@ -186,6 +185,8 @@ def _told(samples: FloatArray, rounding: float, of_two_runs: bool) -> Told:
     What a motion forces changes slowly from row to row: differences take it off, all but what poles answer themselves.
     Two runs have it in common; in one run a pole near 1 is believed only if differences show no other.
     """
+    if too_little := _too_little(samples, rounding):
+        return None, too_little
     fits: list[Told] = []
     changes, floor = samples, rounding / 2
     for times in range(DIFFERENCES + 1):

@@ -18,7 +18,6 @@ there are.
 import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 
 import mpmath as mp
 
@@ -56,29 +55,22 @@ def pole_digits(method: Method, alpha_hat: float, beta_hat: float) -> PoleDigits
     """
     found = [mp.mpc(z) for z in poles(method, alpha_hat, beta_hat).tolist()]
     with mp.workdps(DIGITS):
-        table = [[_exact(entry) for entry in row] for row in method.scheme.mu_table]
+        table = [[mp.mpmathify(entry) for entry in row] for row in method.scheme.mu_table]
         judged = [pole for mu in _mus(method, alpha_hat, beta_hat) for pole in _judged_poles(table, mu, found)]
         return PoleDigits(min(pole.digits for pole in judged), min(pole.margin for pole in judged))
-
-
-def _exact(value: Fraction) -> mp.mpf:
-    return mp.mpf(value.numerator) / value.denominator
 
 
 def _mus(method: Method, alpha_hat: float, beta_hat: float) -> list[mp.mpc]:
     """Return the mu of a point: both, or one of a conjugate pair, for the poles of the other are conjugate to its own.
 
-    They are the roots of mu^2 + 2 half mu + product, the coefficients as the method's step takes alpha_hat and
+    They are the roots of mu^2 + 2 half mu + product, the coefficients as the method's step takes alpha_hat > 0 and
     beta_hat. The larger one comes from the sum that does not cancel, the other from their product.
     """
-    multiple = _exact(method.step_multiple)
+    multiple = mp.mpmathify(method.step_multiple)
     half = multiple * mp.mpf(alpha_hat) / 2
     product_of_both = multiple**2 * mp.mpf(beta_hat)
-    root = mp.sqrt(half**2 - product_of_both)
-    larger = -(half + root) if half >= 0 else root - half
-    if mp.im(larger):
-        return [larger]
-    return [larger, product_of_both / larger]
+    larger = -half - mp.sqrt(half**2 - product_of_both)
+    return [larger] if mp.im(larger) else [larger, product_of_both / larger]
 
 
 def _judged_poles(table: Sequence[Sequence[mp.mpf]], mu: mp.mpc, found: Sequence[mp.mpc]) -> Iterator[PoleDigits]:
@@ -99,8 +91,7 @@ def _judged_poles(table: Sequence[Sequence[mp.mpf]], mu: mp.mpc, found: Sequence
 
 def _condition(table: Sequence[Sequence[mp.mpf]], mu: mp.mpc, z: mp.mpc) -> mp.mpf:
     """Return the condition number of a simple root z of pi(z, mu), see above; table[k][j] belongs to z^k mu^j."""
-    polynomial = [mp.polyval(row[::-1], mu) for row in table][::-1]
-    slope = mp.polyval(polynomial, z, derivative=True)[1]
+    slope = sum(k * z ** (k - 1) * mp.polyval(row[::-1], mu) for k, row in enumerate(table))
     terms = (abs(c) * abs(z) ** k * abs(mu) ** j for k, row in enumerate(table) for j, c in enumerate(row))
     return sum(terms) / abs(z * slope)
 
@@ -115,7 +106,7 @@ def different_roots(polynomial: Sequence[mp.mpf], starts: Sequence[mp.mpc], coun
         z = start
         for _ in range(DIGITS * 4):  # quadratic, but linear on the way out of a cluster
             value, slope = mp.polyval(polynomial, z, derivative=True)
-            step = value / (slope or mp.mpc(1, 1))  # a start on a saddle is moved off it
+            step = value / slope
             z -= step
             if abs(step) <= mp.mpf(10) ** (10 - DIGITS) * abs(z):
                 if all(abs(z - other) > SAME * abs(other) for other in roots):

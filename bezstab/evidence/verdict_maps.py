@@ -112,7 +112,7 @@ class MapRows:
     h: float
     alpha_hat: FloatArray
     beta_hat: FloatArray
-    compiled: bool = False
+    compiled: bool
 
 
 def map_rows(scene: Scene, method: Method, h: float, count: int) -> list[MapRows]:
