@@ -236,14 +236,14 @@ def _rates_of_errors(stepped: SteppedMotion, gains: FloatArray) -> FloatArray:
     M^-1 C_q^T S^-1 w that it stands for, in the metric of the masses: that of L^-1 w with S = C_q M^-1 C_q^T = L L^T.
     """
     mechanism, carried = stepped.mechanism, stepped.memory.carried
-    mass = np.array(mechanism.equations.mass, float)
+    mass = mechanism.mass
     *older, newest = [place for place, quantity in enumerate(carried) if quantity.name == "x"]
     t = stepped.step * np.arange(carried[newest].step, carried[newest].step + stepped.steps + 1, dtype=np.float64)
     sizes = []
     for time, q in zip(t, stepped.along.at(t)[0], strict=True):
         jacobian = constraint_jacobian(mechanism, float(time), q)
         sizes.append(np.linalg.solve(np.linalg.cholesky((jacobian / mass) @ jacobian.T), jacobian))
-    kicked = np.zeros((gains.shape[1], len(carried), mechanism.size, mechanism.constraints))
+    kicked = np.zeros((gains.shape[1], len(carried), mechanism.size, len(mechanism.constraints)))
     kicked[:, [*older, newest]] = (sizes[0] / mass).T
     log_errors, visible = [], []
     for size, (changes, log_scale, _) in zip(sizes[1:], _changed(stepped, gains, kicked), strict=True):

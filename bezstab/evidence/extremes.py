@@ -249,7 +249,7 @@ def _masses(ratio: float) -> Check:
     scene = load_scene("slider_crank")
     *others, slider = scene.bodies
     mechanism = compiled_mechanism(replace(scene, bodies=(*others, replace(slider, mass=ratio * others[-1].mass))))
-    gains, m = feedback_gains(*POINT, H), mechanism.constraints
+    gains, m = feedback_gains(*POINT, H), len(mechanism.constraints)
     q, v = initial_state(mechanism)
     seen = observe(mechanism, np.zeros(1), q[np.newaxis], v[np.newaxis], *gains).multipliers[0]
     with mp.workdps(DIGITS):

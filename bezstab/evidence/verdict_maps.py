@@ -153,7 +153,7 @@ def simulated_verdicts(rows: MapRows) -> dict[str, NDArray[Any]]:
 def _simulated(rows: MapRows, alpha_hat: FloatArray, beta_hat: FloatArray) -> tuple[BoolArray, BoolArray]:
     """Return where runs diverge, and where they give no verdict; shape (points,) each."""
     mechanism, method, h = compiled_mechanism(rows.scene), rows.method, rows.h
-    masses = np.array(mechanism.equations.mass, float)
+    masses = mechanism.mass
     sizes, errors, distances = [], [], []
     with np.errstate(all="ignore"):  # what diverges runs into infinity, and is cut off there
         for c, q in kicked_motions(mechanism, method, h, alpha_hat, beta_hat, [MAP_KICK], MAP_RUN, rows.compiled):

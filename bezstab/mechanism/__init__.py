@@ -5,7 +5,6 @@
 Units are SI and rad.
 """
 
-from bezstab.mechanism.compiled import Mechanism, accelerations, compiled_mechanism, state_function
 from bezstab.mechanism.compiled_stepping import runs_compiled
 from bezstab.mechanism.constraint_normals import (
     ConstraintMotion,
@@ -15,7 +14,8 @@ from bezstab.mechanism.constraint_normals import (
     turned_across,
     turning_normals,
 )
-from bezstab.mechanism.equations import Equations, T, equations_of_motion
+from bezstab.mechanism.equations import Mechanism, T, compiled_mechanism
+from bezstab.mechanism.generated_code import accelerations, state_function
 from bezstab.mechanism.linearized import StepsTaken, changes_handed_on, steps_taken
 from bezstab.mechanism.motions import Motion, motion, motion_over, regular_motion
 from bezstab.mechanism.observation import Observation, energy_balance, observe, singular_passages

@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 
 from bezstab.linear_equations import inverses
-from bezstab.mechanism.compiled import Mechanism, state_function
+from bezstab.mechanism.equations import Mechanism
+from bezstab.mechanism.generated_code import state_function
 from bezstab.mechanism.programs import BoolArray, FloatArray, Program, Room, Steps
 from bezstab.mechanism.stepping import TakeSteps, read
 

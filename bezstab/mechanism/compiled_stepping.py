@@ -15,7 +15,7 @@ import numpy as np
 
 from bezstab import compiling, stabilising
 from bezstab.compiling import INNER, compiled_choice, compiler, numba_is_installed
-from bezstab.mechanism.compiled import Mechanism
+from bezstab.mechanism.equations import Mechanism
 from bezstab.mechanism.generated_code import LONG, code_of, compiled_source, function_by_operations, machine_source
 from bezstab.mechanism.stepping import TakeSteps, read
 
@@ -52,7 +52,7 @@ def machine_steps(mechanism: Mechanism, solving: bool, projecting: bool, stride:
     """
     numba = compiler()
     n = mechanism.size
-    codes = {name: code_of(mechanism.equations, name) for name in ("accelerations", "corrections")[: 1 + projecting]}
+    codes = {name: code_of(mechanism, name) for name in ("accelerations", "corrections")[: 1 + projecting]}
     texts = {name: machine_source(code, name, stride) for name, code in codes.items()}
     own: dict[str, Any] = {"N": n, "STRIDE": stride, "WIDTH": n * stride, "SOLVING": solving, "PROJECTING": projecting}
     file = _kept_file((*own.values(), *texts.values()))

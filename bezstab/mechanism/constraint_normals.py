@@ -26,7 +26,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bezstab.errors import InputError
-from bezstab.mechanism.compiled import IMAGINARY_STEP, Mechanism
+from bezstab.mechanism.equations import Mechanism
+from bezstab.mechanism.generated_code import IMAGINARY_STEP
 from bezstab.mechanism.motions import STEPS, Motion, motion
 from bezstab.mechanism.start import constraint_jacobian
 
@@ -129,7 +130,7 @@ def _directions(
     """Return C_q, Cdot_q and M^-1 C_q^T at one moment, the second by a complex step along the motion."""
     jacobian = constraint_jacobian(mechanism, t, q)
     ahead = constraint_jacobian(mechanism, t + 1j * IMAGINARY_STEP, q + 1j * IMAGINARY_STEP * v)
-    return jacobian, ahead.imag / IMAGINARY_STEP, jacobian.T / np.array(mechanism.equations.mass, float)[:, np.newaxis]
+    return jacobian, ahead.imag / IMAGINARY_STEP, jacobian.T / mechanism.mass[:, np.newaxis]
 
 
 def turned_across(mechanism: Mechanism, along: Motion, vectors: FloatArray) -> FloatArray:

@@ -1,10 +1,13 @@
-"""A scene's equations of motion as sympy expressions: M, c, C_q, gamma and g, paper Eqs 1 to 5."""
+"""A mechanism: a scene with its equations of motion as sympy expressions, M, c, C_q, gamma and g, paper Eqs 1 to 5."""
 
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 
+import numpy as np
 import sympy as sp
+from numpy.typing import NDArray
 
 from bezstab.mechanism.scenes import (
     COORDINATES,
@@ -24,21 +27,23 @@ T = sp.Symbol("t")
 
 
 @dataclass(frozen=True, eq=False, repr=False)  # one per scene: compared by identity
-class Equations:
+class Mechanism:
     """M qddot + C_q^T lambda = g and c(q, t) = 0 as sympy expressions in q, qdot and t; SI units.
 
-    With n coordinates and m constraints: `q` and `v` are n symbols each, `mass` is the diagonal of M (n numbers),
-    `constraints` c (m, 1), `jacobian` C_q (m, n), `constraints_t` dc/dt at fixed q (m, 1), `gamma` (m, 1) the
-    right-hand side of C_q qddot = gamma, and `forces` g (n, 1). `potential` is the potential energy (J) of gravity and
-    springs, and `applied` (n, 1) what else there is in g, constant forces, torques and dampers: g is the negative
-    gradient of the one, plus the other. `spring_lengths` has the distance (m) of each spring's ends.
+    What a run needs of a scene, made once; functions of it are made when first used. With n coordinates and m
+    constraints: `q` and `v` are n symbols each, `mass` is the diagonal of M, shape (n,), `constraints` c (m, 1),
+    `jacobian` C_q (m, n), `constraints_t` dc/dt at fixed q (m, 1), `gamma` (m, 1) the right-hand side of
+    C_q qddot = gamma, and `forces` g (n, 1). `potential` is the potential energy (J) of gravity and springs, and
+    `applied` (n, 1) what else there is in g, constant forces, torques and dampers: g is the negative gradient of the
+    one, plus the other. `spring_lengths` has the distance (m) of each spring's ends.
 
     M is diagonal by construction: a body's frame sits at its centre of mass or turns about a fixed pivot.
     """
 
+    scene: Scene
     q: tuple[sp.Symbol, ...]
     v: tuple[sp.Symbol, ...]
-    mass: tuple[sp.Expr, ...]
+    mass: NDArray[np.float64]
     constraints: sp.Matrix
     jacobian: sp.Matrix
     constraints_t: sp.Matrix
@@ -48,8 +53,13 @@ class Equations:
     applied: sp.Matrix
     spring_lengths: tuple[sp.Expr, ...]
 
+    @property
+    def size(self) -> int:
+        """The number n of coordinates."""
+        return len(self.q)
+
     def __repr__(self) -> str:
-        return f"Equations({len(self.q)} coordinates, {len(self.constraints)} constraints)"
+        return f"Mechanism({self.scene.name}, {self.size} coordinates, {len(self.constraints)} constraints)"
 
 
 @dataclass(frozen=True)
@@ -61,8 +71,9 @@ class Frame:
     theta: sp.Expr
 
 
-def equations_of_motion(scene: Scene) -> Equations:
-    """Return the scene's equations of motion, paper Eqs 1 to 5; shapes and units as in `Equations`.
+@cache
+def compiled_mechanism(scene: Scene) -> Mechanism:
+    """Return the scene's mechanism, the same one each time it is asked for; shapes and units as in `Mechanism`.
 
     Differentiating c(q, t) = 0 twice gives C_q qddot = gamma = -(cdot_q v + cdot_t), cdot = C_q v + c_t.
     """
@@ -72,7 +83,7 @@ def equations_of_motion(scene: Scene) -> Equations:
     frames = {GROUND: Frame(sp.S.Zero, sp.S.Zero, sp.S.Zero)}
     frames |= {body.name: _frame(body, symbol_of) for body in scene.bodies}
 
-    mass = [sp.Float(body.inertia if axis == "theta" else body.mass) for body in scene.bodies for axis in body.free]
+    mass = [body.inertia if axis == "theta" else body.mass for body in scene.bodies for axis in body.free]
     c = sp.Matrix([row for joint in scene.joints for row in _constraints(joint, frames, symbol_of)])
     jacobian = c.jacobian(q)
     c_t = c.diff(T)
@@ -86,10 +97,11 @@ def equations_of_motion(scene: Scene) -> Equations:
     potential = _potential_energy(scene, frames, lengths)
     applied = _gradient(_work(scene, frames), q) - _gradient(_dissipation(scene, lengths, q, velocity), v)
     forces = applied - _gradient(potential, q)
-    return Equations(
+    return Mechanism(
+        scene=scene,
         q=q,
         v=v,
-        mass=tuple(mass),
+        mass=np.array(mass, np.float64),
         constraints=c,
         jacobian=jacobian,
         constraints_t=c_t,

@@ -5,7 +5,7 @@ does with them is no text: `programs` and `stepping` have it.
 
     assignments          all that solves paper Eq. 9, and brings a state back to its constraints, one after the other
     Code                 those of them that some results need
-    function_of          a code as text that becomes a function, of one state or of many
+    state_function       a code as text that becomes a function, of one state or of many
     operations           a long code as a table of single operations, for machine code
 
 All of it is plain arithmetic, one assignment a line, with `sin`, `cos` and `sqrt` as the only functions. What they are
@@ -28,10 +28,15 @@ from typing import Any
 
 import numpy as np
 import sympy as sp
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from sympy.printing.pycode import PythonCodePrinter
 
-from bezstab.mechanism.equations import Equations, T
+from bezstab.mechanism.equations import Mechanism, T
+
+IMAGINARY_STEP = 1e-30
+"""By which a state is moved to find a slope: nothing is subtracted, so that the derivative is exact to rounding."""
+
+SINGULAR = 1e-12  # of a row's own size: a pivot of S = C_q M^-1 C_q^T this small has lost all digits to cancellation
 
 Row = dict[int, sp.Expr]
 """Entries of a matrix that are not zero, by their columns."""
@@ -71,14 +76,14 @@ TWO_ALPHA, BETA_SQUARED = sp.symbols("two_alpha beta_squared")
 
 
 @cache
-def assignments(equations: Equations) -> tuple[Assignments, dict[str, list[sp.Symbol]]]:
+def assignments(mechanism: Mechanism) -> tuple[Assignments, dict[str, list[sp.Symbol]]]:
     """Return what computes accelerations a, observations c, cdot and l, and corrections dq and dv; and these by name.
 
     Multipliers l are in N along a constraint whose c is in m.
     """
     found = Assignments()
-    n, m = len(equations.q), len(equations.constraints)
-    matrices = (equations.jacobian, equations.constraints, equations.constraints_t, equations.gamma, equations.forces)
+    n, m = mechanism.size, len(mechanism.constraints)
+    matrices = (mechanism.jacobian, mechanism.constraints, mechanism.constraints_t, mechanism.gamma, mechanism.forces)
     common, (jacobian, c, c_t, gamma, forces) = sp.cse(matrices, symbols=sp.numbered_symbols("x"))
     found += common
 
@@ -88,7 +93,7 @@ def assignments(equations: Equations) -> tuple[Assignments, dict[str, list[sp.Sy
 
     rows = [{k: entry(f"C{i}_{k}", jacobian[i, k]) for k in range(n) if jacobian[i, k] != 0} for i in range(m)]
     applied = [entry(f"g{k}", force) for k, force in enumerate(forces)]
-    inverse_masses = [sp.Float(1 / float(mass)) for mass in equations.mass]
+    inverse_masses = [sp.Float(1 / mass) for mass in mechanism.mass.tolist()]
     pivots, solve = _factored(found, rows, inverse_masses)
 
     def accelerated(name: str, pulls: Sequence[sp.Expr], multipliers: Sequence[sp.Expr]) -> list[sp.Symbol]:
@@ -103,7 +108,7 @@ def assignments(equations: Equations) -> tuple[Assignments, dict[str, list[sp.Sy
     errors, rates, right_sides = [], [], []
     for i, row in enumerate(rows):
         errors.append(found.variable(f"c{i}", c[i]))
-        speeds = (each * equations.v[k] for k, each in row.items())
+        speeds = (each * mechanism.v[k] for k, each in row.items())
         rates.append(found.variable(f"cdot{i}", sp.Add(*speeds, entry(f"ct{i}", c_t[i]))))
         by_forces = (each * inverse_masses[k] * applied[k] for k, each in row.items())
         feedback = TWO_ALPHA * rates[i] + BETA_SQUARED * errors[i]
@@ -176,16 +181,16 @@ class Code:
 
 
 @cache
-def code_of(equations: Equations, name: str) -> Code:
+def code_of(mechanism: Mechanism, name: str) -> Code:
     """Return the code of accelerations, observations or corrections."""
-    known, by_name = assignments(equations)
+    known, by_name = assignments(mechanism)
     results, pivots = by_name[name], by_name["pivots"]
     needed, kept = {*results, *pivots}, []
     for symbol, value in reversed(known):
         if symbol in needed:
             kept.append((symbol, value))
             needed |= value.free_symbols
-    return Code((T, TWO_ALPHA, BETA_SQUARED, *equations.q, *equations.v), kept[::-1], results, pivots)
+    return Code((T, TWO_ALPHA, BETA_SQUARED, *mechanism.q, *mechanism.v), kept[::-1], results, pivots)
 
 
 class _EveryDigit(PythonCodePrinter):  # type: ignore[misc]  # sympy has no types
@@ -207,13 +212,6 @@ def source(code: Code, head: str, given: Sequence[str], end: Sequence[str]) -> s
     return "\n".join([f"def {head}:", *(f" {line}" for line in (*lines, *end))])
 
 
-def state_source(code: Code) -> str:
-    """Return the source of the function of all that is given, in one row: results, then pivots."""
-    given = [f"given[{place}]" for place in range(len(code.given))]
-    results = ", ".join(map(str, (*code.results, *code.pivots)))
-    return source(code, "found(given)", given, [f"return ({results},)"])
-
-
 def compiled_source(text: str, library: Any, others: Mapping[str, Any] | None = None, file: str = "<generated>") -> Any:
     """Return the function that generated source defines, its elementary functions those of math, numpy or mpmath.
 
@@ -224,6 +222,35 @@ def compiled_source(text: str, library: Any, others: Mapping[str, Any] | None = 
     )
     exec(compile(text, file, "exec"), namespace)
     return namespace[text.partition("(")[0].removeprefix("def ")]
+
+
+StateFunction = Callable[[Sequence[Any]], tuple[Any, ...]]
+"""A function of t (s), the gains 2 alpha (1/s) and beta^2 (1/s^2), and all q and all v, in one row; in SI units.
+
+The library of its sines says on what numbers it works: floats (math), arrays (numpy) or those of mpmath.
+"""
+
+
+@cache
+def state_function(mechanism: Mechanism, name: str, library: Any) -> StateFunction:
+    """Return the function of that name: accelerations, observations (c, cdot, multipliers) or corrections (dq, dv).
+
+    Behind these it returns the m relative pivots of S.
+    """
+    code = code_of(mechanism, name)
+    given = [f"given[{place}]" for place in range(len(code.given))]
+    results = ", ".join(map(str, (*code.results, *code.pivots)))
+    function: StateFunction = compiled_source(source(code, "found(given)", given, [f"return ({results},)"]), library)
+    return function
+
+
+def accelerations(
+    mechanism: Mechanism, t: ArrayLike, two_alpha: ArrayLike, beta_squared: ArrayLike, q: ArrayLike, v: ArrayLike
+) -> NDArray[Any]:
+    """Return all of qddot, paper Eq. 9, shape (n, *batch) as of q and v, floats or complex numbers; SI units."""
+    function = state_function(mechanism, "accelerations", np)
+    values = function([t, two_alpha, beta_squared, *np.asarray(q), *np.asarray(v)])
+    return np.stack(np.broadcast_arrays(*values[: mechanism.size]))
 
 
 # Machine code

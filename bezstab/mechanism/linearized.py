@@ -15,7 +15,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from bezstab.mechanism.array_stepping import array_steps
-from bezstab.mechanism.compiled import IMAGINARY_STEP, Mechanism, accelerations
+from bezstab.mechanism.equations import Mechanism
+from bezstab.mechanism.generated_code import IMAGINARY_STEP, accelerations
 from bezstab.mechanism.programs import Steps, program_of, room_of
 from bezstab.methods import Method
 

@@ -11,7 +11,8 @@ from numpy.polynomial.polynomial import polyder, polyval
 from numpy.typing import NDArray
 
 from bezstab.errors import InputError, NumericalError
-from bezstab.mechanism.compiled import Mechanism, accelerations
+from bezstab.mechanism.equations import Mechanism
+from bezstab.mechanism.generated_code import accelerations
 from bezstab.mechanism.observation import observe, singular_passages
 from bezstab.mechanism.runner import simulate
 from bezstab.mechanism.scenes import Driver

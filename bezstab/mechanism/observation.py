@@ -16,8 +16,8 @@ import sympy as sp
 from numpy.typing import NDArray
 
 from bezstab.linear_equations import solution
-from bezstab.mechanism.compiled import Mechanism, state_function
-from bezstab.mechanism.equations import T
+from bezstab.mechanism.equations import Mechanism, T
+from bezstab.mechanism.generated_code import state_function
 from bezstab.read_only import ReadOnlyArrays
 
 FloatArray = NDArray[np.float64]
@@ -86,7 +86,7 @@ def observe(
     # what depends on nothing that varies is a number: it holds at every time
     columns = np.stack([np.broadcast_to(value, t.shape) for value in values], axis=-1)
     c, cdot, multipliers, pivots = np.split(columns, 4, axis=1)
-    kinetic = v**2 @ np.array(mechanism.equations.mass, float) / 2
+    kinetic = v**2 @ mechanism.mass / 2
     potential, applied_power, driver_power = _energy_terms(mechanism)(q_columns, v_columns, t, multipliers.T)
     return Observation(
         c=c,
@@ -120,11 +120,10 @@ def _energy_terms(mechanism: Mechanism) -> Callable[..., tuple[FloatArray, Float
     The constraint forces -C_q^T lambda do -lambda . C_q v = lambda . c_t where cdot = C_q v + c_t = 0. Only a driver
     has a c_t, minus its prescribed rate.
     """
-    equations = mechanism.equations
-    multipliers = sp.symbols(f"l:{mechanism.constraints}")
-    powers = (equations.applied.dot(sp.Matrix(equations.v)), equations.constraints_t.dot(sp.Matrix(multipliers)))
+    multipliers = sp.symbols(f"l:{len(mechanism.constraints)}")
+    powers = (mechanism.applied.dot(sp.Matrix(mechanism.v)), mechanism.constraints_t.dot(sp.Matrix(multipliers)))
     terms: Callable[..., tuple[FloatArray, FloatArray, FloatArray]] = sp.lambdify(
-        (equations.q, equations.v, T, multipliers), (equations.potential, *powers), "numpy"
+        (mechanism.q, mechanism.v, T, multipliers), (mechanism.potential, *powers), "numpy"
     )
     return terms
 

@@ -12,8 +12,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from bezstab.errors import InputError
 from bezstab.mechanism.array_stepping import array_steps
-from bezstab.mechanism.compiled import SINGULAR, Mechanism, accelerations
 from bezstab.mechanism.compiled_stepping import LANES, machine_steps, runs_compiled
+from bezstab.mechanism.equations import Mechanism
+from bezstab.mechanism.generated_code import SINGULAR, accelerations
 from bezstab.mechanism.programs import Steps, program_of, room_of
 from bezstab.mechanism.second_order_memory import memory
 from bezstab.mechanism.start import initial_state

@@ -9,7 +9,7 @@ from typing import get_args
 import numpy as np
 
 from bezstab.errors import InputError
-from bezstab.mechanism.compiled import Mechanism
+from bezstab.mechanism.equations import Mechanism
 from bezstab.mechanism.observation import (
     NODES,
     FloatArray,

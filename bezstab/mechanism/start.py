@@ -9,8 +9,8 @@ import sympy as sp
 from numpy.typing import NDArray
 
 from bezstab.errors import InputError, NumericalError
-from bezstab.mechanism.compiled import SINGULAR, Mechanism
-from bezstab.mechanism.equations import T
+from bezstab.mechanism.equations import Mechanism, T
+from bezstab.mechanism.generated_code import SINGULAR
 
 FloatArray = NDArray[np.float64]
 
@@ -23,12 +23,11 @@ MOST_NAMED = 3  # dependences in a message: one tells where to look, and a long 
 
 @cache
 def equation_function(mechanism: Mechanism, name: str) -> Callable[[Any, Any], NDArray[Any]]:
-    """Return the function of q (n of them) and t (s) that gives what `Equations` has under that name.
+    """Return the function of q (n of them) and t (s) that gives what `Mechanism` has under that name.
 
     It takes floats, complex numbers or, for matrices of one column, arrays; SI units.
     """
-    equations = mechanism.equations
-    function: Callable[[Any, Any], NDArray[Any]] = sp.lambdify((equations.q, T), getattr(equations, name), "numpy")
+    function: Callable[[Any, Any], NDArray[Any]] = sp.lambdify((mechanism.q, T), getattr(mechanism, name), "numpy")
     return function
 
 
@@ -127,7 +126,7 @@ def _consistent_velocity(mechanism: Mechanism, q: FloatArray) -> FloatArray:
 
 def _check_number(mechanism: Mechanism, key: str, given: Mapping[str, float]) -> None:
     """Raise InputError unless as many coordinates are given as there are freedoms, or all."""
-    n, m = mechanism.size, mechanism.constraints
+    n, m = mechanism.size, len(mechanism.constraints)
     if len(given) not in (n - m, n):
         expected = f"{n - m}, or all" if n >= m else f"all, as there are {m} constraints"
         raise InputError(f"initial: {key} gives {len(given)} of {n} coordinates: expected {expected}")
@@ -142,12 +141,12 @@ def perturbed_state(mechanism: Mechanism, error: float) -> tuple[FloatArray, Flo
     """
     q, v = initial_state(mechanism)
     jacobian = constraint_jacobian(mechanism, 0.0, q)
-    directions = jacobian.T / np.array(mechanism.equations.mass, float)[:, np.newaxis]  # M^-1 C_q^T
+    directions = jacobian.T / mechanism.mass[:, np.newaxis]  # M^-1 C_q^T
     with np.errstate(all="ignore"):
         effective = jacobian @ directions
         size = np.sqrt(np.diag(effective))
         scaled = effective / np.outer(size, size)
     if not (np.isfinite(scaled).all() and np.linalg.eigvalsh(scaled)[0] > SINGULAR):
         raise NumericalError("at t = 0 s: C_q M^-1 C_q^T is singular to rounding: masses too far apart?")
-    first_constraint = np.eye(mechanism.constraints)[0]
+    first_constraint = np.eye(len(mechanism.constraints))[0]
     return q + directions @ np.linalg.solve(effective, error * first_constraint), v

@@ -27,7 +27,7 @@ from typing import Any
 
 import numpy as np
 
-from bezstab.mechanism.compiled import SINGULAR
+from bezstab.mechanism.generated_code import SINGULAR
 from bezstab.mechanism.programs import BoolArray, FloatArray, IntArray, Program, Room, Steps
 from bezstab.mechanism.start import CLOSED
 

@@ -10,7 +10,6 @@ from bezstab.mechanism import (
     accelerations,
     compiled_mechanism,
     constraint_errors,
-    equations_of_motion,
     initial_state,
     load_scene,
 )
@@ -118,13 +117,13 @@ class Terms:
 
 def scene_terms(q: FloatArray, v: FloatArray) -> Terms:
     """Return the scene's diagonal of M (5,), c (4,), C_q (4, 5), γ (4,) and g (5,), at q and v of shape (5,)."""
-    symbolic = equations_of_motion(load_scene("slider_crank"))
+    symbolic = compiled_mechanism(load_scene("slider_crank"))
     values = dict(zip((*symbolic.q, *symbolic.v), (*q, *v), strict=True))
     c, jacobian, gamma, forces = (
         np.array(matrix.subs(values), float)
         for matrix in (symbolic.constraints, symbolic.jacobian, symbolic.gamma, symbolic.forces)
     )
-    return Terms(q, v, [float(entry) for entry in symbolic.mass], c[:, 0], jacobian, gamma[:, 0], forces[:, 0])
+    return Terms(q, v, symbolic.mass.tolist(), c[:, 0], jacobian, gamma[:, 0], forces[:, 0])
 
 
 def compared_terms() -> Terms:

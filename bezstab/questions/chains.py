@@ -69,9 +69,7 @@ def constraints_of(scene: str | Scene, speed: Fraction) -> Constraints:
     joints = [
         number for number, joint in enumerate(moving.joints) for _ in range(2 if isinstance(joint, Revolute) else 1)
     ]
-    masses = inverse_effective_masses(
-        np.diag(np.array(mechanism.equations.mass, float)), constraint_jacobian(mechanism, 0.0, q)
-    )
+    masses = inverse_effective_masses(np.diag(mechanism.mass), constraint_jacobian(mechanism, 0.0, q))
     words = f"{name_of(scene)} at its start, with its {len(joints)} constraints"
     return Constraints(words, masses, tuple(joints))
 

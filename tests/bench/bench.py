@@ -337,7 +337,7 @@ Slope = Callable[[float, FloatArray], FloatArray]
 
 def literal_slope(mechanism: Mechanism) -> Slope:
     """Return (q, v)' at a time by the paper's Eq. 9 as it stands: its matrices evaluated, put together and solved."""
-    literal, n = literal_equation_9(mechanism.equations, *GAINS), mechanism.size
+    literal, n = literal_equation_9(mechanism, *GAINS), mechanism.size
 
     def slope(t: float, y: FloatArray) -> FloatArray:
         return np.concatenate((y[n:], literal(t, y[:n], y[n:]).accelerations))
@@ -347,12 +347,12 @@ def literal_slope(mechanism: Mechanism) -> Slope:
 
 def tuned_slope(mechanism: Mechanism) -> Slope:
     """Return the same with what helps: one function for all parts, M kept, the matrix filled in place."""
-    symbolic, n, m = mechanism.equations, mechanism.size, mechanism.constraints
-    columns = (symbolic.constraints, symbolic.constraints_t, symbolic.gamma, symbolic.forces)
-    parts = [symbolic.jacobian, *(column.T for column in columns)]
-    evaluated = sp.lambdify((T, symbolic.q, symbolic.v), parts, "numpy", cse=True)
+    n, m = mechanism.size, len(mechanism.constraints)
+    columns = (mechanism.constraints, mechanism.constraints_t, mechanism.gamma, mechanism.forces)
+    parts = [mechanism.jacobian, *(column.T for column in columns)]
+    evaluated = sp.lambdify((T, mechanism.q, mechanism.v), parts, "numpy", cse=True)
     matrix, right = np.zeros((n + m, n + m)), np.empty(n + m)
-    matrix[:n, :n] = np.diag(np.array(symbolic.mass, float))
+    matrix[:n, :n] = np.diag(mechanism.mass)
 
     def slope(t: float, y: FloatArray) -> FloatArray:
         v = y[n:]

@@ -97,7 +97,7 @@ def _turning(scene: str) -> float:
     """
     mechanism = _mechanism(scene)
     along = motion(mechanism, LASTS)
-    root = np.sqrt(np.array(mechanism.equations.mass, float))
+    root = np.sqrt(mechanism.mass)
     jacobians = [constraint_jacobian(mechanism, t, q) / root for t, q in zip(along.t.tolist(), along.q, strict=True)]
     rates = [turning_normals(mechanism, LASTS).largest_norm]
     for (before, after), passed in zip(pairwise(jacobians), np.diff(along.t), strict=True):

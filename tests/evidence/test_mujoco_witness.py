@@ -64,8 +64,8 @@ def test_the_model_has_the_scenes_masses_and_accelerations(scene: str) -> None:
     mass = np.zeros((mechanism.size, mechanism.size))
     for column, unit in zip(mass, np.eye(mechanism.size), strict=True):  # symmetric: rows are columns
         mujoco.mj_mulM(built, data, column, unit)
-    assert mass == pytest.approx(np.diag(np.array(mechanism.equations.mass, float)), abs=1e-12)
-    ours = literal_equation_9(mechanism.equations, 0.5 / H, 0.1 / H**2)(0.0, *state).accelerations
+    assert mass == pytest.approx(np.diag(mechanism.mass), abs=1e-12)
+    ours = literal_equation_9(mechanism, 0.5 / H, 0.1 / H**2)(0.0, *state).accelerations
     # what leaks: 1 - 0.9999 of the difference between constrained and unconstrained acceleration, and its coupling
     assert data.qacc == pytest.approx(ours, abs=2e-3 * np.abs(ours).max())
 

@@ -63,9 +63,8 @@ def spring_length(q: FloatArray) -> float:
 
 
 def forces_at(mechanism: Mechanism, q: FloatArray, v: FloatArray) -> FloatArray:
-    equations = mechanism.equations
-    values = dict(zip((*equations.q, *equations.v), (*q, *v), strict=True))
-    return np.array(equations.forces.subs(values), float)[:, 0]
+    values = dict(zip((*mechanism.q, *mechanism.v), (*q, *v), strict=True))
+    return np.array(mechanism.forces.subs(values), float)[:, 0]
 
 
 def slopes(function: Callable[[FloatArray], float], q: FloatArray) -> FloatArray:

@@ -13,16 +13,16 @@ from bezstab.mechanism import (
     parse_scene,
     state_function,
 )
-from bezstab.mechanism.generated_code import code_of, function_by_operations, operations, state_source
+from bezstab.mechanism.generated_code import code_of, function_by_operations, machine_source, operations
 from tests.mechanism.test_scenes import pendulum
 
 
 def test_pivots_are_those_of_the_factored_matrix() -> None:
     mechanism = compiled_mechanism(load_scene("slider_crank"))
     q, v = initial_state(mechanism)
-    symbols = dict(zip(mechanism.equations.q, q, strict=True))
-    jacobian = np.array(mechanism.equations.jacobian.subs(symbols), float)
-    effective = jacobian @ np.diag(1 / np.array(mechanism.equations.mass, float)) @ jacobian.T
+    symbols = dict(zip(mechanism.q, q, strict=True))
+    jacobian = np.array(mechanism.jacobian.subs(symbols), float)
+    effective = jacobian @ np.diag(1 / mechanism.mass) @ jacobian.T
     pivots = np.diag(np.linalg.cholesky(effective)) ** 2
     found = state_function(mechanism, "accelerations", math)([0.0, 0.0, 0.0, *q.tolist(), *v.tolist()])
     assert found[mechanism.size :] == pytest.approx(pivots / np.diag(effective), rel=1e-13)
@@ -37,7 +37,7 @@ def test_names_never_reach_the_generated_code() -> None:
     }
     changes = {"body__name": hostile, "joint__bodies": ["ground", hostile], "initial": initial}
     mechanism = compiled_mechanism(parse_scene(pendulum(**changes)))
-    assert "import" not in state_source(code_of(mechanism.equations, "accelerations"))
+    assert "import" not in machine_source(code_of(mechanism, "accelerations"), "accelerations", 1)
     assert initial_state(mechanism)[0] == pytest.approx([0.6, 0.8])
 
 
@@ -54,7 +54,7 @@ def test_single_operations_are_the_text() -> None:
     mechanism, gains = chain(12), (3.0, 4.0)
     state = 0.1 * np.sin(7.0 * np.arange(4 * mechanism.size)).reshape(2, -1)
     for name in ("accelerations", "corrections"):
-        code = code_of(mechanism.equations, name)
+        code = code_of(mechanism, name)
         function, length = function_by_operations(code, 2, lambda each: each)
         found = np.zeros(2 * len(code.results))
         pivot = function(0.0, np.array([gains, gains]).T, state, found, np.zeros(length), 1)
@@ -69,7 +69,7 @@ def test_single_operations_are_the_text() -> None:
 @pytest.mark.slow
 def test_a_chain_twice_as_long_takes_twice_the_arithmetic() -> None:
     """Its matrices are banded: entries that are zero are not computed."""
-    short, long = (code_of(chain(count).equations, "accelerations") for count in (12, 24))
+    short, long = (code_of(chain(count), "accelerations") for count in (12, 24))
     assert len(long.assignments) < 2.2 * len(short.assignments)
     of_short, of_long = (operations(code)[0] for code in (short, long))
     assert len(of_long) < 2.2 * len(of_short)

@@ -30,7 +30,7 @@ def test_the_generated_code_solves_the_literal_equation_9(name: str) -> None:
     q, v = (state + random.normal(0, 0.01, (20, mechanism.size)) for state in initial_state(mechanism))
     t, two_alpha, beta_squared = random.uniform(0, 1, 20), 30.0, 500.0
     seen = observe(mechanism, t, q, v, two_alpha, beta_squared)
-    literal = literal_equation_9(mechanism.equations, two_alpha, beta_squared)
+    literal = literal_equation_9(mechanism, two_alpha, beta_squared)
     for k in range(20):
         expected = literal(t[k], q[k], v[k])
         scale = max(np.abs(expected.accelerations).max(), np.abs(expected.multipliers).max())

@@ -7,7 +7,7 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
-from bezstab.mechanism import Equations, T
+from bezstab.mechanism import Mechanism, T
 
 FloatArray = NDArray[np.float64]
 
@@ -24,15 +24,15 @@ class Solution:
 
 
 def literal_equation_9(
-    equations: Equations, two_alpha: float, beta_squared: float
+    mechanism: Mechanism, two_alpha: float, beta_squared: float
 ) -> Callable[[float, FloatArray, FloatArray], Solution]:
     """Return the function of t, q and qdot that solves [M C_q^T; C_q 0] [qddot; lambda] = [g; gamma - feedback]."""
-    variables = (T, equations.q, equations.v)
-    jacobian_at = sp.lambdify(variables, equations.jacobian, "numpy")
-    columns = (equations.constraints, equations.constraints_t, equations.gamma, equations.forces)
+    variables = (T, mechanism.q, mechanism.v)
+    jacobian_at = sp.lambdify(variables, mechanism.jacobian, "numpy")
+    columns = (mechanism.constraints, mechanism.constraints_t, mechanism.gamma, mechanism.forces)
     columns_at = [sp.lambdify(variables, column, "numpy") for column in columns]
-    mass = np.diag(np.array(equations.mass, float))
-    n, m = len(equations.q), len(equations.constraints)
+    mass = np.diag(mechanism.mass)
+    n, m = len(mechanism.q), len(mechanism.constraints)
 
     def solution(t: float, q: FloatArray, v: FloatArray) -> Solution:
         jacobian = np.asarray(jacobian_at(t, q, v), float)

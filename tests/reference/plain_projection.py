@@ -10,7 +10,7 @@ FloatArray = NDArray[np.float64]
 
 def saddle_solution(mechanism: Mechanism, jacobian: FloatArray, error: FloatArray) -> FloatArray:
     """Return the least change d, in the metric of the masses, with J d = -error: M d + J^T mu = 0."""
-    n, m = mechanism.size, mechanism.constraints
-    matrix = np.block([[np.diag(np.array(mechanism.equations.mass, float)), jacobian.T], [jacobian, np.zeros((m, m))]])
+    n, m = mechanism.size, len(mechanism.constraints)
+    matrix = np.block([[np.diag(mechanism.mass), jacobian.T], [jacobian, np.zeros((m, m))]])
     change: FloatArray = np.linalg.solve(matrix, np.concatenate([np.zeros(n), -error]))[:n]
     return change
