@@ -16,7 +16,6 @@ import numpy as np
 from bezstab.errors import NumericalError
 from bezstab.evidence.root_digits import DIGITS, PoleDigits, pole_digits
 from bezstab.mechanism import (
-    How,
     compiled_mechanism,
     constraint_errors,
     initial_state,
@@ -164,8 +163,8 @@ def _long_run(name: str, count: int, stabilized: bool) -> Check:
     """Over millions of steps c does not grow with feedback, and does without."""
     mechanism, method = compiled_mechanism(load_scene("slider_crank")), lookup(name)
     gains = feedback_gains(*POINT, H) if stabilized else (0.0, 0.0)
-    start, how = np.concatenate(initial_state(mechanism)), How(runs_compiled(count * evaluations(method)))
-    blocks = march(mechanism, method, H, gains, start, "rk4", count, how)  # whose states need not be kept
+    start, compiled = np.concatenate(initial_state(mechanism)), runs_compiled(count * evaluations(method))
+    blocks = march(mechanism, method, H, gains, start, "rk4", count, compiled)  # whose states need not be kept
     positions = (block.states[:, : mechanism.size].T for block in blocks)
     sizes = np.concatenate([np.abs(constraint_errors(mechanism, 0.0, q)).max(axis=0) for q in positions])
     at_first, at_last = sizes[: count // 10].max(), sizes[-count // 10 :].max()

@@ -36,7 +36,6 @@ import numpy as np
 
 from bezstab.evidence.linear_prediction import NEGLIGIBLE
 from bezstab.mechanism import (
-    How,
     Mechanism,
     constraint_errors,
     initial_state,
@@ -101,7 +100,7 @@ def kicked_states(
     kicked = undisturbed[:, np.newaxis, np.newaxis] + np.stack([displaced, -displaced], axis=1)
     yield kicked[np.newaxis]
     so_far = [*history[:-1], kicked]
-    for block in resume(mechanism, method, step, gains, so_far, count, How(compiled), undisturbed):
+    for block in resume(mechanism, method, step, gains, so_far, count, compiled, undisturbed):
         yield block.states
 
 

@@ -1,6 +1,6 @@
 """Planar mechanisms: scenes as data, their equations of motion, and runs with feedback.
 
-    scene (TOML data) -> equations_of_motion (sympy) -> compiled_mechanism -> initial_state -> simulate -> observe
+    scene (TOML data) -> compiled_mechanism (equations of motion, sympy) -> initial_state -> simulate -> observe
 
 Units are SI and rad.
 """
@@ -21,7 +21,6 @@ from bezstab.mechanism.motions import Motion, motion, motion_over, regular_motio
 from bezstab.mechanism.observation import Observation, energy_balance, observe, singular_passages
 from bezstab.mechanism.runner import (
     Block,
-    How,
     Start,
     Trajectory,
     march,

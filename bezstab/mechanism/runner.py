@@ -1,11 +1,9 @@
 """Runs of a mechanism with feedback or projection: a method's start, its steps in blocks, and what ends a run early."""
 
 import math
-from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, field, replace
-from functools import cache
-from typing import Any, Literal
+from dataclasses import dataclass
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -54,34 +52,15 @@ Gains = tuple[Any, Any]
 NUMBERS_OF_A_BLOCK = 2**16
 """Of runs side by side, between two looks at what the user wants (Ctrl-C): some tenths of a second in Python."""
 
-ASKED: Counter[tuple[Mechanism, bool, bool]] = Counter()
-"""Evaluations that runs of this process were asked for, by their mechanism and what its machine code has to do."""
 
+class Block(NamedTuple):
+    """States after each of some steps, shape (steps, 2n, *batch), SI units, and what `stepping` has told of each step.
 
-@dataclass(frozen=True, eq=False)
-class How:
-    """How steps are taken: by machine code or not, and with what is done `after` each.
-
-    A run that is `judged`, without a batch, ends where it breaks down; else what goes wrong shows in the numbers.
-    `counts` grow by what steps take: at ITERATIONS of Newton's method; EVALUATIONS of the acceleration, a slope counted
-    as one; and PROJECTIONS, how often these have computed how a state has to be corrected.
-    """
-
-    compiled: bool = False
-    judged: bool = False
-    after: AfterStep = NOTHING
-    counts: FloatArray = field(default_factory=lambda: np.zeros(6))
-
-
-@dataclass(frozen=True, eq=False)
-class Block:
-    """States after each of some steps, shape (steps, 2n, *batch), SI units, and the least relative pivots on the way.
-
-    Pivots are those of a run alone. `cause` says why it ends after these steps: with a step that is not among them.
+    `cause` says why a run ends here: with a step that is told of, but whose state is not among these.
     """
 
     states: FloatArray
-    pivots: FloatArray
+    told: FloatArray
     cause: str | None = None
 
 
@@ -146,12 +125,10 @@ def simulate(
     count = round(duration / whole_step)
     first = checked_start(initial_state(mechanism) if state is None else state)
     if compiled is None:
-        compiled = _pays(mechanism, method, count, after)
-    how = How(compiled, True, after)
+        compiled = runs_compiled(count * evaluations(method))
     times = np.arange(count + 1, dtype=np.float64) * whole_step
-    return recorded(
-        mechanism, method, first, times, march(mechanism, method, whole_step, gains, first, start, count, how), how
-    )
+    blocks = march(mechanism, method, whole_step, gains, first, start, count, compiled, after)
+    return recorded(mechanism, method, first, times, blocks, after)
 
 
 def simulate_steps(
@@ -163,56 +140,53 @@ def simulate_steps(
     scheme h = 1, where positions, h v and h^2 a are carried: a step r times as long as the one before begins with r
     times that h v and r^2 times that h^2 a. The acceleration itself is what it was, whatever the gains do.
     """
-    first, length = checked_start(state), float(steps.lengths[0])
-    how = How(_pays(mechanism, method, len(steps.lengths), after), judged=True, after=after)
-    two_alpha, beta_squared = steps.gains[0, :, 0].tolist()
-    carried = carried_quantities(mechanism, method, length, (two_alpha, beta_squared), [first], first, how.counts)
+    first, compiled = checked_start(state), runs_compiled(len(steps.times) * evaluations(method))
     times = np.append(steps.times, steps.times[-1] + steps.lengths[-1])
-    return recorded(mechanism, method, first, times, steps_in_blocks(mechanism, method, steps, carried, (), how), how)
-
-
-def _pays(mechanism: Mechanism, method: Method, count: int, after: AfterStep) -> bool:
-    """Return whether a run of so many steps is to be compiled: as that pays for all that this process was asked for."""
-    code = mechanism, implicit(method), after.projecting
-    ASKED[code] += count * evaluations(method)
-    return runs_compiled(ASKED[code])
+    blocks = steps_in_blocks(mechanism, method, steps, [first], first, compiled, after)
+    return recorded(mechanism, method, first, times, blocks, after)
 
 
 def checked_start(state: tuple[FloatArray, FloatArray]) -> FloatArray:
     """Return q and v as one state, shape (2n,). InputError where no run could go on from there."""
     first = np.concatenate(state).astype(np.float64)
-    cause = breakdown(first)
-    if cause:
-        raise InputError(f"the start: {cause}")
+    if broken := breakdown(first[np.newaxis], np.eye(1, 6)):  # told of a step that went well: its pivot is 1
+        raise InputError(f"the start: {broken[1]}")
     return first
 
 
 def recorded(
-    mechanism: Mechanism, method: Method, first: FloatArray, times: FloatArray, blocks: Iterable[Block], how: How
+    mechanism: Mechanism,
+    method: Method,
+    first: FloatArray,
+    times: FloatArray,
+    blocks: Iterable[Block],
+    after: AfterStep,
 ) -> Trajectory:
     """Return a run from its blocks, the times (s) of whose states are given, the first state's included."""
-    parts, pivots, cause = [first[np.newaxis]], [], None
+    parts, of_steps, cause = [first[np.newaxis]], [np.empty((0, 6))], None
     for block in blocks:
         parts.append(block.states)
-        pivots.append(block.pivots)
+        of_steps.append(block.told)
         cause = block.cause
-    states, least = np.concatenate(parts), np.concatenate([*pivots, np.ones(1)])  # 1.0 where no step was taken
+    states, told = np.concatenate(parts), np.concatenate(of_steps)
     # the step that failed is not in the history, but was computed
     failure = f"at t = {times[len(states)]:.6g} s: {cause}" if cause else None
+    least = np.append(told[: len(states) - 1, PIVOT], 1.0)  # where no step was taken
     lowest = int(least.argmin())
+    counts = told.sum(axis=0)
     return Trajectory(
         mechanism=mechanism,
         method=method,
         t=times[: len(states)],
         q=states[:, : mechanism.size],
         v=states[:, mechanism.size :],
-        evaluations=int(how.counts[EVALUATIONS]),
+        evaluations=int(counts[EVALUATIONS]),
         failure=failure,
         least_pivot=float(least[lowest]),
         pivot_time=float(times[lowest]),
-        iterations=int(how.counts[ITERATIONS]) if implicit(method) else None,
-        projections=int(how.counts[PROJECTIONS]),
-        after=how.after,
+        iterations=int(counts[ITERATIONS]) if implicit(method) else None,
+        projections=int(counts[PROJECTIONS]),
+        after=after,
     )
 
 
@@ -224,24 +198,25 @@ def march(
     state: ArrayLike,
     start: Start,
     count: int,
-    how: How | None = None,
+    compiled: bool = False,
+    after: AfterStep = NOTHING,
 ) -> Iterator[Block]:
     """Yield `count` steps from a state (q then v, shape (2n, *batch)) at t = 0 on, in blocks.
 
     h (s) is the whole step of the method, `gains` are 2 alpha and beta^2 (1/s, 1/s^2), which broadcast against the
-    batch; the first values of a multistep method come from `start`, by steps that are not compiled. InputError where
-    steps are to be compiled without numba.
+    batch; the first values of a multistep method come from `start`, by steps that are not compiled. A run alone ends
+    where it breaks down; in a batch what goes wrong shows in the numbers. InputError where steps are to be `compiled`
+    without numba.
     """
-    how = how or How()
     history = [np.asarray(state)]
     for starter, step_count in _starters(method, start):
         some = min(step_count, count - len(history) + 1)
-        for block in resume(mechanism, starter, h, gains, history, some, replace(how, compiled=False)):
+        for block in resume(mechanism, starter, h, gains, history, some, after=after):
             yield block
             if block.cause:
                 return
             history += list(block.states)
-    yield from resume(mechanism, method, h, gains, history, count - len(history) + 1, how)
+    yield from resume(mechanism, method, h, gains, history, count - len(history) + 1, compiled, after=after)
 
 
 def resume(
@@ -251,8 +226,9 @@ def resume(
     gains: Gains,
     history: Sequence[ArrayLike],
     count: int,
-    how: How | None = None,
+    compiled: bool = False,
     undisturbed: ArrayLike | None = None,
+    after: AfterStep = NOTHING,
 ) -> Iterator[Block]:
     """Yield `count` steps after `history`, as `march` does; its last state may have been tampered with: kicked.
 
@@ -261,120 +237,106 @@ def resume(
     """
     if count <= 0:
         return
-    how = how or How()
     given = [np.asarray(state) for state in (*history, history[-1] if undisturbed is None else undisturbed)]
     batch = np.broadcast_shapes(*(state.shape[1:] for state in given), *map(np.shape, gains))
     *states, calm = (np.stack([np.broadcast_to(row, batch) for row in state]) for state in given)
-    carried = carried_quantities(mechanism, method, h, gains, states, calm, how.counts)
     of_lanes = np.array([np.broadcast_to(gain, batch).ravel() for gain in gains], np.float64)
     times = h * np.arange(len(states) - 1, len(states) - 1 + count, dtype=np.float64)
     steps = Steps(times, np.broadcast_to(np.float64(h), count), np.broadcast_to(of_lanes, (count, *of_lanes.shape)))
-    yield from steps_in_blocks(mechanism, method, steps, carried, batch, how)
+    yield from steps_in_blocks(mechanism, method, steps, states, calm, compiled, after)
 
 
 def steps_in_blocks(
-    mechanism: Mechanism, method: Method, steps: Steps, carried: FloatArray, batch: tuple[int, ...], how: How
+    mechanism: Mechanism,
+    method: Method,
+    steps: Steps,
+    history: Sequence[FloatArray],
+    undisturbed: FloatArray,
+    compiled: bool,
+    after: AfterStep,
 ) -> Iterator[Block]:
-    """Yield steps in blocks, from what is carried into the first: shape (quantities, n lanes).
+    """Yield steps in blocks after a `history` of states, (2n, *batch) each; the last of them was `undisturbed`.
 
-    It is in units of the first step's length. The lanes are those of the batch, one after the other.
+    The lanes are those of the batch, one after the other.
     """
-    program = program_of(method.scheme.second_order, how.after)
-    n, lanes, variables = mechanism.size, math.prod(batch), 0
-    if how.compiled:
+    program, n, batch = program_of(method.scheme.second_order, after), mechanism.size, undisturbed.shape[1:]
+    lanes, variables = math.prod(batch), 0
+    if compiled:
         stride = 1 if lanes == 1 else LANES
-        take_steps, variables = machine_steps(mechanism, program.implicit, how.after.projecting, stride)
+        take_steps, variables = machine_steps(mechanism, program.implicit, after.projecting, stride)
     else:
         stride, take_steps = lanes, array_steps(mechanism, lanes)
-    by_lanes = carried.reshape(-1, n, lanes)
+    *states, calm = (state.reshape(2 * n, lanes) for state in (*history, undisturbed))
+    carried, evaluated = carried_quantities(mechanism, method, steps, states, calm)
     groups = [slice(first, first + stride) for first in range(0, lanes, stride)]
-    rooms = [room_of(program, by_lanes[:, :, group], float(steps.lengths[0]), stride, variables) for group in groups]
+    rooms = [room_of(program, carried[:, :, group], float(steps.lengths[0]), stride, variables) for group in groups]
     at_once = max(1, NUMBERS_OF_A_BLOCK // (2 * n * stride))
     for first in range(0, len(steps.times), at_once):
         some = slice(first, first + at_once)
         times, lengths, gains = (np.ascontiguousarray(each[some]) for each in steps)
         parts, told = [], np.zeros((len(times), 6))
         for group, room in zip(groups, rooms, strict=True):
-            found = np.empty((len(times), 2, n * stride), carried.dtype)
+            found = np.empty((len(times), 2, n * stride))
             take_steps(program, Steps(times, lengths, np.ascontiguousarray(gains[:, :, group])), room, found, told)
             parts.append(found.reshape(len(times), 2 * n, stride)[:, :, : len(room.poor)])
-        states = np.concatenate(parts, axis=2).reshape(len(times), 2 * n, *batch)
-        cause = None
-        if how.judged:
-            states, told, cause = _until_breakdown(states, told)
-        how.counts[:] += told.sum(axis=0)
-        taken = len(told) - bool(cause)
-        yield Block(states[:taken], told[:taken, PIVOT], cause)
-        if cause:
+        told[0, EVALUATIONS] += evaluated if first == 0 else 0
+        block = np.concatenate(parts, axis=2).reshape(len(times), 2 * n, *batch)
+        if not batch and (broken := breakdown(block, told)):
+            end, cause = broken
+            yield Block(block[:end], told[: end + 1], cause)
             return
-
-
-def _until_breakdown(states: FloatArray, told: FloatArray) -> tuple[FloatArray, FloatArray, str | None]:
-    """Return steps of a run alone, and what is told of them, up to the first that breaks it down, and why."""
-    with np.errstate(all="ignore"):
-        sound = (told[:, PIVOT] > SINGULAR) & (np.abs(states).sum(axis=1) < BLOWN_UP)  # not if it is no number
-        sound &= (told[:, UNSOLVED] == 0) & (told[:, UNSETTLED] == 0)
-    if sound.all():
-        return states, told, None
-    end = int(sound.argmin()) + 1
-    return states[:end], told[:end], breakdown(states[end - 1], *told[end - 1, [PIVOT, UNSOLVED, UNSETTLED]].tolist())
+        yield Block(block, told)
 
 
 def carried_quantities(
     mechanism: Mechanism,
     method: Method,
-    h: float,
-    gains: Gains,
+    steps: Steps,
     history: Sequence[FloatArray],
     undisturbed: FloatArray,
-    counts: FloatArray,
-) -> FloatArray:
+) -> tuple[FloatArray, int]:
     """Return what a method carries into its first turn after `history`, as on a motion through its states.
 
-    Helpers are what belongs to position, velocity and acceleration, and accelerations those of the states. Shape
-    (quantities, n lanes), in units in which h = 1.
+    Helpers are what belongs to position, velocity and acceleration, and accelerations those of the states, (2n, lanes)
+    each. Shape (quantities, n, lanes), in units in which h = 1; and how many evaluations that has taken which no step
+    before it has: those of a method with steps of its own.
     """
-    scheme = method.scheme.second_order
-    remembered = memory(scheme)
-    n = mechanism.size
-    newest = len(history) - 1
-    # those of a method with steps of its own have been evaluated by the steps before
-    counted = implicit(method) or isinstance(method.scheme, SecondOrder)
-
-    @cache
-    def at(place: int) -> FloatArray:
-        """Return qddot at a place of the history."""
-        counts[EVALUATIONS] += counted
-        state = undisturbed if place == newest else history[place]
-        return accelerations(mechanism, place * h, *gains, state[:n], state[n:])
-
-    carried = []
+    h, carried, found = float(steps.lengths[0]), [], {}
+    remembered = memory(method.scheme.second_order)
     for shares, step in zip(remembered.shares, remembered.state_steps, strict=True):
         by_q, by_v, by_a = (float(share) * h**power for power, share in enumerate(shares))
-        state = history[newest + step]
-        entries = by_q * state[:n] + by_v * state[n:]
-        if by_a:
-            entries = entries + by_a * at(newest + step)
-        carried.append(np.broadcast_to(entries, (n, *history[-1].shape[1:])).reshape(-1))
-    return np.array(carried)
+        if by_a and step not in found:
+            q, v = np.split(history[step - 1] if step else undisturbed, 2)
+            found[step] = accelerations(mechanism, steps.times[0] + step * h, *steps.gains[0], q, v)
+        q, v = np.split(history[step - 1], 2)
+        carried.append(by_q * q + by_v * v + by_a * found.get(step, 0.0))
+    counted = implicit(method) or isinstance(method.scheme, SecondOrder)
+    return np.array(carried), counted * len(found)
 
 
-def breakdown(state: FloatArray, pivot: float = 1.0, unsolved: float = 0.0, unsettled: float = 0.0) -> str | None:
-    """Return why a run cannot go on from a state that it reached with this least pivot; None if it can.
+def breakdown(states: FloatArray, told: FloatArray) -> tuple[int, str] | None:
+    """Return the first of a run's steps after which it cannot go on, and why; None if there is none.
 
-    `unsolved` is the size of the last correction of equations that were not solved, `unsettled` that of a position
-    which its projection did not bring back to the constraints, 0 where all was.
+    `states` after each step, shape (steps, 2n), and what is told of it.
     """
-    for left, what in ((unsolved, "Newton's method"), (unsettled, "projection: Newton's method for the position")):
-        if left:
-            how = f"in {MOST_ITERATIONS} iterations (last correction {left:.2g})"
-            return f"{what} did not converge{f' {how}' if left < math.inf else ': its iterates are not finite'}"
-    if pivot <= SINGULAR:
-        return f"singular configuration: C_q M^-1 C_q^T has lost its rank (relative pivot {pivot:.2g})"
-    # written so that what is not a number fails
-    if pivot > SINGULAR and np.abs(state).sum() < BLOWN_UP:
+    pivots, unsolved, unsettled = told[:, [PIVOT, UNSOLVED, UNSETTLED]].T
+    with np.errstate(all="ignore"):
+        # not sound if it is not a number
+        sound = (pivots > SINGULAR) & (np.abs(states).sum(axis=1) < BLOWN_UP) & (unsolved == 0) & (unsettled == 0)
+    if sound.all():
         return None
-    return f"blow-up: the coordinates and velocities exceed {BLOWN_UP:g} in sum, or are not finite"
+    end = int(sound.argmin())
+    for left, what in ((unsolved, "Newton's method"), (unsettled, "projection: Newton's method for the position")):
+        if left[end]:
+            how = f"in {MOST_ITERATIONS} iterations (last correction {left[end]:.2g})"
+            return (
+                end,
+                f"{what} did not converge{f' {how}' if left[end] < math.inf else ': its iterates are not finite'}",
+            )
+    if pivots[end] <= SINGULAR:
+        lost = f"C_q M^-1 C_q^T has lost its rank (relative pivot {pivots[end]:.2g})"
+        return end, f"singular configuration: {lost}"
+    return end, f"blow-up: the coordinates and velocities exceed {BLOWN_UP:g} in sum, or are not finite"
 
 
 def states_needed(method: Method) -> int:

@@ -7,7 +7,6 @@ import pytest
 
 from bezstab.mechanism import (
     Block,
-    How,
     Mechanism,
     Trajectory,
     compiled_mechanism,
@@ -157,7 +156,7 @@ def test_kicked_runs_are_the_same_in_a_batch_compiled_and_alone(name: str) -> No
     count = 300
     together = states_of(resume(mechanism, method, H, gains, history, count, undisturbed=undisturbed))
     assert together.shape == (count, 2 * mechanism.size, 2, points)
-    compiled = states_of(resume(mechanism, method, H, gains, history, count, How(compiled=True), undisturbed))
+    compiled = states_of(resume(mechanism, method, H, gains, history, count, True, undisturbed))
     with np.errstate(invalid="ignore"):  # of what is infinite
         calm = (np.abs(together[:, :, 0] - together[:, :, 1]) < 1e-2).all(axis=(0, 1))
     assert calm.any()
