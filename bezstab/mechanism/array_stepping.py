@@ -22,15 +22,23 @@ def array_steps(mechanism: Mechanism, lanes: int) -> TakeSteps:
         right, left = (each[:count].reshape(size, lanes) for each in (residuals, products))
         np.einsum("ijl,jl->il", inverse[:size, :size], right, out=left)
 
+    def take(chosen: BoolArray, source: FloatArray, into: FloatArray) -> None:
+        np.copyto(into.reshape(n, lanes), source.reshape(n, lanes), where=chosen)
+
+    def add_sizes(factor: float, values: FloatArray, sizes: FloatArray) -> None:
+        sizes += factor * np.add.reduce(np.abs(values).reshape(n, lanes))
+
     own: dict[str, Any] = {"N": n, "STRIDE": lanes, "WIDTH": n * lanes, "every": every, "multiply": multiply}
-    own |= {"combine": combine, "scale": scale, "copy": copy, "invert": invert}
-    own |= _one_run(mechanism) if lanes == 1 else _many_runs(mechanism, lanes)
-    taken = read(own)
+    own |= {"combine": combine, "invert": invert}
+    if lanes > 1:  # a few numbers are faster one by one
+        own |= {"every_lane": every, "take": take, "add_sizes": add_sizes}
+    writing = _of_one_run if lanes == 1 else _of_many_runs
+    taken = read(own | {f"{name}_of": writing(mechanism, name) for name in ("accelerations", "corrections")})
 
     def take_steps(program: Program, steps: Steps, room: Room, states: FloatArray, told: FloatArray) -> None:
         # Python reads numbers of lists faster than those of arrays
         lists = {name: each.tolist() for name, each in program._asdict().items() if name in QUICKLY}
-        listed: Any = {"times": list(steps.times), "lengths": steps.lengths.tolist()}
+        listed: Any = {"times": steps.times.tolist(), "lengths": steps.lengths.tolist()}
         with np.errstate(all="ignore"):  # what runs into infinity is judged by its numbers
             taken(program._replace(**lists), steps._replace(**listed), room, states, told)
 
@@ -53,61 +61,35 @@ def combine(rows: FloatArray, registers: FloatArray, into: FloatArray) -> None:
         np.dot(rows[number], known, out=into[number])
 
 
-def scale(factor: float, source: FloatArray, into: FloatArray) -> None:
-    """Write a register times a factor."""
-    np.multiply(source, factor, out=into)
-
-
-def copy(source: FloatArray, into: FloatArray) -> None:
-    """Copy a register."""
-    into[:] = source
-
-
 def invert(matrices: FloatArray, size: int, lanes: BoolArray, found: FloatArray) -> None:
     """Write the inverses of some lanes' matrices."""
     found[:size, :size, lanes] = inverses(matrices[:size, :size, lanes])
 
 
-def _one_run(mechanism: Mechanism) -> dict[str, Callable[..., float]]:
-    """Return the functions of one lane, on floats. What Python refuses is infinite, or no number, as with arrays."""
+def _of_one_run(mechanism: Mechanism, name: str) -> Callable[..., float]:
+    """Return the function of that name for floats. What Python refuses is infinite, or no number, as with arrays."""
+    of_numbers, of_arrays = (state_function(mechanism, name, library) for library in (math, np))
 
-    def writing(name: str) -> Callable[..., float]:
-        of_numbers, of_arrays = (state_function(mechanism, name, library) for library in (math, np))
+    def write(t: float, gains: FloatArray, state: FloatArray, found: FloatArray, *_others: Any) -> float:
+        given = [t, *gains[:, 0].tolist(), *state.ravel().tolist()]
+        try:
+            values = of_numbers(given)
+        except (ArithmeticError, ValueError):
+            values = of_arrays(list(np.array(given)))
+        found[:] = values[: len(found)]
+        return float(min(1.0, *values[len(found) :]))
 
-        def write(t: float, gains: FloatArray, state: FloatArray, found: FloatArray, *_others: Any) -> float:
-            given = [float(t), *gains[:, 0].tolist(), *state.ravel().tolist()]
-            try:
-                values = of_numbers(given)
-            except (ArithmeticError, ValueError):
-                values = of_arrays(list(np.array(given)))
-            found[:] = values[: len(found)]
-            return float(min(1.0, *values[len(found) :]))
-
-        return write
-
-    return {f"{name}_of": writing(name) for name in ("accelerations", "corrections")}
+    return write
 
 
-def _many_runs(mechanism: Mechanism, lanes: int) -> dict[str, Callable[..., Any]]:
-    """Return what takes all lanes at once: accelerations, and what tells lanes apart."""
-    function, n = state_function(mechanism, "accelerations", np), mechanism.size
+def _of_many_runs(mechanism: Mechanism, name: str) -> Callable[..., float]:
+    """Return the function of that name for all lanes at once, whose pivots nobody asks for."""
+    function, n = state_function(mechanism, name, np), mechanism.size
 
-    def accelerations(t: float, gains: FloatArray, room: Room) -> float:
-        values = function([t, *gains, *room.state.reshape(2 * n, lanes)])
-        for into, value in zip(room.found.reshape(n, lanes), values, strict=False):  # pivots are those of a run alone
+    def write(t: float, gains: FloatArray, state: FloatArray, found: FloatArray, *_others: Any) -> float:
+        values = function([t, *gains, *state.reshape(2 * n, -1)])
+        for into, value in zip(found.reshape(n, -1), values, strict=False):
             into[:] = value
         return 1.0
 
-    def take(chosen: BoolArray, source: FloatArray, into: FloatArray) -> None:
-        np.copyto(into.reshape(-1, lanes), source.reshape(-1, lanes), where=chosen)
-
-    def add_sizes(factor: float, values: FloatArray, sizes: FloatArray) -> None:
-        sizes += factor * np.abs(values).reshape(-1, lanes).sum(axis=0)
-
-    return {
-        "accelerations": accelerations,
-        "every_lane": every,
-        "take": take,
-        "add_sizes": add_sizes,
-        "any_of": np.any,
-    }
+    return write

@@ -152,18 +152,19 @@ def _row(combination: Combination, values: Mapping[Quantity, Row]) -> Row:
 class Room(NamedTuple):
     """What is made once, to compute in: of all steps, of an evaluation, then what Newton's method knows of each lane.
 
-    registers (registers, width), in units of the last step (s), step[0]; a state (2, width), accelerations (width,) and
-    the row of a lane's machine code; off, by which a projection corrects position and velocity of a run alone,
-    (2 n,); residuals and corrections (evaluations, width); a Jacobian (unknowns, unknowns, lanes), and the
-    inverses of the last ones, nan at first, (groups, unknowns, unknowns, lanes); of each lane the size of what it
-    computes with, how far this correction moves it and the one before did, and whether it is running, this correction
-    is its last, and its Jacobian does not serve.
+    registers (registers, width), in units of the last step (s), step[0], and those of what is found, a part of them; a
+    state (2, width), its accelerations (width,) and the row of a lane's machine code; off, by which a projection
+    corrects position and velocity of a run alone, (2 n,); residuals and corrections (evaluations, width); a Jacobian
+    (unknowns, unknowns, lanes), and the inverses of the last ones, nan at first, (groups, unknowns, unknowns, lanes);
+    of each lane the size of what it computes with, how far this correction moves it and the one before did, and whether
+    it is running, this correction is its last, and its Jacobian does not serve.
     """
 
     registers: FloatArray
+    found: FloatArray
     step: FloatArray
     state: FloatArray
-    found: FloatArray
+    accelerations: FloatArray
     row: FloatArray
     off: FloatArray
     residuals: FloatArray
@@ -198,11 +199,13 @@ def room_of(program: Program, carried: FloatArray, h: float, stride: int, row: i
     registers = np.zeros((program.table.shape[1] + len(program.table) - 2 * evaluations, n, stride))
     registers[:quantities, :, :lanes] = carried
     of_lanes, yes_or_no = np.zeros((3, lanes)), np.zeros((3, lanes), np.bool_)
+    flat = registers.reshape(-1, width)
     return Room(
-        registers=registers.reshape(-1, width),
+        registers=flat,
+        found=flat[quantities : quantities + evaluations],
         step=np.array([h]),
         state=np.zeros((2, width)),
-        found=np.zeros(width),
+        accelerations=np.zeros(width),
         row=np.zeros(row),
         off=np.zeros(2 * n),
         residuals=np.zeros((evaluations, width)),

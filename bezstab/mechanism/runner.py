@@ -301,13 +301,15 @@ def carried_quantities(
     each. Shape (quantities, n, lanes), in units in which h = 1; and how many evaluations that has taken which no step
     before it has: those of a method with steps of its own.
     """
-    h, carried, found = float(steps.lengths[0]), [], {}
-    remembered = memory(method.scheme.second_order)
+    h, remembered = float(steps.lengths[0]), memory(method.scheme.second_order)
+    two_alpha, beta_squared = steps.gains[0]
+    carried = []
+    found: dict[int, FloatArray] = {}
     for shares, step in zip(remembered.shares, remembered.state_steps, strict=True):
         by_q, by_v, by_a = (float(share) * h**power for power, share in enumerate(shares))
         if by_a and step not in found:
             q, v = np.split(history[step - 1] if step else undisturbed, 2)
-            found[step] = accelerations(mechanism, steps.times[0] + step * h, *steps.gains[0], q, v)
+            found[step] = accelerations(mechanism, steps.times[0] + step * h, two_alpha, beta_squared, q, v)
         q, v = np.split(history[step - 1], 2)
         carried.append(by_q * q + by_v * v + by_a * found.get(step, 0.0))
     counted = implicit(method) or isinstance(method.scheme, SecondOrder)

@@ -77,14 +77,6 @@ def corrections_of(t: float, gains: FloatArray, state: Any, found: Any, row: Any
     raise NotImplementedError
 
 
-def accelerations(t: float, gains: FloatArray, room: Room) -> float:
-    """Write all accelerations at a state; return the least pivot, of a run alone."""
-    pivot = 1.0
-    for lane in range(gains.shape[1]):
-        pivot = accelerations_of(t, gains, room.state, room.found, room.row, lane)
-    return pivot
-
-
 # What numpy does faster as a whole
 
 
@@ -100,18 +92,6 @@ def combine(rows: FloatArray, registers: FloatArray, into: FloatArray) -> None:
                     into[number, place] += share * registers[source, place]
 
 
-def scale(factor: float, source: FloatArray, into: FloatArray) -> None:
-    """Write a register times a factor."""
-    for place in every(WIDTH):
-        into[place] = factor * source[place]
-
-
-def copy(source: FloatArray, into: FloatArray) -> None:
-    """Copy a register."""
-    for place in every(WIDTH):
-        into[place] = source[place]
-
-
 def take(lanes: BoolArray, source: FloatArray, into: FloatArray) -> None:
     """Copy some lanes of a register."""
     for first in range(0, WIDTH, STRIDE):
@@ -125,14 +105,6 @@ def add_sizes(factor: float, values: FloatArray, sizes: FloatArray) -> None:
     for first in range(0, WIDTH, STRIDE):
         for lane in range(len(sizes)):
             sizes[lane] += factor * abs(values[first + lane])
-
-
-def any_of(lanes: BoolArray) -> bool:
-    """Return whether something is so in any lane."""
-    some = False
-    for lane in range(len(lanes)):
-        some = some or lanes[lane]
-    return some
 
 
 def multiply(inverse: FloatArray, count: int, residuals: FloatArray, products: FloatArray) -> None:
@@ -186,8 +158,13 @@ def accelerations_at(
 ) -> None:
     """Write the state of an evaluation, and its accelerations."""
     combine(program.table[2 * number : 2 * number + 2], room.registers, room.state)
-    scale(1 / h, room.state[1], room.state[1])
-    told[PIVOT] = min(told[PIVOT], accelerations(time + program.moments[number] * h, gains, room))
+    for place in every(WIDTH):
+        room.state[1, place] *= 1 / h
+    for lane in every_lane(gains.shape[1]):
+        pivot = accelerations_of(
+            time + program.moments[number] * h, gains, room.state, room.accelerations, room.row, lane
+        )
+    told[PIVOT] = min(told[PIVOT], pivot)  # of a run alone
     told[EVALUATIONS] += 1
 
 
@@ -195,10 +172,12 @@ def finish(program: Program, h: float, room: Room, state: FloatArray) -> None:
     """Combine, write the new state, and move on."""
     new = room.registers[program.table.shape[1] :]
     combine(program.table[2 * len(program.moments) :], room.registers, new)
-    copy(new[0], state[0])
-    scale(1 / h, new[1], state[1])
+    for place in every(WIDTH):
+        state[0, place] = new[0, place]
+        state[1, place] = 1 / h * new[1, place]
     for number in range(len(program.moved)):
-        copy(room.registers[program.moved[number]], room.registers[number])
+        for place in every(WIDTH):
+            room.registers[number, place] = room.registers[program.moved[number], place]
 
 
 def take_steps(program: Program, steps: Steps, room: Room, states: FloatArray, told: FloatArray) -> None:
@@ -207,8 +186,9 @@ def take_steps(program: Program, steps: Steps, room: Room, states: FloatArray, t
         time, h, gains = steps.times[k], steps.lengths[k], steps.gains[k]
         if h != room.step[0]:
             for number in range(len(program.powers)):
-                register = room.registers[number]
-                scale((h / room.step[0]) ** program.powers[number], register, register)
+                factor = (h / room.step[0]) ** program.powers[number]
+                for place in every(WIDTH):
+                    room.registers[number, place] *= factor
             room.step[0] = h
         told[k, PIVOT] = 1.0
         for number in range(len(program.groups)):
@@ -217,7 +197,8 @@ def take_steps(program: Program, steps: Steps, room: Room, states: FloatArray, t
                 solve(program, group, time, h, gains, room.inverses[number], room, told[k])
             else:
                 accelerations_at(program, group[0], time, h, gains, room, told[k])
-                scale(h * h, room.found, room.registers[len(program.powers) + group[0]])
+                for place in every(WIDTH):
+                    room.found[group[0], place] = h * h * room.accelerations[place]
         finish(program, h, room, states[k])
         if PROJECTING and program.after.projecting:
             project(program, time + h, h, gains, room, states[k], told[k])
@@ -249,7 +230,7 @@ def solve(
             # of the last evaluation, for all of them
             add_sizes(count, room.state[0], room.sizes)
             add_sizes(count * h, room.state[1], room.sizes)
-            add_sizes(count, room.registers[len(program.powers) + group[1] - 1], room.sizes)
+            add_sizes(count, room.found[group[1] - 1], room.sizes)
             for lane in every_lane(len(room.sizes)):
                 room.running[lane] = room.sizes[lane] < math.inf
         if correct(group, inverse, room):
@@ -259,13 +240,14 @@ def solve(
                 told[ITERATIONS] += 1
             renew(program, group, time, h, gains, inverse, room, told)
             correct(group, inverse, room)
-        if not advance(program, group, room):
+        if not advance(group, room):
             break
-    if any_of(room.running):
+    if room.running.any():
         for number in range(group[0], group[1]):
             nothing = room.corrections[number - group[0]]
-            scale(math.nan, nothing, nothing)
-            take(room.running, nothing, room.registers[len(program.powers) + number])
+            for place in every(WIDTH):
+                nothing[place] = math.nan
+            take(room.running, nothing, room.found[number])
         told[UNSOLVED] = room.moved[0]
     if not room.moved[0] < math.inf:
         told[UNSOLVED] = math.inf
@@ -274,7 +256,7 @@ def solve(
 def guess(program: Program, group: IntArray, room: Room) -> None:
     """Begin lanes with their guesses: all, or those that a Jacobian of an earlier step has led astray."""
     for number in range(group[0], group[1]):
-        take(room.poor, room.registers[program.guesses[number]], room.registers[len(program.powers) + number])
+        take(room.poor, room.registers[program.guesses[number]], room.found[number])
 
 
 def residual(
@@ -289,25 +271,24 @@ def residual(
 ) -> None:
     """Write the residuals of a group."""
     for number in range(group[0], group[1]):
-        unknown, left = room.registers[len(program.powers) + number], into[number - group[0]]
         accelerations_at(program, number, time, h, gains, room, told)
         for place in every(WIDTH):
-            left[place] = unknown[place] - h * h * room.found[place]
+            into[number - group[0], place] = room.found[number, place] - h * h * room.accelerations[place]
 
 
 def correct(group: IntArray, inverse: FloatArray, room: Room) -> bool:
     """Compute corrections; return whether some lane's inverse Jacobian does not serve."""
-    lanes, count = len(room.moved), group[1] - group[0]
+    count = group[1] - group[0]
     multiply(inverse, count, room.residuals, room.corrections)
-    for lane in every_lane(lanes):
+    for lane in every_lane(len(room.moved)):
         room.moved[lane] = 0.0
     for evaluation in range(count):
         add_sizes(1.0, room.corrections[evaluation], room.moved)
-    for lane in every_lane(lanes):
+    for lane in every_lane(len(room.moved)):
         room.last[lane] = room.moved_before[lane] <= TOLERANCE * room.sizes[lane]
         falls = room.moved[lane] <= FALL * room.moved_before[lane]  # not if it is no number
         room.poor[lane] = room.running[lane] > (room.last[lane] | falls)
-    return any_of(room.poor)
+    return bool(room.poor.any())
 
 
 def renew(
@@ -324,7 +305,7 @@ def renew(
     lanes, size, pivot = len(room.moved), (group[1] - group[0]) * N, told[PIVOT]
     for column in range(size):
         first = column % N * STRIDE
-        unknown = room.registers[len(program.powers) + group[0] + column // N][first : first + lanes]
+        unknown = room.found[group[0] + column // N][first : first + lanes]
         for lane in every_lane(lanes):
             room.moved[lane] = unknown[lane]
             unknown[lane] += CHANGE * np.minimum(room.sizes[lane], 1.0)
@@ -341,17 +322,17 @@ def renew(
     told[PIVOT] = pivot  # of states that are met, not of those beside them
 
 
-def advance(program: Program, group: IntArray, room: Room) -> bool:
+def advance(group: IntArray, room: Room) -> bool:
     """Apply the corrections; return whether lanes are running still."""
     for number in range(group[0], group[1]):
-        unknown, corrected = room.registers[len(program.powers) + number], room.corrections[number - group[0]]
+        corrected = room.corrections[number - group[0]]
         for place in every(WIDTH):
-            corrected[place] = unknown[place] - corrected[place]
-        take(room.running, corrected, unknown)
+            corrected[place] = room.found[number, place] - corrected[place]
+        take(room.running, corrected, room.found[number])
     for lane in every_lane(len(room.moved)):
         room.running[lane] = (room.running[lane] > room.last[lane]) & (room.moved[lane] < math.inf)
         room.moved_before[lane] = room.moved[lane]
-    return any_of(room.running)
+    return bool(room.running.any())
 
 
 # Projection, of a run alone
@@ -396,22 +377,14 @@ def project(
         told[UNSETTLED] = moved
 
 
-TEXT = (
-    *(accelerations, combine, take, add_sizes, any_of, multiply, invert, invert_one, scale, copy),
-    *(accelerations_at, finish, solve, guess, residual, correct, renew, advance, shift, project, take_steps),
-)
-"""What is read in two ways."""
-
-
 def read(names: Mapping[str, Any], made: Callable[[Any], Any] = lambda function: function) -> TakeSteps:
-    """Return the function that takes steps, where the text sees these names in place of this file's own.
+    """Return the function that takes steps, where the functions of this file see these names in place of its own.
 
-    `made` makes machine code of each of its functions, or leaves it.
+    `made` makes machine code of each function, or leaves it.
     """
     namespace = globals() | dict(names)
-    for function in TEXT:
-        name = function.__name__
-        if name not in names:
+    for name, function in globals().items():
+        if isinstance(function, FunctionType) and function.__module__ == __name__ and name not in names:
             namespace[name] = made(FunctionType(function.__code__, namespace, name))
     taken: TakeSteps = namespace["take_steps"]
     return taken
