@@ -53,28 +53,21 @@ def as_fraction(number: sp.Rational) -> Fraction:
 
 def determinant(rows: Matrix) -> PolyElement:
     """Return the determinant; InputError for more than 12 rows that cannot be eliminated: it would take too long."""
-    matrix = [list(row) for row in rows]
-    remaining = list(range(len(rows)))
-    factor = sp.QQ(1)
-    while (number := _simple_row(matrix, remaining)) is not None:
-        remaining.remove(number)
-        pivot = matrix[number][number].LC
+    factor = RING.one
+    while (number := _simple_row(rows)) is not None:
+        pivot, others = rows[number][number], [k for k in range(len(rows)) if k != number]
+        eliminated = [entry.quo_ground(pivot.LC) for entry in rows[number]]
+        rows = [[rows[i][j] - rows[i][number] * eliminated[j] for j in others] for i in others]
         factor *= pivot
-        for other in remaining:
-            multiple = matrix[other][number].quo_ground(pivot)
-            for column in remaining if multiple else ():
-                if matrix[number][column]:
-                    matrix[other][column] -= multiple * matrix[number][column]
-    n = len(remaining)
+    n = len(rows)
     if n > MOST_TOGETHER:
         raise InputError(f"{n} equations wait for each other: expected at most {MOST_TOGETHER}")
-    rest = [[matrix[row][column] for column in remaining] for row in remaining]
-    return RING(DomainMatrix(rest, (n, n), RING.to_domain()).det()) * factor
+    return RING(DomainMatrix(rows, (n, n), RING.to_domain()).det()) * factor
 
 
-def _simple_row(matrix: Matrix, remaining: Sequence[int]) -> int | None:
-    """Return the first of the remaining rows with a number other than 0 on the diagonal; None if none has."""
-    return next((number for number in remaining if matrix[number][number] and matrix[number][number].is_ground), None)
+def _simple_row(rows: Matrix) -> int | None:
+    """Return the first row with a number other than 0 on the diagonal; None if none has."""
+    return next((k for k, row in enumerate(rows) if row[k] and row[k].is_ground), None)
 
 
 def determinant_table(equations: Sequence[Equation]) -> PlaneTable:
@@ -83,13 +76,11 @@ def determinant_table(equations: Sequence[Equation]) -> PlaneTable:
     Leading coefficient one at alpha_hat = beta_hat = 0, if there is one.
     """
     found = determinant(coefficient_rows(equations))
-    return tables_of(_made_monic(found))[0] if found else ()
-
-
-def _made_monic(polynomial: PolyElement) -> PolyElement:
-    """Return a multiple whose leading coefficient in z is one at alpha_hat = beta_hat = 0, if there it has one."""
-    at_origin = {k: c for (k, i, j), c in polynomial.terms() if i == j == 0}
-    return polynomial.quo_ground(at_origin[min(at_origin)]) if at_origin else polynomial
+    if not found:
+        return ()
+    at_origin = {k: c for (k, i, j), c in found.terms() if i == j == 0}
+    leading = at_origin[min(at_origin)] if at_origin else sp.QQ(1)
+    return tables_of(found.quo_ground(leading))[0]
 
 
 def responses(equations: Sequence[Equation]) -> tuple[PlaneTable, PlaneTable]:

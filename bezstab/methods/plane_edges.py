@@ -59,7 +59,7 @@ class PlaneEdge:
     """A crossing along its strip: of the curve's real roots alpha_hat, `count` on each line, number k from the left.
 
     limits: what alpha_hat comes to at the strip's lower and upper end. lost: whether at these ends some of the curve's
-    roots, perhaps complex ones, run to infinity.
+    roots, perhaps complex ones, run to infinity. Without a curve: an infinite alpha_hat, beyond all crossings.
     """
 
     curve: CurveTable
@@ -71,14 +71,8 @@ class PlaneEdge:
     lost: tuple[bool, bool]
 
 
-@dataclass(frozen=True)
-class PlaneCell:
-    """A part of a strip, from `low` to `high`, where |z_p| < r: between two edges (None: it goes on to infinity)."""
-
-    low: float
-    high: float
-    left: PlaneEdge | None
-    right: PlaneEdge | None
+PlaneCell = tuple[PlaneEdge, PlaneEdge]
+"""A part of a strip where |z_p| < r, from the edge on its left to that on its right."""
 
 
 def stable_cells(method: Method, level: Fraction) -> list[PlaneCell]:
@@ -107,12 +101,11 @@ def stable_cells(method: Method, level: Fraction) -> list[PlaneCell]:
         ]
         if any(stable):
             by_curve = [_edges(curve, levels, (low, high), beta_hat) for curve in curves]
-            between = pairwise([None, *(by_curve[number][k] for _, number, k in crossings), None])
-            cells += [
-                PlaneCell(float(low), float(high), *sides)
-                for sides, is_stable in zip(between, stable, strict=True)
-                if is_stable
-            ]
+            first, last = (
+                PlaneEdge((), 0, 0, float(low), float(high), (end, end), (False, False)) for end in (-inf, inf)
+            )
+            between = pairwise([first, *(by_curve[number][k] for _, number, k in crossings), last])
+            cells += [sides for sides, is_stable in zip(between, stable, strict=True) if is_stable]
     return cells
 
 

@@ -3,7 +3,6 @@
 Polynomials are sequences of Fraction in ascending powers of z.
 """
 
-from fractions import Fraction
 from math import gcd
 from typing import Literal
 
@@ -34,13 +33,12 @@ def recursion_verdict(polynomial: Polynomial) -> Verdict:
     reciprocal = trimmed(p[::-1])
     shared = polynomial_gcd(p, reciprocal)
     rest, _ = quotient_and_remainder(p, shared)
-    if is_schur(_derivative(shared)) and is_schur(rest):
-        return "marginal"
-    return "diverges"
+    derivative = [k * a for k, a in enumerate(shared)][1:]
+    return "marginal" if is_schur(derivative) and is_schur(rest) else "diverges"
 
 
 def is_schur(polynomial: Polynomial) -> bool:
-    """Return whether every root has |z| < 1; True for a constant, which has none.
+    """Return whether every root has |z| < 1; True for a constant, which has none, and for no coefficients.
 
     By Schur's recursion p <- (lead(p) p - p(0) p*) / z, p* the coefficients in reverse: as long as |p(0)| < |lead(p)|
     it takes a polynomial with all roots inside to one of a degree less with all roots inside, and back (I. Schur,
@@ -71,8 +69,3 @@ def _whole_is_schur(p: list[int], bits: int | None) -> bool | None:
             p = [a >> beyond for a in p]
             error = (error >> beyond) + 2  # rounding of p, and of the error itself
     return True
-
-
-def _derivative(p: Polynomial) -> list[Fraction]:
-    """Return the derivative; 1 in place of the 0 of a constant, as neither has a root outside."""
-    return [k * a for k, a in enumerate(p)][1:] or [Fraction(1)]

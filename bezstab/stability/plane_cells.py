@@ -15,14 +15,14 @@ tanh-sinh quadrature does not mind.
 
 import math
 from collections.abc import Iterator
-from functools import lru_cache, partial
+from functools import lru_cache
 from itertools import pairwise
 
 import numpy as np
 from numpy.polynomial.polynomial import polyder, polyval, polyval2d
 
 from bezstab.errors import NumericalError
-from bezstab.methods import CurveTable, Limit, Method, PlaneCell, PlaneEdge, stable_cells
+from bezstab.methods import CurveTable, Method, PlaneCell, PlaneEdge, stable_cells
 from bezstab.rationals import exact
 from bezstab.stability.arrays import DOUBLE, ROUNDING, SAME, ComplexArray, Extent, FloatArray
 from bezstab.stability.exact_sums import double_polynomial, split
@@ -51,7 +51,7 @@ def strips_shape(method: Method, level: float) -> Shape | None:
     cells = stable_cells(method, exact(level))
     if not cells:
         return None
-    edges = list(dict.fromkeys(edge for cell in cells for edge in (cell.left, cell.right) if edge))
+    edges = list(dict.fromkeys(edge for cell in cells for edge in cell if edge.curve))
     corners = _turns(edges)
     extent, approached = _extent(cells, corners)
     view = _view(extent, corners)
@@ -65,6 +65,8 @@ def _places(edge: PlaneEdge, beta_hat: FloatArray) -> FloatArray:
 
     An eigenvalue is made exact by Newton's method with the curve's exact value, unless two roots meet.
     """
+    if not edge.curve:
+        return np.full(beta_hat.shape, edge.limits[0])
     levels = np.clip(beta_hat.ravel(), *_known(edge))
     curve = _split(edge.curve)
     place = _most_real(_roots(edge, levels).T, edge.count)[:, edge.k]
@@ -169,7 +171,7 @@ def _turns(edges: list[PlaneEdge]) -> FloatArray:
 
 def _extent(cells: list[PlaneCell], corners: FloatArray) -> tuple[Extent, Approached]:
     """Return the ranges of alpha_hat and beta_hat, infinite where there is no limit, and which ends no edge attains."""
-    towards = [limit for cell in cells for wall in _limits(cell) for limit in wall if limit is not None]
+    towards = [limit for cell in cells for edge in cell for limit in edge.limits if limit is not None]
     first, last = float(corners[:, 0].min(initial=math.inf)), float(corners[:, 0].max(initial=-math.inf))
     left, right = min([first, *towards]), max([last, *towards])
     rounding = ROUNDING * float(np.abs(corners[:, 0]).max(initial=0.0))
@@ -178,21 +180,19 @@ def _extent(cells: list[PlaneCell], corners: FloatArray) -> tuple[Extent, Approa
         math.isfinite(right) and right > last + rounding,
     )
     left, right = (0.0 if abs(end) <= rounding else end for end in (left, right))
-    low, high = min(cell.low for cell in cells), max(cell.high for cell in cells)
+    low, high = min(left.low for left, _ in cells), max(left.high for left, _ in cells)
     return ((left, right), (low, high)), (beyond_corners, (_only_far_out(cells, low), _only_far_out(cells, high)))
 
 
 def _only_far_out(cells: list[PlaneCell], level: float) -> bool:
     """Return whether each cell that comes to a finite level does so at an infinite alpha_hat."""
     at_the_level = [
-        walls
-        for cell in cells
-        for at, walls in zip((cell.low, cell.high), zip(*_limits(cell), strict=True), strict=True)
-        if at == level
+        (left.limits[end], right.limits[end])
+        for left, right in cells
+        for end, beta_hat in enumerate((left.low, left.high))
+        if beta_hat == level
     ]
-    return math.isfinite(level) and all(
-        left is not None and math.isinf(left) and left == right for left, right in at_the_level
-    )
+    return math.isfinite(level) and all(pair in ((-math.inf, -math.inf), (math.inf, math.inf)) for pair in at_the_level)
 
 
 def _view(extent: Extent, corners: FloatArray) -> Extent:
@@ -208,29 +208,23 @@ def _view(extent: Extent, corners: FloatArray) -> Extent:
     return (0.0, alpha_hat_max), (0.0, beta_hat_max)
 
 
-def _limits(cell: PlaneCell) -> tuple[tuple[Limit, Limit], tuple[Limit, Limit]]:
-    """Return what alpha_hat comes to at the lower and the upper end of the strip, along the left edge and the right."""
-    left = (-math.inf, -math.inf) if cell.left is None else cell.left.limits
-    right = (math.inf, math.inf) if cell.right is None else cell.right.limits
-    return left, right
-
-
 def _area(cells: list[PlaneCell], name: str) -> float:
-    """Return the sum over cells of the integral of their width. `name` is what an error is about."""
-    area = off = 0.0
-    for cell in cells:
-        (found,), may_be_off = integrals(partial(_widths, cell), np.array([[cell.low, cell.high]]))
-        area, off = area + float(found), off + may_be_off
-    if off > SAME * area:
+    """Return the sum of the areas of bounded cells. `name` is what an error is about."""
+    areas, off = zip(*(_cell_area(*cell) for cell in cells), strict=True)
+    area = float(sum(areas))
+    if sum(off) > SAME * area:
         raise NumericalError(f"{name}: the area cannot be integrated")
     return area
 
 
-def _widths(cell: PlaneCell, beta_hat: FloatArray) -> FloatArray:
-    """Return the widths of a bounded cell, as one function of several; shape (1, *that of beta_hat)."""
-    assert cell.left is not None
-    assert cell.right is not None
-    return (_places(cell.right, beta_hat) - _places(cell.left, beta_hat))[np.newaxis]
+def _cell_area(left: PlaneEdge, right: PlaneEdge) -> tuple[float, float]:
+    """Return the integral of a cell's width, and by how much it may be off."""
+
+    def widths(beta_hat: FloatArray) -> FloatArray:
+        return (_places(right, beta_hat) - _places(left, beta_hat))[np.newaxis]  # one function of several
+
+    (area,), off = integrals(widths, np.array([[left.low, left.high]]))
+    return float(area), off
 
 
 # The boundary: each edge, and along a level what is stable on one side only.
@@ -265,15 +259,11 @@ def _level_pieces(cells: list[PlaneCell], across: Range, up: Range) -> list[Floa
     """Return the pieces of levels that are stable on one side only, within the box."""
     left, right = across
     pieces = []
-    for level in sorted({end for cell in cells for end in (cell.low, cell.high) if up[0] <= end <= up[1]}):
-        at_level = np.array(level)
+    for level in sorted({end for edge, _ in cells for end in (edge.low, edge.high) if up[0] <= end <= up[1]}):
         intervals = [
-            (
-                left if cell.left is None else max(left, float(_places(cell.left, at_level))),
-                right if cell.right is None else min(right, float(_places(cell.right, at_level))),
-            )
+            np.clip([float(_places(edge, np.array(level))) for edge in cell], *across).tolist()
             for cell in cells
-            if level in (cell.low, cell.high)
+            if level in (cell[0].low, cell[0].high)
         ]
         for start, end in pairwise(sorted({end for interval in intervals for end in interval})):
             sides = sum(low < (start + end) / 2 < high for low, high in intervals)

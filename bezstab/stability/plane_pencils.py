@@ -59,12 +59,11 @@ class PlanePencil:
         if one leaves the range of float64.
         """
         with np.errstate(all="ignore"):
-            coefficients = self.coefficients_at(alpha_hat, beta_hat)
             if self.degree == 2:
-                half, last, discriminant = self._quadratics(coefficients, alpha_hat, beta_hat)
+                half, last, discriminant = self._quadratics(alpha_hat, beta_hat)
                 z = quadratic_roots(half, last, signed_root(discriminant))
             else:
-                z = roots_of_rows(np.stack(coefficients))
+                z = roots_of_rows(np.stack(self.coefficients_at(alpha_hat, beta_hat)))
         self._check_finite(z, alpha_hat, beta_hat)
         return z
 
@@ -97,11 +96,10 @@ class PlanePencil:
 
     def _largest_of_few(self, alpha_hat: FloatArray, beta_hat: FloatArray) -> ComplexArray:
         """Return the largest pole of two or three, by formula."""
-        coefficients = self.coefficients_at(alpha_hat, beta_hat)
         if self.degree == 2:
-            half, _, discriminant = self._quadratics(coefficients, alpha_hat, beta_hat)
+            half, _, discriminant = self._quadratics(alpha_hat, beta_hat)
             return largest_quadratic_root(half, discriminant)
-        d, c, b, leading = coefficients
+        d, c, b, leading = self.coefficients_at(alpha_hat, beta_hat)
         return largest_cubic_root(b / leading, c / leading, d / leading)
 
     def turning_shift(self, alpha_hat: FloatArray, beta_hat: FloatArray, z: ComplexArray) -> ComplexArray:
@@ -121,11 +119,9 @@ class PlanePencil:
         )
         return [np.full_like(alpha_hat, value) if isinstance(value, float) else value for value in values]
 
-    def _quadratics(
-        self, coefficients: list[FloatArray], alpha_hat: FloatArray, beta_hat: FloatArray
-    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+    def _quadratics(self, alpha_hat: FloatArray, beta_hat: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return (half, last, half^2 - last) of the monic z^2 + 2 half z + last; the third exact to rounding."""
-        last, twice_half, leading = coefficients
+        last, twice_half, leading = self.coefficients_at(alpha_hat, beta_hat)
         half, last = 0.5 * twice_half / leading, last / leading
         square = half * half
         discriminant = square - last
