@@ -94,7 +94,7 @@ def _near(square: float, other: float, variance: float) -> bool:
     `variance` is that of the logarithm of their quotient.
     """
     with np.errstate(all="ignore"):  # zero is no noise
-        return bool(abs(np.log(square / other)) < STANDARD_ERRORS * np.sqrt(variance))
+        return bool(abs(np.log(square) - np.log(other)) < STANDARD_ERRORS * np.sqrt(variance))
 
 
 def _fit_stretch(samples: FloatArray, order: int) -> NoisyFit | None:

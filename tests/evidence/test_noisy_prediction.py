@@ -102,6 +102,8 @@ def test_noise_does_not_end_with_the_stretch() -> None:
     k = np.arange(300)
     smooth = np.where(k < 40, white(random, 1e-6, 300), 0.0) + 1e-4 * geometric(300, 0.6) + np.exp(-k / 500)
     assert fit_in_noise(smooth, order=8) is None
+    ends = np.where(k < 30, white(random, 1e-6, 300), 0.0)  # nothing at all is left over of the rest
+    assert fit_in_noise(ends, order=8) is None
 
 
 def test_of_several_responses_the_one_that_shows_the_pole_best_counts() -> None:
