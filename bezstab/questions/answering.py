@@ -28,7 +28,7 @@ from bezstab.stability import (
     FeedbackCost,
     Modulus,
     VaryingSteps,
-    choose_at_step,
+    choose,
     describe_point,
     feedback_cost,
     gain_factors,
@@ -287,7 +287,7 @@ def answers(question: Question, *, margins: bool = True) -> Iterator[Answer]:
     """Yield the answers for each method: at the point that is given and at those an engine also takes, or the choice.
 
     Without `margins` none are found. InputError if nothing stable meets the goal, or an engine cannot express it;
-    NumericalError as `describe_point` and `choose_at_step`.
+    NumericalError as `describe_point` and `choose`.
     """
     for method in question.methods:
         if question.goal:
@@ -334,7 +334,7 @@ def _chosen_alone(
     modulus: Modulus | None = None
     if question.turning and question.h:
         modulus = evidence.moving_modulus(method, question.turning, float(longest or question.h))
-    choice = choose_at_step(
+    choice = choose(
         method,
         goal,
         h=question.h,

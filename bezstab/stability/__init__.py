@@ -11,7 +11,7 @@ from bezstab.stability.accurate_points import default_rate
 from bezstab.stability.answer_checks import Modulus
 from bezstab.stability.arrays import EPS, BoolArray, ComplexArray, Extent, FloatArray, plane_arrays, real_array
 from bezstab.stability.best_points import BestPoint, best_point, best_point_or_reason, falls_towards
-from bezstab.stability.choices import Choice, choose, choose_at_step, describe_point, gain_factors
+from bezstab.stability.choices import Choice, choose, describe_point, gain_factors
 from bezstab.stability.closed_loop import QUALITY, dominant_pole, pole_map, poles, spectral_radius, verdict
 from bezstab.stability.error_fronts import RATES, FrontPoint, error_front
 from bezstab.stability.far_limits import FarLimit
@@ -24,7 +24,7 @@ from bezstab.stability.forced_errors import (
     forced_error,
     forced_response,
 )
-from bezstab.stability.margins import Margins, largest_stable_step, stability_margins, stable_up_to
+from bezstab.stability.margins import Margins, largest_stable_step, stability_margins
 from bezstab.stability.regions import Region, pole_place, region, useful_window, window
 from bezstab.stability.searches import bisected, first_where
 from bezstab.stability.step_families import Limit, Member, bezier_limit, family_members
@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from bezstab.stability.damping_limits import (
         critical_damping_limit,
         exact_critical_damping_limit,
+        stable_up_to,
         unconditional_damping_ratio,
     )
     from bezstab.stability.held_drives import (

@@ -10,7 +10,7 @@ from bezstab.methods import Method
 from bezstab.stability.answer_checks import Modulus
 from bezstab.stability.arrays import BoolArray, Extent, FloatArray
 from bezstab.stability.forced_errors import combined_error
-from bezstab.stability.searches import grid_of, zoom_from_grid
+from bezstab.stability.searches import grid_of, lowest_minima
 
 Decays = Callable[[FloatArray, FloatArray], BoolArray]
 """Whether errors decay as fast as is asked for, over rows of alpha_hat and beta_hat."""
@@ -23,6 +23,9 @@ RATIOS = (0.5, 4.0)
 
 FIRST_GRID = 49
 """Points per axis of the first grid, over two to seven decades: errors change some twofold from one to the next."""
+
+ZOOMS = 17
+"""Grids after the first, each half as wide: to 4e-6 of those decades."""
 
 SAMPLES = 64
 """Per axis of another grid, which no point may have a lesser error on: by more than BETTER."""
@@ -44,16 +47,17 @@ def accurate_point(method: Method, extent: Extent, error: Modulus, *, omega_h: F
 
     def errors(points: FloatArray) -> FloatArray:
         """Return the error at each of some points, given by the logarithms of alpha h and beta h."""
-        alpha_h, beta_h = np.exp(points).T
-        values = np.full(len(points), np.inf)
+        alpha_h, beta_h = np.moveaxis(np.exp(points), -1, 0)
+        values = np.full(alpha_h.shape, np.inf)
         usable = (alpha_h >= RATIOS[0] * beta_h) & (alpha_h <= RATIOS[1] * beta_h)
         values[usable] = error(2 * alpha_h[usable], beta_h[usable] ** 2)
         return values
 
-    best, least = zoom_from_grid(
-        errors, (low + high) / 2, (high - low) / 2, FIRST_GRID, fold=lambda points: np.clip(points, low, high)
+    axes = list(np.linspace(low, high, FIRST_GRID, axis=1))
+    (best, *_), (least, *_) = lowest_minima(
+        errors, axes, 1, (high - low) / 4, rounds=ZOOMS, patient=False, fold=lambda points: np.clip(points, low, high)
     )
-    sampled = errors(grid_of(list(np.linspace(low, high, SAMPLES, axis=1))).reshape(-1, 2)).min()
+    sampled = errors(grid_of(list(np.linspace(low, high, SAMPLES, axis=1)))).min()
     if sampled < least * (1 - BETTER):
         raise NumericalError(f"{method.name}: the point chosen forces {float(least):.9g}, another {sampled:.9g}")
     return 2 * float(np.exp(best[0])), float(np.exp(best[1])) ** 2

@@ -26,7 +26,7 @@ from bezstab.stability.path_crossings import ONE, Path, verdict_end
 from bezstab.stability.pencils import pencil_of
 from bezstab.stability.regions import Region, chart_of, pole_place, region
 from bezstab.stability.root_finding import TOLD
-from bezstab.stability.searches import checked, zoom_from_grid
+from bezstab.stability.searches import checked, lowest_minima
 
 SCOUTS = 64  # of the points one in so many is looked at first, for a value that the others must be below
 THOUSANDFOLD = 1e-3  # what "settled" means for the constraint error
@@ -36,7 +36,7 @@ Within = Callable[[FloatArray, FloatArray, float], BoolArray]
 FIRST_GRID = 52  # points per axis of the first grid over the region's box: every valley is seen
 GRID = 49  # points per axis of a zoom: few fine grids take less time than many coarse ones, and lose no valley
 ZOOM = 0.32  # from one grid to the next: eight spacings to either side of its best point
-ZOOMS = 22  # 0.32^21 = 4e-11 of the region at least, where Schur's recursion tells values apart no more
+ZOOMS = 21  # after the first grid: 0.32^21 = 4e-11 of the region, where Schur's recursion tells values apart no more
 SHARES = 8  # of the largest step, and of the spread, among which the worst is looked for: in practice it is an end
 AT_DEADBEAT = 0.01  # of alpha_hat, beta_hat: a double pole that is so near to zero may be followed no further
 SEARCHED = 4.0  # alpha h and beta h: there e^-4, a fiftieth, is left after a step, and nobody asks for faster decay
@@ -93,27 +93,32 @@ class Choice:
 def choose(
     method: Method,
     goal: Goal = "accurate",
+    *,
+    h: Fraction | None = None,
+    h_max: Fraction | None = None,
+    settle: Fraction | None = None,
     spread: float = 0.1,
-    rate: float | None = None,
     equal: bool = False,
     modulus: Modulus | None = None,
-    margins: bool = True,
     along: Curve | None = None,
     omega_h: Fraction = OMEGA_H,
-    share: Fraction = ONE,
+    margins: bool = True,
 ) -> Choice:
     """Return the point that a goal asks for, dimensionless and proven stable; without `margins` in less time.
 
     accurate: the least error forced on a motion of omega_h rad a step (methods/steady_errors.py), at worst with alpha
-    and beta off by the spread (a share), among what has |z_p| <= rate; by default errors fall by e^(-1/2) for each rad
-    of the motion, or half as fast as with robust where nothing is so fast. fastest: the smallest |z_p|. critical: the
+    and beta off by the spread (a share), among what settles in time; by default errors fall by e^(-1/2) for each rad of
+    the motion, or half as fast as with robust where nothing is so fast. fastest: the smallest |z_p|. critical: the
     fastest dominant pole that is double, real and positive, on the way from small parameters on, before another pole
     overtakes it. robust: the fastest at worst over every smaller step at the same alpha, beta, and alpha and beta off
-    by the spread, where fast means decay per second. gentle: the smallest alpha = beta with |z_p| <= rate. `equal`
-    keeps alpha = beta. `along` is a curve of points that alone are looked at; of several that are best, the mildest is
-    taken, and gentle is the mildest with |z_p| <= rate.
-    `modulus` takes the place of |z_p| at rest, for a mechanism that moves; critical asks for poles at rest. What is
-    described is the same alpha and beta at a step of so large a `share` of that which they are chosen for.
+    by the spread, where fast means decay per second. gentle: the smallest alpha = beta that settles in time. `equal`
+    keeps alpha = beta. `along` is a curve of points that alone are looked at, not by critical; of several that are best
+    the mildest is taken, and gentle is the mildest that settles in time.
+    To settle in time is that errors fall a thousandfold in `settle` (s) with steps of h (s), or of h_max (s), the
+    largest step that may occur, for which the point is chosen. Described is the same alpha and beta at the step h, at
+    which alpha_hat = 2 alpha h and beta_hat = beta^2 h^2 (paper Eq. 16) are smaller.
+    `modulus` takes the place of |z_p| at rest, for a mechanism that moves; critical asks for poles at rest. It and
+    omega_h are those of the largest step.
     InputError if nothing stable meets the goal, for another goal and for a spread outside 0 to 1; NumericalError if a
     second route contradicts the answer (answer_checks). The poles are those of paper Eq. 17; the goals are this
     package's.
@@ -121,24 +126,22 @@ def choose(
     if goal not in get_args(Goal):
         raise InputError(f"goal {goal!r}: expected {', '.join(get_args(Goal))}")
     _check_spread(spread)
+    largest = h_max or h
+    rate = THOUSANDFOLD ** float(largest * method.step_multiple / settle) if largest and settle else None
     box, cut = search_box(region(method))
     curve = along or (of_equal(box) if equal or goal == "gentle" else None)
     pencil = pencil_of(method, free=True)  # a pole that no parameters move must not hide the others
     at_rest = modulus is None
-    modulus = modulus or partial(largest_modulus, pencil)
-    within = pencil.all_within if at_rest else partial(_below, modulus)
+    z_abs = modulus or partial(largest_modulus, pencil)
+    within: Within = pencil.all_within if at_rest else lambda a, b, level: np.asarray(z_abs(a, b) < level)
     if goal == "accurate":
-        point = _accurate(method, box, modulus, within, omega_h, rate, spread, equal, curve)
+        point = _accurate(method, box, z_abs, within, omega_h, rate, spread, equal, curve)
     elif goal == "gentle":
-        of_all = partial(largest_modulus, pencil_of(method)) if at_rest else modulus
+        of_all = partial(largest_modulus, pencil_of(method)) if at_rest else z_abs
         assert curve
         what = "any setting of the engine" if along else "alpha = beta"
         point, cut = mildest_along(curve, of_all, rate or 0.0, f"with {what} {method.name}"), False
     elif goal == "critical":
-        if along:
-            raise InputError(
-                "the goal critical needs a double pole, and this engine can express only a curve of points"
-            )
         point = _critical_point(method, box)
         check_critical(pencil, point[0], point[1], box, cut)
         if equal and not math.isclose(point[1], point[0] ** 2 / 4):
@@ -148,7 +151,7 @@ def choose(
     elif goal == "fastest" and at_rest and not curve and (best := best_point(method)):
         point, cut = (best.alpha_hat, best.beta_hat), False
     elif goal == "robust" or goal == "fastest":  # noqa: PLR1714 (what the type checker follows)
-        objective = _slowest(method, modulus, within, spread) if goal == "robust" else modulus
+        objective = _slowest(method, z_abs, within, spread) if goal == "robust" else z_abs
         # without a curve of the fastest where |z_p| falls on as the feedback grows, or for a mechanism that moves
         point = least_along(curve, objective) if curve else checked(partial(_least, method, box, objective, cut))
     else:
@@ -156,6 +159,7 @@ def choose(
     alpha_hat, beta_hat = (exact(each) for each in point)
     if not converges(method, alpha_hat, beta_hat):
         raise NumericalError(f"{method.name}: the point {point} found for {goal} is not stable")
+    share = h / largest if h and largest else ONE
     choice = describe_point(method, goal, alpha_hat * share, beta_hat * share**2, spread, margins)
     return replace(choice, searched=SEARCHED) if cut and not along else choice
 
@@ -191,7 +195,7 @@ def _accurate(
         if rate is not None:
             raise
         along = None if equal else curve
-        fast = choose(method, "robust", spread, equal=equal, modulus=modulus, margins=False, along=along)
+        fast = choose(method, "robust", spread=spread, equal=equal, modulus=modulus, margins=False, along=along)
         return found(fast.worst**0.5)
 
 
@@ -217,35 +221,6 @@ def search_box(stable: Region) -> tuple[Extent, bool]:
         for (low, high), end in zip(stable.extent, strongest, strict=True)
     ]
     return (ranges[0], ranges[1]), not np.isfinite(stable.extent)[:, 1].all()
-
-
-def choose_at_step(
-    method: Method,
-    goal: Goal,
-    *,
-    h: Fraction | None,
-    h_max: Fraction | None = None,
-    settle: Fraction | None = None,
-    spread: float = 0.1,
-    equal: bool = False,
-    modulus: Modulus | None = None,
-    along: Curve | None = None,
-    omega_h: Fraction = OMEGA_H,
-    margins: bool = True,
-) -> Choice:
-    """Return the choice for steps of h (s), as `choose` makes it for the largest step h_max (s) that may occur.
-
-    At a smaller step the same alpha and beta are a smaller alpha_hat = 2 alpha h and beta_hat = beta^2 h^2 (paper Eq.
-    16). `settle` (s) is the time in which the error of `gentle` and `accurate` falls a thousandfold; `modulus` and
-    `omega_h`, of the largest step, `along` and `margins` are as for `choose`, and so are errors. Without a step there
-    are neither h_max nor a settle.
-    """
-    largest = h_max or h
-    rate = None
-    if settle and largest:
-        rate = THOUSANDFOLD ** float(largest * method.step_multiple / settle)
-    share = h / largest if h and largest else ONE
-    return choose(method, goal, spread, rate, equal, modulus, margins, along, omega_h, share)
 
 
 def describe_point(
@@ -327,10 +302,6 @@ def _slowest(method: Method, modulus: Modulus, within: Within, spread: float) ->
     return objective
 
 
-def _below(modulus: Modulus, alpha_hat: FloatArray, beta_hat: FloatArray, level: float) -> BoolArray:
-    return np.asarray(modulus(alpha_hat, beta_hat) < level)
-
-
 def _least(method: Method, extent: Extent, objective: Modulus, cut: bool, finer: int) -> tuple[float, float]:
     """Return where the objective is least over the region's box; NumericalError if a sampled point is better.
 
@@ -347,15 +318,15 @@ def _least(method: Method, extent: Extent, objective: Modulus, cut: bool, finer:
         values[positive] = objective(2 * alpha, beta**2)
         return values
 
-    best, least = zoom_from_grid(
+    shrink = ZOOM ** (1 / finer)
+    (best, *_), (least, *_) = lowest_minima(
         over_positive_points,
-        largest / 2,
-        largest / 2,
-        finer * FIRST_GRID,
+        list(np.linspace(np.zeros(2), largest, finer * FIRST_GRID, axis=1)),
+        1,
+        shrink * largest / 2,
         points=GRID,
-        shrink=ZOOM ** (1 / finer),
+        shrink=shrink,
         rounds=finer * ZOOMS,
-        patient=True,
         fold=(lambda points: np.minimum(points, largest)) if cut else None,
     )
     point = 2 * float(best[0]), float(best[1]) ** 2

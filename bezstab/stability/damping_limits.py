@@ -10,6 +10,7 @@ beta_hat = (beta h)^2:
                +------------- alpha_hat
 """
 
+import math
 from fractions import Fraction
 from functools import cache
 
@@ -69,6 +70,17 @@ def unconditional_damping_ratio(method: Method) -> float | None:
 
     ends = first_where(np.vectorize(is_limited, otypes=[bool]), RATIOS)
     return ends[0] if ends else 0.0
+
+
+def stable_up_to(method: Method, alpha: Fraction, beta: Fraction) -> float:
+    """Return the step (s) up to which every one is stable with alpha and beta (1/s); infinite without an end.
+
+    Zero where small steps are not stable, as without damping.
+    """
+    if not beta:
+        return 0.0  # nothing takes an error back: z = 1 at every step
+    limit = _limit_at(method, alpha / abs(beta))
+    return math.inf if limit is None else float(limit / abs(beta))
 
 
 @cache

@@ -11,9 +11,8 @@ from bezstab.errors import InputError
 from bezstab.methods import Method
 from bezstab.stability.answer_checks import check_margin
 from bezstab.stability.closed_loop import converges
-from bezstab.stability.path_crossings import ONE, Path, crossing_factors, verdict_end
+from bezstab.stability.path_crossings import Path, verdict_end
 from bezstab.stability.searches import first_where
-from bezstab.units import to_dimensionless
 
 STEPS_TRIED = np.power(1.25, np.arange(93.0))
 """Times h, up to 1e9: stretches of unstable steps are wider than a fourth."""
@@ -62,24 +61,6 @@ def largest_stable_step(
 
     ends = first_where(np.vectorize(unstable, otypes=[bool]), h * STEPS_TRIED)
     return None if ends is None else ends[0]
-
-
-def stable_up_to(method: Method, alpha: Fraction, beta: Fraction) -> float:
-    """Return the step (s) up to which every one is stable with alpha and beta (1/s); infinite without an end.
-
-    Zero where small steps are not stable, as without damping. The end is where the path of all steps first crosses the
-    boundary and the proven verdict turns, as for `stability_margins`, whose errors it has. InputError for alpha and
-    beta outside float64's range.
-    """
-    if not beta:
-        return 0.0  # nothing takes an error back: z = 1 at every step
-    unit = 1 / max(2 * abs(alpha), abs(beta))  # s: times it the numbers are of order one
-    path = Path(method, *to_dimensionless(alpha, beta, unit), (1, 2))
-    small = min(crossing_factors(path), default=ONE) / 2  # below it the verdict is one
-    if not path.converges_at(small):
-        return 0.0
-    _, times_longer = _ends(Path(method, *path.at(small), (1, 2)))
-    return times_longer * float(small * unit)
 
 
 def _ends(path: Path) -> tuple[float, float]:

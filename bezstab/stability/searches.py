@@ -91,7 +91,7 @@ def zoom_on_minimum(
     points: int = ZOOM_POINTS,
     shrink: float = SHRINK,
     rounds: int = ROUNDS,
-    patient: bool = False,
+    patient: bool = True,
     fold: Points | None = None,
 ) -> tuple[FloatArray, FloatArray]:
     """Return the best point of the last of `rounds` grids that zoom in on the least value, and the value there.
@@ -120,40 +120,21 @@ def zoom_on_minimum(
     return centre, np.asarray(value)
 
 
-def zoom_from_grid(
-    objective: Points,
-    centre: FloatArray,
-    reach: FloatArray,
-    first_points: int,
-    *,
-    shrink: float = SHRINK,
-    rounds: int = ROUNDS,
-    **zoom: Any,
-) -> tuple[FloatArray, FloatArray]:
-    """Return what `zoom_on_minimum` finds around the best point of a grid, which counts as the first of its rounds.
-
-    first_points: along each axis of that grid. zoom: further arguments of `zoom_on_minimum`.
-    """
-    offsets = grid_of([np.linspace(-1, 1, first_points)] * centre.size).reshape(-1, centre.size)
-    grid = centre + reach * offsets
-    best = grid[np.argmin(objective(grid))]
-    return zoom_on_minimum(objective, best, shrink * reach, shrink=shrink, rounds=rounds - 1, **zoom)
-
-
 def lowest_minima(
-    objective: Points, axes: Sequence[FloatArray], starts: int, **zoom: Any
+    objective: Points, axes: Sequence[FloatArray], starts: int, reach: FloatArray | None = None, **zoom: Any
 ) -> tuple[FloatArray, FloatArray]:
     """Return the lowest local minima on a grid, `starts` of them, each narrowed by a zoom: places and values there.
 
-    axes: the grid's points along one or two of them, rising. zoom: further arguments of `zoom_on_minimum`.
+    axes: the grid's points along one or two of them, rising. reach: of the zoom's first grids, by default a spacing.
+    zoom: further arguments of `zoom_on_minimum`.
     """
     grid = grid_of(axes)
     sampled = objective(grid)
     neighbours = np.lib.stride_tricks.sliding_window_view(np.pad(sampled, 1, mode="edge"), [3] * len(axes))
     minima = np.flatnonzero(sampled <= neighbours.min(axis=tuple(range(-len(axes), 0))))
     lowest = minima[np.argsort(sampled.ravel()[minima], kind="stable")[:starts]]
-    reach = grid_of([_spacings(axis) for axis in axes]).reshape(-1, len(axes))[lowest]
-    return zoom_on_minimum(objective, grid.reshape(-1, len(axes))[lowest], reach, patient=True, **zoom)
+    spacings = grid_of([_spacings(axis) for axis in axes]).reshape(-1, len(axes))[lowest]
+    return zoom_on_minimum(objective, grid.reshape(-1, len(axes))[lowest], spacings if reach is None else reach, **zoom)
 
 
 def grid_of(axes: Sequence[FloatArray]) -> FloatArray:
@@ -176,6 +157,7 @@ def least_between(
         points=GRID,
         shrink=2 / (GRID - 1),
         rounds=ZOOMS,
+        patient=False,
         fold=lambda points: np.clip(points, *ends),
     )
     return found[..., 0], least

@@ -31,7 +31,7 @@ def test_what_to_take_instead_is_not_looked_for_unless_asked(monkeypatch: pytest
     def refuse(*_: object, **__: object) -> None:
         raise AssertionError("looked for a choice")
 
-    monkeypatch.setattr("bezstab.questions.answering.choose_at_step", refuse)
+    monkeypatch.setattr("bezstab.questions.answering.choose", refuse)
     assert [answer.role for answer in answers(Question(methods=SYM, point=POINT))] == ["given"]
 
 

@@ -10,6 +10,7 @@ from bezstab.methods import lookup
 from bezstab.stability import choose, forced_error, spectral_radius
 from bezstab.stability.accurate_points import default_rate
 from tests.methods.kinds import sampled
+from tests.reference.settling import settling
 
 OMEGA_H = Fraction(1, 50)
 
@@ -40,7 +41,13 @@ def test_it_decays_as_asked_within_the_spread_and_no_sampled_point_forces_less(n
 def test_where_nothing_decays_so_fast_it_is_half_as_fast_as_robust() -> None:
     method = lookup("AB8")
     with pytest.raises(InputError, match="no feedback settles so fast"):
-        choose(method, "accurate", omega_h=Fraction(6, 100), rate=default_rate(method, Fraction(6, 100)))
+        choose(
+            method,
+            "accurate",
+            omega_h=Fraction(6, 100),
+            h=Fraction(1),
+            settle=settling(default_rate(method, Fraction(6, 100))),
+        )
     chosen = choose(method, "accurate", omega_h=Fraction(6, 100), margins=False)
     assert chosen.worst <= choose(method, "robust", margins=False).worst ** 0.5 * (1 + 1e-9)
 

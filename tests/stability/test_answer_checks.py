@@ -33,8 +33,9 @@ from bezstab.stability.least_modulus import Least, least_on
 from bezstab.stability.mu_pencils import deadbeat_mu
 from bezstab.stability.path_crossings import Path
 from bezstab.stability.pencils import pencil_of
-from bezstab.stability.searches import zoom_from_grid
+from bezstab.stability.searches import lowest_minima
 from tests.reference.made_methods import runge_kutta
+from tests.reference.settling import settling
 
 
 @pytest.fixture(autouse=True)
@@ -112,20 +113,22 @@ def test_a_choice_beside_its_place_is_no_answer(
     room = curve_choices if along_a_curve else choices
     monkeypatch.setattr(room, search, off_by(off, getattr(room, search)))
     with pytest.raises(NumericalError, match=said):
-        choose(lookup(name), goal, equal=along_a_curve, rate=0.9 if goal == "gentle" else None)
+        choose(
+            lookup(name), goal, equal=along_a_curve, h=Fraction(1), settle=settling(0.9) if goal == "gentle" else None
+        )
 
 
 def zoom_beside(objective: Callable[..., FloatArray], *arguments: Any, **options: Any) -> tuple[FloatArray, FloatArray]:
     """Return a hundredth less than the place that a zoom finds, and the value there."""
-    place, _ = zoom_from_grid(objective, *arguments, **options)
-    return 0.99 * place, objective(0.99 * place[np.newaxis])[0]
+    place, _ = lowest_minima(objective, *arguments, **options)
+    return 0.99 * place, objective(0.99 * place)
 
 
 @pytest.mark.promise("Every region, best point, choice and margin")
 @pytest.mark.parametrize("name", ["RK4", "B4"])
 @pytest.mark.slow_except("RK4")
 def test_a_robust_choice_beside_its_place_is_no_answer(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(choices, "zoom_from_grid", zoom_beside)
+    monkeypatch.setattr(choices, "lowest_minima", zoom_beside)
     with pytest.raises(NumericalError, match="the point chosen has"):
         choose(lookup(name), "robust")
 
@@ -141,11 +144,11 @@ def test_what_fails_at_first_is_searched_more_finely(monkeypatch: pytest.MonkeyP
         return least_on(chart) if len(chart.axes[0]) > SPACINGS + 1 else beside_the_least(chart)
 
     def beside(*arguments: Any, **options: Any) -> tuple[FloatArray, FloatArray]:
-        search = zoom_from_grid if options["rounds"] > choices.ZOOMS else zoom_beside
+        search = lowest_minima if options["rounds"] > choices.ZOOMS else zoom_beside
         return search(*arguments, **options)
 
     monkeypatch.setattr(best_points, "least_on", another)
-    monkeypatch.setattr(choices, "zoom_from_grid", beside)
+    monkeypatch.setattr(choices, "lowest_minima", beside)
     best_points._best_or_limit.cache_clear()
     found = best_point(method)
     assert found
@@ -158,7 +161,7 @@ def test_what_fails_at_first_is_searched_more_finely(monkeypatch: pytest.MonkeyP
 @pytest.mark.slow_except("0.7")
 def test_margins_of_a_fourfold_pole_are_where_the_verdict_turns(rate: float) -> None:
     """On alpha = beta four poles of ABM2 meet, and float64 alone is off by more than the check allows."""
-    gentle = choose(lookup("ABM2"), "gentle", rate=rate)
+    gentle = choose(lookup("ABM2"), "gentle", h=Fraction(1), settle=settling(rate))
     assert gentle.margins
     for side, expected in ((Fraction(1, 10**9), "diverges"), (-Fraction(1, 10**9), "converges")):
         factor = Fraction(gentle.margins.h) * (1 + side)

@@ -9,13 +9,13 @@ from bezstab.stability import (
     Goal,
     best_point,
     choose,
-    choose_at_step,
     describe_point,
     spectral_radius,
 )
 from tests.methods.kinds import sampled
 from tests.reference.made_methods import multistep
 from tests.reference.robust_decay import worst_decay
+from tests.reference.settling import settling
 
 METHODS = ["B2", "B4", "AB4", "ABM3", "RK1", "RK4", "SIE", "SYM"]
 
@@ -29,7 +29,7 @@ QUICK = {"RK1", "SYM"}
 )
 def test_no_point_is_more_robust(name: str) -> None:
     """Second route: compass search from random points, on other shares of the step and other offsets."""
-    chosen = choose(lookup(name), "robust", 0.1)
+    chosen = choose(lookup(name), "robust", spread=0.1)
     shares = np.concatenate([np.geomspace(1e-6, 1, 50), np.linspace(0.5, 1, 50)])
     best = worst_decay(lookup(name), chosen.alpha_hat, chosen.beta_hat, shares, 0.1)
     random = np.random.default_rng(5)
@@ -71,7 +71,7 @@ def test_a_goal_out_of_reach_is_refused() -> None:
         choose(lookup("SYM"), "critical", equal=True)
     assert choose(lookup("B4"), "critical", equal=True) == choose(lookup("B4"), "critical")
     with pytest.raises(InputError, match="settle"):
-        choose(lookup("B4"), "gentle", rate=0.5)
+        choose(lookup("B4"), "gentle", h=Fraction(1), settle=settling(0.5))
 
 
 @pytest.mark.parametrize("goal", ["robust", "fastest"])
@@ -133,8 +133,8 @@ def test_a_choice_for_larger_steps_is_the_same_alpha_and_beta_at_a_smaller_step(
     name: str, goal: Goal, settle: Fraction | None
 ) -> None:
     h, h_max, omega_h = Fraction(1, 1000), Fraction(1, 250), Fraction(1, 50)
-    smaller = choose_at_step(lookup(name), goal, h=h, h_max=h_max, settle=settle, omega_h=omega_h)
-    largest = choose_at_step(lookup(name), goal, h=h_max, settle=settle, omega_h=omega_h)
+    smaller = choose(lookup(name), goal, h=h, h_max=h_max, settle=settle, omega_h=omega_h)
+    largest = choose(lookup(name), goal, h=h_max, settle=settle, omega_h=omega_h)
     assert 4 * smaller.alpha_hat == pytest.approx(largest.alpha_hat, rel=1e-14)
     assert 16 * smaller.beta_hat == pytest.approx(largest.beta_hat, rel=1e-14)
     if settle:
@@ -143,7 +143,7 @@ def test_a_choice_for_larger_steps_is_the_same_alpha_and_beta_at_a_smaller_step(
 
 def test_a_time_to_settle_goes_with_the_goal_gentle_and_is_met() -> None:
     h, settle = Fraction(1, 1000), Fraction(1, 20)
-    gentle = choose_at_step(lookup("RK2@2"), "gentle", h=h, settle=settle)  # 25 steps of 2 ms
+    gentle = choose(lookup("RK2@2"), "gentle", h=h, settle=settle)  # 25 steps of 2 ms
     assert abs(gentle.pole) ** 25 == pytest.approx(1e-3, rel=1e-6)
 
 

@@ -1,5 +1,6 @@
 """Points of a curve, where what is best can be told by hand."""
 
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
@@ -9,6 +10,7 @@ from bezstab.errors import InputError, NumericalError
 from bezstab.methods import lookup
 from bezstab.stability import FloatArray, choose, spectral_radius
 from bezstab.stability.curve_choices import least_along, mildest_along
+from tests.reference.settling import settling
 
 
 def one_step(share: Any) -> tuple[Any, Any]:
@@ -43,18 +45,16 @@ def test_the_mildest_that_is_fast_enough() -> None:
 
 
 def test_choose_keeps_to_the_curve() -> None:
-    gentle = choose(lookup("SYM"), "gentle", rate=0.8, along=one_step)
+    gentle = choose(lookup("SYM"), "gentle", h=Fraction(1), settle=settling(0.8), along=one_step)
     assert (gentle.alpha_hat, gentle.beta_hat) == pytest.approx((1, 0.2), abs=1e-9)
     with pytest.raises(InputError, match="with any setting of the engine"):
-        choose(lookup("SYM"), "gentle", rate=0.8, along=lambda share: (1.0, 0.1 * share))
-    with pytest.raises(InputError, match="critical"):
-        choose(lookup("SYM"), "critical", along=one_step)
+        choose(lookup("SYM"), "gentle", h=Fraction(1), settle=settling(0.8), along=lambda share: (1.0, 0.1 * share))
 
 
 def test_of_a_curve_the_accurate_point_decays_as_asked_or_is_refused() -> None:
     """At alpha_hat = 1 and off by a tenth of alpha and beta the slowest pole is at least 0.35, whatever beta is."""
-    accurate = choose(lookup("SYM"), "accurate", rate=0.9, along=one_step)
+    accurate = choose(lookup("SYM"), "accurate", h=Fraction(1), settle=settling(0.9), along=one_step)
     assert accurate.alpha_hat == 1
     assert accurate.worst <= 0.9
     with pytest.raises(InputError, match=r"no setting of the engine settles so fast, to \|z_p\| <= 0.3"):
-        choose(lookup("SYM"), "accurate", rate=0.3, along=one_step)
+        choose(lookup("SYM"), "accurate", h=Fraction(1), settle=settling(0.3), along=one_step)
