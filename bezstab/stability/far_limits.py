@@ -13,7 +13,8 @@ the largest: a corner or a side of the polygon of all exponents (i, j), Newton's
 
 A corner belongs to all directions between those of its two sides: there one monomial decides, and the poles tend to the
 roots of one polynomial. On a side they depend on alpha_hat^q / beta_hat^p besides, which stays as it is. Every curve to
-infinity is like one of these, so the least over all of them is the infimum of what |z_p| tends to far out. (Where on a
+infinity along which neither parameter tends to zero is like one of these, so the least over all of them is the infimum
+of what |z_p| tends to far out. (Where one tends to zero the constraint is not held, and a pole tends to one. Where on a
 side all of P's coefficients vanish at once, lower terms would decide: that is left out.)
 """
 
@@ -78,10 +79,9 @@ def least_far_limit(pencil: PlanePencil) -> FarLimit:
 
 
 def _directions(most: int) -> list[Direction]:
-    """Return all directions of so small numbers along which a parameter grows, the plainest first."""
-    sizes = range(-most, most + 1)
-    found = [(p, q) for p, q in product(sizes, sizes) if max(p, q) > 0 and math.gcd(p, q) == 1]
-    return sorted(found, key=lambda direction: (min(direction) < 0, sum(direction), direction[0]))
+    """Return all directions of so small numbers, the plainest first."""
+    found = [(p, q) for p, q in product(range(most + 1), repeat=2) if math.gcd(p, q) == 1]
+    return sorted(found, key=lambda direction: (sum(direction), direction[0]))
 
 
 def _limit(pencil: PlanePencil, direction: Direction) -> FarLimit:

@@ -27,7 +27,6 @@ Mu = NDArray[np.inexact] | complex
 """Complex or real, one or many."""
 
 LEADING = 4 * EPS  # of the sum of its terms' sizes: a leading coefficient below it is rounding of zero
-REACH = np.finfo(float).max ** 0.5  # of mu, whose square is beta_hat; one zero of R is within its degree
 MOST_FOLLOWED = 18  # poles: of more, whose factors lie close together, most points need all roots, and mu halves them
 
 
@@ -198,17 +197,15 @@ def deadbeat_points(pencil: MuPencil) -> list[tuple[float, float]]:
     Of an implicit method those where Re mu <= 0; none of several steps. NumericalError where at the first a pole is
     not zero, to rounding.
     """
-    zeros: list[complex] = []
-    for root in np.sort_complex(deadbeat_mu(pencil)):
-        mu = complex(root.real, abs(root.imag) if abs(root.imag) > SAME * abs(root) else 0)
-        if pencil.implicit:
-            if mu.real > SAME * abs(mu):
-                continue
-            mu = complex(min(mu.real, 0.0), mu.imag)
-        if abs(mu) < REACH and all(abs(mu - other) > DOUBLE * abs(mu) for other in zeros):
-            zeros.append(mu)
-    points = pencil.user_points(np.array(zeros, complex), np.array(zeros, complex).conj())
-    if zeros:
+    zeros = np.sort_complex(deadbeat_mu(pencil))
+    height = np.abs(zeros.imag)
+    zeros = zeros.real + 1j * np.where(height > SAME * np.abs(zeros), height, 0)
+    if pencil.implicit:
+        zeros = zeros[zeros.real <= SAME * np.abs(zeros)]
+    apart = np.abs(zeros[:, np.newaxis] - zeros) > DOUBLE * np.abs(zeros)
+    zeros = zeros[[apart[k, :k].all() for k in range(zeros.size)]]  # each multiple, or conjugate, zero once
+    points = pencil.user_points(zeros, zeros.conj())
+    if zeros.size:
         size = float(np.abs(pencil.table[0]) @ abs(zeros[0]) ** np.arange(pencil.table.shape[1]))
         z_abs = float(np.abs(pencil.poles(*points[:1].T)).max())
         if z_abs > 100 * np.sqrt(EPS) * size:  # a double mu splits by the root of rounding
