@@ -180,18 +180,12 @@ def _between(ascending: Sequence[Fraction]) -> list[Fraction]:
     if not ascending:
         return [ONE]
     below, above = Fraction(floor(ascending[0]) - 1), Fraction(ceil(ascending[-1]) + 1)
-    return [below, *(_shortest_between(low, high) for low, high in pairwise(ascending)), above]
+    return [below, *(_short_between(low, high) for low, high in pairwise(ascending)), above]
 
 
-def _shortest_between(low: Fraction, high: Fraction) -> Fraction:
-    """Return a binary fraction in the middle third between two numbers."""
-    bits = max(0, 2 - _size_in_bits(high - low))
-    return Fraction(round((low + high) / 2 * (1 << bits)), 1 << bits)
-
-
-def _size_in_bits(x: Fraction) -> int:
-    """Return about log2 of a positive number, rounded down."""
-    return x.numerator.bit_length() - x.denominator.bit_length() - 1
+def _short_between(low: Fraction, high: Fraction) -> Fraction:
+    """Return a number between two others, no further from their middle than an eighth of their distance."""
+    return ((low + high) / 2).limit_denominator(ceil(4 / (high - low)))
 
 
 def _edges(
@@ -247,7 +241,7 @@ def _limits(curve: PolyElement, end: End, sign: int, lost: int, inside: Fraction
         roots = []
     at_end = {i: abs(c) for (i, j), c in in_t.terms() if j == 0 and i <= curve.degree(ALPHA) - lost}
     beyond = 1 + as_fraction(max(at_end.values()) / at_end[max(at_end)])  # Cauchy's bound of the roots
-    fences = [-beyond, *(_shortest_between(*pair) for pair in pairwise(roots)), beyond]
+    fences = [-beyond, *(_short_between(*pair) for pair in pairwise(roots)), beyond]
     places: list[Limit] = [-inf, *(map(float, roots) if roots else [None]), inf]
     t = min([most, *(_free_of_crossings(in_t, fence) for fence in fences)])
     return [places[sum(fence < root for fence in fences)] for root in real_roots(in_t.evaluate(BETA, t))]
@@ -257,5 +251,5 @@ def _free_of_crossings(in_t: PolyElement, alpha_hat: Fraction) -> Fraction:
     """Return a t > 0 up to which a curve does not pass this alpha_hat, by Cauchy's bound of the inverse roots."""
     along_fence = in_t.evaluate(ALPHA, alpha_hat)
     first = abs(along_fence.const())
-    bound = as_fraction(first / (first + along_fence.max_norm()))
-    return Fraction(2) ** (_size_in_bits(bound) - 1)  # a short number
+    inverse = as_fraction((first + along_fence.max_norm()) / first)
+    return Fraction(1, ceil(inverse))  # a short number

@@ -128,15 +128,11 @@ class LinearMultistep:
 class PredictorCorrector:
     """PECE: the explicit predictor's value is evaluated once for the implicit corrector, whose value is evaluated.
 
-    InputError unless the predictor is explicit, the corrector implicit, and both use the same number of past values.
+    Both use the same number of past values.
     """
 
     predictor: LinearMultistep
     corrector: LinearMultistep
-
-    def __post_init__(self) -> None:
-        if self.predictor.implicit or not self.corrector.implicit or self.predictor.steps != self.corrector.steps:
-            raise InputError("a predictor-corrector needs an explicit predictor, an implicit corrector, equal steps")
 
     @property
     def steps(self) -> int:
@@ -280,7 +276,7 @@ def evaluations(method: Method) -> int:
 
     Of an implicit method: for one iteration.
     """
-    return method.scheme.second_order.evaluations
+    return len(method.scheme.second_order.evaluated)
 
 
 STATE = (POSITION, VELOCITY, ACCELERATION)

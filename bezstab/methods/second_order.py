@@ -58,7 +58,7 @@ class SecondOrder:
         for name in (POSITION, VELOCITY):
             if name not in latest or latest[name].step < 1:
                 raise InputError(f"no equation gives {name}1")
-        if not self.evaluations:
+        if not self.evaluated:
             raise InputError("no equation evaluates the acceleration")
         for equation in self.equations:
             for quantity in equation.used:
@@ -110,11 +110,6 @@ class SecondOrder:
     def evaluated(self) -> tuple[Evaluation, ...]:
         """The equations that evaluate the acceleration."""
         return tuple(equation for equation in self.equations if isinstance(equation, Evaluation))
-
-    @property
-    def evaluations(self) -> int:
-        """How often a step evaluates the acceleration: an implicit one so often for each of Newton's iterations."""
-        return len(self.evaluated)
 
     @property
     def implicit(self) -> bool:

@@ -11,9 +11,7 @@ from bezstab.errors import InputError
 from bezstab.methods import (
     REGISTRY,
     LinearMultistep,
-    PredictorCorrector,
     RungeKutta,
-    adams_bashforth,
     closed_loop_polynomial,
     evaluations,
     lookup,
@@ -46,12 +44,6 @@ def test_steps_and_evaluations_count_what_one_step_needs(name: str, points: int,
     assert (steps(lookup(name)), evaluations(lookup(name))) == (points, calls)
 
 
-EULER = LinearMultistep(fractions("1 -1"), fractions("0 1"))
-
-
-TRAPEZE = LinearMultistep(fractions("1 -1"), fractions("1/2 1/2"))
-
-
 @pytest.mark.parametrize(
     ("rho", "sigma", "why"),
     [
@@ -81,14 +73,6 @@ def test_a_multistep_method_is_consistent_and_zero_stable(rho: str, sigma: str, 
 def test_a_runge_kutta_method_is_square_and_consistent(tableau: list[str], b: str, why: str) -> None:
     with pytest.raises(InputError, match=why):
         RungeKutta(tuple(map(fractions, tableau)), fractions(b))
-
-
-@pytest.mark.parametrize(
-    ("predictor", "corrector"), [(TRAPEZE, TRAPEZE), (EULER, EULER), (adams_bashforth(2).scheme, TRAPEZE)]
-)
-def test_an_implicit_or_mismatched_pair_cannot_be_built(predictor: LinearMultistep, corrector: LinearMultistep) -> None:
-    with pytest.raises(InputError):
-        PredictorCorrector(predictor, corrector)
 
 
 # The same step as equations for x, v and a
