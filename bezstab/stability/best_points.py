@@ -95,20 +95,14 @@ def _best_or_limit(method: Method) -> BestPoint | FarLimit | None:
         stable = region(method)
         if stable.view is None:
             return None
-        found = found or _searched(pencil, stable)
+        limit = pencil.far_limit()
+        far = limit if limit.z_abs == 0 else None
+        found = found or far or checked(partial(_from_grid, pencil, stable, limit))
     return _beside_a_fixed_pole(method, stuck[0], found) if stuck else found
 
 
-def _searched(pencil: Pencil, stable: Region) -> BestPoint | FarLimit:
-    """Return the best point, or the value |z_p| falls towards, from the first search that passes its check."""
-    limit = pencil.far_limit()
-    if limit.z_abs == 0:
-        return limit
-    return checked(lambda finer: _from_grid(pencil, stable, limit, finer))
-
-
 def _from_grid(pencil: Pencil, stable: Region, limit: FarLimit, finer: int) -> BestPoint | FarLimit:
-    """Return the same from one search; NumericalError if it fails its check."""
+    """Return the best point, or what |z_p| falls towards, from one search; NumericalError if it fails its check."""
     chart = chart_of(pencil, stable, finer)
     sampled, alike = least_on(chart)
     if limit.z_abs < min([sampled, *(each.z_abs for each in alike)]) * (1 - DOUBLE):

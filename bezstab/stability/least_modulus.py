@@ -184,9 +184,9 @@ def _vanish(chart: Chart, place: Place) -> bool:
     return bool((here <= SAME * (farther + origin)).all())
 
 
-def _poles_at(chart: Chart, points: ComplexArray | FloatArray) -> ComplexArray:
-    """Return all poles at points, real or complex, of shape (..., 2); shape (..., poles)."""
-    return companion_roots(chart.coefficients(points.reshape(-1, 2))).T.reshape(*points.shape[:-1], -1)
+def _poles_at(chart: Chart, place: FloatArray) -> ComplexArray:
+    """Return all poles at a place, shape (poles,)."""
+    return companion_roots(chart.coefficients(place)[:, np.newaxis])[:, 0]
 
 
 def of_multiple_root(coefficients: Points, z: ComplexArray | float, count: int) -> list[Points]:
