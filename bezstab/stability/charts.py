@@ -68,8 +68,8 @@ def mu_chart(pencil: MuPencil, view: Extent, curves: Sequence[FloatArray], finer
 
     def user_point(place: Place) -> tuple[float, float]:
         mu = complex(mu_of(np.array(place)))
-        alpha_hat, beta_hat = pencil.user_points(mu, mu.conjugate())
-        return float(alpha_hat), float(beta_hat)
+        alpha_hat, beta_hat = pencil.user_points(mu, mu.conjugate()).tolist()
+        return abs(alpha_hat), beta_hat  # not -0
 
     return Chart(
         coefficients=lambda points: np.asarray(polyval(mu_of(points), pencil.table.T)),

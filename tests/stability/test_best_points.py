@@ -20,7 +20,7 @@ from tests.methods.kinds import EXPLICIT, sampled
 from tests.reference.companion_poles import radius
 from tests.reference.least_by_descent import least_within, modulus_of, random_implicit_runge_kutta
 from tests.reference.made_methods import multistep, runge_kutta
-from tests.reference.random_methods import other_random_method
+from tests.reference.random_methods import other_random_method, random_method
 from tests.reference.second_order_methods import as_second_order, second_order
 
 F = Fraction
@@ -177,6 +177,16 @@ def test_without_a_zero_of_r_where_mu_is_damped_the_least_value_is_on_the_edge(n
     on_edge = modulus(np.zeros(20001), np.linspace(1e-3, 20, 20001))
     assert found.z_abs == pytest.approx(on_edge.min(), abs=1e-5)  # samples lie 1e-3 apart
     assert found.z_abs == pytest.approx(z_abs, abs=1e-6)
+
+
+@pytest.mark.parametrize(("number", "alpha_hat"), [(250, "0.198585"), (134, "0")])
+@pytest.mark.slow_except("250")
+def test_negative_damping_is_no_answer(number: int, alpha_hat: str) -> None:
+    """Pairs whose |z_p| is least at alpha_hat = -3.1 and -0.06."""
+    method = random_method(number)
+    found = best(method)
+    assert f"{found.alpha_hat:g}" == alpha_hat
+    assert found.z_abs == pytest.approx(least_within(modulus_of(method), 1e4)[0], rel=1e-6)
 
 
 IMPLICIT_SPRING = Method(
