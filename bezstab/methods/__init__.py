@@ -55,7 +55,6 @@ if TYPE_CHECKING:
     from bezstab.methods.path_edges import turning_factors
     from bezstab.methods.plane_edges import (
         CurveTable,
-        Limit,
         PlaneCell,
         PlaneEdge,
         crossing_polynomials,
