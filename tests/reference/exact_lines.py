@@ -32,7 +32,7 @@ def stable_parts(
     `line` is an alpha_hat (axis 0) or a beta_hat (axis 1); neighbours are not joined where a zero lies between them.
     """
     c = _coefficients(method, level, line, axis)
-    zeros = _zeros(crossing_polynomials(c, LINE))
+    zeros = _zeros(crossing_polynomials(c))
     if not zeros:
         return [(-inf, inf)] if _stable(c, Fraction(0)) else []
     within = [(low + high) / 2 for low, high in pairwise(zeros)]
