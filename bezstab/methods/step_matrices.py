@@ -14,6 +14,9 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
 
+import numpy as np
+from numpy.polynomial.polynomial import polyval
+from numpy.typing import NDArray
 from sympy.polys.rings import PolyElement
 
 from bezstab.errors import InputError
@@ -27,39 +30,38 @@ from bezstab.methods.determinants import (
     coefficient_rows,
     determinant,
 )
-from bezstab.methods.polynomials import horner
 from bezstab.methods.schemes import STATE, Method, check_one_step
 from bezstab.methods.second_order import SecondOrder
 from bezstab.methods.step_equations import ACCELERATION, POSITION, VELOCITY, Evaluation, Quantity
-from bezstab.rationals import ONE, ZERO
+from bezstab.rationals import ONE, ZERO, whole_multiples
 
 LENGTH = RING_W  # s, where no w is left
 
-StepPolynomial = tuple[Fraction, ...]
-"""A polynomial in the length s of a step, coefficients in ascending powers."""
+ExactArray = NDArray[np.object_]
+"""An array of whole numbers of any size, or of fractions."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class StepMatrix:
-    """The matrix of a step of length s: `entries[i][j]` / `denominator`, polynomials in s.
+    """The matrix M = N / d of a step of length s: `numerators` and `denominator`, whole, by ascending powers of s.
 
-    The state is (c, cdot) or, of a scheme that carries an acceleration, (c, cdot, cddot), in the unit of time in which
-    s is given. `commuting`: the matrices of any two steps commute, whatever their lengths.
+    Their shapes are (powers, n, n) and (powers,). The state is (c, cdot) or, of a scheme that carries an acceleration,
+    (c, cdot, cddot), in the unit of time in which s is given. `commuting`: the matrices of any two steps commute,
+    whatever their lengths.
     """
 
-    entries: tuple[tuple[StepPolynomial, ...], ...]
-    denominator: StepPolynomial
+    numerators: ExactArray
+    denominator: ExactArray
     commuting: bool
 
     @property
     def size(self) -> int:
         """The number of quantities in the state: 2 or 3."""
-        return len(self.entries)
+        return self.numerators.shape[1]
 
-    def at(self, step: Fraction) -> list[list[Fraction]]:
+    def at(self, step: Fraction) -> ExactArray:
         """Return the matrix of one step, exact; ZeroDivisionError where the step has no solution."""
-        denominator = horner(self.denominator, step)
-        return [[horner(entry, step) / denominator for entry in row] for row in self.entries]
+        return np.asarray(polyval(step, self.numerators) / polyval(step, self.denominator))
 
 
 def step_matrix(method: Method, alpha_hat: Fraction, beta_hat: Fraction, hold: bool = False) -> StepMatrix:
@@ -78,24 +80,22 @@ def step_matrix(method: Method, alpha_hat: Fraction, beta_hat: Fraction, hold: b
     below = denominator.compose(by_length)
     if not below:
         raise InputError(f"{method.name}: a step has no solution at this point")
-    last = len(entries) - 1  # all times s^last, lest powers be negative
-    scaled = [
-        [entry.compose(by_length) * LENGTH ** (last + j - i) for j, entry in enumerate(row)]
-        for i, row in enumerate(entries)
-    ]
-    below *= LENGTH**last
-    lowest = min(key for polynomial in (below, *(entry for row in scaled for entry in row)) for key, _, _ in polynomial)
+    size = len(entries)
+    in_s = [below * LENGTH ** (size - 1)]  # all times so much, lest powers be negative
+    for i, row in enumerate(entries):
+        in_s += [entry.compose(by_length) * LENGTH ** (size - 1 + j - i) for j, entry in enumerate(row)]
+    powers = [power for polynomial in in_s for power, _, _ in polynomial]
+    whole, _ = whole_multiples([
+        as_fraction(polynomial.get((power, 0, 0), ZERO))
+        for power in range(min(powers), max(powers) + 1)
+        for polynomial in in_s
+    ])  # fmt: skip
+    table = np.array(whole, object).reshape(-1, len(in_s))
     return StepMatrix(
-        entries=tuple(tuple(_ascending(entry, lowest) for entry in row) for row in scaled),
-        denominator=_ascending(below, lowest),
+        numerators=table[:, 1:].reshape(-1, size, size),
+        denominator=table[:, 0],
         commuting=not hold and bool(method.scheme.mu_table),
     )
-
-
-def _ascending(in_s: PolyElement, lowest: int) -> StepPolynomial:
-    """Return a polynomial in s, divided by s^lowest, by its coefficients; (0,) for zero."""
-    highest = max((power for power, _, _ in in_s), default=lowest)
-    return tuple(as_fraction(in_s.get((power, 0, 0), ZERO)) for power in range(lowest, highest + 1))
 
 
 @cache

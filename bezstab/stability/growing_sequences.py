@@ -10,9 +10,8 @@ from fractions import Fraction
 from itertools import groupby
 
 import numpy as np
-from numpy.typing import NDArray
 
-from bezstab.methods import StepMatrix, characteristic, recursion_verdict
+from bezstab.methods import ExactArray, StepMatrix, characteristic, recursion_verdict
 from bezstab.rationals import exact
 
 LENGTHS = 40  # tried for either kind of step, evenly spaced
@@ -65,9 +64,9 @@ def growth_of(matrix: StepMatrix, word: Sequence[Fraction]) -> float:
     return float(np.abs(np.linalg.eigvals(product)).max())
 
 
-def _product(matrix: StepMatrix, word: Sequence[Fraction]) -> NDArray[np.object_]:
+def _product(matrix: StepMatrix, word: Sequence[Fraction]) -> ExactArray:
     """Return the product of the steps, first taken first: exact. ZeroDivisionError where one has no solution."""
     product = np.eye(matrix.size, dtype=object)
     for length, same in groupby(word):
-        product = np.linalg.matrix_power(np.array(matrix.at(length)), len(list(same))) @ product
+        product = np.linalg.matrix_power(matrix.at(length), len(list(same))) @ product
     return product

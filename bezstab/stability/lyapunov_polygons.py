@@ -16,16 +16,15 @@ Proven in exact arithmetic: corner p, edge from e to f, M = N(s) / d(s). The ima
 if and only if (e x f) d(s) + (f - e) x N(s) p > 0, a polynomial in the length s of the step.
 """
 
-from collections.abc import Iterator
 from fractions import Fraction
 
 import numpy as np
 
-from bezstab.methods import StepMatrix
+from bezstab.methods import ExactArray, StepMatrix
 from bezstab.rationals import whole_multiples
 from bezstab.stability.arrays import SAME, FloatArray
-from bezstab.stability.lyapunov_quadratics import coefficients_of, rounded
-from bezstab.stability.positive_polynomials import ExactArray, positivity
+from bezstab.stability.lyapunov_quadratics import rounded
+from bezstab.stability.positive_polynomials import positivity
 
 Corner = tuple[Fraction, Fraction]
 
@@ -79,17 +78,14 @@ def proves_decay(corners: list[Corner], matrix: StepMatrix, shortest: Fraction) 
     once_around = _cross(half[:1], half[1:])
     if not (np.concatenate([spans, convex, once_around]) > 0).all():
         return False
-    numerators, denominator = coefficients_of(matrix)
-    images = np.moveaxis(half @ np.swapaxes(numerators, 1, 2), 0, -1)  # (corners, 2, powers of s)
-
-    def inside() -> Iterator[ExactArray]:
-        """Yield what must be positive: d, then edge by edge (e x f) d +- (f - e) x N p for all corners."""
-        yield denominator[np.newaxis]
-        for (x, v), span in zip(edges, spans, strict=True):
-            beside, room = x * images[:, 1] - v * images[:, 0], span * denominator
-            yield np.concatenate([room + beside, room - beside])
-
-    return all(positivity(rows, shortest, Fraction(1)) is True for rows in inside())
+    images = np.moveaxis(half @ np.swapaxes(matrix.numerators, 1, 2), 0, -1)  # (corners, 2, powers of s)
+    if positivity([matrix.denominator], shortest, Fraction(1)) is not True:
+        return False
+    for (x, v), span in zip(edges, spans, strict=True):
+        beside, room = x * images[:, 1] - v * images[:, 0], span * matrix.denominator
+        if positivity([*(room + beside), *(room - beside)], shortest, Fraction(1)) is not True:
+            return False
+    return True
 
 
 def _cross(a: ExactArray, b: ExactArray) -> ExactArray:

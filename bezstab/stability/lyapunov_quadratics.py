@@ -8,15 +8,15 @@ M = N / d the leading minors of X d^2 - N^T X N are polynomials in s, which must
 import math
 from fractions import Fraction
 from functools import reduce
-from itertools import combinations_with_replacement, product, zip_longest
+from itertools import combinations_with_replacement, product
 
 import numpy as np
 from numpy.polynomial.polynomial import polyadd, polymul
 
-from bezstab.methods import StepMatrix
-from bezstab.rationals import ZERO, whole_multiples
+from bezstab.methods import ExactArray, StepMatrix
+from bezstab.rationals import whole_multiples
 from bezstab.stability.arrays import SAME, SLOW, FloatArray
-from bezstab.stability.positive_polynomials import ExactArray, positivity, whole_rows
+from bezstab.stability.positive_polynomials import positivity
 
 DIGITS = 9  # significant ones of what proves
 NEWTON_STEPS = 40  # in each stage; some ten are taken
@@ -76,21 +76,14 @@ def rounded(numbers: FloatArray) -> ExactArray:
 
 def proves_decay(form: ExactArray, matrix: StepMatrix, shortest: Fraction) -> bool:
     """Return whether X > 0, and every step from `shortest` to 1 makes x^T X x smaller: exact, for a rational X."""
-    numerators, denominators = coefficients_of(matrix)
-    powers = range(len(denominators))
+    above, below = matrix.numerators, matrix.denominator
+    whole = np.array(whole_multiples(form.ravel().tolist())[0], object).reshape(form.shape)
+    powers = range(len(below))
     lost = np.zeros((2 * len(powers) - 1, *form.shape), object)  # X d^2 - N^T X N, by powers of s
     for i, j in product(powers, powers):
-        lost[i + j] += denominators[i] * denominators[j] * form - numerators[i].T @ form @ numerators[j]
-    minors = [determinant(each[:, :n, :n]) for each in (form[np.newaxis], lost) for n in range(1, len(form) + 1)]
-    return positivity(whole_rows([denominators, *minors]), shortest, Fraction(1)) is True
-
-
-def coefficients_of(matrix: StepMatrix) -> tuple[ExactArray, ExactArray]:
-    """Return N and d of M = N / d by powers of s, shapes (powers, n, n) and (powers,), times one number: whole."""
-    polynomials = [matrix.denominator, *(entry for row in matrix.entries for entry in row)]
-    whole, _ = whole_multiples([c for of_power in zip_longest(*polynomials, fillvalue=ZERO) for c in of_power])
-    table = np.array(whole, object).reshape(-1, len(polynomials))
-    return table[:, 1:].reshape(-1, matrix.size, matrix.size), table[:, 0]
+        lost[i + j] += below[i] * below[j] * whole - above[i].T @ whole @ above[j]
+    minors = [determinant(each[:, :n, :n]) for each in (whole[np.newaxis], lost) for n in range(1, len(form) + 1)]
+    return positivity([below, *minors], shortest, Fraction(1)) is True
 
 
 def determinant(matrix: ExactArray) -> ExactArray:

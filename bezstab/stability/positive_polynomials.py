@@ -6,55 +6,42 @@ coefficients prove it positive there; where they are not, the interval is halved
 curve. A polynomial that is not positive somewhere shows it at an end sooner or later.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable
 from fractions import Fraction
+from itertools import zip_longest
 from math import lcm
 
 import numpy as np
 from numpy.polynomial.polynomial import polymul, polypow
-from numpy.typing import NDArray
 
-from bezstab.rationals import whole_multiples
+from bezstab.methods import ExactArray
 from bezstab.stability.searches import BISECTIONS
 
-ExactArray = NDArray[np.object_]
-"""An array of whole numbers of any size."""
 
+def positivity(polynomials: Iterable[Iterable[Fraction]], low: Fraction, high: Fraction) -> Fraction | bool:
+    """Return whether all polynomials, exact coefficients in ascending powers, are proven positive from low to high.
 
-def positivity(polynomials: ExactArray, low: Fraction, high: Fraction) -> Fraction | bool:
-    """Return whether every row, a polynomial's coefficients in ascending powers, is proven positive from low to high.
-
-    If not, a place where one is not, False where none was found.
-
-    Shape (polynomials, degree + 1), whole numbers; low <= high.
+    If not, a place where one is not, False where none was found. low <= high; whole coefficients are faster.
     """
+    by_power = np.array(list(zip_longest(*polynomials, fillvalue=0)), object)
     # what is still undecided after all halvings touches zero within 1e-18 of the interval
-    pending = [(low, high, np.arange(len(polynomials)), BISECTIONS)]
+    pending = [(low, high, np.arange(by_power.shape[1]), BISECTIONS)]
     undecided = False
     while pending:
-        left, right, rows, halvings = pending.pop()
-        bernstein = polynomials[rows] @ _to_bernstein(polynomials.shape[1] - 1, left, right)
+        left, right, some, halvings = pending.pop()
+        bernstein = by_power[:, some].T @ _to_bernstein(len(by_power) - 1, left, right)
         for end, place in ((0, left), (-1, right)):
             if (bernstein[:, end] <= 0).any():
                 return place
-        rows = rows[(bernstein <= 0).any(axis=1)]
-        if len(rows) == 0:
+        some = some[(bernstein <= 0).any(axis=1)]
+        if len(some) == 0:
             continue
         if halvings == 0:
             undecided = True
             continue
         middle = (left + right) / 2
-        pending += [(left, middle, rows, halvings - 1), (middle, right, rows, halvings - 1)]
+        pending += [(left, middle, some, halvings - 1), (middle, right, some, halvings - 1)]
     return not undecided
-
-
-def whole_rows(polynomials: Sequence[Sequence[Fraction] | ExactArray]) -> ExactArray:
-    """Return polynomials of exact numbers as rows of whole ones, each times its denominators, filled up with zeros."""
-    length = max(len(polynomial) for polynomial in polynomials)
-    rows = np.zeros((len(polynomials), length), dtype=object)
-    for row, polynomial in zip(rows, polynomials, strict=True):
-        row[: len(polynomial)], _ = whole_multiples(list(polynomial))
-    return rows
 
 
 def _to_bernstein(degree: int, low: Fraction, high: Fraction) -> ExactArray:

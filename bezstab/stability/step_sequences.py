@@ -27,12 +27,11 @@ from bezstab.stability.growing_sequences import growing_words, grows, growth_of
 from bezstab.stability.lyapunov_polygons import invariant_polygon
 from bezstab.stability.lyapunov_quadratics import (
     centred_form,
-    coefficients_of,
     determinant,
     proves_decay,
     rounded,
 )
-from bezstab.stability.positive_polynomials import positivity, whole_rows
+from bezstab.stability.positive_polynomials import positivity
 
 Varying = Literal["proven", "refuted", "not known"]
 Certificate = Literal["commuting", "quadratic", "polygon"]
@@ -129,13 +128,12 @@ def _single_step(matrix: StepMatrix, shortest: Fraction) -> Fraction | bool:
     """
     if matrix.size != 2:
         return next((length for length in _samples(shortest, down=True) if grows(matrix, [length])), True)
-    numerators, denominator = coefficients_of(matrix)
-    square = polymul(denominator, denominator)
-    trace = polymul(np.trace(numerators, axis1=1, axis2=2), denominator)
-    of_roots = determinant(numerators)
+    square = polymul(matrix.denominator, matrix.denominator)
+    trace = polymul(np.trace(matrix.numerators, axis1=1, axis2=2), matrix.denominator)
+    of_roots = determinant(matrix.numerators)
     both = polyadd(square, of_roots)
     conditions = [polysub(both, trace), polyadd(both, trace), polysub(square, of_roots)]
-    return positivity(whole_rows(conditions), shortest, Fraction(1))
+    return positivity(conditions, shortest, Fraction(1))
 
 
 def _samples(shortest: Fraction, down: bool) -> list[Fraction]:
