@@ -9,7 +9,14 @@ import sympy as sp
 from bezstab.methods.derivation import ALPHA_HAT, BETA_HAT, MU, Z, closed_loop_polynomial, mapping_equations
 from bezstab.methods.schemes import LinearMultistep, Method, PredictorCorrector, RungeKutta
 from bezstab.methods.second_order import SecondOrder
-from bezstab.methods.second_order_formulas import SHOWN_DIGITS, is_long, second_order_text
+from bezstab.methods.second_order_formulas import (
+    SHOWN_DIGITS,
+    decimal,
+    is_long,
+    quotient,
+    second_order_text,
+    signed_sum,
+)
 from bezstab.methods.steady_errors import LeadingTerm, Part, PlanePolynomial, leading_error
 
 THETA = sp.Symbol("_theta")  # i omega h; with the underscore it is written before alpha_hat and beta_hat
@@ -103,8 +110,7 @@ def _quotient(error: LeadingTerm, exact: bool) -> sp.Expr:
 
 def _plane_expression(terms: PlanePolynomial) -> sp.Expr:
     """Return a polynomial in alpha_hat and beta_hat as an expression."""
-    summands = (sp.Rational(c.numerator, c.denominator) * ALPHA_HAT**i * BETA_HAT**j for (i, j), c in terms.items())
-    return sp.Add(*summands)
+    return sp.Poly.from_dict(terms, ALPHA_HAT, BETA_HAT, domain="QQ").as_expr()
 
 
 def _readable(expression: sp.Expr) -> sp.Expr:
@@ -118,7 +124,7 @@ def _power_term(coefficient: sp.Expr, power: int, latex: bool) -> str:
     number = _written(coefficient, latex)
     if power == 0:
         return number
-    power_text = "z" if power == 1 else _written(Z**power, latex)
+    power_text = _written(Z**power, latex)
     if number == "1":
         return power_text
     if isinstance(coefficient, sp.Add):
@@ -167,12 +173,9 @@ def _combination(terms: Terms) -> tuple[int, str]:
     parts = []
     for c, name in present:
         multiple = abs(c * denominator)
-        number = f"{float(multiple):.{SHOWN_DIGITS}g}" if as_decimals else str(multiple)
-        parts.append(("- " if c < 0 else "+ ") + (name if multiple == 1 else f"{number} {name}"))
-    text = " ".join(parts)
-    if text.startswith("+ "):
-        return denominator, text.removeprefix("+ ")
-    return denominator, text.replace("- ", "-", 1)
+        number = decimal(multiple) if as_decimals else str(multiple)
+        parts.append((c, name if multiple == 1 else f"{number} {name}"))
+    return denominator, signed_sum(parts)
 
 
 def _increment(terms: Terms, multiple: Fraction, latex: bool) -> str:
@@ -181,12 +184,7 @@ def _increment(terms: Terms, multiple: Fraction, latex: bool) -> str:
     if all(c == 0 for c, _ in terms):
         return ""
     denominator, text = _combination((c * multiple.numerator, name) for c, name in terms)
-    step = _step_over(denominator * multiple.denominator, latex)
+    under = denominator * multiple.denominator
+    step = quotient("h", "" if under == 1 else str(under), latex)
     single = " " not in text and not text.startswith("-")
     return f" + {step} {text}" if single else f" + {step} ({text})"
-
-
-def _step_over(denominator: int, latex: bool) -> str:
-    if denominator == 1:
-        return "h"
-    return rf"\frac{{h}}{{{denominator}}}" if latex else f"h/{denominator}"

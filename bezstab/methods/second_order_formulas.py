@@ -7,6 +7,7 @@ velocity if it is a sum of velocities and accelerations.
     vh = v0 + 1/2 a0        v_h is a velocity        v_h = v_k + h/2 a_k
 """
 
+from collections.abc import Iterable
 from fractions import Fraction
 
 from bezstab.methods.second_order import SecondOrder
@@ -31,6 +32,26 @@ def is_long(number: Fraction) -> bool:
     return number.denominator > LONGEST_PART
 
 
+def decimal(number: Fraction) -> str:
+    """Return a number as a decimal of ten digits."""
+    return f"{float(number):.{SHOWN_DIGITS}g}"
+
+
+def signed_sum(terms: Iterable[tuple[Fraction, str]]) -> str:
+    """Return the sum of terms, each given by a number that has its sign and by its text without; 0 for none."""
+    text = " ".join(f"{'-' if number < 0 else '+'} {size}" for number, size in terms)
+    return text.removeprefix("+ ") if text.startswith("+ ") else text.replace("- ", "-", 1) or "0"
+
+
+def quotient(over: str, under: str, latex: bool) -> str:
+    """Return over / under; what is over alone where nothing is under it."""
+    if not under:
+        return over
+    if latex:
+        return rf"\frac{{{over}}}{{{under}}}"
+    return f"{over}/({under})" if " " in under else f"{over}/{under}"
+
+
 def second_order_text(scheme: SecondOrder, multiple: Fraction, latex: bool) -> str:
     """Return the equations in the order in which they are taken, separated by "; ", for steps of `multiple` h."""
     derivatives = _derivatives(scheme)
@@ -46,9 +67,8 @@ def second_order_text(scheme: SecondOrder, multiple: Fraction, latex: bool) -> s
         parts = []
         for coefficient, quantity in combination:
             power = derivatives[quantity.name] - derivative
-            parts.append(_term(coefficient * multiple**power, power, name(quantity), latex))
-        text = " ".join(parts)
-        return text.removeprefix("+ ") if text.startswith("+ ") else text.replace("- ", "-", 1) or "0"
+            parts.append((coefficient, _term(abs(coefficient) * multiple**power, power, name(quantity), latex)))
+        return signed_sum(parts)
 
     lines = []
     for equation in (equation for group in scheme.groups for equation in group):
@@ -85,20 +105,11 @@ def _name(quantity: Quantity, carried: bool, latex: bool) -> str:
     return f"{name}_k" if quantity.step == 0 else f"{name}_{{k{quantity.step:+d}}}"
 
 
-def _term(coefficient: Fraction, power: int, name: str, latex: bool) -> str:
-    """Return a signed coefficient with a power of h times a quantity: `+ 3 h^2/2 a_k`, `- x_k/h`."""
-    sign, size = ("-", -coefficient) if coefficient < 0 else ("+", coefficient)
-    step = "" if power == 0 else "h" if abs(power) == 1 else f"h^{abs(power)}"
-    if is_long(size):
-        over, under = [f"{float(size):.{SHOWN_DIGITS}g}"], []
-    else:
-        over, under = [str(size.numerator)] * (size.numerator != 1), [str(size.denominator)] * (size.denominator != 1)
-    (over if power > 0 else under).extend([step] * (power != 0))
-    if not under:
-        factor = " ".join(over)
-    elif latex:
-        factor = rf"\frac{{{' '.join(over) or '1'}}}{{{' '.join(under)}}}"
-    else:
-        divisor = under[0] if len(under) == 1 else f"({' '.join(under)})"
-        factor = f"{' '.join(over) or '1'}/{divisor}"
-    return f"{sign} {factor} {name}" if factor else f"{sign} {name}"
+def _term(size: Fraction, power: int, name: str, latex: bool) -> str:
+    """Return a positive number with a power of h times a quantity: `3 h^2/2 a_k`, `x_k/h`."""
+    above, below = ([decimal(size)], []) if is_long(size) else ([str(size.numerator)], [str(size.denominator)])
+    if power:
+        (above if power > 0 else below).append("h" if abs(power) == 1 else f"h^{abs(power)}")
+    over, under = (" ".join(part for part in parts if part != "1") for parts in (above, below))
+    factor = quotient(over or "1", under, latex)
+    return name if factor == "1" else f"{factor} {name}"

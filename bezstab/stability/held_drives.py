@@ -32,9 +32,6 @@ MOST_STEPS = 100
 Numbers = NDArray[np.object_]
 """Exact ones."""
 
-STRETCH = 20
-"""Steps of a method over which its equations look back, at most."""
-
 X, V = Quantity("x", 0), Quantity("v", 0)
 
 
@@ -112,7 +109,7 @@ def held_method(way: str, timing: Timing) -> Method:
     seen, dt = SEEN[way], Fraction(1, timing.every)
     shares = [timing.applied(step) for step in range(timing.every)]
     oldest = max(back for of_step in shares for back, _ in of_step)
-    basis = [X, V, *map(_torque, range(oldest + 1))]
+    basis = [X, V, *(Quantity("a", -back) for back in range(oldest + 1))]
     x, v, *torques = np.eye(len(basis), dtype=object)  # as coefficients of the basis
     applied = [sum(share * torques[back] for back, share in of_step) for of_step in shares]
     seen_x = x + dt * seen.x_by_velocity * v + dt**2 * seen.x_by_torque * applied[0]
@@ -135,16 +132,8 @@ def held_method(way: str, timing: Timing) -> Method:
         old = (1 - gain, Quantity("filtered", 0))
         equations.append(Assignment(filtered, (old, *combination(gain * seen_v))))
         velocity = ((ONE, filtered),)
-    equations.append(Evaluation(_torque(0), combination(seen_x), velocity))
-    for back in range(STRETCH, oldest + 1, STRETCH):
-        before = Quantity(_torque(back - STRETCH).name, -STRETCH)
-        equations.append(Assignment(_torque(back), ((ONE, before),)))
+    equations.append(Evaluation(Quantity("a", 0), combination(seen_x), velocity))
     return Method(way, SecondOrder(tuple(equations)), "", Fraction(timing.every))
-
-
-def _torque(back: int) -> Quantity:
-    """Return the torque that was computed so many of the method's steps ago: those long ago by helpers."""
-    return Quantity("a" if back < STRETCH else f"late{back // STRETCH}", -(back % STRETCH))
 
 
 def held_verdict(way: str, alpha_hat: Fraction, beta_hat: Fraction, timing: Timing) -> Verdict:
