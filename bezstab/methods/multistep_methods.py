@@ -29,7 +29,7 @@ def bezier(n: int) -> Method:
     b_j = m C(m, j) int_1^{1+1/m} tau^(m-j) (1-tau)^j dtau, m = n - 1; B1 is explicit Euler
     (Aghdam et al.'s multistep method, paper Table 1; theory: the curve extended past its end over one step).
     """
-    weights = [_bezier_weight(n - 1, j) for j in range(n)] if n > 1 else [ONE]
+    weights = [_bezier_weight(n - 1, j) for j in range(n)]
     return Method(f"B{n}", _from_one_step_back([ZERO, *weights]), "paper Table 1 (Bezier)")
 
 
@@ -38,19 +38,15 @@ def is_bezier(scheme: Scheme) -> bool:
     return scheme.steps > 2 and scheme == bezier(scheme.steps).scheme
 
 
-def _bezier_weight(degree: int, j: int) -> Fraction:
+def _bezier_weight(m: int, j: int) -> Fraction:
     """Return the weight of f_{k-j}: its Bernstein polynomial integrated over the step past the end of the curve.
 
-    On the curve of degree m the parameter tau runs from 0 (oldest value) to 1 (newest), so a step is 1/m long and the
-    next one ends at (m + 1)/m. (1 - tau)^j is multiplied out, so that only powers of tau are integrated.
+    On the curve of degree m the parameter tau runs from 0 (oldest value) to 1 (newest), so s steps past its end
+    tau = (m + s)/m, and the polynomial is C(m, j) (m + s)^(m-j) (-s)^j / m^m. (m + s)^(m-j) is multiplied out, so that
+    only powers of s are integrated. Where m = 0 the curve is constant: all of m^0 are one.
     """
-    end = Fraction(degree + 1, degree)
-    integral = ZERO
-    for i in range(j + 1):
-        coefficient = comb(j, i) * (-1) ** i
-        power = degree - j + i + 1  # of tau, after integration
-        integral += coefficient * (end**power - 1) / power
-    return degree * comb(degree, j) * integral
+    integral = sum((Fraction(comb(m - j, i) * m ** (m - j - i), i + j + 1) for i in range(m - j + 1)), ZERO)
+    return Fraction((-1) ** j * comb(m, j), m**m) * integral
 
 
 def adams_bashforth(n: int) -> Method:
@@ -104,12 +100,10 @@ def bdf(n: int) -> Method:
     The polynomial through y_{k+1}, ..., y_{k+1-n} has the slope f_{k+1} at t_{k+1}. With nabla y = (1 - 1/z) y:
     sum_{j=1}^n nabla^j y_{k+1} / j = h f_{k+1} (Hairer, Norsett & Wanner I, Eq. III.1.22'). For n > 6 it is unstable.
     """
-    rho = [ZERO] * (n + 1)  # of y_{k+1}, y_k, ...
-    difference = [ONE]  # of nabla^j
-    for j in range(1, n + 1):
-        difference = [a - b for a, b in zip([*difference, ZERO], [ZERO, *difference], strict=True)]
-        for i, a in enumerate(difference):
-            rho[i] += a / j
+    rho = [
+        sum(((-1) ** i * Fraction(comb(j, i), j) for j in range(1, n + 1)), ZERO)  # (-1)^i C(j, i) of nabla^j
+        for i in range(n + 1)  # of y_{k+1-i}
+    ]
     source = "Curtiss & Hirschfelder, Proc. Natl. Acad. Sci. 38, 1952 (backward differentiation)"
     return Method(f"bdf{n}", LinearMultistep(tuple(rho), (ONE, *[ZERO] * n)), source)
 

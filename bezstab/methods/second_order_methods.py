@@ -241,12 +241,16 @@ NEWMARK = ParametricMethod("newmark", dict.fromkeys(("beta", "gamma"), (ZERO, Fr
 HHT = ParametricMethod("hht", {"alpha": (Fraction(-1, 3), ZERO)}, hht)
 GENERALIZED_ALPHA = ParametricMethod("generalized-alpha", {"rho_inf": (ZERO, ONE)}, generalized_alpha)
 
+NEWMARK_BETAS = {
+    "average-acceleration": Fraction(1, 4),
+    "linear-acceleration": Fraction(1, 6),
+    "fox-goodwin": Fraction(1, 12),
+    "central-difference": ZERO,
+}
+"""Of the members of Newmark's family that have a name; their gamma is 1/2."""
+
 PARAMETRIC = {method.name: method for method in (NEWMARK, HHT, GENERALIZED_ALPHA)}
 """Methods with parameters, by name: newmark(1/4,1/2) or newmark(beta=1/4,gamma=1/2)."""
-
-
-def _newmark(name: str, beta: Fraction) -> Callable[[], Method]:
-    return partial(newmark, beta, HALF, name)
 
 
 def _group(heading: str, *names: str) -> MethodGroup:
@@ -262,10 +266,7 @@ SECOND_ORDER = (
     MethodGroup(
         "Newmark and generalised alpha",
         {
-            "average-acceleration": _newmark("average-acceleration", Fraction(1, 4)),
-            "linear-acceleration": _newmark("linear-acceleration", Fraction(1, 6)),
-            "fox-goodwin": _newmark("fox-goodwin", Fraction(1, 12)),
-            "central-difference": _newmark("central-difference", ZERO),
+            **{name: partial(newmark, beta, HALF, name) for name, beta in NEWMARK_BETAS.items()},
             "hht": partial(HHT.having, Fraction(-1, 20)),
             "generalized-alpha": partial(GENERALIZED_ALPHA.having, Fraction(4, 5)),
         },

@@ -57,7 +57,7 @@ class StepMatrix:
     @property
     def size(self) -> int:
         """The number of quantities in the state: 2 or 3."""
-        return self.numerators.shape[1]
+        return len(self.numerators[0])
 
     def at(self, step: Fraction) -> ExactArray:
         """Return the matrix of one step, exact; ZeroDivisionError where the step has no solution."""

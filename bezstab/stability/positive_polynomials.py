@@ -26,7 +26,6 @@ def positivity(polynomials: Iterable[Iterable[Fraction]], low: Fraction, high: F
     by_power = np.array(list(zip_longest(*polynomials, fillvalue=0)), object)
     # what is still undecided after all halvings touches zero within 1e-18 of the interval
     pending = [(low, high, np.arange(by_power.shape[1]), BISECTIONS)]
-    undecided = False
     while pending:
         left, right, some, halvings = pending.pop()
         bernstein = by_power[:, some].T @ _to_bernstein(len(by_power) - 1, left, right)
@@ -37,11 +36,10 @@ def positivity(polynomials: Iterable[Iterable[Fraction]], low: Fraction, high: F
         if len(some) == 0:
             continue
         if halvings == 0:
-            undecided = True
-            continue
+            return False
         middle = (left + right) / 2
         pending += [(left, middle, some, halvings - 1), (middle, right, some, halvings - 1)]
-    return not undecided
+    return True
 
 
 def _to_bernstein(degree: int, low: Fraction, high: Fraction) -> ExactArray:

@@ -60,11 +60,8 @@ def stable_for_all(method: Method) -> StableForAll:
 def _positive(expression: sp.Expr) -> bool:
     """Return whether a polynomial is proven positive wherever alpha_hat, beta_hat > 0."""
     factors = [sp.Poly(c, BETA_HAT, domain="QQ") for c in sp.Poly(expression, ALPHA_HAT).coeffs()]
-    return any(map(_without_negative, factors)) and all(map(_nowhere_negative, factors))
-
-
-def _without_negative(polynomial: sp.Poly) -> bool:
-    return all(coefficient > 0 for coefficient in polynomial.coeffs())
+    without_negative = any(all(c > 0 for c in factor.coeffs()) for factor in factors)
+    return without_negative and all(map(_nowhere_negative, factors))
 
 
 def _nowhere_negative(polynomial: sp.Poly) -> bool:

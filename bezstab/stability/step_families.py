@@ -2,12 +2,14 @@
 
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bezstab.methods import STEP_FAMILIES, Method, accuracy
 from bezstab.read_only import ReadOnlyArrays
-from bezstab.stability.arrays import BoolArray, ComplexArray, FloatArray
+from bezstab.stability.arrays import ComplexArray, FloatArray
 from bezstab.stability.best_points import best_point
 from bezstab.stability.regions import Region, region
 from bezstab.stability.searches import first_where
@@ -70,12 +72,7 @@ def bezier_limit() -> Limit:
     arc = np.stack([alpha_hat, beta_hat], axis=-1)[::DRAWN_EVERY]
     edge = [[2 * length, length**2], [length, 0]]  # on which one mu is held at -length, and the other goes to zero
 
-    def crossed(r: FloatArray) -> BoolArray:
-        z = r.astype(complex)
-        beyond: BoolArray = _limit_mapping(z).real >= _limit_mapping(-z).real
-        return beyond
-
-    opposite = first_where(crossed, np.array([0.1, 0.9]))
+    opposite = first_where(lambda r: _limit_mapping(r) >= _limit_mapping(-r), np.array([0.1, 0.9]))
     assert opposite
     return Limit(
         area=_conjugate_area(z, fine) + length**3 / 6,  # of conjugate pairs, and of real ones
@@ -87,8 +84,8 @@ def bezier_limit() -> Limit:
     )
 
 
-def _limit_mapping(z: ComplexArray) -> ComplexArray:
-    """Return mu(z) of the limit."""
+def _limit_mapping(z: NDArray[Any]) -> NDArray[Any]:
+    """Return mu(z) of the limit, real where z is."""
     return np.asarray((z - 1) ** 2 / (z * np.expm1((z - 1) / z)))
 
 

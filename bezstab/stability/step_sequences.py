@@ -36,7 +36,7 @@ from bezstab.stability.positive_polynomials import positivity
 Varying = Literal["proven", "refuted", "not known"]
 Certificate = Literal["commuting", "quadratic", "polygon"]
 
-FIGURES = 4  # significant digits of the steps in a sequence, where it grows with as few
+FIGURES = 4  # significant digits of the steps in a sequence
 LEAST_FRAME = 0.3  # of beta: as far as a frame for overdamped feedback is still stretched
 SAMPLES = 40  # of the range, evenly spaced; the proofs are of all of it
 SAMPLED_SHARE = 512  # the shortest step sampled, as a share of the longest: polygons of shorter ones differ by less
@@ -165,15 +165,10 @@ def _form(matrices: FloatArray, alpha_hat: float, beta_hat: float) -> FloatArray
 
 
 def _growing_word(matrix: StepMatrix, h_min: Fraction, h_max: Fraction) -> tuple[Fraction, ...] | None:
-    """Return a sequence of lengths proven to grow, of few digits in s where that does; None if none was found."""
+    """Return a sequence of lengths proven to grow, of few digits in s; None if none was found."""
     for word in growing_words(matrix, h_min / h_max):
-        rounded = [min(max(_short(length * h_max), h_min), h_max) / h_max for length in word]
-        for candidate in (rounded, word):
-            if grows(matrix, candidate):
-                return tuple(candidate)
+        steps = [Fraction(f"{float(length * h_max):.{FIGURES - 1}e}") for length in word]
+        within = tuple(min(max(step, h_min), h_max) / h_max for step in steps)
+        if grows(matrix, within):
+            return within
     return None
-
-
-def _short(step: Fraction) -> Fraction:
-    """Return a number rounded to a few significant digits."""
-    return Fraction(f"{float(step):.{FIGURES - 1}e}")
