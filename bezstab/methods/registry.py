@@ -43,22 +43,16 @@ def lookup(text: str) -> Method:
     InputError, with advice or the nearest name of the same word, if there is no such method, and for what `read_method`
     refuses.
     """
-    name, multiple = _split_at_multiple(text)
+    name, at, multiple = text.rpartition("@")
+    if not at or text.endswith(".toml"):  # no @, or only in a file's name
+        name, at = text, ""
     method = read_method(Path(name)) if name.endswith(".toml") else _built_in(name or text)
-    if multiple is None:
+    if not at:
         return method
     try:
         return replace(method, name=f"{method.name}@{multiple}", step_multiple=rational(multiple))
     except InputError as error:
         raise InputError(f"method {text!r}: {error}") from None
-
-
-def _split_at_multiple(text: str) -> tuple[str, str | None]:
-    """Return what stands before and after the last @; None if there is none, or only in a file's name."""
-    if "@" not in text or text.endswith(".toml"):
-        return text, None
-    name, _, multiple = text.rpartition("@")
-    return name, multiple
 
 
 def _built_in(name: str) -> Method:

@@ -10,14 +10,14 @@ f, its branches are the arguments of that derivative of f (Hairer, Norsett & Wan
                                                                      o
 
 A Runge-Kutta method's result has the same products with other factors. It is of order p if and only if they agree
-for every tree t of up to p vertices: sum_i b_i Phi_i(t) = 1 / gamma(t). Only linear problems have nothing but tall
-trees, which is why R(mu) alone does not tell the order.
+for every tree t of up to p vertices: sum_i b_i Phi_i(t) = 1 / gamma(t), where gamma(t) is the product over the vertices
+of the size of the subtree that each is the root of. Only linear problems have nothing but tall trees, which is why
+R(mu) alone does not tell the order.
 """
 
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from functools import cache
-from math import prod
 
 from bezstab.methods.polynomials import Polynomial
 from bezstab.rationals import ONE, ZERO
@@ -32,26 +32,24 @@ def tree_errors(tableau: Tableau, weights: Polynomial, vertices: int) -> Iterato
     """Yield gamma(t) sum_i b_i Phi_i(t) - 1 for every rooted tree t of so many vertices."""
     for tree in _trees(vertices):
         terms = zip(weights, _stage_weights(tableau, tree), strict=True)
-        yield _density(tree) * sum((b * phi for b, phi in terms), ZERO) - 1
+        yield vertices * sum((b * psi for b, psi in terms), ZERO) - 1
 
 
 def _stage_weights(tableau: Tableau, tree: Tree) -> list[Fraction]:
-    """Return Phi_i(t) for every stage i: the product over the root's subtrees t' of sum_j a_ij Phi_j(t')."""
+    """Return psi_i(t) = gamma(t) Phi_i(t) / |t| for every stage i, |t| being the number of vertices.
+
+    It is the product over the root's subtrees t' of |t'| sum_j a_ij psi_j(t'), as gamma(t) is |t| times those of t'.
+    """
     product = [ONE] * len(tableau)
     for subtree in tree:
-        inner = _stage_weights(tableau, subtree)
+        size, inner = _vertices(subtree), _stage_weights(tableau, subtree)
         for i, row in enumerate(tableau):
-            product[i] *= sum((a * phi for a, phi in zip(row, inner, strict=True)), ZERO)
+            product[i] *= size * sum((a * psi for a, psi in zip(row, inner, strict=True)), ZERO)
     return product
 
 
 def _vertices(tree: Tree) -> int:
     return 1 + sum(_vertices(subtree) for subtree in tree)
-
-
-def _density(tree: Tree) -> int:
-    """Return gamma(t): the product over the vertices of the size of the subtree each is root of."""
-    return _vertices(tree) * prod(_density(subtree) for subtree in tree)
 
 
 @cache
