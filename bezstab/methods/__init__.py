@@ -45,7 +45,7 @@ if TYPE_CHECKING:
         closed_loop_at,
         closed_loop_polynomial,
         closed_loop_table,
-        mapping_equations,
+        mapping_equation,
         rational_feedback_roots,
         rho_and_sigma,
     )

@@ -81,23 +81,23 @@ def rational_feedback_roots(method: Method, z: int) -> list[Fraction]:
     return [Fraction(int(mu.p), int(mu.q)) for mu in characteristic_polynomial(method).eval(Z, z).ground_roots()]
 
 
-def mapping_equations(method: Method) -> list[sp.Equality]:
-    """Return the s->z mapping as equations between s and z (paper Eq. 14, Table 1); h is the user's step.
+def mapping_equation(method: Method) -> sp.Equality | None:
+    """Return the s->z mapping as an equation between s and z (paper Eq. 14, Table 1); h is the user's step.
 
-    One equation: solved for z of a Runge-Kutta method, for s of others whose pi is linear in mu, else left implicit;
-    none for a second-order scheme, which has no such mapping.
+    It is solved for z of a Runge-Kutta method, for s of others whose pi is linear in mu, else left implicit; None for a
+    second-order scheme, which has no such mapping.
     """
     h = method.step_multiple * H
     pi = characteristic_polynomial(method)
     if pi.is_zero:
-        return []
+        return None
     if isinstance(method.scheme, RungeKutta):
         in_z = sp.Poly(pi.as_expr(), Z)
-        return [sp.Eq(Z, (-in_z.nth(0) / in_z.nth(1)).subs(MU, h * S))]
+        return sp.Eq(Z, (-in_z.nth(0) / in_z.nth(1)).subs(MU, h * S))
     if pi.degree(MU) == 1:
-        return [_solved_for_s(pi, h)]
+        return _solved_for_s(pi, h)
     collected = sp.collect(sp.expand(pi.as_expr()), MU, sp.factor)
-    return [sp.Eq(collected.subs(MU, h * S), 0)]
+    return sp.Eq(collected.subs(MU, h * S), 0)
 
 
 def _solved_for_s(pi: sp.Poly, h: sp.Expr) -> sp.Equality:

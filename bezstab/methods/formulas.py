@@ -6,7 +6,7 @@ from math import lcm
 
 import sympy as sp
 
-from bezstab.methods.derivation import ALPHA_HAT, BETA_HAT, MU, Z, closed_loop_polynomial, mapping_equations
+from bezstab.methods.derivation import ALPHA_HAT, BETA_HAT, MU, Z, closed_loop_polynomial, mapping_equation
 from bezstab.methods.schemes import LinearMultistep, Method, PredictorCorrector, RungeKutta
 from bezstab.methods.second_order import SecondOrder
 from bezstab.methods.second_order_formulas import (
@@ -58,11 +58,10 @@ def recursion_text(method: Method, latex: bool = False) -> str:
 
 def mapping_text(method: Method, latex: bool = False) -> str:
     """Return the s->z mapping (paper Eq. 14, Table 1); of a second-order scheme that it has none."""
-    sides = [
-        f"{_written(_readable(equation.lhs), latex)} = {_written(_readable(equation.rhs), latex)}"
-        for equation in mapping_equations(method)
-    ]
-    return "; ".join(sides) or "none: positions and velocities have a formula each"
+    equation = mapping_equation(method)
+    if equation is None:
+        return "none: positions and velocities have a formula each"
+    return f"{_written(_readable(equation.lhs), latex)} = {_written(_readable(equation.rhs), latex)}"
 
 
 def characteristic_text(method: Method, latex: bool = False) -> str:
@@ -110,7 +109,7 @@ def _quotient(error: LeadingTerm, exact: bool) -> sp.Expr:
 
 def _plane_expression(terms: PlanePolynomial) -> sp.Expr:
     """Return a polynomial in alpha_hat and beta_hat as an expression."""
-    return sp.Poly.from_dict(terms, ALPHA_HAT, BETA_HAT, domain="QQ").as_expr()
+    return sp.Poly.from_dict(dict(terms), ALPHA_HAT, BETA_HAT, domain="QQ").as_expr()  # which writes into it
 
 
 def _readable(expression: sp.Expr) -> sp.Expr:

@@ -35,6 +35,11 @@ AT_ONCE = (2, 4, 8, 16, 32, 64)  # steps of the shortest length at once, so that
 MOST_GROWTH = 3.0  # of V: in the frame of the best ellipse the polygons that were found stay below one
 CORNERS = (9, 18, 36, 72, 144, 360, 720)  # in the half plane, on rays: the fewest that do are the certificate
 
+DIRECTIONS = np.arange(RAYS) * np.pi / RAYS
+"""Of the rays."""
+CIRCLE = np.stack([np.cos(DIRECTIONS), np.sin(DIRECTIONS)])
+"""Where they meet the unit circle."""
+
 
 def invariant_polygon(
     matrix: StepMatrix,
@@ -49,16 +54,14 @@ def invariant_polygon(
     the root of a quadratic `form` (2, 2) maps the state to where its motion is round. Proven for all of the range.
     """
     frame = np.linalg.cholesky(form).T
-    directions = np.arange(RAYS) * np.pi / RAYS
-    circle = np.stack([np.cos(directions), np.sin(directions)])
     back = np.linalg.inv(frame)
     decays = _decays(steps, matrices)
     for reserve in RESERVES:
         factors = np.exp(reserve * decays)[:, np.newaxis, np.newaxis]
-        growth = _growth_to_come(frame @ matrices @ back * factors, circle)
+        growth = _growth_to_come(frame @ matrices @ back * factors)
         if growth is None:
             continue
-        ball = back @ (circle * np.exp(-growth))
+        ball = back @ (CIRCLE * np.exp(-growth))
         for count in CORNERS:
             some = ball[:, np.arange(count) * RAYS // count]
             corners = [(x, v) for x, v in rounded(some / np.abs(some[0]).max()).T]
@@ -101,19 +104,15 @@ def _decays(steps: FloatArray, matrices: FloatArray) -> FloatArray:
     return slowest
 
 
-def _growth_to_come(matrices: FloatArray, circle: FloatArray) -> FloatArray | None:
+def _growth_to_come(matrices: FloatArray) -> FloatArray | None:
     """Return V on the rays, by sweeps; None where it does not settle."""
     several = [np.linalg.matrix_power(matrices[0], count) for count in AT_ONCE]
-    images = np.concatenate([matrices, several]) @ circle
-    gain = np.log(np.maximum(np.hypot(images[:, 0], images[:, 1]), np.finfo(np.float64).tiny))
-    place = np.arctan2(images[:, 1], images[:, 0]) % np.pi * (RAYS / np.pi)
-    below = np.floor(place).astype(int)
-    share = place - below
-    below %= RAYS
-    above = (below + 1) % RAYS
+    x, v = np.moveaxis(np.concatenate([matrices, several]) @ CIRCLE, 1, 0)
+    gain = np.log(np.maximum(np.hypot(x, v), np.finfo(np.float64).tiny))
+    goes_to = np.arctan2(v, x)
     growth: FloatArray = np.zeros(RAYS)
     for _ in range(SWEEPS):
-        to_come = gain + (1 - share) * growth[below] + share * growth[above]
+        to_come = gain + np.interp(goes_to, DIRECTIONS, growth, period=np.pi)
         larger: FloatArray = np.maximum(growth, to_come.max(axis=0))
         change = (larger - growth).max()
         growth = larger

@@ -19,7 +19,7 @@ from bezstab.methods import (
     closed_loop_at,
     closed_loop_polynomial,
     lookup,
-    mapping_equations,
+    mapping_equation,
     steps,
 )
 from bezstab.methods.derivation import characteristic_polynomial
@@ -34,7 +34,8 @@ def same(left: sp.Expr, right: sp.Expr) -> bool:
 
 
 def test_paper_equations_13_and_14_map_s_to_z() -> None:
-    (equation,) = mapping_equations(lookup("B2"))
+    equation = mapping_equation(lookup("B2"))
+    assert equation is not None
     assert equation.lhs == S
     assert same(equation.rhs, 2 / H * Z * (Z - 1) / (3 * Z - 1))
 
@@ -56,7 +57,8 @@ def test_paper_equation_15_is_the_closed_loop_of_b2_in_alpha_beta_and_h() -> Non
 def test_the_mapping_is_the_characteristic_polynomial_solved(name: str) -> None:
     """With s = mu/(m h) both vanish together: solved for s, of Runge-Kutta methods for z."""
     method = lookup(name)
-    (equation,) = mapping_equations(method)
+    equation = mapping_equation(method)
+    assert equation is not None
     if not isinstance(method.scheme, PredictorCorrector):
         assert equation.lhs == (Z if isinstance(method.scheme, RungeKutta) else S)
     difference = (equation.lhs - equation.rhs).subs(S, MU / (H * sp.Rational(method.step_multiple)))
