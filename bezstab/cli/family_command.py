@@ -40,8 +40,8 @@ def family(name: str, first: int, last: int | None, files: Files) -> None:
     members = stability.family_members(name, first, last)
     limit = stability.bezier_limit() if name == "bezier" else None
     rows: list[show.Row] = [show.MEMBERS.row(member) for member in members]
-    if limit:
-        rows.append(show.limit_row(limit))
+    if limit:  # which has no number of steps
+        rows.append(show.MEMBERS.row(limit, steps=None, method="B∞", order=2))
     show_rows(show.MEMBERS, rows)
 
     def draw() -> "Figure":

@@ -36,6 +36,11 @@ class Applied:
     also: tuple[tuple[str, Point], ...] = ()
 
     @property
+    def words(self) -> str:
+        """What the engine did, in one line; nothing where it took values as they are."""
+        return "as typed" if self.notes is None else "; ".join(self.notes)
+
+    @property
     def points(self) -> list[Point]:
         """All of them."""
         return [self.point, *(point for _, point in self.also)]

@@ -59,6 +59,7 @@ class Gains:
     """
 
     applied: str | None
+    inertia: Fraction
     kp: float
     kd: float
     kp_max: float | None
@@ -225,6 +226,7 @@ class Answer(Choice):
         nearest = min(ratios, key=lambda gain: ratios[gain], default=None)
         return Gains(
             applied=DRIVE_METHODS.get(self.method.name),
+            inertia=drive.inertia,
             kp=float(kp),
             kd=float(kd),
             kp_max=None if kp_factor is None else kp_factor * float(kp),

@@ -58,7 +58,6 @@ from bezstab.show.rows import (
     forced_rows,
     largest_step_row,
     left_out,
-    limit_row,
     map_rows,
     method_row,
     nearest,

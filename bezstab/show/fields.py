@@ -45,7 +45,7 @@ Form = str | Callable[[Any], str]
 
 
 def formatted(value: Value, form: Form = "") -> str:
-    """Return a value in a form, minus zero as zero; a dash for None and for an empty text.
+    """Return a value in a form, by default six digits, minus zero as zero; a dash for None and for an empty text.
 
     Truth is yes or no; a format of its own is what it is called in place of no.
     """
@@ -56,7 +56,7 @@ def formatted(value: Value, form: Form = "") -> str:
     if isinstance(value, bool):
         return "yes" if value else form or "no"
     if isinstance(value, float):
-        value += 0.0  # minus zero becomes zero
+        return format(value + 0.0, form or ".6g")  # minus zero becomes zero
     return format(value, form)
 
 
@@ -68,8 +68,8 @@ class Field:
     Where there is no value the column shows what `otherwise` makes of the row, by default a dash. `unit` is "" where it
     has none. `null` says when there is no value, "" for never. `values_of` names the types that list all that a text
     can be, such as "evidence.MovingVerdict", with a space between two. `path` leads to it in the result by attributes
-    and places, such as "margins.alpha.0", or "t.-1" for the last time. By default it is the attribute that has the
-    key's name.
+    and places, such as "margins.alpha.0", or "t.-1" for the last time. In a result where no path begins like this, and
+    without a path, it is the attribute that has the key's name.
     """
 
     key: str
@@ -115,10 +115,10 @@ class Field:
         """The same field where a table does not show it."""
         return self.shown("")
 
-    def value_of(self, result: object) -> Any:
+    def value_of(self, result: Any) -> Any:
         """Return what the path leads to in a result; None where something on the way is None."""
-        value: Any = result
-        for name in (self.path or self.key).split("."):
+        value, names = result, self.path.split(".")
+        for name in names if hasattr(result, names[0]) else [self.key]:
             if value is None:
                 return None
             if name in PARTS:

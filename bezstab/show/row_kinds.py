@@ -51,13 +51,12 @@ METHOD = text(
     "method",
     otherwise=lambda _: "yours",
 )
-ALPHA_HAT = number("alpha_hat", "Dimensionless damping of the feedback, 2 alpha h", "α̂", ".6g")
-BETA_HAT = number("beta_hat", "Dimensionless stiffness of the feedback, beta^2 h^2", "β̂", ".6g")
+ALPHA_HAT = number("alpha_hat", "Dimensionless damping of the feedback, 2 alpha h", "α̂")
+BETA_HAT = number("beta_hat", "Dimensionless stiffness of the feedback, beta^2 h^2", "β̂")
 ALPHA = number(
     "alpha",
     "Damping of the feedback c'' + 2 alpha c' + beta^2 c = 0",
     "α (1/s)",
-    ".6g",
     unit="1/s",
     null=UNKNOWN_STEP,
 )
@@ -65,11 +64,10 @@ BETA = number(
     "beta",
     "Stiffness of the same feedback as a rate",
     "β (1/s)",
-    ".6g",
     unit="1/s",
     null="where no step is given, and for a negative beta_hat",
 )
-H = number("h", "Step size", "h (s)", "g", unit="s", null=UNKNOWN_STEP)
+H = number("h", "Step size", "h (s)", unit="s", null=UNKNOWN_STEP)
 Z_REAL = number("z_real", "Real part of the pole", path="pole.real")
 Z_IMAG = number("z_imag", "Imaginary part of the pole, that of the upper one of a pair", path="pole.imag")
 Z_ABS = number(
@@ -122,7 +120,6 @@ Z_ABS_BELOW = number(
     "z_abs_below",
     "What |z_p| is below, or on a front at most; 1 where the method is stable",
     "|z_p| up to",
-    ".6g",
     path="region.level",
 )
 AREA = number(
@@ -341,12 +338,11 @@ MOVING = (
 )
 # what `region --accuracy` adds: the two points that its figure marks
 ACCURACY = (
-    OMEGA_H.of("question.motion.omega_h"),
+    OMEGA_H,
     number(
         "accurate_alpha_hat",
         "Where the goal accurate chooses to be, in alpha_hat",
         "accurate α̂",
-        ".6g",
         null=NO_CHOICE,
         path="chosen.alpha_hat",
     ),
@@ -354,7 +350,6 @@ ACCURACY = (
         "accurate_beta_hat",
         "Where the goal accurate chooses to be, in beta_hat",
         "accurate β̂",
-        ".6g",
         null=NO_CHOICE,
         path="chosen.beta_hat",
     ),
@@ -381,7 +376,12 @@ ACCURACY = (
         null=NO_BEST,
     ),
 )
-APPLIED = text("applied", "What the engine does to its values before it uses them", null="where nothing is known of it")
+APPLIED = text(
+    "applied",
+    "What the engine does to its values before it uses them",
+    null="where nothing is known of it",
+    path="question.given.words",
+)
 # constraints that an engine sweeps over, also of `chains` and `engines`
 SWEPT_ITERATIONS = integer(
     "swept_iterations", "Sweeps that the engine makes in a step", "sweeps", null=NO_SWEEPS, path="swept.iterations"
@@ -419,10 +419,10 @@ SWEPT_OVER = (
     STABLE_ITERATIONS,
 )
 """What an engine that sweeps adds: the first to all, the others to --chain and --scene."""
-# what --pd adds; HELD has some of them too
+# what --pd adds, of `Gains`; HELD has some of them too
 DRIVE = (
-    text("drive", "How the drive is applied", "applied", null="where the method is no drive's", path="gains.applied"),
-    number("kp", "Stiffness of the drive", "kp", ".4g", unit="N m/rad or N/m", path="gains.kp"),
+    text("drive", "How the drive is applied", "applied", null="where the method is no drive's", path="applied"),
+    number("kp", "Stiffness of the drive", "kp", ".4g", unit="N m/rad or N/m"),
     number(
         "kp_max",
         "Largest stable stiffness with this damping",
@@ -431,9 +431,8 @@ DRIVE = (
         otherwise=any_or_none,
         unit="N m/rad or N/m",
         null="without a limit",
-        path="gains.kp_max",
     ),
-    number("kd", "Damping of the drive", "kd", ".4g", unit="N m s/rad or N s/m", path="gains.kd"),
+    number("kd", "Damping of the drive", "kd", ".4g", unit="N m s/rad or N s/m"),
     number("inertia", "Inertia that the drive feels", unit="kg m^2 or kg", path="question.drive.inertia"),
     number(
         "kd_max",
@@ -443,7 +442,6 @@ DRIVE = (
         otherwise=any_or_none,
         unit="N m s/rad or N s/m",
         null="without a limit",
-        path="gains.kd_max",
     ),
     text(
         "used_up",
@@ -452,7 +450,6 @@ DRIVE = (
         text=used_up_text,
         null="where none has one",
         values_of="questions.Gain",
-        path="gains.used_up",
     ),
 )
 # what --h-min adds: a proof, or a sequence of steps that refutes it
@@ -511,13 +508,12 @@ LIKE_POINT = (
 )
 # what `region --scene` adds
 MOVING_REGION = (
-    number("speed", "Factor on the scene's own speed at which it moves", "speed", "g", null=LEVEL_ROW),
+    number("speed", "Factor on the scene's own speed at which it moves", "speed", null=LEVEL_ROW),
     KAPPA,
     number(
         "area_moving",
         "Area of the region of the moving mechanism in alpha_hat and beta_hat",
         "area moving",
-        ".6g",
         null=LEVEL_ROW,
     ),
 )
@@ -579,7 +575,6 @@ REGIONS = RowKind(
             "critical_damping_limit",
             "Largest beta h on alpha = beta up to which all are stable",
             "βh to (α = β)",
-            ".6g",
             otherwise=lambda _: "unlimited",
             null="if all",
         ),
@@ -624,7 +619,6 @@ REGIONS = RowKind(
             "unconditional_damping_ratio",
             "Damping ratio alpha / beta above which every step is stable",
             "every h stable from α/β",
-            ".6g",
             otherwise=lambda _: "none",
             null="if none is",
         ),
@@ -712,7 +706,6 @@ CHAINS = RowKind(
             "chain_mass_ratio",
             "Mass of the last body of the chain over that of each other",
             "last mass",
-            "g",
             path="mass_ratio",
         ),
         integer("chain_bodies", "Bodies of the chain, the first held by the world", "bodies"),
@@ -844,8 +837,8 @@ LINTED = RowKind(
         text("map", "Method whose region judges the element", "map"),
         VERDICT,
         SAFE,
-        Z_ABS.of("z_abs"),
-        H_FACTOR.of("h_factor"),
+        Z_ABS,
+        H_FACTOR,
         text("advice", "What to write instead", "advice", null="where nothing is to be changed"),
     ),
     sometimes=("alpha_hat", "beta_hat", "map", "verdict", "safe", "z_abs"),
@@ -874,8 +867,8 @@ ENGINES_LISTED = RowKind(
             null="where its source alone says it",
         ),
         SOURCE,
-        EXCLUDES.of("excludes"),
-        SWEEPS.shown("sweeps").of("sweeps"),
+        EXCLUDES,
+        SWEEPS.shown("sweeps"),
         SWEPT_ITERATIONS.hidden.of("sweeping.iterations"),
         text("swept_word", "What the engine calls their number", null=NO_SWEEPS, path="sweeping.word"),
         text("swept_source", "Where it is from how the engine sweeps", null=NO_SWEEPS, path="sweeping.source"),
@@ -893,7 +886,7 @@ SIMULATIONS = RowKind(
         ALPHA_HAT,
         BETA_HAT,
         H,
-        number("time", "When the run ended", "until (s)", ".6g", unit="s", path="t.-1"),
+        number("time", "When the run ended", "until (s)", unit="s", path="t.-1"),
         C_MAX.of("observation.c_max"),
         CDOT_MAX.of("observation.cdot_max"),
         ENERGY_DRIFT.of("energy_drift.-1"),
@@ -912,7 +905,6 @@ SIMULATIONS = RowKind(
             "pivot_time",
             "When that pivot was least",
             "least pivot at (s)",
-            ".6g",
             unit="s",
             path="trajectory.pivot_time",
         ),
@@ -1069,7 +1061,6 @@ VERDICT_MAPS = RowKind(
             "band",
             "Distance of the modulus from one below which a verdict is too close to call",
             "too close to call: | |z_p| - 1 | below",
-            "g",
         ),
         integer(
             "too_close",
@@ -1100,7 +1091,7 @@ FORCED = RowKind(
     fields=(
         SCENE.hidden,
         METHOD,
-        number("gain_share", "Factor on alpha and beta of the point that was chosen or given", "gains", "g"),
+        number("gain_share", "Factor on alpha and beta of the point that was chosen or given", "gains"),
         ALPHA_HAT,
         BETA_HAT,
         H,
@@ -1137,9 +1128,8 @@ WITNESSED = RowKind(
             "times_boundary",
             "Distance of the point from the origin, in those of the boundary on its ray",
             "times the boundary",
-            "g",
         ),
-        PREDICTED_Z_ABS.of("predicted_z_abs"),
+        PREDICTED_Z_ABS,
         PREDICTED_VERDICT,
         MEASURED_VERDICT,
         number(
@@ -1182,7 +1172,7 @@ SWEPT = RowKind(
         H,
         ALPHA_HAT,
         BETA_HAT,
-        Z_ABS.of("z_abs"),
+        Z_ABS,
         number(
             "trajectory_error",
             "Largest error of the coordinates",
@@ -1231,16 +1221,16 @@ FRONTS = RowKind(
     "the least error that a method can force with |z_p| at most so large",
     fields=(
         METHOD,
-        OMEGA_H.of("omega_h"),
-        Z_ABS_BELOW.of("z_abs_below"),
-        Z_ABS.hidden.of("z_abs"),
+        OMEGA_H,
+        Z_ABS_BELOW,
+        Z_ABS.hidden,
         ALPHA_HAT,
         BETA_HAT,
         H,
         ALPHA,
         BETA,
-        TOTAL_ERROR.of("total_error"),
-        VELOCITY_ERROR.of("velocity_error"),
+        TOTAL_ERROR,
+        VELOCITY_ERROR,
         number(
             "combined_error",
             "The largest constraint error that is forced at any rate and velocity_error, such shares, added up",
@@ -1282,10 +1272,10 @@ HELD = RowKind(
     "a drive that is held or late",
     fields=(
         METHOD,
-        _APPLIED.of("applied"),
+        _APPLIED,
         VERDICT,
         SAFE,
-        Z_ABS.of("z_abs"),
+        Z_ABS,
         number(
             "fresh_z_abs",
             "Modulus of the same drive's pole if each step computes and applies its torque",

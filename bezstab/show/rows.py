@@ -27,7 +27,6 @@ from bezstab.show.row_kinds import (
     FORCED,
     LARGEST_STEPS,
     LISTED_METHODS,
-    MEMBERS,
     MOVING,
     POLE,
     POLES,
@@ -57,7 +56,7 @@ if TYPE_CHECKING:  # so that a small row does not load what makes the large ones
     from bezstab.engines import Engine
     from bezstab.evidence import HalvedStep, Likeness, LikePoint
     from bezstab.questions import Answer, ChainMap, LargestStep, MapAnswer, Question, RegionAnswer
-    from bezstab.stability import FrontPoint, Limit
+    from bezstab.stability import FrontPoint
 
 
 def pole_cells(z: complex) -> dict[str, Value]:
@@ -162,12 +161,6 @@ def _nowhere(answer: RegionAnswer) -> str | None:
     return f"stable nowhere: a pole stays at {pole_place(answer.region.fixed_poles[0])} whatever α̂ and β̂"
 
 
-def limit_row(limit: Limit) -> Row:
-    """Return the row of the Bezier family's limit, of order two, which has no number of steps."""
-    extent = {"alpha_hat_max": limit.alpha_hat_max, "beta_hat_max": limit.beta_hat_max}
-    return MEMBERS.row(limit, steps=None, method="B∞", order=2, area=limit.area, **extent)
-
-
 def forced_rows(scene: str, pair: HalvedStep) -> list[Row]:
     """Return what two runs at one point were predicted to force and did, the larger step first; SI units.
 
@@ -237,31 +230,22 @@ def left_out(question: Question) -> tuple[str, ...]:
 def _added_cells(answer: Answer, *of_engine: Field) -> dict[str, Value]:
     """Return what an engine, a drive, a scene and a range of steps add to a row of an answer's point.
 
-    Of an engine it is what it does to its values, over what it sweeps, and the fields `of_engine`.
+    Of an engine it is what it does to its values and what is left out, which is null where the values were not given;
+    over what it sweeps; and the fields `of_engine`.
     """
+    from bezstab.questions import growing_run
+
     added: dict[str, Value] = {}
     if answer.question.engine:
         if answer.role != "chosen":
-            added |= _applied_cells(answer)
+            given = answer.role == "given" and answer.goal == "as given"
+            added |= cells((APPLIED, EXCLUDES), answer if given else None)
         swept_over = SWEPT_OVER if answer.swept else SWEPT_OVER[:1]
         added |= cells((SWEEPS, *swept_over, *of_engine), answer)
-    if answer.gains:
-        added |= cells(DRIVE, answer)
-    if answer.moving:
-        added |= cells(MOVING, answer.moving)
-    if answer.varying:
-        from bezstab.questions import growing_run
-
-        added |= cells(VARYING, answer.varying, {"shown_by": growing_run(answer)})
+    for fields, found in ((DRIVE, answer.gains), (MOVING, answer.moving), (VARYING, answer.varying)):
+        if found:
+            added |= cells(fields, found, {"shown_by": growing_run(answer)})
     return added
-
-
-def _applied_cells(answer: Answer) -> dict[str, Value]:
-    """Return what an engine does to its values, and what is left out; None for values that were not given."""
-    if answer.role != "given" or answer.goal != "as given":
-        return {"applied": None, "excludes": None}
-    notes = answer.question.given.notes
-    return cells((APPLIED, EXCLUDES), answer, {"applied": "as typed" if notes is None else "; ".join(notes)})
 
 
 def largest_step_row(found: LargestStep) -> Row:
