@@ -274,17 +274,16 @@ def choose(
     paper Eq. 17; the goals are this package's.
     """
     named = None if engine is None else engine_named(engine)
-    drive = _drive(pd)
-    if method is None and drive:
+    if method is None and pd is not None:
         raise InputError("pd: name one method, such as 'SYM' where the drive is applied explicitly")
     question = _asked(
         questions.Question,
         methods=method,
-        goal=goal or questions.usual_goal(named, drive),
+        goal=goal or questions.usual_goal(named, pd is not None),
         settle=settle,
         equal=equal,
         engine=named,
-        drive=drive,
+        drive=pd,
         **asked,
     )
     (chosen,) = questions.answers(question)
@@ -347,7 +346,7 @@ def check(
         engine=named,
         values=values,
         as_typed=as_typed,
-        drive=_drive(pd),
+        drive=pd,
         **asked,
     )
     return _first_unsafe(questions.answers(question))
@@ -385,7 +384,7 @@ def check_drive(
     """
     question = _asked(
         questions.HeldQuestion,
-        drive=_drive(pd),
+        drive=pd,
         h=h,
         methods=method,
         every=every,
@@ -606,10 +605,8 @@ def _exact(value: Number, name: str) -> Fraction:
         raise InputError(f"{name}: {error}") from None
 
 
-def _drive(gains: Sequence[Number] | None) -> Drive | None:
+def _drive(gains: Sequence[Number], _name: str) -> Drive:
     """Return the drive of gains (kp, kd, inertia); InputError for another number of them."""
-    if gains is None:
-        return None
     if isinstance(gains, str) or not isinstance(gains, Sequence) or len(gains) != 3:
         raise InputError(f"pd = {shown(gains)}: expected (kp, kd, inertia)")
     return Drive(*(_exact(gain, name) for gain, name in zip(gains, ("kp", "kd", "inertia"), strict=True)))
@@ -645,6 +642,7 @@ READ: Mapping[str, Callable[[Any, str], Any]] = {
     **dict.fromkeys(("h", "h_min", "h_max", "omega", "omega_h", "speed", "mass_ratio", "settle"), _exact),
     **dict.fromkeys(("late", "filter_seconds", "duration", "perturb"), _exact),
     **dict.fromkeys(("chain", "iterations"), _whole),
+    "drive": _drive,
     "spread": _real,
     "scene": _scene,
     "methods": lambda given, _name: (method(given),),

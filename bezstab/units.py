@@ -99,12 +99,14 @@ def feedback_gains(alpha_hat: Number, beta_hat: Number, h: Any) -> tuple[Number,
 
 
 def alpha_and_beta(
-    alpha_hat: Fraction | float, beta_hat: Fraction | float, h: Fraction | float
-) -> tuple[float, float | None]:
+    alpha_hat: Fraction | float, beta_hat: Fraction | float, h: Fraction | float | None
+) -> tuple[float | None, float | None]:
     """Return (alpha, beta) in 1/s of one point for a step of h seconds, rounded once, to be shown.
 
-    beta is None where beta_hat is negative; what is beyond float64 is infinite.
+    Both are None without a step, beta where beta_hat is negative; what is beyond float64 is infinite.
     """
+    if h is None:
+        return None, None
     two_alpha, beta_squared = feedback_gains(Fraction(alpha_hat), Fraction(beta_hat), Fraction(h))
     if beta_squared < 0:
         return _as_float(two_alpha / 2), None

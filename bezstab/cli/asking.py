@@ -86,7 +86,7 @@ def show_below(question: "questions.Question", found: "Sequence[questions.Answer
 
     For people to read, it is also said what an engine did to its values, and what the conversion leaves out.
     """
-    say_each(answer.cost_reason for answer in found)
+    say_each(answer.cost_or_reason[1] for answer in found)
     if not for_reading():
         return
     if motion and not question.drive:

@@ -84,7 +84,7 @@ def choose(goal: Goal | None, equal: str | None, bandwidth: Fraction | None, **t
     asked_by = "--bandwidth, --settle, --every, --late and --filter"
     if held := held_asked(typed, asked_by, always=settling):
         return _choose_held(held, bandwidth, settle)
-    goal = goal or questions.usual_goal(typed["engine"], drive)
+    goal = goal or questions.usual_goal(typed["engine"], drive is not None)
     question = asked_of_scene(questions.Question, goal=goal, equal=equal is not None, **typed)
     chosen = list(progress(questions.answers(question), goal, len(question.methods)))
     show_rows(CHOICES, map(answer_row, chosen), left_out(question))

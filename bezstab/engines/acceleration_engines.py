@@ -7,8 +7,7 @@ from bezstab.engines.conversions import (
     Curve,
     Engine,
     Point,
-    gains_in_words,
-    in_words,
+    stiffness_and_damping,
 )
 from bezstab.errors import InputError
 from bezstab.rationals import ONE, ZERO
@@ -65,10 +64,10 @@ def _apply_mujoco(h: Fraction, first: Fraction, second: Fraction, *solimp: Fract
     )
 
 
-def _write_solref(point: Point, h: Fraction) -> tuple[str, ...]:
-    damping, stiffness = feedback_gains(*point, h)
-    impedance = in_words(float(DEFAULT_SOLIMP[1]))  # of d0 as well: r = 1 whatever the error
-    return in_words(-float(stiffness)), in_words(-float(damping)), impedance, impedance
+def _write_solref(alpha_hat: float, beta_hat: float, h: float) -> tuple[float, ...]:
+    damping, stiffness = feedback_gains(alpha_hat, beta_hat, h)
+    impedance = float(DEFAULT_SOLIMP[1])  # of d0 as well: r = 1 whatever the error
+    return -stiffness, -damping, impedance, impedance
 
 
 MUJOCO = Engine(
@@ -96,9 +95,9 @@ def _read_time_constant(h: Fraction, time_constant: Fraction) -> Point:
     return to_dimensionless(1 / time_constant, 1 / time_constant, h)
 
 
-def _time_constant(point: Point, h: Fraction) -> float:
+def _write_time_constant(alpha_hat: float, beta_hat: float, h: float) -> tuple[float]:
     """Return T in s."""
-    return 2 * float(h) / float(point[0])
+    return (2 * h / alpha_hat,)
 
 
 def _critical_damping(strongest: float) -> Curve:
@@ -115,10 +114,10 @@ def _apply_genesis(h: Fraction, time_constant: Fraction) -> Applied:
     return Applied(_read_time_constant(h, max(time_constant, least)), (note,) if time_constant < least else ())
 
 
-def _write_genesis(point: Point, h: Fraction) -> tuple[str, ...]:
-    time_constant, least = _time_constant(point, h), LEAST_TIME_CONSTANT * float(h)
+def _write_genesis(alpha_hat: float, beta_hat: float, h: float) -> tuple[float]:
+    (time_constant,), least = _write_time_constant(alpha_hat, beta_hat, h), LEAST_TIME_CONSTANT * h
     at_clamp = abs(time_constant / least - 1) < 1e-8  # rounding of a point that was computed, and of nine digits
-    return (in_words(least * (1 + 1e-8) if at_clamp else time_constant),)
+    return (least * (1 + 1e-8) if at_clamp else time_constant,)
 
 
 GENESIS = Engine(
@@ -147,7 +146,7 @@ CROCODDYL = Engine(
     parameters=("gains[0]", "gains[1]"),
     units=("1/s^2", "1/s"),
     read=_read_gains,
-    write=gains_in_words,
+    write=stiffness_and_damping,
     paste="gains = [{}, {}]",
     source="Crocoddyl source, contact-3d.hxx; integrator/euler.hxx (its Euler moves with the new velocity)",
     excludes="friction cones and impulses",
@@ -161,7 +160,7 @@ PINOCCHIO = Engine(
     parameters=("Kp", "Kd"),
     units=("1/s^2", "1/s"),
     read=_read_gains,
-    write=gains_in_words,
+    write=stiffness_and_damping,
     marks=(("Pinocchio: Kp = Kd = 0", "0 0"),),
     source="Pinocchio source, contact-info.hpp (corrector, 0 and 0 unless set); constrained-dynamics.hxx",
     excludes="errors of orientation, which are logarithms of rotations; the proximal solver's mu",
@@ -179,7 +178,7 @@ RBDL = Engine(
     above_zero=("T_stab",),
     units=("s",),
     read=_read_time_constant,
-    write=lambda point, h: (in_words(_time_constant(point, h)),),
+    write=_write_time_constant,
     reaches="β̂ = α̂²/4, as it has one time constant",
     marks=(("RBDL: T_stab = 0.1", "0.1"),),
     curve=_critical_damping(FASTEST_ASKED_FOR),
@@ -195,7 +194,7 @@ RIGID_BODY_DYNAMICS = Engine(
     parameters=("k", "d"),
     units=("1/s^2", "1/s"),
     read=_read_gains,
-    write=gains_in_words,
+    write=stiffness_and_damping,
     paste="PDGains({}, {})",
     marks=(("RigidBodyDynamics.jl: PDGains(100, 20)", "100 20"),),
     source="RigidBodyDynamics.jl source, mechanism_algorithms.jl, pdcontrol.jl, simulate.jl (Munthe-Kaas with RK4)",
@@ -206,11 +205,6 @@ RIGID_BODY_DYNAMICS = Engine(
 # MapleSim, Drake's older solver: alpha and beta themselves
 
 
-def _write_alpha_beta(point: Point, h: Fraction) -> tuple[str, ...]:
-    alpha, beta = from_dimensionless(float(point[0]), float(point[1]), float(h))
-    return in_words(alpha), in_words(beta)
-
-
 def _engine_with_alpha_and_beta(name: str, source: str) -> Engine:
     return Engine(
         name=name,
@@ -219,7 +213,7 @@ def _engine_with_alpha_and_beta(name: str, source: str) -> Engine:
         parameters=("alpha", "beta"),
         units=("1/s", "1/s"),
         read=lambda h, alpha, beta: to_dimensionless(alpha, beta, h),
-        write=_write_alpha_beta,
+        write=from_dimensionless,
         source=source,
         excludes="nothing: these are the coefficients of c'' + 2 alpha c' + beta^2 c = 0",
     )
@@ -240,7 +234,7 @@ CHRONO_EXPLICIT = Engine(
     parameters=(),
     units=(),
     read=lambda h: (ZERO, ZERO),
-    write=lambda point, h: (),
+    write=lambda alpha_hat, beta_hat, h: (),
     reaches="(0, 0), as it has no stabilisation",
     source="Chrono source, ChIntegrable.cpp (StateSolveA: c'' = 0 by differences), ChTimestepperExplicit.cpp",
     excludes="nothing: Euler, Runge-Kutta, Heun and leapfrog add no feedback; lumped masses take penalties instead",
@@ -258,7 +252,7 @@ BRAX_SPRING = Engine(
     above_zero=("mass",),
     units=("N/m", "N s/m", "kg"),
     read=lambda h, stiffness, damping, mass=ONE: _read_gains(h, stiffness / mass, damping / mass),
-    write=lambda point, h: (*gains_in_words(point, h), "1"),
+    write=lambda alpha_hat, beta_hat, h: (*stiffness_and_damping(alpha_hat, beta_hat, h), 1.0),
     source="Brax source, spring/joints.py, spring/pipeline.py, spring/integrator.py; io/mjcf.py (2000, 0 unless set)",
     excludes="angles (constraint_ang_damping); vel_damping and ang_damping; spring_mass_scale; contacts: brax-contact",
 )

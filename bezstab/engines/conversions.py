@@ -54,8 +54,9 @@ class Engine:
     error back into velocities or positions; for one constraint its step is that of `method` at that point, no other.
     `method` is the name of the engine's own integrator, None for a library that has none: the user's decides.
     `parameters` are the values needed, `optional` those that may follow, `units` the units of both; those in
-    `above_zero` and `from_zero` mean nothing below. `read(h, *values)` is the point of such values, `write(point, h)`
-    the values of a point as text. Points without values are found by reading them back: `reaches` says which have some.
+    `above_zero` and `from_zero` mean nothing below. `read(h, *values)` is the point of such values. `write(alpha_hat,
+    beta_hat, h)` are the values of a point, in float64. As many `digits` of each are pasted: all, 17, where a value may
+    be next to another. Points without values are found by reading them back: `reaches` says which have some.
     `paste` is the line to paste where it is not name = value, for as many values as it has {}. `apply(h, *values)` is
     what the engine does to values before it uses them (clamps, scaling), None if nothing. `marks` are the settings
     everybody meets: a label, and the values as they are typed, or 2h for two steps. `excludes` is what the conversion
@@ -69,7 +70,7 @@ class Engine:
     parameters: tuple[str, ...]
     units: tuple[str, ...]
     read: Callable[..., Point]
-    write: Callable[[Point, Fraction], tuple[str, ...]]
+    write: Callable[[float, float, float], tuple[float, ...]]
     source: str
     excludes: str
     method: str | None = "SYM"
@@ -81,6 +82,7 @@ class Engine:
     marks: tuple[tuple[str, str], ...] = ()
     paste: str | None = None
     curve: Curve | None = None
+    digits: int = 9
     jointly: bool = False
     sweeping: Sweeping | None = None
 
@@ -121,7 +123,7 @@ class Engine:
         They are read back, so that what is pasted is the point.
         """
         try:
-            values = self.write(point, h)
+            values = tuple(f"{value:.{self.digits}g}" for value in self.write(*map(float, (*point, h))))
             back = self.applied(tuple(map(rational, values)), h).point
             apart = max(abs(read - asked) - READ_BACK * asked for read, asked in zip(back, point, strict=True))
             reached = min(point) >= 0 and apart <= READ_BACK
@@ -165,7 +167,7 @@ def engine_without_parameters(point: Point, **facts: Any) -> Engine:
         parameters=(),
         units=(),
         read=lambda h: point,
-        write=lambda asked, h: (),
+        write=lambda alpha_hat, beta_hat, h: (),
         curve=lambda share: (alpha_hat, beta_hat),
         reaches=f"({alpha_hat:g}, {beta_hat:g})",
         **facts,
@@ -176,17 +178,12 @@ def _typed(number: str, h: Fraction) -> Fraction:
     return Fraction(number.removesuffix("h")) * (h if number.endswith("h") else 1)
 
 
-def gains_in_words(point: Point, h: Fraction) -> tuple[str, str]:
-    """Return the stiffness beta^2 (1/s^2) and the damping 2 alpha (1/s) of a point as they are pasted, h in s."""
-    damping, stiffness = feedback_gains(*point, h)
-    return in_words(float(stiffness)), in_words(float(damping))
+def stiffness_and_damping(alpha_hat: float, beta_hat: float, h: float) -> tuple[float, float]:
+    """Return the stiffness beta^2 (1/s^2) and the damping 2 alpha (1/s) of a point, h in s."""
+    damping, stiffness = feedback_gains(alpha_hat, beta_hat, h)
+    return stiffness, damping
 
 
 def hard(share: Any) -> tuple[Any, Any]:
     """Return the points of a constraint that ends every step with c' = 0 and takes back that share of the error."""
     return 1.0, share
-
-
-def in_words(value: float) -> str:
-    """Return a value as it stands in a line to paste: nine digits, so that what is read back agrees to 1e-8."""
-    return f"{value:.9g}"

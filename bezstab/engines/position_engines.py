@@ -10,7 +10,7 @@ XPBD's compliance is a spring that is solved implicitly: implicit Euler.
 
 from fractions import Fraction
 
-from bezstab.engines.conversions import Engine, Point, engine_without_parameters, hard, in_words
+from bezstab.engines.conversions import Engine, Point, engine_without_parameters, hard
 from bezstab.engines.sweeping import Move, Pass, Sweeping, SweptStep, VelocityOfMove
 from bezstab.errors import InputError
 from bezstab.rationals import ONE, ZERO
@@ -26,8 +26,8 @@ def _share_of_all(engine: str, share: Fraction, iterations: Fraction) -> Fractio
     return 1 - (1 - share) ** int(iterations)
 
 
-def _write_share(point: Point, h: Fraction) -> tuple[str, ...]:
-    return (in_words(float(point[0])),)
+def _write_share(alpha_hat: float, beta_hat: float, h: float) -> tuple[float]:
+    return (alpha_hat,)
 
 
 # Box2D up to version 2.4: velocities are swept without error, then each sweep over positions takes back all of it
@@ -54,8 +54,8 @@ def _read_jolt(h: Fraction, baumgarte: Fraction, position_steps: Fraction = Frac
     return ONE, _share_of_all("jolt", baumgarte, position_steps)
 
 
-def _write_jolt(point: Point, h: Fraction) -> tuple[str, ...]:
-    return f"{1 - (1 - float(point[1])) ** 0.5:.17g}", "2"  # all digits: it may be small
+def _write_jolt(alpha_hat: float, beta_hat: float, h: float) -> tuple[float, float]:
+    return 1 - (1 - beta_hat) ** 0.5, 2.0
 
 
 def _jolt_step(iterations: int, h: Fraction, baumgarte: Fraction, position_steps: Fraction = Fraction(2)) -> SweptStep:
@@ -71,6 +71,7 @@ JOLT = Engine(
     units=("-", "-"),
     read=_read_jolt,
     write=_write_jolt,
+    digits=17,  # it may be small
     reaches="α̂ = 1 with β̂ <= 1",
     marks=(("Jolt: 0.2, 2 position steps", "0.2"),),
     curve=hard,
@@ -125,9 +126,9 @@ def _read_xpbd(h: Fraction, compliance: Fraction, damping: Fraction = ZERO, inve
     return from_feedback_gains(damping * inverse_mass, inverse_mass / compliance, h)
 
 
-def _write_xpbd(point: Point, h: Fraction) -> tuple[str, ...]:
-    two_alpha, beta_squared = feedback_gains(*point, h)
-    return in_words(float(1 / beta_squared)), in_words(float(two_alpha)), "1"
+def _write_xpbd(alpha_hat: float, beta_hat: float, h: float) -> tuple[float, ...]:
+    two_alpha, beta_squared = feedback_gains(alpha_hat, beta_hat, h)
+    return 1 / beta_squared, two_alpha, 1.0
 
 
 XPBD = Engine(

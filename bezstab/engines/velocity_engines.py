@@ -21,9 +21,8 @@ from bezstab.engines.conversions import (
     Engine,
     Point,
     engine_without_parameters,
-    gains_in_words,
     hard,
-    in_words,
+    stiffness_and_damping,
 )
 from bezstab.engines.sweeping import Move, Pass, Sweeping, SweptStep, hard_velocity_step
 from bezstab.errors import InputError
@@ -50,7 +49,7 @@ def _engine_with_erp(name: str, default: str, word: str = "ERP", **facts: Any) -
         parameters=(word,),
         units=("-",),
         read=lambda h, erp: (ONE, erp),
-        write=lambda point, h: (in_words(float(point[1])),),
+        write=lambda alpha_hat, beta_hat, h: (beta_hat,),
         reaches="α̂ = 1",
         marks=((f"{name}: {word} = {default}", default),),
         curve=hard,
@@ -87,12 +86,10 @@ def _read_ode(h: Fraction, erp: Fraction, cfm: Fraction = ZERO, mass: Fraction =
     return alpha_hat, alpha_hat * erp
 
 
-def _write_ode(point: Point, h: Fraction) -> tuple[str, ...]:
-    alpha_hat, beta_hat = point
+def _write_ode(alpha_hat: float, beta_hat: float, h: float) -> tuple[float, ...]:
     if alpha_hat == 1:
-        return (in_words(float(beta_hat)),)
-    erp, cfm = float(beta_hat / alpha_hat), float(h * (1 / alpha_hat - 1))
-    return in_words(erp), in_words(cfm), "1"
+        return (beta_hat,)
+    return beta_hat / alpha_hat, h * (1 / alpha_hat - 1), 1.0
 
 
 def _ode_step(iterations: int, h: Fraction, erp: Fraction, cfm: Fraction = ZERO, mass: Fraction = ONE) -> SweptStep:
@@ -165,15 +162,14 @@ def _apply_box2d(h: Fraction, hertz: Fraction, damping_ratio: Fraction) -> Appli
     return Applied(_read_box2d(h, min(hertz, fastest), damping_ratio), (note,) if hertz > fastest else ())
 
 
-def _write_box2d(point: Point, h: Fraction) -> tuple[str, ...]:
-    share = float(point[1])
+def _write_box2d(alpha_hat: float, share: float, h: float) -> tuple[float, float]:
     zeta = USUAL_DAMPING_RATIO
     # the turn at which t^2 / (1 + 2 zeta t + t^2) is the share
     turn = (zeta * share + math.sqrt((zeta * share) ** 2 + share * (1 - share))) / (1 - share)
     if turn > MOST_TURN:  # as fast as may be, and damped less
         turn = MOST_TURN * (1 - 1e-10)  # so that its twelve digits are not above the clamp
         zeta = max(0.0, (turn**2 * (1 - share) - share) / (2 * turn * share))
-    return f"{turn / (2 * math.pi * float(h)):.12g}", in_words(zeta)
+    return turn / (2 * math.pi * h), float(f"{zeta:.9g}")
 
 
 def _box2d_step(iterations: int, h: Fraction, hertz: Fraction, damping_ratio: Fraction) -> SweptStep:
@@ -189,6 +185,7 @@ BOX2D = Engine(
     units=("Hz", "-"),
     read=_read_box2d,
     write=_write_box2d,
+    digits=12,
     reaches=f"α̂ = 1 with 0 < β̂ <= {LARGEST_SHARE:.4g}",
     apply=_apply_box2d,
     marks=(("Box2D joints: 60 Hz, 2", "60 2"),),
@@ -211,16 +208,14 @@ def _read_rapier(h: Fraction, natural_frequency: Fraction, damping_ratio: Fracti
     return scale + share - scale * share, scale * share
 
 
-def _write_rapier(point: Point, h: Fraction) -> tuple[str, ...]:
-    alpha_hat, beta_hat = map(float, point)
+def _write_rapier(alpha_hat: float, beta_hat: float, h: float) -> tuple[float, float]:
     half = (alpha_hat + beta_hat) / 2  # of scale + share, while scale * share is beta_hat
     scale = half + math.sqrt(half**2 - beta_hat)
     share = beta_hat / scale
     x = scale / (1 - scale)
     turn = math.sqrt(share / (1 - scale))
     zeta = (x / turn - turn) / 2
-    natural_frequency = turn / (2 * math.pi * float(h))
-    return f"{natural_frequency:.17g}", f"{zeta:.17g}"  # all digits: 1 - scale may be small
+    return turn / (2 * math.pi * h), zeta
 
 
 def _rapier_step(iterations: int, h: Fraction, natural_frequency: Fraction, damping_ratio: Fraction) -> SweptStep:
@@ -237,6 +232,7 @@ RAPIER = Engine(
     units=("Hz", "-"),
     read=_read_rapier,
     write=_write_rapier,
+    digits=17,  # 1 - scale may be small
     reaches="0 < β̂ < 1 and 0 < α̂ < 1 with two real poles and a damping ratio above 0",
     marks=(("Rapier joints: 1e6 Hz, 1", "1e6 1"),),
     curve=lambda share: (STIFFEST, STIFFEST * DOUBLE_POLE * share),
@@ -261,8 +257,8 @@ def _read_chipmunk(h: Fraction, error_bias: Fraction) -> Point:
     return ONE, 1 - Fraction(float(error_bias) ** float(h))
 
 
-def _write_chipmunk(point: Point, h: Fraction) -> tuple[str, ...]:
-    return (f"{(1 - float(point[1])) ** (1 / float(h)):.17g}",)  # all digits: for a small beta_hat it is next to one
+def _write_chipmunk(alpha_hat: float, beta_hat: float, h: float) -> tuple[float]:
+    return ((1 - beta_hat) ** (1 / h),)
 
 
 CHIPMUNK = Engine(
@@ -273,6 +269,7 @@ CHIPMUNK = Engine(
     units=("- (per second)",),
     read=_read_chipmunk,
     write=_write_chipmunk,
+    digits=17,  # for a small beta_hat it is next to one
     reaches="α̂ = 1 with β̂ <= 1, where errorBias is within float64",
     marks=(("Chipmunk: errorBias = 0.9^60", str(Fraction("0.9") ** 60)),),
     curve=hard,
@@ -310,6 +307,9 @@ CHRONO_LINEARIZED = engine_without_parameters(
 NEAR_RIGID = Fraction(4 * math.pi**2) / Fraction("0.1") ** 2
 """The largest q."""
 
+NEAR_RIGID_ALPHA_HAT = NEAR_RIGID / (1 + NEAR_RIGID)
+NEAR_RIGID_POINT = NEAR_RIGID_ALPHA_HAT, NEAR_RIGID_ALPHA_HAT / 2
+
 
 def _sap_point(h: Fraction, q: Fraction, relaxation_time: Fraction) -> Point:
     alpha_hat = q / (1 + q)
@@ -331,17 +331,14 @@ def _apply_sap(h: Fraction, *typed: Fraction) -> Applied:
     if q <= NEAR_RIGID:
         return Applied(_sap_point(h, q, relaxation_time))
     note = f"near rigid: k is lowered until w/R = {float(NEAR_RIGID):.0f}, and tau is h"
-    return Applied(_sap_point(h, NEAR_RIGID, h), (note,))
+    return Applied(NEAR_RIGID_POINT, (note,))
 
 
-def _write_sap(point: Point, h: Fraction) -> tuple[str, ...]:
-    alpha_hat, beta_hat = map(float, point)
-    step = float(h)
-    if point == _sap_point(h, NEAR_RIGID, h):
+def _write_sap(alpha_hat: float, beta_hat: float, h: float) -> tuple[float, ...]:
+    if (alpha_hat, beta_hat) == tuple(map(float, NEAR_RIGID_POINT)):
         return ()
-    relaxation_time = step * (alpha_hat / beta_hat - 1)
-    stiffness = alpha_hat / (1 - alpha_hat) / (step * (step + relaxation_time))
-    return f"{stiffness:.17g}", f"{relaxation_time:.17g}", "1"  # all digits: tau may be next to 0
+    relaxation_time = h * (alpha_hat / beta_hat - 1)
+    return alpha_hat / (1 - alpha_hat) / (h * (h + relaxation_time)), relaxation_time, 1.0
 
 
 DRAKE_SAP = Engine(
@@ -354,7 +351,8 @@ DRAKE_SAP = Engine(
     units=("N/m", "s", "1/kg"),
     read=lambda h, *typed: _sap_point(h, *_sap_q_and_time(h, *typed)),
     write=_write_sap,
-    reaches=f"0 < β̂ <= α̂ <= {float(NEAR_RIGID / (1 + NEAR_RIGID)):.6g}",
+    digits=17,  # tau may be next to 0
+    reaches=f"0 < β̂ <= α̂ <= {float(NEAR_RIGID_ALPHA_HAT):.6g}",
     paste="k = inf",
     curve=lambda share: (STIFFEST, STIFFEST * share),
     apply=_apply_sap,
@@ -429,11 +427,9 @@ def _read_jolt_spring(h: Fraction, frequency: Fraction, damping: Fraction) -> Po
     return 2 * damping * turn, turn**2
 
 
-def _write_jolt_spring(point: Point, h: Fraction) -> tuple[str, ...]:
-    alpha_hat, beta_hat = map(float, point)
+def _write_jolt_spring(alpha_hat: float, beta_hat: float, h: float) -> tuple[float, float]:
     turn = math.sqrt(beta_hat)
-    frequency, damping = turn / (2 * math.pi * float(h)), alpha_hat / (2 * turn)
-    return in_words(frequency), in_words(damping)
+    return turn / (2 * math.pi * h), alpha_hat / (2 * turn)
 
 
 def _jolt_spring_step(iterations: int, h: Fraction, frequency: Fraction, damping: Fraction) -> SweptStep:
@@ -516,7 +512,7 @@ PHYSX_DRIVE = Engine(
     from_zero=("stiffness", "damping"),
     units=("1/s^2", "1/s"),
     read=lambda h, stiffness, damping: from_feedback_gains(damping, stiffness, h),
-    write=gains_in_words,
+    write=stiffness_and_damping,
     source="PhysX source, DyCpuGpuArticulation.h, computeImplicitDriveParams (AccelerationDrive)",
     excludes="the inertia, by which both are divided in force drives (see --pd); force limits; h is TGS's substep",
 )

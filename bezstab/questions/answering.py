@@ -107,12 +107,12 @@ class Answer(Choice):
     @property
     def alpha(self) -> float | None:
         """Damping of the feedback (1/s); None without a step."""
-        return None if self.question.h is None else alpha_and_beta(*self.point, self.question.h)[0]
+        return alpha_and_beta(*self.point, self.question.h)[0]
 
     @property
     def beta(self) -> float | None:
         """Stiffness of the feedback as a rate (1/s); None without a step, and for a negative beta_hat."""
-        return None if self.question.h is None else alpha_and_beta(*self.point, self.question.h)[1]
+        return alpha_and_beta(*self.point, self.question.h)[1]
 
     @property
     def settle_seconds(self) -> float | None:
@@ -142,16 +142,12 @@ class Answer(Choice):
 
     @property
     def cost(self) -> FeedbackCost | None:
-        """What accuracy the feedback costs on the motion of the question; if None, `cost_reason` says why."""
-        return self._cost_or_reason[0]
-
-    @property
-    def cost_reason(self) -> str | None:
-        """Why the cost is not known; None where it is."""
-        return self._cost_or_reason[1]
+        """What accuracy the feedback costs on the motion of the question; None where that is not known."""
+        return self.cost_or_reason[0]
 
     @cached_property
-    def _cost_or_reason(self) -> tuple[FeedbackCost | None, str | None]:
+    def cost_or_reason(self) -> tuple[FeedbackCost | None, str | None]:
+        """The same, and why it is not known."""
         omega_h = self.question.motion.omega_h
         try:
             return feedback_cost(self.method, *self.point, omega_h), None
@@ -240,7 +236,7 @@ class Answer(Choice):
 
         InputError where nothing is stable or the engine cannot express it, NumericalError where it cannot be found.
         """
-        goal = usual_goal(self.question.engine, self.question.drive)
+        goal = usual_goal(self.question.engine, self.question.drive is not None)
         found = _chosen(self.question, "instead", self.method, goal)
         _ = found.setting
         return found

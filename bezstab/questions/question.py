@@ -255,10 +255,10 @@ def methods_for(methods: tuple[Method, ...], engine: Engine | None, drive: Drive
     return methods
 
 
-def usual_goal(engine: Engine | None, drive: Drive | None) -> Goal:
+def usual_goal(engine: Engine | None, with_drive: bool) -> Goal:
     """Return the goal for a question that names none: robust with a drive or an engine's curve, else accurate.
 
     On an engine's curve alpha and beta depend on each other, so that no gentle feedback can be found there. Nothing
     feeds the acceleration of a drive's target forward, so that the error of a weak drive is not forced by the method.
     """
-    return "robust" if drive or (engine and engine.curve) else "accurate"
+    return "robust" if with_drive or (engine and engine.curve) else "accurate"

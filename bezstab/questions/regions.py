@@ -204,15 +204,12 @@ def kick_response(poles: ComplexArray, steps: int) -> FloatArray:
     `poles` has shape (degree,), complex ones in conjugate pairs. At rest before the kick. Not finite from where it
     leaves the range of float64.
     """
-    polynomial = np.poly(poles).real
-    degree = len(polynomial) - 1
-    c = np.zeros(degree + steps + 1)  # with `degree` values of rest in front
-    c[degree] = 1
+    recursion = np.poly(poles).real[1:]
+    c = np.eye(1, steps + 1 + len(recursion))[0]  # the kick alone
     with np.errstate(over="ignore", invalid="ignore"):
-        for k in range(degree + 1, len(c)):
-            newest_first = c[k - 1 : k - degree - 1 : -1]
-            c[k] = -polynomial[1:] @ newest_first
-    return c[degree:]
+        for k in range(steps + 1):
+            c[k + 1 : k + 1 + len(recursion)] -= c[k] * recursion  # what it adds to those after it
+    return c[: steps + 1]
 
 
 @dataclass(frozen=True)

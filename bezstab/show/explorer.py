@@ -80,7 +80,7 @@ class Explorer:
         self.cross.set_data([[float(number)] for number in point])
         self.text.set_text(
             rf"$\hat\alpha$ = {self.typed[0]}   $\hat\beta$ = {self.typed[1]}   "
-            f"α = {alpha:.6g}   β = {formatted(beta, '.6g')} 1/s at h = {self.h:g} s\n"
+            f"α = {formatted(alpha)}   β = {formatted(beta)} 1/s at h = {self.h:g} s\n"
             f"$|z_p|$ = {abs(z[0]):.6f}   ∠$z_p$ = {np.angle(z[0], deg=True):.2f}°   {judgement}"
         )
 

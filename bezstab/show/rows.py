@@ -181,7 +181,7 @@ def nearest(likenesses: Sequence[Likeness]) -> list[Likeness]:
 
 def row_in_seconds(fields: Sequence[Field], point: FrontPoint | LikePoint, h: float | None) -> Row:
     """Return the row of a point with a step (s), and with alpha and beta (1/s); None without a step."""
-    alpha, beta = (None, None) if h is None else alpha_and_beta(point.alpha_hat, point.beta_hat, h)
+    alpha, beta = alpha_and_beta(point.alpha_hat, point.beta_hat, h)
     return cells(fields, point, {"h": h, "alpha": alpha, "beta": beta})
 
 

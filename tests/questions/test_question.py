@@ -43,7 +43,7 @@ def test_an_engine_says_itself_what_it_holds_while_steps_vary() -> None:
 
 
 def test_the_usual_goal_is_accurate_and_along_a_curve_or_of_a_drive_robust() -> None:
-    assert [usual_goal(None, None), usual_goal(ENGINES["box2d"], None), usual_goal(None, DRIVE)] == [
+    assert [usual_goal(None, False), usual_goal(ENGINES["box2d"], False), usual_goal(None, True)] == [
         "accurate",
         "robust",
         "robust",
