@@ -16,7 +16,7 @@ from fractions import Fraction
 from typing import Any, Generic, TypedDict, TypeVar, Unpack, get_args, get_origin, get_type_hints
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from bezstab import evidence, mechanism, questions, stability
 from bezstab.engines import Drive, engine_and_values, engine_named
@@ -26,10 +26,9 @@ from bezstab.mechanism import Scene, Simulation
 from bezstab.methods import Method, Verdict, lookup
 from bezstab.rationals import rational
 from bezstab.stabilising import Stabilise
+from bezstab.stability import ComplexArray, FloatArray
 from bezstab.units import check_step, to_dimensionless
 
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 Number = int | float | str | Fraction
 """A number that is read exactly: a float as the decimal it shows, a text as a decimal or a fraction such as "6/11"."""
 

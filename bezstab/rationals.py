@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Callable, Sequence
+from decimal import ROUND_FLOOR, Context
 from fractions import Fraction
 from math import lcm
 
@@ -63,6 +64,11 @@ def bisected_integers(holds: Callable[[int], bool], before: int, after: int) -> 
         middle = (before + after) // 2
         before, after = (before, middle) if holds(middle) else (middle, after)
     return before, after
+
+
+def rounded_down(value: float, digits: int) -> str:
+    """Return a positive number to so many digits, not above it: what is safe up to the number is safe up to these."""
+    return f"{float(Context(prec=digits, rounding=ROUND_FLOOR).create_decimal_from_float(value)):.{digits}g}"
 
 
 def typed_number(number: Fraction) -> str:

@@ -16,7 +16,7 @@ import numpy as np
 from bezstab.engines import DRIVE_METHODS, Drive
 from bezstab.errors import InputError
 from bezstab.methods import Method, Verdict, lookup
-from bezstab.rationals import exact
+from bezstab.rationals import exact, rounded_down
 from bezstab.stability import (
     HeldLimits,
     HeldMap,
@@ -207,15 +207,9 @@ def held_gains(question: HeldQuestion, *, bandwidth: Fraction | None = None, set
     if found is None:
         raise InputError(f"{refused}, nor is any that is slower")
     largest = found[1] / h
-    hertz = f"up to {_rounded_down(largest / (2 * math.pi))} Hz"
+    hertz = f"up to {rounded_down(largest / (2 * math.pi), DIGITS)} Hz"
     reach = hertz if settle is None else f"from {SETTLED / largest:.3g} s on"
     raise InputError(f"{refused}; {reach} is")
-
-
-def _rounded_down(value: float) -> str:
-    """Return a number to three digits, not above it."""
-    unit = 10.0 ** (math.floor(math.log10(value)) - 2)
-    return f"{math.floor(value / unit) * unit:.3g}"
 
 
 def _critical_drive(omega: float, inertia: Fraction) -> Drive:

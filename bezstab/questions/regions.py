@@ -205,7 +205,7 @@ def kick_response(poles: ComplexArray, steps: int) -> FloatArray:
     leaves the range of float64.
     """
     recursion = np.poly(poles).real[1:]
-    c = np.eye(1, steps + 1 + len(recursion))[0]  # the kick alone
+    c: FloatArray = np.eye(1, steps + 1 + len(recursion))[0]  # the kick alone
     with np.errstate(over="ignore", invalid="ignore"):
         for k in range(steps + 1):
             c[k + 1 : k + 1 + len(recursion)] -= c[k] * recursion  # what it adds to those after it

@@ -1,7 +1,6 @@
 """What a cell of a table shows where it takes more than a format: texts made of a row."""
 
-from decimal import ROUND_FLOOR, Context
-
+from bezstab.rationals import rounded_down
 from bezstab.show.fields import MISSING, Row, formatted
 
 MOST_FIXED = 1e6  # a modulus from here on is shown with an exponent
@@ -87,4 +86,4 @@ def safe_step_text(row: Row) -> str:
         return "none"
     if limit is None:
         return "unlimited"
-    return f"{float(Context(prec=4, rounding=ROUND_FLOOR).create_decimal_from_float(limit)):.4g}"
+    return rounded_down(limit, 4)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import partial
-from itertools import cycle
 from operator import mul
 from typing import TYPE_CHECKING, Any
 
@@ -57,7 +56,7 @@ WHOLE: dict[str, Any] = {"clip_on": False, "zorder": ABOVE_THE_AXES}
 """Of markers: no edge of the axes cuts through them."""
 
 MARK_SHAPES = "Ds^vP"
-"""Of points to mark, by their place; after the last the first comes again."""
+"""Of points to mark, by their place: more than any engine has."""
 
 BELOW_MARKERS = 2.9
 """Of labels: no point is hidden."""
@@ -125,7 +124,7 @@ def _draw_points(answer: MapAnswer, axes: Axes) -> None:
     axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]), facecolor="0.93")
 
     drawn = [plot.point(found, axes, h, **WHOLE) for found in (answer.stable.best, answer.chosen) if found]
-    for shape, (label, point) in zip(cycle(MARK_SHAPES), question.marks.items(), strict=False):
+    for shape, (label, point) in zip(MARK_SHAPES, question.marks.items(), strict=False):
         drawn.append(plot.point(point, axes, h, marker=shape, label=label, **WHOLE))
     for marker in drawn:
         if not axes.viewLim.contains(*np.asarray(marker.get_xydata())[0]):
@@ -160,8 +159,8 @@ def _draw_open_edges(region: Region, axes: Axes, h: float | None, inset: float =
 
 
 def decay_scale(z_abs: FloatArray) -> FloatArray:
-    """Return -ln(-ln |z_p|), even in the logarithm of how fast errors fall, clipped short of 0 and 1; nan if masked."""
-    return -np.log(-np.log(np.clip(np.ma.filled(z_abs, np.nan), 1e-9, 1 - 1e-12)))
+    """Return -ln(-ln |z_p|), even in the logarithm of how fast errors fall, clipped short of 0 and 1."""
+    return -np.log(-np.log(np.clip(z_abs, 1e-9, 1 - 1e-12)))
 
 
 def from_decay_scale(values: FloatArray) -> FloatArray:

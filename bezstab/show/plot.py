@@ -133,22 +133,17 @@ def point(
 
     A best point is a star, labelled with its |z_p|; a choice a circle, labelled with its goal and |z_p|.
     """
-    usual: dict[str, Any] = {"marker": "D", "markersize": 5}
-    match at:
-        case BestPoint():
-            alpha_hat, beta_hat = at.alpha_hat, at.beta_hat
-            label = "deadbeat: $|z_p| = 0$" if at.z_abs == 0 else f"least $|z_p|$: {at.z_abs:.4f}"
-            usual = {"marker": "*", "markersize": 8, "label": label}
-        case Choice():
-            alpha_hat, beta_hat = at.alpha_hat, at.beta_hat
-            label = f"choose {at.goal}: {f'{abs(at.pole):.4f}' if at.pole else 'deadbeat'}"
-            usual = {"marker": "o", "markersize": 5, "label": label}
-        case _:
-            check_kind(at, tuple, "bezstab.best_point or bezstab.choose")
-            alpha_hat, beta_hat = at
-    axes = _plane(axes, r"$(\hat\alpha, \hat\beta)$", h)
-    white = {"linestyle": "none", "color": "white", "markeredgecolor": "black"}
-    return _line(axes, plane_coordinates(alpha_hat, beta_hat, h), line, **white, **usual)
+    usual: dict[str, Any] = {"linestyle": "none", "color": "white", "markeredgecolor": "black", "markersize": 5}
+    if isinstance(at, BestPoint):
+        label = "deadbeat: $|z_p| = 0$" if at.z_abs == 0 else f"least $|z_p|$: {at.z_abs:.4f}"
+        usual |= {"marker": "*", "markersize": 8, "label": label}
+    elif isinstance(at, Choice):
+        usual |= {"marker": "o", "label": f"choose {at.goal}: {f'{abs(at.pole):.4f}' if at.pole else 'deadbeat'}"}
+    else:
+        check_kind(at, tuple, "bezstab.best_point or bezstab.choose")
+        usual |= {"marker": "D"}
+    place = at if isinstance(at, tuple) else (at.alpha_hat, at.beta_hat)
+    return _line(_plane(axes, r"$(\hat\alpha, \hat\beta)$", h), plane_coordinates(*place, h), line, **usual)
 
 
 def _line(axes: Axes, points: tuple[ArrayLike, ArrayLike], line: Mapping[str, Any], **usual: Any) -> Line2D:

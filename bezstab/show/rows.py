@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from fractions import Fraction
 from functools import partial
+from itertools import chain, compress
 from types import SimpleNamespace
 from typing import TYPE_CHECKING
 
@@ -127,8 +128,7 @@ def region_row(answer: RegionAnswer) -> Row:
     region, inside = answer.region, answer.inside
     reason = None if inside else _nowhere(answer)
     where = best_point_words(inside) if inside else reason
-    only_near = [near for ends in region.approached for near in ends]
-    approached = ", ".join(key for key, near in zip(LIMITS, only_near, strict=True) if near) or None
+    approached = ", ".join(compress(LIMITS, chain(*region.approached))) or None
     return REGIONS.row(answer, approached=approached, best_where=where, best_reason=reason)
 
 

@@ -2,22 +2,19 @@
 
 from contextlib import AbstractContextManager
 from textwrap import fill
-from typing import Any, BinaryIO, TypeVar
+from typing import Any, BinaryIO
 
-import numpy as np
 from matplotlib import style
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
 from matplotlib.ticker import FixedLocator, MaxNLocator
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from bezstab.show.file_forms import FIGURE_FORMS
 from bezstab.stability import FloatArray
-from bezstab.units import feedback_gains
-
-Number = TypeVar("Number", float, NDArray[np.float64])
+from bezstab.units import FloatOrArray, feedback_gains
 
 COLUMN_WIDTH = 85 / 25.4  # inches
 STYLE: dict[str, Any] = {
@@ -94,7 +91,9 @@ def plane_words(title: str, h: float | None) -> tuple[str, str, str]:
     return title_lines(title, f"h = {h:g} s"), r"$2\alpha$ (1/s)", r"$\beta^2$ (1/s$^2$)"
 
 
-def plane_coordinates(alpha_hat: Number, beta_hat: Number, h: float | None) -> tuple[Number, Number]:
+def plane_coordinates(
+    alpha_hat: FloatOrArray, beta_hat: FloatOrArray, h: float | None
+) -> tuple[FloatOrArray, FloatOrArray]:
     """Return where points lie in the plane of plane_words: as they are, or 2 alpha (1/s), beta^2 (1/s^2) with h (s)."""
     if h is None:
         return alpha_hat, beta_hat
