@@ -75,10 +75,10 @@ def show_rows(
     form, rows = chosen_format(), list(found)
     if heading:
         show_text(f"{heading}\n")
-    columns, sentence = kind.columns(rows, without) if for_reading() else [], kind.sentence
+    columns = kind.columns(rows, without) if for_reading() else []
     answer = render(rows, columns, form)
     if form == "text" and rows and (in_blocks or len(rows) == 1 or not fits(answer, text_width())):
-        blocks = [block(row, columns, text_width(), sentence(row) if sentence else "") for row in rows]
+        blocks = [block(row, columns, text_width(), kind.sentence(row)) for row in rows]
         answer = "\n\n".join(blocks)
     click.echo(answer)
 

@@ -162,14 +162,14 @@ class RowKind:
     """One kind of row that a command prints: what it is, the fields it always has, and those that options add.
 
     `sometimes` are keys that are null in some rows of this kind, though elsewhere they never are. The `sentence` says
-    in words what a row says in numbers.
+    in words what a row says in numbers, if anything.
     """
 
     title: str
     fields: tuple[Field, ...]
     added: tuple[Field, ...] = ()
     sometimes: tuple[str, ...] = ()
-    sentence: Text | None = None
+    sentence: Text = lambda _: ""
 
     def columns(self, rows: Sequence[Row], without: Collection[str] = ()) -> list[Field]:
         """Return the columns of a table of such rows: the fields with a heading that show something in some row.
@@ -177,8 +177,11 @@ class RowKind:
         `without` are keys of fields that are not shown.
         """
         keys = {key for row in rows for key in row} - set(without)
-        columns = [field for field in (*self.fields, *self.added) if field.heading and field.key in keys]
-        return [column for column in columns if any(column.cell(row) != MISSING for row in rows)]
+        return [
+            field
+            for field in (*self.fields, *self.added)
+            if field.heading and field.key in keys and any(field.cell(row) != MISSING for row in rows)
+        ]
 
     def row(self, result: object, **found: Any) -> dict[str, Value]:
         """Return the row of a result, without what options add: of each field what was found, else as `cells`."""

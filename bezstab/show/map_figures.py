@@ -159,8 +159,8 @@ def _draw_open_edges(region: Region, axes: Axes, h: float | None, inset: float =
 
 
 def decay_scale(z_abs: FloatArray) -> FloatArray:
-    """Return -ln(-ln |z_p|), even in the logarithm of how fast errors fall, clipped short of 0 and 1."""
-    return -np.log(-np.log(np.clip(z_abs, 1e-9, 1 - 1e-12)))
+    """Return -ln(-ln |z_p|), even in the logarithm of how fast errors fall, clipped short of 0 and 1; nan if masked."""
+    return -np.log(-np.log(np.clip(np.ma.filled(z_abs, np.nan), 1e-9, 1 - 1e-12)))
 
 
 def from_decay_scale(values: FloatArray) -> FloatArray:
