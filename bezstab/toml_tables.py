@@ -122,10 +122,15 @@ class TomlTable:
         return self.entry(key, pair_of(a_number), f"two numbers, {SIZE}", default)
 
     def numbers(self, key: str, allowed: Sequence[str]) -> dict[str, float]:
-        """Return a table of numbers, none if absent; those with keys that are not allowed are unknown."""
-        table = self.table(key)
-        found = {name: table.number(name) for name in table.data if name in allowed}
-        table.known = list(allowed)
+        """Return a table of numbers, none if absent, with keys among the allowed ones."""
+
+        def read(value: object) -> dict[str, float]:
+            return {name: a_number(number) for name, number in of_type(dict, value).items()}
+
+        found: dict[str, float] = self.entry(key, read, f"a table of numbers, {SIZE}", {})
+        for name in found:
+            if name not in allowed:
+                raise self.mistake(f"{key} names {name!r}, which is not among {', '.join(allowed)}")
         return found
 
     def tables(self, key: str) -> list["TomlTable"]:
@@ -137,7 +142,7 @@ class TomlTable:
 
     def table(self, key: str) -> "TomlTable":
         """Return a table, an empty one if absent."""
-        table = TomlTable(self.entry(key, partial(of_type, dict), "a table", {}), str(self.mistake(key)))
+        table = TomlTable(self.entry(key, partial(of_type, dict), "a table", {}), key)
         self.inner.append(table)
         return table
 
