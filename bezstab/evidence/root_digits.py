@@ -106,7 +106,7 @@ def different_roots(polynomial: Sequence[mp.mpf], starts: Sequence[mp.mpc], coun
         z = start
         for _ in range(DIGITS * 4):  # quadratic, but linear on the way out of a cluster
             value, slope = mp.polyval(polynomial, z, derivative=True)
-            step = value / slope
+            step = value / (slope or mp.mpc(1, 1))  # a start on a saddle is moved off it
             z -= step
             if abs(step) <= mp.mpf(10) ** (10 - DIGITS) * abs(z):
                 if all(abs(z - other) > SAME * abs(other) for other in roots):

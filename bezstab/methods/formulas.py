@@ -109,7 +109,8 @@ def _quotient(error: LeadingTerm, exact: bool) -> sp.Expr:
 
 def _plane_expression(terms: PlanePolynomial) -> sp.Expr:
     """Return a polynomial in alpha_hat and beta_hat as an expression."""
-    return sp.Poly.from_dict(dict(terms), ALPHA_HAT, BETA_HAT, domain="QQ").as_expr()  # which writes into it
+    own_copy = dict(terms)  # sympy writes its own numbers into it
+    return sp.Poly.from_dict(own_copy, ALPHA_HAT, BETA_HAT, domain="QQ").as_expr()
 
 
 def _readable(expression: sp.Expr) -> sp.Expr:

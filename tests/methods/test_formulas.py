@@ -1,6 +1,7 @@
 import math
 import re
 from collections.abc import Callable
+from fractions import Fraction
 from typing import get_args
 
 import pytest
@@ -129,6 +130,14 @@ def test_a_written_steady_error_is_that_of_the_method(name: str, part: Part) -> 
     written = read_back(steady_error_text(lookup(name), part), a=a, b=b, t=theta)
     exact = over / under * theta**error.power
     assert float(written) == pytest.approx(float(exact), rel=1e-7 if lookup(name).digits else 1e-15)  # ten digits shown
+
+
+@pytest.mark.parametrize("name", PRINTED)
+def test_an_error_that_was_written_is_still_made_of_fractions(name: str) -> None:
+    """It is remembered, and sympy's polynomials write their own numbers into the terms that they are made of."""
+    steady_error_text(lookup(name), "v")
+    error = leading_error(lookup(name), "v")
+    assert all(isinstance(c, Fraction) for terms in (error.numerator, error.denominator) for c in terms.values())
 
 
 def test_a_steady_error_too_long_to_be_read_says_so_and_is_written_out_as_latex() -> None:
