@@ -21,13 +21,14 @@ from bezstab.mechanism.scenes import (
     Revolute,
     Scene,
 )
+from bezstab.read_only import ReadOnlyArrays
 
 T = sp.Symbol("t")
 """Time (s)."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)  # one per scene: compared by identity
-class Mechanism:
+class Mechanism(ReadOnlyArrays):
     """M qddot + C_q^T lambda = g and c(q, t) = 0 as sympy expressions in q, qdot and t; SI units.
 
     What a run needs of a scene, made once; functions of it are made when first used. With n coordinates and m
