@@ -101,7 +101,14 @@ def pole_map(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray) -> Ite
 
 def largest_pole(pencil: Pencil, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> ComplexArray:
     """Return what dominant_pole does, from a pencil; infinite where an implicit step has no solution."""
-    return _without_rounding(pencil.largest_poles(*plane_arrays(alpha_hat, beta_hat)))
+    alpha_hat, beta_hat = plane_arrays(alpha_hat, beta_hat)
+    alphas, betas = (each if each.ndim == 2 else each.reshape(-1, 1) for each in (alpha_hat, beta_hat))
+    z = np.empty(alphas.shape, complex)
+    rows = max(1, BLOCK // max(1, alphas.shape[1]))
+    for start in range(0, len(z), rows):
+        some = slice(start, start + rows)
+        z[some] = pencil.largest_poles(alphas[some], betas[some])
+    return _without_rounding(z).reshape(alpha_hat.shape)
 
 
 def largest_modulus(pencil: Pencil, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> FloatArray:
