@@ -330,11 +330,9 @@ def breakdown(states: FloatArray, told: FloatArray) -> tuple[int, str] | None:
     end = int(sound.argmin())
     for left, what in ((unsolved, "Newton's method"), (unsettled, "projection: Newton's method for the position")):
         if left[end]:
-            how = f"in {MOST_ITERATIONS} iterations (last correction {left[end]:.2g})"
-            return (
-                end,
-                f"{what} did not converge{f' {how}' if left[end] < math.inf else ': its iterates are not finite'}",
-            )
+            if not math.isfinite(left[end]):
+                return end, f"{what} did not converge: its iterates are not finite"
+            return end, f"{what} did not converge in {MOST_ITERATIONS} iterations (last correction {left[end]:.2g})"
     if pivots[end] <= SINGULAR:
         lost = f"C_q M^-1 C_q^T has lost its rank (relative pivot {pivots[end]:.2g})"
         return end, f"singular configuration: {lost}"

@@ -156,9 +156,9 @@ def _quadratic_roots(coefficients: ComplexArray) -> ComplexArray:
 def _aberth(coefficients: ComplexArray) -> ComplexArray:
     """Return the roots of sum_k a_k z^k, coefficients of shape (n + 1, points), from the Newton polygon's starts.
 
-    Aberth's simultaneous Newton iteration (O. Aberth, Math. Comp. 27, 1973), cubic at simple roots; points leave as
-    they converge: Newton's correction N = p/p' is repelled by the other roots, N / (1 - N sum 1/(z_i - z_j)). At a
-    multiple root the last digits cannot settle: there ITERATIONS ends the walk. Not a number where p leaves float64.
+    Aberth's simultaneous Newton iteration (O. Aberth, Math. Comp. 27, 1973), cubic at simple roots: Newton's correction
+    N = p/p' is repelled by the other roots, N / (1 - N sum 1/(z_i - z_j)). Points leave as they converge. At a multiple
+    root the last digits cannot settle: there ITERATIONS ends the walk. Not a number where p leaves float64.
     """
     starts = newton_polygon_starts(coefficients)
     solution = starts.copy()
