@@ -146,9 +146,9 @@ def test_measured_orders_of_second_order_and_implicit_methods(name: str) -> None
 
 
 def test_the_order_of_a_method_of_many_steps_or_stages_is_found() -> None:
-    """Explicit Euler a hundred steps back, and forty stages of equal Euler steps: no second-order form is so long."""
+    """Explicit Euler a hundred steps back, and 22 stages of equal Euler steps: far more than any built-in method."""
     long = multistep("long", "1 -1" + 99 * " 0", "0 1" + 99 * " 0")
-    many = runge_kutta("many", ";".join("1/40 " * stage for stage in range(1, 40)), "1/40 " * 40)
+    many = runge_kutta("many", ";".join("1/22 " * stage for stage in range(1, 22)), "1/22 " * 22)
     assert accuracy_by_force(long).velocity[0] == accuracy_by_force(many).position[0] == 1
 
 
