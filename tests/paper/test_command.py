@@ -9,17 +9,6 @@ FIGURES = Path(__file__).parent.parent.parent / "figures"
 
 
 @pytest.mark.slow
-def test_the_committed_tables_and_ledger_are_those_of_a_fresh_run(tmp_path: Path) -> None:
-    assert CliRunner().invoke(main, ["paper", "--figure", "none", "-o", str(tmp_path)]).exit_code == 0
-    fresh = {path.name: path.read_text(encoding="utf-8") for path in tmp_path.iterdir()}
-    assert set(fresh) == {"LEDGER.md", *(f"paper_table{number}.md" for number in range(1, 7))}
-    for name, text in fresh.items():
-        assert (FIGURES / name).read_text(encoding="utf-8") == text, name
-    rows = [line for line in fresh["LEDGER.md"].splitlines() if line.startswith("| ")][2:]
-    assert len(rows) > 80
-
-
-@pytest.mark.slow
 def test_a_figure_is_written_with_its_panels(tmp_path: Path) -> None:
     assert CliRunner().invoke(main, ["paper", "--only", "fig1", "-o", str(tmp_path)]).exit_code == 0
     assert sorted(path.name for path in tmp_path.iterdir()) == [f"paper_fig1{panel}.png" for panel in "abc"]
