@@ -8,7 +8,7 @@ This is the only place where the two meet. What is exact on the way in stays exa
 
 from __future__ import annotations
 
-import math
+from decimal import Context, Decimal
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 LEAST_STEP = 1e-100  # s, and the inverse of the longest: so their squares are within float64
 LONGEST_STEP = 1e100
+DECIMALS = Context(prec=40)  # far more digits than a float64 has, and far larger numbers
 
 FloatOrArray = TypeVar("FloatOrArray", float, "NDArray[np.float64]")
 Number = TypeVar("Number", Fraction, float, "NDArray[np.float64]")
@@ -107,19 +108,13 @@ def alpha_and_beta(
     """
     if h is None:
         return None, None
-    two_alpha, beta_squared = feedback_gains(Fraction(alpha_hat), Fraction(beta_hat), Fraction(h))
-    if beta_squared < 0:
-        return _as_float(two_alpha / 2), None
-    root = Fraction(math.isqrt(beta_squared.numerator), math.isqrt(beta_squared.denominator))
-    return _as_float(two_alpha / 2), _as_float(root) if root**2 == beta_squared else math.sqrt(_as_float(beta_squared))
+    two_alpha, beta_squared = map(_in_decimals, feedback_gains(Fraction(alpha_hat), Fraction(beta_hat), Fraction(h)))
+    beta = None if beta_squared < 0 else float(DECIMALS.sqrt(beta_squared))
+    return float(two_alpha) / 2, beta
 
 
-def _as_float(number: Fraction) -> float:
-    """Return the nearest float64, infinity where it is too large."""
-    try:
-        return float(number)
-    except OverflowError:
-        return math.inf if number > 0 else -math.inf
+def _in_decimals(number: Fraction) -> Decimal:
+    return DECIMALS.divide(Decimal(number.numerator), Decimal(number.denominator))
 
 
 def from_feedback_gains(two_alpha: Number, beta_squared: Number, h: Any) -> tuple[Number, Number]:
