@@ -33,7 +33,10 @@ def methods(methods: Sequence[Method], latex: bool) -> None:
         show_rows(NAMED_METHODS, rows, in_blocks=True)
         show_text("\nSteady errors are shares of a motion of ω rad/s, to leading order in θ = iωh.")
         return
-    listed = [(group, [method_row(lookup(name), name, group.heading) for name in group.methods]) for group in GROUPS]
+    listed = [
+        (group, [{**method_row(lookup(name)), "method": name, "group": group.heading} for name in group.methods])
+        for group in GROUPS
+    ]
     if chosen_format() == "text":
         show_groups(
             [("\n".join(filter(None, (group.heading, group.note))), rows) for group, rows in listed],

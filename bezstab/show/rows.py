@@ -65,21 +65,19 @@ def pole_cells(z: complex) -> dict[str, Value]:
     return cells(POLE, SimpleNamespace(pole=complex(z)))
 
 
-def method_row(method: Method, name: str = "", group: str | None = None) -> Row:
+def method_row(method: Method) -> Row:
     """Return steps, evaluations per step, order of accuracy, error constant (as number, and exact as text) and source.
 
     The exact one is None where rationals stand for irrational coefficients; `digits` says to how many digits they do,
     None where they do not. `order_position_forces` and `order_velocity_forces` are the orders where forces
-    depend on the position alone, and on the velocity alone; `implicit` is whether a step solves equations. `name` is
-    what the method is listed as, under the heading of its `group`.
+    depend on the position alone, and on the velocity alone; `implicit` is whether a step solves equations.
     """
     from bezstab.methods import accuracy, accuracy_by_force  # loads sympy
 
     order, constant = accuracy(method)
     by_force = accuracy_by_force(method)
     found = {
-        "method": name or method.name,
-        "group": group,
+        "method": method.name,
         "steps": steps(method),
         "evaluations": evaluations(method),
         "order": order,
@@ -89,7 +87,7 @@ def method_row(method: Method, name: str = "", group: str | None = None) -> Row:
         "order_position_forces": by_force.position[0],
         "order_velocity_forces": by_force.velocity[0],
     }
-    return cells(LISTED_METHODS.fields if group else LISTED_METHODS.fields[:-1], method, found)
+    return cells(LISTED_METHODS.fields[:-1], method, found)  # those of a group are beside it in the list
 
 
 def whole_row(answer: RegionAnswer, *, latex: bool) -> Row:
