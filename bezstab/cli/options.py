@@ -174,10 +174,6 @@ OPTIONS = {
         ENGINE_VALUES,
         "An engine's own values, such as mujoco=0.02,1, in place of --alpha and --beta; needs --h.",
     ),
-    "as_typed": flag(
-        "--as-typed",
-        "With --engine: take the values as typed, without what the engine does to them, such as clamps.",
-    ),
     "drive": option(
         "--pd drive",
         DRIVE,
@@ -194,21 +190,6 @@ OPTIONS = {
         NUMBER,
         "With --pd: the torque is applied so many steps late. Fractions are allowed.",
         default="0",
-    ),
-    "filter_seconds": option(
-        "--filter filter_seconds",
-        NUMBER,
-        "With --pd: the time constant in s of a first-order filter of the measured velocity.",
-        default="0",
-    ),
-    "chain": option("--chain", int, "With --engine: ask about a straight chain of so many bodies."),
-    "mass_ratio": option(
-        "--mass-ratio", NUMBER, "With --chain: the last body is so many times as heavy as each other one [1]."
-    ),
-    "sweeps": option(
-        "--iterations",
-        int,
-        "With --chain or --scene: the number of sweeps over all constraints in a step [the engine's own number].",
     ),
     "scene": option("--scene", SCENE, "A shipped scene's name, or a .toml file."),
     "speed": option(
@@ -227,11 +208,6 @@ OPTIONS = {
         "How the constraints are held. " + " ".join(f"{name}: {how}." for name, how in STABILISE.items()),
         default="baumgarte",
     ),
-    "iterations": option(
-        "--iterations",
-        click.IntRange(min=1),
-        "With projection: at most so many Newton iterations for the position in a step [as many as reach 1e-12].",
-    ),
     "compiled": option(
         "--compiled",
         click.Choice(["auto", "yes", "no"]),
@@ -241,14 +217,9 @@ OPTIONS = {
         expose_value=False,
         callback=_choose_compiled,
     ),
-    "workers": option("--workers", click.IntRange(1, 1000), "Number of processes [one for each core]."),
-    "scheduler": option("--scheduler", str, "Address of a Dask scheduler, tcp://host:port, in place of --workers."),
-    "resume": flag("--resume", "Continue a run with the same options that was stopped."),
     "form": option(
         "--format form", click.Choice(get_args(Format)), "What to print on standard output.", default="text"
     ),
-    "output": option("-o --output", click.Path(path_type=Path), "Directory for what is written.", default="."),
-    "figure": option("--figure", click.Choice([*FIGURE_FORMS, "none"]), "Format of the figure.", default="png"),
     "table": option("--table", click.Choice([*TABLE_FORMS, "none"]), "Format of the table.", default="none"),
 }
 """The options that several commands take. Most are called like the field of a question that they give."""
@@ -310,23 +281,58 @@ GROUPS: Mapping[str, tuple[str | Option | Rule, ...]] = {
     "given_point": (  # in the plane, by an engine's own values, or by a drive's gains
         "point",
         changed("h", help="Step size in s, for --physical, --engine, --pd, --scene and --omega."),
-        *("engine_values", "as_typed", "drive"),
+        "engine_values",
+        flag(
+            "--as-typed",
+            "With --engine: take the values as typed, without what the engine does to them, such as clamps.",
+        ),
+        "drive",
         Rule(("--engine", "--pd"), "it gives the point itself", excludes=("--alpha", "--beta", "--physical")),
     ),
-    "timing": ("every", "late", "filter_seconds", OF_A_CONTROLLER),
+    "timing": (
+        "every",
+        "late",
+        option(
+            "--filter filter_seconds",
+            NUMBER,
+            "With --pd: the time constant in s of a first-order filter of the measured velocity.",
+            default="0",
+        ),
+        OF_A_CONTROLLER,
+    ),
     "holding": (
-        *("stabilise", "iterations"),
+        "stabilise",
+        option(
+            "--iterations",
+            click.IntRange(min=1),
+            "With projection: at most so many Newton iterations for the position in a step [as many as reach 1e-12].",
+        ),
         Rule(
             tuple(f"--stabilise {word}" for word in STABILISE if word != "baumgarte"),
             "it has no feedback",
             excludes=("--alpha", "--beta", "--physical", "--hold", "--omega"),
         ),
     ),
-    "swept": ("chain", "mass_ratio", "sweeps"),
-    "picture": ("output", "figure"),
+    "swept": (
+        option("--chain", int, "With --engine: ask about a straight chain of so many bodies."),
+        option("--mass-ratio", NUMBER, "With --chain: the last body is so many times as heavy as each other one [1]."),
+        option(
+            "--iterations",
+            int,
+            "With --chain or --scene: the number of sweeps over all constraints in a step [the engine's own number].",
+        ),
+    ),
+    "picture": (
+        option("-o --output", click.Path(path_type=Path), "Directory for what is written.", default="."),
+        option("--figure", click.Choice([*FIGURE_FORMS, "none"]), "Format of the figure.", default="png"),
+    ),
     "files": ("picture", "table"),
     "shared_out": (  # runs that take long, and the table that comes of them
-        *("compiled", "workers", "scheduler", "resume", "picture"),
+        "compiled",
+        option("--workers", click.IntRange(1, 1000), "Number of processes [one for each core]."),
+        option("--scheduler", str, "Address of a Dask scheduler, tcp://host:port, in place of --workers."),
+        flag("--resume", "Continue a run with the same options that was stopped."),
+        "picture",
         changed("table", default="csv"),
         "form",
     ),
