@@ -1,7 +1,7 @@
 """What an engine is: its own words for the feedback, what it makes of them, and the method it steps with."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any, Literal
 
@@ -46,35 +46,34 @@ class Applied:
         return [self.point, *(point for _, point in self.also)]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Engine:
     """An engine's own constraint parameters and what they mean in (alpha_hat, beta_hat) at a step of h seconds.
 
     acceleration: true Baumgarte feedback, so that the integrator decides. velocity, position: an engine that feeds the
     error back into velocities or positions; for one constraint its step is that of `method` at that point, no other.
     `method` is the name of the engine's own integrator, None for a library that has none: the user's decides.
-    `parameters` are the values needed, `optional` those that may follow, `units` the units of both; those in
-    `above_zero` and `from_zero` mean nothing below. `read(h, *values)` is the point of such values. `write(alpha_hat,
-    beta_hat, h)` are the values of a point, in float64. As many `digits` of each are pasted: all, 17, where a value may
-    be next to another. Points without values are found by reading them back: `reaches` says which have some.
-    `paste` is the line to paste where it is not name = value, for as many values as it has {}. `apply(h, *values)` is
-    what the engine does to values before it uses them (clamps, scaling), None if nothing. `marks` are the settings
-    everybody meets: a label, and the values as they are typed, or 2h for two steps. `excludes` is what the conversion
-    leaves out. `curve` are the points to choose among, None for all of the plane. `jointly` is whether it solves all
-    constraints together below acceleration level, too. `sweeping` is how it goes through a step in which it solves
-    one after another, None where that is not written down here.
+    `parameters` are the values needed, `optional` those that may follow, each with its unit; those in `above_zero` and
+    `from_zero` mean nothing below. `read(h, *values)` is the point of such values. `write(alpha_hat, beta_hat, h)` are
+    the values of a point, in float64. As many `digits` of each are pasted: all, 17, where a value may be next to
+    another. Points without values are found by reading them back: `reaches` says which have some. `paste` is the line
+    to paste where it is not name = value, for as many values as it has {}. `apply(h, *values)` is what the engine does
+    to values before it uses them (clamps, scaling), None if nothing. `marks` are the settings everybody meets: a label,
+    and the values as they are typed, or 2h for two steps. `excludes` is what the conversion leaves out. `curve` are the
+    points to choose among, None for all of the plane. `jointly` is whether it solves all constraints together below
+    acceleration level, too. `sweeping` is how it goes through a step in which it solves one after another, None where
+    that is not written down here.
     """
 
     name: str
     level: Level
-    parameters: tuple[str, ...]
-    units: tuple[str, ...]
+    parameters: Mapping[str, str]
     read: Callable[..., Point]
     write: Callable[[float, float, float], tuple[float, ...]]
     source: str
     excludes: str
     method: str | None = "SYM"
-    optional: tuple[str, ...] = ()
+    optional: Mapping[str, str] = field(default_factory=dict)
     above_zero: tuple[str, ...] = ()
     from_zero: tuple[str, ...] = ()
     reaches: str = "α̂ >= 0 and β̂ >= 0 within the range of float64"
@@ -85,6 +84,11 @@ class Engine:
     digits: int = 9
     jointly: bool = False
     sweeping: Sweeping | None = None
+
+    @property
+    def units(self) -> tuple[str, ...]:
+        """The units of all values, in their order."""
+        return (*self.parameters.values(), *self.optional.values())
 
     @property
     def sweeps(self) -> bool:
@@ -164,8 +168,7 @@ def engine_without_parameters(point: Point, **facts: Any) -> Engine:
     """Return an engine whose feedback cannot be set: it has one point; `facts` are the other fields of `Engine`."""
     alpha_hat, beta_hat = map(float, point)
     return Engine(
-        parameters=(),
-        units=(),
+        parameters={},
         read=lambda h: point,
         write=lambda alpha_hat, beta_hat, h: (),
         curve=lambda share: (alpha_hat, beta_hat),

@@ -130,8 +130,8 @@ class Field:
     def plain(self, value: Any) -> Value:
         """Return a value as a row has it, by its kind; None for what is missing or not finite.
 
-        An exact number is float64, or text. A method or a scene is its name; several texts are one, with commas
-        between them.
+        An exact number is float64, or text. A method or a scene is its name; several texts, or the keys of a mapping,
+        are one text with commas between them.
         """
         if value is None or (isinstance(value, float) and not math.isfinite(value)):
             return None
@@ -141,7 +141,7 @@ class Field:
             case "text rows":
                 return [[str(number) for number in row] for row in value]
             case "text":
-                return ", ".join(value) if isinstance(value, tuple) else str(getattr(value, "name", value))
+                return ", ".join(value) if isinstance(value, tuple | Mapping) else str(getattr(value, "name", value))
             case _:  # truth is an integer, too
                 return value if isinstance(value, int) else float(value)
 
