@@ -16,7 +16,7 @@ from functools import cached_property
 from typing import Literal, cast
 
 from bezstab import evidence
-from bezstab.engines import DRIVE_METHODS, Curve, Engine, Point
+from bezstab.engines import DRIVE_METHODS, Curve, Engine
 from bezstab.errors import InputError, NumericalError
 from bezstab.goals import UP_TO_LONGEST, Goal
 from bezstab.methods import Method
@@ -69,7 +69,7 @@ class Gains:
 
 @dataclass(frozen=True, repr=False, kw_only=True)
 class Answer(Choice):
-    """A point, all that `Choice` says of it, and what it means for the question; `point` is exact.
+    """All that `Choice` says of a point, and what that means for the question.
 
     These are None if the question is not about them: `moving` without a scene, `varying` without h_min, `setting`
     without an engine, `gains` without a drive, `swept` without a chain or a scene in an engine that sweeps.
@@ -77,7 +77,6 @@ class Answer(Choice):
 
     question: Question = field(compare=False)
     role: Role
-    point: Point
 
     def __repr__(self) -> str:
         place = f"alpha_hat = {self.alpha_hat:.6g}, beta_hat = {self.beta_hat:.6g}"
@@ -267,11 +266,9 @@ class Answer(Choice):
     def times_the_errors(self, other: "Answer") -> tuple[float, float] | None:
         """Return the errors of constraint and velocity at another answer over those at this one; None if not known."""
         here, there = self.cost, other.cost
-        if here is None or there is None or not (here.total_error and here.velocity_error):
-            return None
-        if there.total_error is None or there.velocity_error is None:
-            return None
-        return there.total_error / here.total_error, there.velocity_error / here.velocity_error
+        if here and there and here.total_error and here.velocity_error and there.total_error and there.velocity_error:
+            return there.total_error / here.total_error, there.velocity_error / here.velocity_error
+        return None
 
     def _alternative(self, goal: Goal, settle: Fraction | None = None) -> "Answer | None":
         """Return another choice; None if there is none or it cannot be found: this answer does not need it."""
@@ -298,13 +295,11 @@ def answers(question: Question, *, margins: bool = True) -> Iterator[Answer]:
             yield found
             continue
         for label, point in (("as given", question.given.point), *question.given.also):
-            yield _answer(question, "given", describe_point(method, label, *point, question.spread, margins), point)
+            yield _answer(question, "given", describe_point(method, label, *point, question.spread, margins))
 
 
-def _answer(question: Question, role: Role, choice: Choice, point: Point | None = None) -> Answer:
-    """Return a choice as an answer; without an exact `point` it is that of the floats."""
-    exactly = point or (Fraction(choice.alpha_hat), Fraction(choice.beta_hat))
-    return Answer(question=question, role=role, point=exactly, **vars(choice))
+def _answer(question: Question, role: Role, choice: Choice) -> Answer:
+    return Answer(question=question, role=role, **vars(choice))
 
 
 def _chosen(

@@ -12,8 +12,8 @@ from bezstab.stability.arrays import BoolArray, Extent, FloatArray
 from bezstab.stability.forced_errors import combined_error
 from bezstab.stability.searches import grid_of, lowest_minima
 
-Decays = Callable[[FloatArray, FloatArray], BoolArray]
-"""Whether errors decay as fast as is asked for, over rows of alpha_hat and beta_hat."""
+Within = Callable[[FloatArray, FloatArray, float], BoolArray]
+"""Whether |z_p| is below a level, over arrays of alpha_hat and beta_hat."""
 
 DECAY = 0.5
 """Of the motion's own rate: in 14 rad of the motion, some two turns, what was there has fallen a thousandfold."""
@@ -70,17 +70,23 @@ def default_rate(method: Method, omega_h: Fraction) -> float:
 
 def worst_error(
     method: Method,
-    decays: Decays,
+    within: Within,
+    rate: float,
     alpha_hat: FloatArray,
     beta_hat: FloatArray,
     *,
     omega_h: Fraction,
     spread: float,
 ) -> FloatArray:
-    """Return the largest combined error with alpha and beta off by the spread; infinite where it decays too slowly."""
-    by_alpha, by_beta = 1 + spread * np.array([(0, 0), (-1, -1), (-1, 1), (1, -1), (1, 1)]).T[:, :, np.newaxis]
+    """Return the largest combined error with alpha and beta off by the spread; infinite where |z_p| is above rate."""
+    a, b = off_by(spread, alpha_hat, beta_hat)
     worst = np.full(alpha_hat.shape, np.inf)
-    left = np.flatnonzero(decays(by_alpha * alpha_hat, by_beta**2 * beta_hat).all(axis=0))
-    error = combined_error(method, by_alpha * alpha_hat[left], by_beta**2 * beta_hat[left], omega_h)
-    worst[left] = error.max(axis=0)
+    left = np.flatnonzero(within(a, b, rate).all(axis=0))
+    worst[left] = combined_error(method, a[:, left], b[:, left], omega_h).max(axis=0)
     return worst
+
+
+def off_by(spread: float, alpha_hat: FloatArray, beta_hat: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return points with alpha and beta off by a spread, a share: corners and centre, each of shape (5, points)."""
+    of_alpha, of_beta = 1 + spread * np.array([(-1, -1), (-1, 1), (0, 0), (1, -1), (1, 1)]).T[:, :, np.newaxis]
+    return of_alpha * alpha_hat, of_beta**2 * beta_hat

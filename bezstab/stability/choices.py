@@ -1,7 +1,6 @@
 """Which feedback to choose: by goal, with proven stability and the margins that are left to the boundary."""
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
@@ -13,9 +12,9 @@ from bezstab.errors import InputError, NumericalError
 from bezstab.goals import Goal
 from bezstab.methods import Method, Verdict, steps
 from bezstab.rationals import exact
-from bezstab.stability.accurate_points import accurate_point, default_rate, worst_error
+from bezstab.stability.accurate_points import Within, accurate_point, default_rate, off_by, worst_error
 from bezstab.stability.answer_checks import Modulus, check_critical, check_least
-from bezstab.stability.arrays import DOUBLE, SLOW, BoolArray, Extent, FloatArray
+from bezstab.stability.arrays import DOUBLE, SLOW, Extent, FloatArray
 from bezstab.stability.best_points import best_point
 from bezstab.stability.closed_loop import converges, largest_modulus, largest_pole, verdict
 from bezstab.stability.critical_points import critical_place
@@ -30,8 +29,6 @@ from bezstab.stability.searches import checked, lowest_minima
 
 SCOUTS = 64  # of the points one in so many is looked at first, for a value that the others must be below
 THOUSANDFOLD = 1e-3  # what "settled" means for the constraint error
-Within = Callable[[FloatArray, FloatArray, float], BoolArray]
-"""Whether |z_p| is below a level, over arrays of alpha_hat and beta_hat."""
 
 FIRST_GRID = 52  # points per axis of the first grid over the region's box: every valley is seen
 GRID = 49  # points per axis of a zoom: few fine grids take less time than many coarse ones, and lose no valley
@@ -46,16 +43,16 @@ SEARCHED = 4.0  # alpha h and beta h: there e^-4, a fiftieth, is left after a st
 class Choice:
     """A point, its proven verdict and dominant pole, and the largest |z_p| when alpha and beta are off by the spread.
 
-    All dimensionless. `margins` is None unless the point is stable and they were asked for. `searched` is the largest
-    alpha h and beta h (of the method's step) that were looked at where the region goes on without end and a stronger
-    feedback might be better by the goal; None where all of the region was searched, or none of it. `margins_reason`
-    says why they are not known, though asked for at a stable point; else None.
+    All dimensionless; `point` is alpha_hat and beta_hat, exact. `margins` is None unless the point is stable and they
+    were asked for. `searched` is the largest alpha h and beta h (of the method's step) that were looked at where the
+    region goes on without end and a stronger feedback might be better by the goal; None where all of the region was
+    searched, or none of it. `margins_reason` says why they are not known, though asked for at a stable point; else
+    None.
     """
 
     method: Method
     goal: str
-    alpha_hat: float
-    beta_hat: float
+    point: tuple[Fraction, Fraction]
     verdict: Verdict
     pole: complex
     worst: float
@@ -66,6 +63,16 @@ class Choice:
     def __repr__(self) -> str:
         place = f"alpha_hat = {self.alpha_hat:.6g}, beta_hat = {self.beta_hat:.6g}"
         return f"Choice({self.method.name}, {self.goal}: {place}, |z_p| = {abs(self.pole):.6g}, {self.verdict})"
+
+    @property
+    def alpha_hat(self) -> float:
+        """The damping, in float64."""
+        return float(self.point[0])
+
+    @property
+    def beta_hat(self) -> float:
+        """The stiffness, in float64."""
+        return float(self.point[1])
 
     @property
     def settle_steps(self) -> int | None:
@@ -135,7 +142,18 @@ def choose(
     z_abs = modulus or partial(largest_modulus, pencil)
     within: Within = pencil.all_within if at_rest else lambda a, b, level: np.asarray(z_abs(a, b) < level)
     if goal == "accurate":
-        point = _accurate(method, box, z_abs, within, omega_h, rate, spread, equal, curve)
+        settling = partial(_accurate, method, box, within, omega_h, spread, curve)
+        wanted = default_rate(method, omega_h) if rate is None else rate
+        found = settling(wanted)
+        if found is None and rate is None:
+            fast = choose(method, "robust", spread=spread, equal=equal, modulus=modulus, along=along, margins=False)
+            wanted = fast.worst**0.5
+            found = settling(wanted)
+        if found is None:
+            what = "setting of the engine" if along else "feedback"
+            words = f"settles so fast, to |z_p| <= {wanted:.6g}, if α and β are off by a share of {spread:g}"
+            raise InputError(f"{method.name}: no {what} {words}")
+        point = found
     elif goal == "gentle":
         of_all = partial(largest_modulus, pencil_of(method)) if at_rest else z_abs
         assert curve
@@ -167,36 +185,16 @@ def choose(
 def _accurate(
     method: Method,
     box: Extent,
-    modulus: Modulus,
     within: Within,
     omega_h: Fraction,
-    rate: float | None,
     spread: float,
-    equal: bool,
     curve: Curve | None,
-) -> tuple[float, float]:
-    """Return the point of the goal accurate; where nothing decays as fast as it does by default, at half of robust.
-
-    InputError where nothing does at a rate that is given.
-    """
-
-    def found(rate: float) -> tuple[float, float]:
-        error = partial(worst_error, method, lambda a, b: within(a, b, rate), omega_h=omega_h, spread=spread)
-        point = least_along(curve, error) if curve else accurate_point(method, box, error, omega_h=omega_h)
-        if np.isinf(error(*(np.array([each]) for each in point))).any():
-            what = "setting of the engine" if curve and not equal else "feedback"
-            words = f"settles so fast, to |z_p| <= {rate:.6g}, if α and β are off by a share of {spread:g}"
-            raise InputError(f"{method.name}: no {what} {words}")
-        return point
-
-    try:
-        return found(default_rate(method, omega_h) if rate is None else rate)
-    except InputError:
-        if rate is not None:
-            raise
-        along = None if equal else curve
-        fast = choose(method, "robust", spread=spread, equal=equal, modulus=modulus, margins=False, along=along)
-        return found(fast.worst**0.5)
+    rate: float,
+) -> tuple[float, float] | None:
+    """Return the point of the goal accurate among those with |z_p| <= rate within the spread; None if there is none."""
+    error = partial(worst_error, method, within, rate, omega_h=omega_h, spread=spread)
+    point = least_along(curve, error) if curve else accurate_point(method, box, error, omega_h=omega_h)
+    return None if np.isinf(error(*np.reshape(point, (2, 1)))).any() else point
 
 
 def _check_spread(spread: float) -> None:
@@ -252,8 +250,7 @@ def describe_point(
     return Choice(
         method=method,
         goal=goal,
-        alpha_hat=a,
-        beta_hat=b,
+        point=(alpha_hat, beta_hat),
         verdict=proven,
         pole=complex(largest_pole(pencil, a, b)),
         worst=float(largest_modulus(pencil, near_a.ravel(), near_b.ravel()).max()),
@@ -270,7 +267,6 @@ def _slowest(method: Method, modulus: Modulus, within: Within, spread: float) ->
     centre are taken. The least of all values is exact. A point that is slower than some other with small, half or whole
     steps alone, which takes no poles to tell, has infinity.
     """
-    of_alpha, of_beta = np.array([(-1, -1), (-1, 1), (0, 0), (1, -1), (1, 1)]).T[:, :, np.newaxis] * spread + 1
     shares = np.linspace(1, 0, SHARES + 1)[:-1, np.newaxis, np.newaxis]
     multiple = float(method.step_multiple)
 
@@ -286,7 +282,7 @@ def _slowest(method: Method, modulus: Modulus, within: Within, spread: float) ->
 
     def objective(alpha_hat: FloatArray, beta_hat: FloatArray) -> FloatArray:
         nonlocal reached
-        a, b = of_alpha * alpha_hat, of_beta**2 * beta_hat  # (spreads, points)
+        a, b = off_by(spread, alpha_hat, beta_hat)
         if math.isinf(reached):
             reached = float(of_all_steps(a[:, ::SCOUTS], b[:, ::SCOUTS]).min())
         left = kept = np.flatnonzero(of_small_steps(a, b) <= reached)
@@ -361,8 +357,8 @@ def gain_factors(choice: Choice) -> tuple[float | None, float | None]:
     """
     if choice.margins:
         return choice.margins.alpha[1], choice.margins.beta[1] ** 2
-    point = Fraction(choice.alpha_hat), Fraction(choice.beta_hat)
     by_alpha, by_beta = (
-        verdict_end(Path(choice.method, *point, powers), downwards=True, stable=False) for powers in ((1, 0), (0, 2))
+        verdict_end(Path(choice.method, *choice.point, powers), downwards=True, stable=False)
+        for powers in ((1, 0), (0, 2))
     )
     return None if by_alpha is None else float(by_alpha), None if by_beta is None else float(by_beta**2)

@@ -83,12 +83,11 @@ def error_front(method: Method, rates: Sequence[float] = RATES, omega_h: Fractio
     (_, alpha_hat_max), (_, beta_hat_max) = search_box(region(method))[0]
     best, _ = best_point_or_reason(method)
     reached = sorted({rate for rate in rates if best is None or rate > best.z_abs}, reverse=True)
-    points: list[tuple[float, float, float]] = []
+    points: list[tuple[float, float, float]] = []  # a rate, and alpha_hat and beta_hat
     if reached:
         high = np.log([alpha_hat_max / 2, np.sqrt(beta_hat_max)])
         low = np.minimum(np.log(-WEAKEST * np.log(reached[0])), high - 1)
-        found = checked(partial(_front, method, omega_h, low, high, reached, best))
-        points = list(zip(reached, *np.array(_plane(found)).tolist(), strict=False))
+        points = checked(partial(_front, method, omega_h, low, high, reached, best))
     if best:
         points.append((best.z_abs, best.alpha_hat, best.beta_hat))
     return [_front_point(method, omega_h, *point) for point in points]
@@ -124,8 +123,8 @@ def _front(
     rates: Sequence[float],
     fastest: BestPoint | None,
     finer: int,
-) -> FloatArray:
-    """Return the best point for each of the rates, which descend, in a box of logarithms, shape (rates, 2).
+) -> list[tuple[float, float, float]]:
+    """Return each of the rates, which descend, with alpha_hat and beta_hat of its best point in a box of logarithms.
 
     That of least |z_p| decays fast enough for each of them, where there is one, and competes, as does what is best at a
     faster rate. The last rates have none where nothing there decays so fast. NumericalError where the check finds a
@@ -160,5 +159,6 @@ def _front(
         if at_rate(grid_of(list(np.linspace(low, high, CHECKED, axis=1)))).min() < values.min() + np.log1p(-BETTER):
             raise NumericalError(f"{method.name}: on the front with |z_p| of {rate:g} at most another point is better")
         if values.min() < TOO_SLOW:
-            front.append(best[0])
-    return np.array(front[::-1])
+            alpha_hat, beta_hat = _plane(best[0])
+            front.append((rate, float(alpha_hat), float(beta_hat)))
+    return front[::-1]

@@ -23,6 +23,7 @@ WELL_INSIDE = 0.8  # of the reach: a best point further out says that the valley
 GRID = 33  # points of a bracket in which a least value is looked for, and then of its best two gaps
 ZOOMS = 8  # such grids, each narrower by 1/16: to where a smooth least value is flat to rounding
 GOLDEN_ANGLE = 2.4  # rad, about pi (3 - sqrt 5): grids turned by it from one to the next never line up again
+TURN = np.array([[np.cos(GOLDEN_ANGLE), -np.sin(GOLDEN_ANGLE)], [np.sin(GOLDEN_ANGLE), np.cos(GOLDEN_ANGLE)]])
 
 Found = TypeVar("Found")
 
@@ -104,7 +105,7 @@ def zoom_on_minimum(
     of the first; what the least value is worth is for the caller to judge.
     """
     offsets = grid_of([np.linspace(-1, 1, points)] * centre.shape[-1]).reshape(-1, centre.shape[-1])
-    turn = _rotation(GOLDEN_ANGLE) if centre.shape[-1] == 2 else np.eye(1)
+    turn = TURN if centre.shape[-1] == 2 else np.eye(1)
     for _ in range(rounds):
         offsets = offsets @ turn.T
         candidates = centre[..., np.newaxis, :] + reach[..., np.newaxis, :] * offsets
@@ -167,9 +168,3 @@ def _spacings(axis: FloatArray) -> FloatArray:
     """Return the larger distance of each of an axis' points from its neighbours."""
     between = np.pad(np.diff(axis), 1, mode="edge")
     return np.maximum(between[:-1], between[1:])
-
-
-def _rotation(angle: float) -> FloatArray:
-    """Return the matrix that turns the plane by an angle in rad."""
-    cosine, sine = np.cos(angle), np.sin(angle)
-    return np.array([[cosine, -sine], [sine, cosine]])

@@ -133,10 +133,8 @@ def _sweeps(
     triangle = diagonal * (1 + one_pass.softness) / one_pass.relaxation + below
     added = root @ np.linalg.solve(triangle, root.T)  # P
     identity = np.eye(len(root))
-    softened = identity
-    if one_pass.softness:  # the inverse of root on the independent combinations
-        inverse = np.linalg.pinv(root)
-        softened = identity + one_pass.softness * inverse.T @ diagonal @ inverse
+    inverse = np.linalg.pinv(root)  # on the independent combinations
+    softened = identity + one_pass.softness * inverse.T @ diagonal @ inverse  # B
     one_sweep = np.block([[identity - added @ softened, added], [np.zeros_like(identity), identity]])
     of_old, of_wanted = np.split(np.linalg.matrix_power(one_sweep, one_pass.sweeps)[: len(root)], 2, axis=1)
     return of_old, of_wanted
