@@ -10,8 +10,7 @@ so that k sweeps are p <- T p + G b with T = S^k and G = P + S P + ... + S^(k-1)
 (y, u, p), so a step is one matrix. It is exact where J is constant, as for a straight chain along its own line.
 Where the constraints of a joint are solved together, D and what is below it are those of A in blocks, one a joint.
 
-Free motions are not in it, because y and u are errors, not coordinates. Of constraints that repeat others only the
-independent combinations are kept.
+Free motions are not in it, because y and u are errors, not coordinates.
 """
 
 from collections.abc import Callable, Sequence
@@ -79,15 +78,14 @@ def inverse_effective_masses(mass: FloatArray, jacobian: FloatArray) -> FloatArr
 def swept_growth(inverse_masses: FloatArray, step: SweptStep, joints: Sequence[int] | None = None) -> Growth:
     """Return by what factor a step multiplies the errors of constraints with such inverse effective masses.
 
-    `inverse_masses` is A = J M^-1 J', shape (m, m), symmetric, its diagonal above zero; constraints in their order.
+    `inverse_masses` is A = J M^-1 J', shape (m, m), of constraints of which none follows from others, in their order.
     `joints` are the numbers of their joints, rising: those of one joint are solved together; None: each by itself.
     NumericalError where a number leaves float64's range.
     """
     scale = 1 / np.sqrt(np.diag(inverse_masses))
     scaled = scale[:, None] * inverse_masses * scale  # sweeps do the same; its diagonal is one
     values, vectors = np.linalg.eigh(scaled)
-    independent = values > len(scaled) * EPS * values[-1]  # LAPACK's error of an eigenvalue
-    root = np.sqrt(values[independent])[:, None] * vectors[:, independent].T  # root' root = A
+    root = np.sqrt(values)[:, None] * vectors.T  # root' root = A
     number = np.arange(len(scaled)) if joints is None else np.array(joints)
     matrix = _step_matrix(scaled, root, number, step)
     if not np.isfinite(matrix).all():
@@ -96,12 +94,11 @@ def swept_growth(inverse_masses: FloatArray, step: SweptStep, joints: Sequence[i
 
 
 def _step_matrix(inverse_masses: FloatArray, root: FloatArray, joints: NDArray[np.intp], step: SweptStep) -> FloatArray:
-    """Return the matrix of a step over errors, rates and impulses, shape (3 r, 3 r), for a root with root' root = A.
+    """Return the matrix of a step over errors, rates and impulses, shape (3 m, 3 m), for a root with root' root = A.
 
     Errors and rates are root' of its first two thirds, impulses p with root p the last: there A is the identity.
     """
-    rank = len(root)
-    errors, rates, impulses = np.split(np.eye(3 * rank), 3)
+    errors, rates, impulses = np.split(np.eye(3 * len(root)), 3)
     impulses = step.kept * impulses
     rates = rates + impulses
     before = errors
@@ -133,7 +130,7 @@ def _sweeps(
     triangle = diagonal * (1 + one_pass.softness) / one_pass.relaxation + below
     added = root @ np.linalg.solve(triangle, root.T)  # P
     identity = np.eye(len(root))
-    inverse = np.linalg.pinv(root)  # on the independent combinations
+    inverse = np.linalg.inv(root)
     softened = identity + one_pass.softness * inverse.T @ diagonal @ inverse  # B
     one_sweep = np.block([[identity - added @ softened, added], [np.zeros_like(identity), identity]])
     of_old, of_wanted = np.split(np.linalg.matrix_power(one_sweep, one_pass.sweeps)[: len(root)], 2, axis=1)
