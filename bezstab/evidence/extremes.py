@@ -18,6 +18,7 @@ from bezstab.evidence.root_digits import DIGITS, PoleDigits, pole_digits
 from bezstab.mechanism import (
     compiled_mechanism,
     constraint_errors,
+    even_steps,
     initial_state,
     load_scene,
     march,
@@ -164,7 +165,8 @@ def _long_run(name: str, count: int, stabilized: bool) -> Check:
     mechanism, method = compiled_mechanism(load_scene("slider_crank")), lookup(name)
     gains = feedback_gains(*POINT, H) if stabilized else (0.0, 0.0)
     start, compiled = np.concatenate(initial_state(mechanism)), runs_compiled(count * evaluations(method))
-    blocks = march(mechanism, method, H, gains, start, "rk4", count, compiled)  # whose states need not be kept
+    every_step = even_steps(H, count, gains)
+    blocks = march(mechanism, method, every_step, start, compiled=compiled)  # whose states need not be kept
     positions = (block.states[:, : mechanism.size].T for block in blocks)
     sizes = np.concatenate([np.abs(constraint_errors(mechanism, 0.0, q)).max(axis=0) for q in positions])
     at_first, at_last = sizes[: count // 10].max(), sizes[-count // 10 :].max()

@@ -38,6 +38,7 @@ from bezstab.evidence.linear_prediction import NEGLIGIBLE
 from bezstab.mechanism import (
     Mechanism,
     constraint_errors,
+    even_steps,
     initial_state,
     march,
     perturbed_state,
@@ -99,8 +100,8 @@ def kicked_states(
     undisturbed = history[-1]
     kicked = undisturbed[:, np.newaxis, np.newaxis] + np.stack([displaced, -displaced], axis=1)
     yield kicked[np.newaxis]
-    so_far = [*history[:-1], kicked]
-    for block in resume(mechanism, method, step, gains, so_far, count, compiled, undisturbed):
+    following = even_steps(step, count, gains, kicked.shape[1:], first=len(history) - 1)
+    for block in resume(mechanism, method, following, [*history[:-1], kicked], compiled, undisturbed):
         yield block.states
 
 
@@ -123,7 +124,8 @@ def kicked_motions(
     step, gains = h * float(method.step_multiple), feedback_gains(alpha_hat, beta_hat, h)
     q, v = initial_state(mechanism)
     start = np.repeat(np.concatenate([q, v])[:, np.newaxis], alpha_hat.size, axis=1)
-    before = march(mechanism, method, step, gains, start, "rk4", steps_before_a_kick(method))
+    first_steps = even_steps(step, steps_before_a_kick(method), gains, start.shape[1:])
+    before = march(mechanism, method, first_steps, start)
     history = [start, *(state for block in before for state in block.states)]
     by_a_unit = np.concatenate([perturbed_state(mechanism, 1.0)[0] - q, 0 * v])  # linear in the constraint error
     displaced = np.multiply.outer(by_a_unit, kicks)[:, :, np.newaxis]

@@ -19,8 +19,8 @@ from bezstab.mechanism.generated_code import accelerations, state_function
 from bezstab.mechanism.linearized import StepsTaken, changes_handed_on, steps_taken
 from bezstab.mechanism.motions import Motion, motion, motion_over, regular_motion
 from bezstab.mechanism.observation import Observation, energy_balance, observe, singular_passages
+from bezstab.mechanism.programs import even_steps
 from bezstab.mechanism.runner import (
-    Block,
     Start,
     Trajectory,
     march,

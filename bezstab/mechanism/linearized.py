@@ -46,9 +46,8 @@ def steps_taken(
     by_step = np.ascontiguousarray(np.moveaxis(carried, 0, 2))
     room = room_of(program, by_step, h, len(carried))
     found, told = np.empty((1, 2, by_step[0].size)), np.zeros((1, 6))
-    array_steps(mechanism, len(carried))(
-        program, Steps(np.array([t]), np.array([h]), gains[np.newaxis]), room, found, told
-    )
+    step = Steps(np.array([t, t + h]), np.array([h]), np.stack([gains, gains]))
+    array_steps(mechanism, len(carried))(program, step, room, found, told)
     registers, states = room.registers.reshape(-1, *by_step.shape[1:]), found.reshape(2, *by_step.shape[1:])
     evaluations, quantities = len(program.moments), len(by_step)
     with np.errstate(all="ignore"):  # what runs into infinity shows in the numbers

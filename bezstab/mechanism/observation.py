@@ -9,7 +9,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
-from typing import NamedTuple
 
 import numpy as np
 import sympy as sp
@@ -131,28 +130,20 @@ def _energy_terms(mechanism: Mechanism) -> Callable[..., tuple[FloatArray, Float
 # Energy
 
 
-class EnergyBalance(NamedTuple):
-    """Along a run, each of shape (times,) and in J: work of drivers and of forces, and the drift.
+def energy_balance(
+    observation: Observation, steps: float | FloatArray, nodes: int = NODES
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return the work of drivers, that of forces, and the energy's drift along a run whose times are `steps` (s) apart.
 
-    The forces are the applied ones of the scene, constant forces, torques and dampers; gravity and springs have a
-    potential instead. Work counts from the start. `drift` is what the energy has gained without it: an error.
-    """
-
-    driver_work: FloatArray
-    force_work: FloatArray
-    drift: FloatArray
-
-
-def energy_balance(observation: Observation, steps: float | FloatArray, nodes: int = NODES) -> EnergyBalance:
-    """Return the energy balance of a run from what was observed at its times, so many `steps` (s) apart.
-
-    In J, shape (times,) each; powers are integrated as by `running_integral`.
+    Each has shape (times,), in J. The forces are the applied ones of the scene, constant forces, torques and dampers;
+    gravity and springs have a potential instead. Work counts from the start, by `running_integral` of the powers. The
+    drift is what the energy has gained without it: an error.
     """
     gained = observation.energy - observation.energy[0]
     with np.errstate(all="ignore"):  # of a broken-down run's last multipliers
         driver_work = running_integral(observation.driver_power, steps, nodes)
         force_work = running_integral(observation.applied_power, steps, nodes)
-        return EnergyBalance(driver_work, force_work, gained - driver_work - force_work)
+        return driver_work, force_work, gained - driver_work - force_work
 
 
 def running_integral(rates: FloatArray, steps: float | FloatArray, nodes: int = NODES) -> FloatArray:

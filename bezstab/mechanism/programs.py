@@ -30,7 +30,7 @@ import math
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from functools import cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -179,12 +179,35 @@ class Room(NamedTuple):
     poor: BoolArray
 
 
+Gains = tuple[Any, Any]
+"""2 alpha (1/s) and beta^2 (1/s^2), as `units.feedback_gains` returns them: floats, or arrays over a batch."""
+
+
 class Steps(NamedTuple):
-    """When steps begin (s), how long they are (s), and their gains, shape (steps, 2, runs), SI units."""
+    """When steps begin and the last one ends (s, shape (steps + 1,)), and how long they are (s, shape (steps,)).
+
+    `gains` are those at these times, shape (steps + 1, 2, runs), SI units.
+    """
 
     times: FloatArray
     lengths: FloatArray
     gains: FloatArray
+
+    def part(self, first: int, last: int) -> "Steps":
+        """Return the steps from the first to before the last, as far as there are any."""
+        ends = slice(first, last + 1)
+        return Steps(self.times[ends], self.lengths[first:last], self.gains[ends])
+
+
+def even_steps(h: float, count: int, gains: Gains, batch: tuple[int, ...] = (), first: int = 0) -> Steps:
+    """Return so many steps of h (s) with the same gains, for the runs of a batch of this shape, one after the other.
+
+    `first` is the number of the first of them, counted from t = 0.
+    """
+    of_runs = np.array([np.broadcast_to(gain, batch).ravel() for gain in gains], np.float64)
+    times = h * np.arange(first, first + count + 1, dtype=np.float64)
+    lengths = np.broadcast_to(np.float64(h), count)
+    return Steps(times, lengths, np.broadcast_to(of_runs, (count + 1, *of_runs.shape)))
 
 
 def room_of(program: Program, carried: FloatArray, h: float, stride: int, row: int = 0) -> Room:

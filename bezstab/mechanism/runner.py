@@ -1,9 +1,9 @@
 """Runs of a mechanism with feedback or projection: a method's start, its steps in blocks, and what ends a run early."""
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal, NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,7 +13,7 @@ from bezstab.mechanism.array_stepping import array_steps
 from bezstab.mechanism.compiled_stepping import LANES, machine_steps, runs_compiled
 from bezstab.mechanism.equations import Mechanism
 from bezstab.mechanism.generated_code import SINGULAR, accelerations
-from bezstab.mechanism.programs import Steps, program_of, room_of
+from bezstab.mechanism.programs import Steps, even_steps, program_of, room_of
 from bezstab.mechanism.second_order_memory import memory
 from bezstab.mechanism.start import initial_state
 from bezstab.mechanism.stepping import (
@@ -46,8 +46,6 @@ For an implicit method, which may bear stronger feedback than any of these: Gaus
 fewer steps, or implicit Euler.
 """
 FloatArray = NDArray[np.float64]
-Gains = tuple[Any, Any]
-"""2 alpha (1/s) and beta^2 (1/s^2), as `units.feedback_gains` returns them: floats, or arrays over a batch."""
 
 NUMBERS_OF_A_BLOCK = 2**16
 """Of runs side by side, between two looks at what the user wants (Ctrl-C): some tenths of a second in Python."""
@@ -85,9 +83,9 @@ class Trajectory(ReadOnlyArrays):
     failure: str | None
     least_pivot: float
     pivot_time: float
-    iterations: int | None = None
-    projections: int = 0
-    after: AfterStep = NOTHING
+    iterations: int | None
+    projections: int
+    after: AfterStep
 
     @property
     def factorizations(self) -> int:
@@ -111,79 +109,59 @@ def simulate(
     compiled: bool | None = None,
     after: AfterStep = NOTHING,
 ) -> Trajectory:
-    """Return the run over `duration` (s) from `state` (q, v, shape (n,) each; default the scene's initial one).
+    """Return the run over `duration` (s) by equal steps, which of the method last h (s) times its step multiple.
 
-    `gains` are 2 alpha and beta^2 (1/s, 1/s^2; paper Eq. 6). A step of the method lasts h (s) times its step multiple.
-    The first values of a multistep method come from RK4, from its family's members of fewer steps ("ramp") or from
-    explicit Euler. A blow-up, a singular S, a number that is not finite or an implicit step that Newton's method does
-    not solve ends the run, and `failure` says so. `compiled` says whether machine code takes the steps; by default that
-    is as BEZSTAB_COMPILED says, or where it pays. What is done `after` a step is done to each new state,
-    those of the start too.
-    InputError for a start that has blown up before, where numba is asked for and missing, and as `memory`.
+    `gains` are 2 alpha and beta^2 (1/s, 1/s^2; paper Eq. 6). Else as `simulate_steps`.
     """
     whole_step = h * float(method.step_multiple)
-    count = round(duration / whole_step)
-    first = checked_start(initial_state(mechanism) if state is None else state)
-    if compiled is None:
-        compiled = runs_compiled(count * evaluations(method))
-    times = np.arange(count + 1, dtype=np.float64) * whole_step
-    blocks = march(mechanism, method, whole_step, gains, first, start, count, compiled, after)
-    return recorded(mechanism, method, first, times, blocks, after)
+    steps = even_steps(whole_step, round(duration / whole_step), gains)
+    return simulate_steps(mechanism, method, steps, state, start, compiled, after)
 
 
 def simulate_steps(
-    mechanism: Mechanism, method: Method, steps: Steps, state: tuple[FloatArray, FloatArray], after: AfterStep
-) -> Trajectory:
-    """Return the run of a one-step method by steps of lengths of their own; else as `simulate`.
-
-    The next state follows from the last and, with some methods, an acceleration stored beside it. Inside a second-order
-    scheme h = 1, where positions, h v and h^2 a are carried: a step r times as long as the one before begins with r
-    times that h v and r^2 times that h^2 a. The acceleration itself is what it was, whatever the gains do.
-    """
-    first, compiled = checked_start(state), runs_compiled(len(steps.times) * evaluations(method))
-    times = np.append(steps.times, steps.times[-1] + steps.lengths[-1])
-    blocks = steps_in_blocks(mechanism, method, steps, [first], first, compiled, after)
-    return recorded(mechanism, method, first, times, blocks, after)
-
-
-def checked_start(state: tuple[FloatArray, FloatArray]) -> FloatArray:
-    """Return q and v as one state, shape (2n,). InputError where no run could go on from there."""
-    first = np.concatenate(state).astype(np.float64)
-    if broken := breakdown(first[np.newaxis], np.eye(1, 6)):  # told of a step that went well: its pivot is 1
-        raise InputError(f"the start: {broken[1]}")
-    return first
-
-
-def recorded(
     mechanism: Mechanism,
     method: Method,
-    first: FloatArray,
-    times: FloatArray,
-    blocks: Iterable[Block],
-    after: AfterStep,
+    steps: Steps,
+    state: tuple[FloatArray, FloatArray] | None = None,
+    start: Start = "rk4",
+    compiled: bool | None = None,
+    after: AfterStep = NOTHING,
 ) -> Trajectory:
-    """Return a run from its blocks, the times (s) of whose states are given, the first state's included."""
+    """Return the run by these steps from `state` (q, v, shape (n,) each; default the scene's initial one).
+
+    Those of a one-step method may have lengths of their own. The first values of a multistep method come from RK4, from
+    its family's members of fewer steps ("ramp") or from explicit Euler. A blow-up, a singular S, a number that is not
+    finite or an implicit step that Newton's method does not solve ends the run, and `failure` says so. `compiled` says
+    whether machine code takes the steps; by default that is as BEZSTAB_COMPILED says, or where it pays. What is done
+    `after` a step is done to each new state, those of the start too.
+    InputError for a start that has blown up before, where numba is asked for and missing, and as `memory`.
+    """
+    first = np.concatenate(initial_state(mechanism) if state is None else state).astype(np.float64)
+    if broken := breakdown(first[np.newaxis], np.eye(1, 6)):  # told of a step that went well: its pivot is 1
+        raise InputError(f"the start: {broken[1]}")
+    if compiled is None:
+        compiled = runs_compiled(len(steps.lengths) * evaluations(method))
     parts, of_steps, cause = [first[np.newaxis]], [np.empty((0, 6))], None
-    for block in blocks:
+    for block in march(mechanism, method, steps, first, start, compiled, after):
         parts.append(block.states)
         of_steps.append(block.told)
         cause = block.cause
     states, told = np.concatenate(parts), np.concatenate(of_steps)
     # the step that failed is not in the history, but was computed
-    failure = f"at t = {times[len(states)]:.6g} s: {cause}" if cause else None
+    failure = f"at t = {steps.times[len(states)]:.6g} s: {cause}" if cause else None
     least = np.append(told[: len(states) - 1, PIVOT], 1.0)  # where no step was taken
     lowest = int(least.argmin())
     counts = told.sum(axis=0)
     return Trajectory(
         mechanism=mechanism,
         method=method,
-        t=times[: len(states)],
+        t=steps.times[: len(states)],
         q=states[:, : mechanism.size],
         v=states[:, mechanism.size :],
         evaluations=int(counts[EVALUATIONS]),
         failure=failure,
         least_pivot=float(least[lowest]),
-        pivot_time=float(times[lowest]),
+        pivot_time=float(steps.times[lowest]),
         iterations=int(counts[ITERATIONS]) if implicit(method) else None,
         projections=int(counts[PROJECTIONS]),
         after=after,
@@ -193,94 +171,74 @@ def recorded(
 def march(
     mechanism: Mechanism,
     method: Method,
-    h: float,
-    gains: Gains,
+    steps: Steps,
     state: ArrayLike,
-    start: Start,
-    count: int,
+    start: Start = "rk4",
     compiled: bool = False,
     after: AfterStep = NOTHING,
 ) -> Iterator[Block]:
-    """Yield `count` steps from a state (q then v, shape (2n, *batch)) at t = 0 on, in blocks.
+    """Yield the method's whole steps from a state (q then v, shape (2n, *batch)) on, in blocks.
 
-    h (s) is the whole step of the method, `gains` are 2 alpha and beta^2 (1/s, 1/s^2), which broadcast against the
-    batch; the first values of a multistep method come from `start`, by steps that are not compiled. A run alone ends
-    where it breaks down; in a batch what goes wrong shows in the numbers. InputError where steps are to be `compiled`
-    without numba.
+    The first values of a multistep method come from `start`, by steps that are not compiled. A run alone ends where it
+    breaks down; in a batch what goes wrong shows in the numbers. InputError where steps are to be `compiled` without
+    numba.
     """
     history = [np.asarray(state)]
-    for starter, step_count in _starters(method, start):
-        some = min(step_count, count - len(history) + 1)
-        for block in resume(mechanism, starter, h, gains, history, some, after=after):
+    for starter, count in _starters(method, start):
+        taken = len(history) - 1
+        for block in resume(mechanism, starter, steps.part(taken, taken + count), history, after=after):
             yield block
             if block.cause:
                 return
             history += list(block.states)
-    yield from resume(mechanism, method, h, gains, history, count - len(history) + 1, compiled, after=after)
+    left = steps.part(len(history) - 1, len(steps.lengths))
+    yield from resume(mechanism, method, left, history, compiled, after=after)
 
 
 def resume(
     mechanism: Mechanism,
     method: Method,
-    h: float,
-    gains: Gains,
+    steps: Steps,
     history: Sequence[ArrayLike],
-    count: int,
     compiled: bool = False,
     undisturbed: ArrayLike | None = None,
     after: AfterStep = NOTHING,
 ) -> Iterator[Block]:
-    """Yield `count` steps after `history`, as `march` does; its last state may have been tampered with: kicked.
+    """Yield steps after `history`, as `march` does; its last state may have been tampered with: kicked.
 
-    `history` holds the states from t = 0 on, h (s) apart, (2n, *batch) each. What a method remembers of accelerations
-    is those of the states, at the last one those of what it was before (`undisturbed`, by default itself).
+    `history` holds the states before the steps, (2n, *batch) each, as far apart as they are. What a method remembers of
+    accelerations is those of the states, at the last one those of what it was before (`undisturbed`, by default
+    itself). The lanes are those of the batch, one after the other.
+
+    Inside a second-order scheme h = 1, where positions, h v and h^2 a are carried: a step r times as long as the one
+    before begins with r times that h v and r^2 times that h^2 a. The acceleration itself is what it was, whatever the
+    gains do.
     """
-    if count <= 0:
+    count = len(steps.lengths)
+    if count == 0:
         return
     given = [np.asarray(state) for state in (*history, history[-1] if undisturbed is None else undisturbed)]
-    batch = np.broadcast_shapes(*(state.shape[1:] for state in given), *map(np.shape, gains))
-    *states, calm = (np.stack([np.broadcast_to(row, batch) for row in state]) for state in given)
-    of_lanes = np.array([np.broadcast_to(gain, batch).ravel() for gain in gains], np.float64)
-    times = h * np.arange(len(states) - 1, len(states) - 1 + count, dtype=np.float64)
-    steps = Steps(times, np.broadcast_to(np.float64(h), count), np.broadcast_to(of_lanes, (count, *of_lanes.shape)))
-    yield from steps_in_blocks(mechanism, method, steps, states, calm, compiled, after)
-
-
-def steps_in_blocks(
-    mechanism: Mechanism,
-    method: Method,
-    steps: Steps,
-    history: Sequence[FloatArray],
-    undisturbed: FloatArray,
-    compiled: bool,
-    after: AfterStep,
-) -> Iterator[Block]:
-    """Yield steps in blocks after a `history` of states, (2n, *batch) each; the last of them was `undisturbed`.
-
-    The lanes are those of the batch, one after the other.
-    """
-    program, n, batch = program_of(method.scheme.second_order, after), mechanism.size, undisturbed.shape[1:]
-    lanes, variables = math.prod(batch), 0
+    batch = np.broadcast_shapes(*(state.shape[1:] for state in given))
+    *states, calm = (np.stack([np.broadcast_to(row, batch).ravel() for row in state]) for state in given)
+    program, n, lanes, variables = program_of(method.scheme.second_order, after), mechanism.size, math.prod(batch), 0
     if compiled:
         stride = 1 if lanes == 1 else LANES
         take_steps, variables = machine_steps(mechanism, program.implicit, after.projecting, stride)
     else:
         stride, take_steps = lanes, array_steps(mechanism, lanes)
-    *states, calm = (state.reshape(2 * n, lanes) for state in (*history, undisturbed))
     carried, evaluated = carried_quantities(mechanism, method, steps, states, calm)
     groups = [slice(first, first + stride) for first in range(0, lanes, stride)]
     rooms = [room_of(program, carried[:, :, group], float(steps.lengths[0]), stride, variables) for group in groups]
     at_once = max(1, NUMBERS_OF_A_BLOCK // (2 * n * stride))
-    for first in range(0, len(steps.times), at_once):
-        some = slice(first, first + at_once)
-        times, lengths, gains = (np.ascontiguousarray(each[some]) for each in steps)
-        parts, told = [], np.zeros((len(times), 6))
+    for first in range(0, count, at_once):
+        times, lengths, gains = (np.ascontiguousarray(each) for each in steps.part(first, first + at_once))
+        parts, told = [], np.zeros((len(lengths), 6))
         for group, room in zip(groups, rooms, strict=True):
-            found = np.empty((len(times), 2, n * stride))
+            found = np.empty((len(lengths), 2, n * stride))
             take_steps(program, Steps(times, lengths, np.ascontiguousarray(gains[:, :, group])), room, found, told)
-            parts.append(found.reshape(len(times), 2 * n, stride)[:, :, : len(room.poor)])
+            parts.append(found.reshape(len(lengths), 2 * n, stride)[:, :, : len(room.poor)])
         told[0, EVALUATIONS] += evaluated if first == 0 else 0
-        block = np.concatenate(parts, axis=2).reshape(len(times), 2 * n, *batch)
+        block = np.concatenate(parts, axis=2).reshape(len(lengths), 2 * n, *batch)
         if not batch and (broken := breakdown(block, told)):
             end, cause = broken
             yield Block(block[:end], told[: end + 1], cause)

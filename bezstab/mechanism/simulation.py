@@ -18,11 +18,10 @@ from bezstab.mechanism.observation import (
     observe,
     singular_passages,
 )
-from bezstab.mechanism.programs import Steps
-from bezstab.mechanism.runner import Start, Trajectory, simulate, simulate_steps
+from bezstab.mechanism.programs import Steps, even_steps
+from bezstab.mechanism.runner import Start, Trajectory, simulate_steps
 from bezstab.mechanism.start import perturbed_state
 from bezstab.methods import Method, check_one_step
-from bezstab.read_only import ReadOnlyArrays
 from bezstab.stabilising import NOTHING, AfterStep, Stabilise, held_by
 from bezstab.units import check_step, feedback_gains
 
@@ -32,8 +31,8 @@ MOST_STEPS = 10**8
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Simulation(ReadOnlyArrays):
-    """A run at one point of the plane, with steps of h (s), and the constraint errors along it; SI units.
+class Simulation(Trajectory, Observation):
+    """A run at one point of the plane, with steps of h (s), and what its constraints did along it; SI units.
 
     t has shape (times,), q and v (times, coordinates), c, cdot and multipliers (times, constraints). Of energy and
     work, (times,): `driver_work` is what the drivers have put in since the start, `force_work` what constant forces and
@@ -41,8 +40,6 @@ class Simulation(ReadOnlyArrays):
     and why the run ended early; None if it did not.
     """
 
-    trajectory: Trajectory
-    observation: Observation
     driver_work: FloatArray
     force_work: FloatArray
     energy_drift: FloatArray
@@ -51,58 +48,18 @@ class Simulation(ReadOnlyArrays):
     beta_hat: float
 
     @property
-    def t(self) -> FloatArray:
-        """The times (s)."""
-        return self.trajectory.t
-
-    @property
-    def q(self) -> FloatArray:
-        """The coordinates (m, rad), in the order of `scene.coordinates`."""
-        return self.trajectory.q
-
-    @property
-    def v(self) -> FloatArray:
-        """Their derivatives (m/s, rad/s)."""
-        return self.trajectory.v
-
-    @property
-    def c(self) -> FloatArray:
-        """The constraint errors (m; rad for a driven angle)."""
-        return self.observation.c
-
-    @property
-    def cdot(self) -> FloatArray:
-        """Their derivatives."""
-        return self.observation.cdot
-
-    @property
-    def multipliers(self) -> FloatArray:
-        """The Lagrange multipliers (N; N m for a driven angle)."""
-        return self.observation.multipliers
-
-    @property
-    def energy(self) -> FloatArray:
-        """Kinetic and potential energy (J)."""
-        return self.observation.energy
-
-    @property
     def singular_times(self) -> FloatArray:
         """The times (s) nearest to singular configurations that the run went through, where a motion can branch."""
-        return self.t[singular_passages(self.observation.pivots)]
+        return self.t[singular_passages(self.pivots)]
 
     @property
     def stabilise(self) -> Stabilise:
         """What holds the constraints."""
-        return held_by(self.trajectory.after, feedback=bool(self.alpha_hat or self.beta_hat))
-
-    @property
-    def failure(self) -> str | None:
-        """When and why the run ended early."""
-        return self.trajectory.failure
+        return held_by(self.after, feedback=bool(self.alpha_hat or self.beta_hat))
 
     def __repr__(self) -> str:
         point = f"alpha_hat {self.alpha_hat:g}, beta_hat {self.beta_hat:g}"
-        run = f"{self.trajectory.mechanism.scene.name}, {self.trajectory.method.name}"
+        run = f"{self.mechanism.scene.name}, {self.method.name}"
         ended = ", failed" if self.failure else ""
         return f"Simulation({run}, {point}, {len(self.t)} times, to t = {self.t[-1]:.6g} s{ended})"
 
@@ -145,24 +102,30 @@ def simulated(
         raise InputError(f"start {start!r}: expected {', '.join(get_args(Start))}")
     multiple = float(method.step_multiple)
     check_duration(duration, min(sequence, default=h) * multiple)
-    constant, state = feedback_gains(alpha_hat, beta_hat, h), perturbed_state(mechanism, perturb)
+    constant = feedback_gains(alpha_hat, beta_hat, h)
     if sequence:
         check_one_step(method)
         lengths = _lengths([step * multiple for step in sequence], duration)
         of_steps = [feedback_gains(alpha_hat, beta_hat, step / multiple) if hold else constant for step in lengths]
-        times = np.concatenate([[0.0], np.cumsum(lengths)[:-1]])
-        steps = Steps(times, lengths, np.array(of_steps)[:, :, np.newaxis])
-        trajectory = simulate_steps(mechanism, method, steps, state, after)
-        taken = len(trajectory.t) - 1
-        # at each time the gains of the step that begins there; at the last, those of the step that led to it
-        gains = steps.gains[np.minimum(np.arange(taken + 1), len(times) - 1), :, 0].T
-        lengths, nodes = lengths[:taken], 2
+        gains = np.array([*of_steps, of_steps[-1]])  # at the end, those of the step that led to it
+        steps = Steps(np.append(0.0, np.cumsum(lengths)), lengths, gains[:, :, np.newaxis])
     else:
-        trajectory = simulate(mechanism, method, h, duration, constant, state, start, after=after)
-        gains, lengths, nodes = np.array(constant), np.array(h * multiple), NODES
-    observation = observe(mechanism, trajectory.t, trajectory.q, trajectory.v, gains[0], gains[1])
-    balance = energy_balance(observation, lengths, nodes)
-    return Simulation(trajectory, observation, *balance, h, alpha_hat, beta_hat)
+        steps = even_steps(h * multiple, round(duration / (h * multiple)), constant)
+    run = simulate_steps(mechanism, method, steps, perturbed_state(mechanism, perturb), start, after=after)
+    times = len(run.t)
+    observation = observe(mechanism, run.t, run.q, run.v, *steps.gains[:times, :, 0].T)
+    nodes = 2 if sequence else NODES
+    driver_work, force_work, energy_drift = energy_balance(observation, steps.lengths[: times - 1], nodes)
+    return Simulation(
+        **vars(run),
+        **vars(observation),
+        driver_work=driver_work,
+        force_work=force_work,
+        energy_drift=energy_drift,
+        h=h,
+        alpha_hat=alpha_hat,
+        beta_hat=beta_hat,
+    )
 
 
 def _lengths(sequence: Sequence[float], duration: float) -> FloatArray:

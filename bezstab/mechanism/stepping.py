@@ -182,7 +182,7 @@ def finish(program: Program, h: float, room: Room, state: FloatArray) -> None:
 
 def take_steps(program: Program, steps: Steps, room: Room, states: FloatArray, told: FloatArray) -> None:
     """Take steps. `states` (steps, 2, width) get q and v after each, `told` (steps, 6) what is told of each."""
-    for k in range(len(steps.times)):
+    for k in range(len(steps.lengths)):
         time, h, gains = steps.times[k], steps.lengths[k], steps.gains[k]
         if h != room.step[0]:
             for number in range(len(program.powers)):

@@ -279,7 +279,7 @@ def oscillation_is_a_disadvantage(runs: Runs) -> Finding:
 
     By the error that each method must force at the points of Table 5, and by runs with gains chosen for accuracy.
     """
-    omega = constraint_motion(runs[1, "B4"].trajectory.mechanism, DURATION).omega
+    omega = constraint_motion(runs[1, "B4"].mechanism, DURATION).omega
     forced, accurate = {}, {}
     for name in ("RK4@5", "B4"):
         costs = [feedback_cost(lookup(name), *case.point, exact(omega) * exact(STEP)) for case in TABLE_5.values()]

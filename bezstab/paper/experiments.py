@@ -37,7 +37,7 @@ def experiment(
 
 def pole(run: Simulation) -> complex:
     """Return the predicted dominant pole of a run."""
-    return complex(dominant_pole(run.trajectory.method, run.alpha_hat, run.beta_hat))
+    return complex(dominant_pole(run.method, run.alpha_hat, run.beta_hat))
 
 
 def largest(run: Simulation, begin: float, end: float, rate: bool = False) -> float:

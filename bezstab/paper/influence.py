@@ -281,7 +281,7 @@ def dominant_pole_is_seen_late() -> Finding:
     """Return how AB4 falls from a kick where its dominant pole is hardly excited: first as another pole says."""
     point = TABLE_5[2].point
     run = experiment("AB4", *point, duration=1.0, kick=KICK)
-    *_, next_to_it, largest = np.unique(np.abs(poles(run.trajectory.method, *point)).round(4)).tolist()
+    *_, next_to_it, largest = np.unique(np.abs(poles(run.method, *point)).round(4)).tolist()
     c = run.c[:, 0]
     early = int(np.flatnonzero(np.abs(c) > 1e-3 * KICK)[-1]) + 1
     late = _rate(c[len(c) // 2 :])

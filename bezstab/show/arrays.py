@@ -77,7 +77,7 @@ def verdict_arrays(verdicts: VerdictMap) -> Arrays:
 
 def history_arrays(simulation: Simulation) -> Arrays:
     """Return t, every q and d/dt q, c_1, cdot_1, lambda_1, ..., energy and work: shape (times,), SI units."""
-    coordinates = simulation.trajectory.mechanism.scene.coordinates
+    coordinates = simulation.mechanism.scene.coordinates
     constraint_histories = {"c": simulation.c, "cdot": simulation.cdot, "lambda": simulation.multipliers}
     return {
         "t": simulation.t,

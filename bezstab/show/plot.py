@@ -171,12 +171,11 @@ def history(
 
     check_kind(simulation, Simulation, "bezstab.simulate")
     if constraint is None:
-        name, errors = "largest $|c|$ (SI)", simulation.observation.largest_c
+        name, errors = "largest $|c|$ (SI)", simulation.largest_c
     else:
         name = rf"$\dot c_{constraint}$ (SI)" if derivative else rf"$c_{constraint}$ (SI)"
         errors = (simulation.cdot if derivative else simulation.c)[:, constraint - 1]
-    trajectory = simulation.trajectory
-    axes = _axes(axes, title_lines(trajectory.mechanism.scene.name, trajectory.method.name), "t (s)", name)
+    axes = _axes(axes, title_lines(simulation.mechanism.scene.name, simulation.method.name), "t (s)", name)
     if constraint is None:
         axes.set_yscale("log", nonpositive="mask")
     return _line(axes, (simulation.t, errors), line, linewidth=FINE)

@@ -50,10 +50,9 @@ def history_figure(simulation: Simulation) -> Figure:
     |c| is the largest over all constraints, on a logarithmic axis, where decay and growth are straight lines. Above
     stand scene, method, point and step and, in as many lines as it takes, why a run ended early.
     """
-    trajectory = simulation.trajectory
     point = rf"$\hat\alpha$ = {simulation.alpha_hat:g}, $\hat\beta$ = {simulation.beta_hat:g}"
     title = [
-        title_lines(trajectory.mechanism.scene.name, trajectory.method.name, f"h = {simulation.h:g} s"),
+        title_lines(simulation.mechanism.scene.name, simulation.method.name, f"h = {simulation.h:g} s"),
         "with projection" if simulation.stabilise == "projection" else point,
     ]
     if simulation.failure:

@@ -30,6 +30,7 @@ from bezstab.mechanism import (
     Mechanism,
     T,
     compiled_mechanism,
+    even_steps,
     initial_state,
     load_scene,
     march,
@@ -390,7 +391,7 @@ def batch_run(method: Method, moving: Mechanism) -> FloatArray:
     spread = np.linspace(1, 0.5, INSTANCES)  # the first has GAINS themselves
     gains = (GAINS[0] * spread, GAINS[1] * spread)
     state = tuple(np.full(INSTANCES, x) for x in np.concatenate(initial_state(moving)))
-    *_, block = march(moving, method, STEP, gains, state, "rk4", STEPS)
+    *_, block = march(moving, method, even_steps(STEP, STEPS, gains, (INSTANCES,)), state)
     return np.asarray(block.states[-1].T)
 
 
@@ -577,8 +578,7 @@ def growth() -> Iterator[Growth]:
 
     def batch_of(size: int) -> Callable[[], object]:
         state = tuple(np.full(size, x) for x in np.concatenate(initial_state(moving)))
-        two_alpha = np.full(size, GAINS[0])
-        return lambda: list(march(moving, b4, STEP, (two_alpha, GAINS[1]), state, "rk4", 50))
+        return lambda: list(march(moving, b4, even_steps(STEP, 50, GAINS, (size,)), state))
 
     def chain(count: int) -> Mechanism:
         table = {"count": count, "length": 1.0, "mass": 1.0}

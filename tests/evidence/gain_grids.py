@@ -71,7 +71,7 @@ def measured(scene: str, method: Method, point: Point) -> FloatArray:
         return np.full(2, np.inf)
     later = run.t >= COMPARED * duration
     exactly, _, _ = motion(mechanism, duration).at(run.t[later])
-    return np.array([settled_error(run.observation, run.t), np.abs(run.q[later] - exactly).max()])
+    return np.array([settled_error(run, run.t), np.abs(run.q[later] - exactly).max()])
 
 
 def print_table(names: Sequence[str]) -> None:

@@ -123,14 +123,14 @@ def test_the_cost_is_counted() -> None:
     """A projection that moves the state computes a correction twice: the second says that it is enough."""
     mechanism, count = scene("driven_four_bar"), 40
     for name in ("SYM", "RK2", "hht"):
-        run = projected(mechanism, lookup(name), H, count * H, ONCE).trajectory
+        run = projected(mechanism, lookup(name), H, count * H, ONCE)
         assert run.projections == 2 * count
         assert run.factorizations == run.evaluations + 2 * count
         if name in ("SYM", "RK2"):
             assert run.evaluations == count * evaluations(lookup(name))
     plain = simulate(mechanism, lookup("SYM"), H, count * H, (0.0, 0.0))
     assert (plain.projections, plain.factorizations) == (0, plain.evaluations)
-    ab4 = projected(mechanism, lookup("AB4"), H, count * H).trajectory
+    ab4 = projected(mechanism, lookup("AB4"), H, count * H)
     assert 2 * (count - 3) <= ab4.projections <= 2 * count  # those of its start are counted, too
 
 

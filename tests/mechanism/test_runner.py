@@ -288,4 +288,4 @@ def test_a02_the_four_bars_go_through_their_singular_positions(count: int, durat
     assert np.ptp(run.q[:, : count + 1], axis=1).max() < 1e-8  # rad: no four-bar has branched
     assert np.abs(run.energy_drift).max() < 1e-6  # J, of hundreds; measured 1.5e-7
     assert len(run.singular_times) == passages
-    assert run.trajectory.least_pivot < 1e-5
+    assert run.least_pivot < 1e-5

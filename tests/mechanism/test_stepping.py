@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from bezstab.mechanism import (
-    Block,
     Mechanism,
     Trajectory,
     compiled_mechanism,
+    even_steps,
     initial_state,
     load_scene,
     march,
@@ -19,6 +19,7 @@ from bezstab.mechanism import (
     simulate,
     states_needed,
 )
+from bezstab.mechanism.runner import Block
 from bezstab.mechanism.stepping import MOST_ITERATIONS
 from bezstab.methods import REGISTRY, implicit, lookup
 from bezstab.units import feedback_gains
@@ -149,14 +150,16 @@ def test_kicked_runs_are_the_same_in_a_batch_compiled_and_alone(name: str) -> No
     mechanism, method, points = compiled_mechanism(load_scene(scene)), lookup(name), 70
     gains = feedback_gains(np.linspace(0.05, 3.0, points), np.linspace(0.01, 2.0, points), H)
     start = np.concatenate(initial_state(mechanism))
-    blocks = march(mechanism, method, H, gains, start[:, np.newaxis], "rk4", states_needed(method))
-    history = [np.repeat(start[:, np.newaxis], points, axis=1), *(state for block in blocks for state in block.states)]
+    together_at_first = np.repeat(start[:, np.newaxis], points, axis=1)
+    blocks = march(mechanism, method, even_steps(H, states_needed(method), gains, (points,)), together_at_first)
+    history = [together_at_first, *(state for block in blocks for state in block.states)]
     undisturbed = history[-1]
     history[-1] = undisturbed[:, np.newaxis] + np.array([[1e-6], [-1e-6]])
-    count = 300
-    together = states_of(resume(mechanism, method, H, gains, history, count, undisturbed=undisturbed))
+    count, first = 300, len(history) - 1
+    after = even_steps(H, count, gains, (2, points), first)
+    together = states_of(resume(mechanism, method, after, history, undisturbed=undisturbed))
     assert together.shape == (count, 2 * mechanism.size, 2, points)
-    compiled = states_of(resume(mechanism, method, H, gains, history, count, True, undisturbed))
+    compiled = states_of(resume(mechanism, method, after, history, True, undisturbed))
     with np.errstate(invalid="ignore"):  # of what is infinite
         calm = (np.abs(together[:, :, 0] - together[:, :, 1]) < 1e-2).all(axis=(0, 1))
     assert calm.any()
@@ -166,10 +169,8 @@ def test_kicked_runs_are_the_same_in_a_batch_compiled_and_alone(name: str) -> No
             resume(
                 mechanism,
                 method,
-                H,
-                (float(gains[0][point]), float(gains[1][point])),
+                even_steps(H, count, (gains[0][point], gains[1][point]), first=first),
                 [*(state[:, point] for state in history[:-1]), history[-1][:, 0, point]],
-                count,
                 undisturbed=undisturbed[:, point],
             )
         )

@@ -70,8 +70,8 @@ def test_equal_steps_are_the_run_of_constant_steps(name: str) -> None:
     assert run.q == pytest.approx(constant.q, abs=1e-9)
     assert run.multipliers == pytest.approx(constant.multipliers, rel=1e-6)
     assert run.failure is constant.failure is None
-    assert run.trajectory.evaluations == constant.trajectory.evaluations
-    assert run.trajectory.iterations == constant.trajectory.iterations
+    assert run.evaluations == constant.evaluations
+    assert run.iterations == constant.iterations
 
 
 @dataclass(frozen=True)
@@ -148,7 +148,7 @@ def compiled_and_not(name: str, monkeypatch: pytest.MonkeyPatch, **point: Any) -
     for choice in ("no", "yes"):
         monkeypatch.setenv(COMPILED_CHOICE, choice)
         runs.append(simulated(pendulum, lookup(name), perturb=1e-6, **point))
-    assert_alike(runs[0].trajectory, runs[1].trajectory)
+    assert_alike(runs[0], runs[1])
     return runs[1]
 
 

@@ -4,7 +4,7 @@ from itertools import islice
 
 import numpy as np
 
-from bezstab.mechanism import Mechanism, motion, resume, simulate
+from bezstab.mechanism import Mechanism, even_steps, motion, resume, simulate
 from bezstab.methods import Method, steps
 from bezstab.stability import FloatArray
 from bezstab.units import feedback_gains
@@ -79,7 +79,8 @@ def _revolution(
     gains = feedback_gains(alpha_hat, beta_hat, h / float(method.step_multiple))
     shifts = REACH * np.eye(start.size)
     past = np.split(start[:, np.newaxis] + np.hstack([np.zeros((start.size, 1)), shifts, -shifts]), steps(method))
-    later = (state for block in resume(mechanism, method, h, gains, past, count) for state in block.states)
+    ahead = even_steps(h, count, gains, past[0].shape[1:], first=len(past) - 1)
+    later = (state for block in resume(mechanism, method, ahead, past) for state in block.states)
     after = np.concatenate([*past, *islice(later, count)][-len(past) :])
     forwards, backwards = np.split(after[:, 1:], 2, axis=1)
     return after[:, 0], (forwards - backwards) / (2 * REACH)
