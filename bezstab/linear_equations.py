@@ -1,14 +1,7 @@
-"""Small systems of linear equations: solved exactly, or many at a time in floats."""
-
-from __future__ import annotations
+"""Small systems of linear equations, solved exactly."""
 
 from collections.abc import Sequence
 from fractions import Fraction
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
 
 
 def solution(rows: Sequence[Sequence[Fraction]], right_sides: Sequence[Sequence[Fraction]]) -> list[list[Fraction]]:
@@ -27,16 +20,3 @@ def solution(rows: Sequence[Sequence[Fraction]], right_sides: Sequence[Sequence[
             if number != column and row[column] != 0:
                 table[number] = [entry - row[column] * other for entry, other in zip(row, pivot_row, strict=True)]
     return [row[unknowns:] for row in table[:unknowns]]
-
-
-def inverses(matrices: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the inverse of each of a batch of matrices, shape (m, m, *batch); not finite where there is none."""
-    import numpy as np  # exact numbers do without, and --help
-
-    stack: NDArray[np.floating] = np.moveaxis(matrices, (0, 1), (-2, -1))
-    try:
-        inverse = np.linalg.inv(stack)
-    except np.linalg.LinAlgError:  # because of one without an inverse numpy gives up on all
-        singular = np.linalg.det(stack) == 0
-        inverse = np.linalg.inv(np.where(singular[..., np.newaxis, np.newaxis], np.nan, stack))
-    return np.moveaxis(inverse, (-2, -1), (0, 1))

@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 
-from bezstab.linear_equations import inverses
 from bezstab.mechanism.equations import Mechanism
 from bezstab.mechanism.generated_code import state_function
 from bezstab.mechanism.programs import BoolArray, FloatArray, Program, Room, Steps
@@ -62,8 +61,14 @@ def combine(rows: FloatArray, registers: FloatArray, into: FloatArray) -> None:
 
 
 def invert(matrices: FloatArray, size: int, lanes: BoolArray, found: FloatArray) -> None:
-    """Write the inverses of some lanes' matrices."""
-    found[:size, :size, lanes] = inverses(matrices[:size, :size, lanes])
+    """Write the inverses of some lanes' matrices, shape (size, size, lanes); not finite where there is none."""
+    stack = np.moveaxis(matrices[:size, :size, lanes], 2, 0)
+    try:
+        inverses = np.linalg.inv(stack)
+    except np.linalg.LinAlgError:  # because of one without an inverse numpy gives up on all
+        singular = np.linalg.det(stack) == 0
+        inverses = np.linalg.inv(np.where(singular[:, np.newaxis, np.newaxis], np.nan, stack))
+    found[:size, :size, lanes] = np.moveaxis(inverses, 0, 2)
 
 
 def _of_one_run(mechanism: Mechanism, name: str) -> Callable[..., float]:

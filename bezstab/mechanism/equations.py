@@ -129,13 +129,8 @@ def _frame(body: Body, symbol_of: dict[str, sp.Symbol]) -> Frame:
 
 def _turned(vector: tuple[float, float], theta: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
     """Return a vector of a body's frame along the ground's axes."""
-    along, across = (_exact_zero(component) for component in vector)
+    along, across = vector  # sympy drops products with 0.0, so that they are not computed
     return along * sp.cos(theta) - across * sp.sin(theta), along * sp.sin(theta) + across * sp.cos(theta)
-
-
-def _exact_zero(number: float) -> sp.Expr:
-    """Return the number; 0 as one that vanishes from expressions, where 0.0 * cos(theta) would stay and be computed."""
-    return sp.Integer(0) if number == 0 else sp.Float(number)
 
 
 def _position(frame: Frame, point: tuple[float, float]) -> tuple[sp.Expr, sp.Expr]:
@@ -157,7 +152,7 @@ def _potential_energy(scene: Scene, frames: dict[str, Frame], lengths: Sequence[
         potential -= body.mass * (scene.gravity[0] * x + scene.gravity[1] * y)
     for spring, length in zip(scene.springs, lengths, strict=True):
         if spring.stiffness:
-            potential += spring.stiffness * (length - _exact_zero(spring.free_length)) ** 2 / 2
+            potential += spring.stiffness * (length - spring.free_length) ** 2 / 2
     return potential
 
 

@@ -19,6 +19,7 @@ from bezstab.mechanism import (
     simulate,
     states_needed,
 )
+from bezstab.mechanism.array_stepping import invert
 from bezstab.mechanism.runner import Block
 from bezstab.mechanism.stepping import MOST_ITERATIONS
 from bezstab.methods import REGISTRY, implicit, lookup
@@ -180,3 +181,13 @@ def test_kicked_runs_are_the_same_in_a_batch_compiled_and_alone(name: str) -> No
 def states_of(blocks: Iterable[Block]) -> FloatArray:
     """Return all states of blocks."""
     return np.concatenate([block.states for block in blocks])
+
+
+def test_a_matrix_without_inverse_spoils_no_other() -> None:
+    matrices = np.stack([np.eye(2), np.ones((2, 2)), np.array([[0.0, 2.0], [4.0, 0.0]])], axis=-1)
+    found = np.zeros_like(matrices)
+    with np.errstate(all="ignore"):
+        invert(matrices, 2, np.ones(3, np.bool_), found)
+    assert not np.isfinite(found[:, :, 1]).all()
+    assert np.array_equal(found[:, :, 0], np.eye(2))
+    assert np.array_equal(found[:, :, 2], [[0.0, 0.25], [0.5, 0.0]])
