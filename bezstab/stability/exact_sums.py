@@ -11,7 +11,7 @@ from fractions import Fraction
 import numpy as np
 
 from bezstab.stability.arrays import ComplexArray, FloatArray
-from bezstab.stability.low_degrees import quadratic_roots, signed_root
+from bezstab.stability.low_degrees import quadratic_roots
 
 SPLITTER = 2.0**27 + 1  # multiplying by it parts the 53 bits of a float64 into two halves (Dekker)
 
@@ -22,14 +22,14 @@ def feedback_roots(alpha_hat: FloatArray, beta_hat: FloatArray) -> tuple[Complex
     Arrays of one shape in and out, all dimensionless. The discriminant is exact until rounded. Not finite where a root
     leaves the range of float64.
     """
-    with np.errstate(over="ignore", under="ignore", invalid="ignore"):
+    with np.errstate(all="ignore"):
         # mu is computed in units of 2^exponent, so that neither alpha_hat^2 nor beta_hat leaves the range of float64
-        exponent = np.maximum(np.frexp(alpha_hat)[1], (np.frexp(beta_hat)[1] + 1) // 2)
+        exponent = np.maximum(np.frexp(alpha_hat)[1], (np.frexp(beta_hat)[1] + 1) // 2) - 1
         half = np.ldexp(alpha_hat, -exponent - 1)
         nothing = np.zeros_like(half)
         square = double_product((half, nothing), (half, nothing))
         discriminant, rest = double_sum(square, (-np.ldexp(beta_hat, -2 * exponent), nothing))
-        root = np.ldexp(signed_root(discriminant + rest), exponent)
+        root = np.sqrt((discriminant + rest).astype(complex)) * np.ldexp(1.0, exponent)
         first, second = quadratic_roots(alpha_hat / 2, beta_hat, root)
     return first, second
 

@@ -4,33 +4,28 @@ A quadratic loses digits where its roots nearly meet: there b^2/4 - a c cancels,
 """
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bezstab.stability.arrays import ComplexArray, FloatArray
 
 CUBIC_STEPS = 6  # of Newton's method, from at most three times the root's distance from the inflection
 
 
-def quadratic_roots(half: FloatArray, last: FloatArray, root: FloatArray) -> ComplexArray:
-    """Return both roots of z^2 + 2 half z + last; shape (2, *that of half), larger first.
+def quadratic_roots(
+    half: NDArray[Any], last: NDArray[Any], root: ComplexArray, leading: ComplexArray | float = 1.0
+) -> ComplexArray:
+    """Return both roots of leading z^2 + 2 half z + last, real or complex; shape (2, *that of half), larger first.
 
-    `root` is that of half^2 - last, or minus that of last - half^2. Of a conjugate pair that with Im > 0 comes first.
+    `root` is that of half^2 - leading last. Of a conjugate pair that with Im > 0 comes first. Where they meet, their
+    last digits are lost, but not where their middle is: branches that meet go through it.
     """
-    real = root >= 0
-    larger = -(half + np.copysign(root, half))
-    smaller = np.divide(last, larger, out=np.zeros_like(larger), where=larger != 0)  # without cancellation
-    z = np.empty((2, *half.shape), complex)
-    z[0].real = np.where(real, larger, -half)
-    z[1].real = np.where(real, smaller, -half)
-    z[0].imag = np.where(real, 0, -root)
-    z[1].imag = -z[0].imag
-    return z
-
-
-def signed_root(x: FloatArray) -> FloatArray:
-    """Return the root of each number, minus that of its size where it is negative."""
-    return np.asarray(np.copysign(np.sqrt(np.abs(x)), x))
+    side = (half * root.conj()).real  # where it is positive, half + root cancels nothing
+    larger = -(half + np.where(side > 0, root, -root))
+    smaller = np.where(side == 0, -(half + root) / leading, last / larger)  # of a conjugate pair as exact as the first
+    return np.stack([larger / leading, smaller])
 
 
 def largest_quadratic_root(half: FloatArray, discriminant: FloatArray) -> ComplexArray:

@@ -21,7 +21,7 @@ from bezstab.stability.exact_sums import feedback_roots
 from bezstab.stability.low_degrees import largest_quadratic_root, polynomial_of_pair
 from bezstab.stability.plane_pencils import CANCELS, PlanePencil, out_of_range
 from bezstab.stability.real_factors import FEWEST
-from bezstab.stability.root_finding import horner, in_chunks, inside_circle, roots_of_table
+from bezstab.stability.root_finding import horner, inside_circle, roots_of_table
 
 Mu = NDArray[np.inexact] | complex
 """Complex or real, one or many."""
@@ -107,16 +107,16 @@ class MuPencil:
         """
         explicit_one_step = self.steps == 1 and not self.implicit
         if alpha_hat.size < FEWEST or (self.degree > MOST_FOLLOWED and not explicit_one_step):
-            return in_chunks(self._largest_by_mu, alpha_hat, beta_hat)
+            return self._largest_by_mu(alpha_hat.ravel(), beta_hat.ravel()).reshape(alpha_hat.shape)
         with np.errstate(all="ignore"):
             if explicit_one_step:
-                z = in_chunks(self._larger_of_two, alpha_hat, beta_hat)
+                z = self._larger_of_two(alpha_hat, beta_hat)
             else:
                 z = self.plane.followed_poles(alpha_hat, beta_hat)
             square = alpha_hat * alpha_hat / 4
             kept = np.abs(square - beta_hat) > CANCELS * square  # else P's roots have less than 12 digits
         rest = ~(kept & np.isfinite(z))
-        z[rest] = in_chunks(self._largest_by_mu, alpha_hat[rest], beta_hat[rest])
+        z[rest] = self._largest_by_mu(alpha_hat[rest], beta_hat[rest])
         return z
 
     def _larger_of_two(self, alpha_hat: FloatArray, beta_hat: FloatArray) -> ComplexArray:

@@ -15,9 +15,9 @@ from bezstab.errors import NumericalError
 from bezstab.methods import Method, closed_loop_table, reduced_table
 from bezstab.stability.arrays import BoolArray, ComplexArray, FloatArray
 from bezstab.stability.exact_sums import double_polynomial, double_product, double_sum, split
-from bezstab.stability.low_degrees import largest_cubic_root, largest_quadratic_root, quadratic_roots, signed_root
+from bezstab.stability.low_degrees import largest_cubic_root, largest_quadratic_root, quadratic_roots
 from bezstab.stability.real_factors import largest_factors
-from bezstab.stability.root_finding import horner, in_chunks, inside_circle, roots_of_rows
+from bezstab.stability.root_finding import horner, inside_circle, roots_of_rows
 
 CANCELS = 1e-5  # of (b/2)^2: where the discriminant is below it, its root would be good to 1e-13 or less
 
@@ -61,7 +61,7 @@ class PlanePencil:
         with np.errstate(all="ignore"):
             if self.degree == 2:
                 half, last, discriminant = self._quadratics(alpha_hat, beta_hat)
-                z = quadratic_roots(half, last, signed_root(discriminant))
+                z = quadratic_roots(half, last, np.sqrt(discriminant.astype(complex)))
             else:
                 z = roots_of_rows(np.stack(self.coefficients_at(alpha_hat, beta_hat)))
         self._check_finite(z, alpha_hat, beta_hat)
@@ -92,7 +92,7 @@ class PlanePencil:
         with np.errstate(all="ignore"):
             if self.degree > 3:
                 return largest_factors(self.coefficients_at, alpha_hat, beta_hat)[2]
-            return in_chunks(self._largest_of_few, alpha_hat, beta_hat)
+            return self._largest_of_few(alpha_hat, beta_hat)
 
     def _largest_of_few(self, alpha_hat: FloatArray, beta_hat: FloatArray) -> ComplexArray:
         """Return the largest pole of two or three, by formula."""
@@ -125,8 +125,8 @@ class PlanePencil:
         half, last = 0.5 * twice_half / leading, last / leading
         square = half * half
         discriminant = square - last
-        close = np.flatnonzero(np.abs(discriminant) < CANCELS * square)
-        if close.size:
+        close = np.abs(discriminant) < CANCELS * square
+        if close.any():
             a, b, c = (double_polynomial(table, alpha_hat[close], beta_hat[close]) for table in self.split[::-1])
             b = (0.5 * b[0], 0.5 * b[1])
             unscaled = double_sum(double_product(b, b), double_product((-a[0], -a[1]), c))

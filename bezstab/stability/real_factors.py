@@ -14,7 +14,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from bezstab.stability.arrays import SAME, ComplexArray, FloatArray
+from bezstab.stability.arrays import DOUBLE, SAME, ComplexArray, FloatArray
 from bezstab.stability.low_degrees import largest_quadratic_root
 from bezstab.stability.root_finding import CHUNK, inside_circle, roots_of_rows
 
@@ -26,8 +26,7 @@ Coefficients = Callable[[FloatArray, FloatArray], list[FloatArray]]
 """Of real polynomials in z, ascending, from alpha_hat and beta_hat; each of their shape."""
 
 Factors = tuple[FloatArray, FloatArray, ComplexArray]
-"""p and q of factors with the largest root of polynomials, and that root, Im >= 0; p and q are nan if it alone is real,
-the root is not finite where it is infinite."""
+"""p and q of factors with the largest root of polynomials, and that root, Im >= 0, not finite where it is infinite."""
 
 
 def largest_factors(coefficients_at: Coefficients, alpha_hat: FloatArray, beta_hat: FloatArray) -> Factors:
@@ -60,17 +59,14 @@ def _lines_between(known: FloatArray, axis: int, size: int) -> FloatArray:
 def _solved(coefficients_at: Coefficients, alpha_hat: FloatArray, beta_hat: FloatArray) -> Factors:
     """Return the same from all roots.
 
-    Of a real root the other in the factor is the nearest other real one.
+    Of a real root the other in the factor is the nearest other real one; where none is, p and q lead nowhere.
     """
     z = roots_of_rows(np.stack(coefficients_at(alpha_hat.ravel(), beta_hat.ravel())))
     lead = np.argmax(np.abs(z), axis=0)[np.newaxis]
     largest = np.take_along_axis(z, lead, axis=0)
-    real = np.abs(z.imag) <= SAME * np.abs(z)
-    lead_is_real = np.take_along_axis(real, lead, axis=0)
-    distance = np.where(lead_is_real & ~real, np.inf, np.abs(z - np.where(lead_is_real, largest, largest.conj())))
-    np.put_along_axis(distance, lead, np.inf, axis=0)
-    beside = np.argmin(distance, axis=0)[np.newaxis]
-    other = np.where(np.isinf(distance.min(axis=0)), np.nan, np.take_along_axis(z, beside, axis=0))
+    apart = np.abs(z - largest.conj()) + np.abs((z + largest).imag) / DOUBLE  # two with a real factor before others
+    np.put_along_axis(apart, lead, np.inf, axis=0)
+    other = np.take_along_axis(z, np.argmin(apart, axis=0)[np.newaxis], axis=0)
     p, q = -(largest + other).real, (largest * other).real
     largest.imag = np.abs(largest.imag)
     return p.reshape(alpha_hat.shape), q.reshape(alpha_hat.shape), largest.reshape(alpha_hat.shape)

@@ -1,12 +1,13 @@
 """All roots of many polynomials at once, by Aberth's iteration, and whether all are in a circle."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bezstab.stability.arrays import SAME, BoolArray, ComplexArray, FloatArray
+from bezstab.stability.low_degrees import quadratic_roots
 
 Number = TypeVar("Number", FloatArray, ComplexArray)
 Coefficients = Sequence[Any] | NDArray[np.inexact]
@@ -15,13 +16,6 @@ CHUNK = 16384  # points at a time: all the work arrays of one chunk stay in a co
 ITERATIONS = 200  # Aberth's iteration needs about ten; a multiple root, where it is linear, about sixty
 LOG_OF_ZERO = -1e15  # finite, but below every logarithm of a float64
 TOLD = 1e-10  # relative: Schur's recursion tells apart what differs by more
-
-
-def in_chunks(values_at: Callable[..., ComplexArray], alpha_hat: FloatArray, beta_hat: FloatArray) -> ComplexArray:
-    """Return a function of points at so many as CHUNK at a time; shape of both."""
-    rows = alpha_hat.reshape(-1), beta_hat.reshape(-1)
-    starts = range(0, max(1, alpha_hat.size), CHUNK)
-    return np.concatenate([values_at(*(row[k : k + CHUNK] for row in rows)) for k in starts]).reshape(alpha_hat.shape)
 
 
 def roots_of_table(table: FloatArray, x: ComplexArray) -> ComplexArray:
@@ -45,7 +39,7 @@ def roots_of_rows(coefficients: NDArray[np.inexact]) -> ComplexArray:
 
     Coefficients of shape (n + 1, points), roots (n, points). Not finite where one is at infinity, or beyond float64.
     """
-    roots = _quadratic_roots if len(coefficients) == 3 else _aberth
+    roots = _of_degree_two if len(coefficients) == 3 else _aberth
     at_once = CHUNK // len(coefficients)
     with np.errstate(all="ignore"):
         chunks = [
@@ -141,16 +135,10 @@ def companion_roots(coefficients: NDArray[np.inexact]) -> ComplexArray:
     return np.linalg.eigvals(companion).T.astype(complex)
 
 
-def _quadratic_roots(coefficients: ComplexArray) -> ComplexArray:
-    """Return both roots of quadratics, shape (2, points).
-
-    Where they meet, their last digits are lost, but not where their middle is: branches that meet go through it.
-    """
+def _of_degree_two(coefficients: ComplexArray) -> ComplexArray:
+    """Return both roots of quadratics, shape (2, points)."""
     last, half, leading = coefficients[0], coefficients[1] / 2, coefficients[2]
-    root = np.sqrt(half * half - last * leading)
-    larger = -(half + np.where((half * root.conj()).real >= 0, root, -root))
-    smaller = np.divide(last, larger, out=np.zeros_like(larger), where=larger != 0)  # without cancellation
-    return np.stack([larger / leading, smaller])
+    return quadratic_roots(half, last, np.sqrt(half * half - leading * last), leading)
 
 
 def _aberth(coefficients: ComplexArray) -> ComplexArray:
