@@ -1,9 +1,9 @@
 """Controllers outside a MuJoCo model: what closes the loop of its motors, every few steps and late.
 
-    l = direction . q      control = -kp l - kd l'      force = gain * control, along direction
+    l = direction . q      force = -kp l - kd l', along direction; the motor's own gain is part of kp and kd
 
 One step of the model is linear at qpos0: (x, h v) -> S (x, h v, forces of the motors). Over the steps from one
-computation of the controls to the next, that is one matrix over (x, h v) and the controls that are still to be applied.
+computation of the forces to the next, that is one matrix over (x, h v) and the forces that are still to be applied.
 """
 
 import re
@@ -40,7 +40,7 @@ class MotorGains:
 
 @dataclass(frozen=True)
 class Controlled:
-    """A motor with its controller: gains, and when the control is computed and applied, MuJoCo's own delay included."""
+    """A motor with its controller: gains of its force, and when that is computed and applied, MuJoCo's delay too."""
 
     motor: Motor
     kp: Fraction
@@ -62,8 +62,8 @@ def controlled_motors(model: ModelData, gains: Sequence[MotorGains], timing: Tim
     for motor in motors:
         matching = [each for each in gains if re.fullmatch(each.pattern, motor.name)]
         if matching:
-            late = timing.late + exact(motor.delay) / model.h
-            found.append(Controlled(motor, matching[-1].kp, matching[-1].kd, Timing(timing.every, late)))
+            late, gain = timing.late + exact(motor.delay) / model.h, exact(motor.gain)
+            found.append(Controlled(motor, gain * matching[-1].kp, gain * matching[-1].kd, Timing(timing.every, late)))
     return found
 
 
@@ -71,26 +71,25 @@ def lifted_step(step: FloatArray, controlled: Sequence[Controlled], h: float) ->
     """Return the matrix over `every` steps of a model with controllers.
 
     `step` (2 n, 2 n + motors) takes (x, h v) and the force of each motor (SI) over a step. The state is (x, h v), then
-    the controls still to be applied, latest first. All controllers have the same `every`, and see velocities without a
+    the forces still to be applied, latest first. All controllers have the same `every`, and see velocities without a
     filter.
     """
     dofs, motors = len(step) // 2, len(controlled)
     arms = np.array([each.motor.direction for each in controlled])
-    gains = np.array([[each.kp, each.kd, each.motor.gain] for each in controlled], float)
-    kp, kd, force_gain = gains.T[:, :, np.newaxis]
+    kp, kd = np.array([[each.kp, each.kd] for each in controlled], float).T[:, :, np.newaxis]
     timing = controlled[0].timing
     pending = max(ceil(each.timing.late / timing.every) for each in controlled)
     pending += any(each.timing.late % 1 for each in controlled)  # one more, of which a step keeps its share
     state = np.eye(2 * dofs + pending * motors)
     moving, rest = state[: 2 * dofs], state[2 * dofs :]
     lengths, velocities = arms @ moving[:dofs], arms @ moving[dofs:] / h
-    controls = [-kp * lengths - kd * velocities, *rest.reshape(pending, motors, len(state))]
+    forces = [-kp * lengths - kd * velocities, *rest.reshape(pending, motors, len(state))]
     for number in range(timing.every):
         applied = np.array(
             [
-                sum(float(share) * controls[back][row] for back, share in each.timing.applied(number))
+                sum(float(share) * forces[back][row] for back, share in each.timing.applied(number))
                 for row, each in enumerate(controlled)
             ]
         )
-        moving = step @ np.vstack([moving, force_gain * applied])
-    return np.vstack([moving, *controls[:pending]])
+        moving = step @ np.vstack([moving, applied])
+    return np.vstack([moving, *forces[:pending]])

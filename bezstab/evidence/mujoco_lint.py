@@ -412,10 +412,10 @@ def _smaller_step(model: ModelData, end: float | None) -> str:
 
 def _linted_motor(model: ModelData, controlled: Controlled) -> Linted:
     """Judge a motor with its controller on the inertia along its direction: all other joints are free."""
-    motor, timing, gain = controlled.motor, controlled.timing, exact(controlled.motor.gain)
+    motor, timing = controlled.motor, controlled.timing
     inertia = model.inertia_along(motor.direction)
     method = held_method(model.method.name, timing)
-    drive = _Drive(gain * controlled.kp, gain * controlled.kd, ZERO, inertia, method)
+    drive = _Drive(controlled.kp, controlled.kd, ZERO, inertia, method)
     gains = f"kp {float(drive.kp):.6g}, kd {float(drive.kd):.6g}"
     setting = f"{gains}, every {timing.every}, late {float(timing.late):g}"
     found = drive.linted(model, motor.element, "motor", setting, f"{setting} on inertia {float(inertia):.6g}")
