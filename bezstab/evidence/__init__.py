@@ -14,13 +14,13 @@ if TYPE_CHECKING:
         STEPS,
         Cost,
         ErrorOf,
-        ReferenceMotion,
+        ReferenceRun,
         Run,
         Sweep,
         SweptRuns,
         measured_runs,
         pareto_front,
-        reference_motion,
+        reference_run,
         swept_runs,
     )
     from bezstab.evidence.chunks import Arrays, chunk_store, completed_chunks, worker_pool

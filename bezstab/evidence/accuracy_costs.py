@@ -53,14 +53,14 @@ NO_FEEDBACK = (0.0, 0.0)
 
 
 @dataclass(frozen=True)
-class ReferenceMotion:
+class ReferenceRun:
     """A motion without feedback from a consistent start, and how far its coordinates may be off (SI)."""
 
     along: Motion = field(repr=False)
     error: float
 
 
-def reference_motion(scene: Scene, h: float, duration: float) -> ReferenceMotion:
+def reference_run(scene: Scene, h: float, duration: float) -> ReferenceRun:
     """Return the motion from RK4 at half of h (s) and less, until halving no longer changes it but by rounding.
 
     Feedback does not enter: the exact motion has c = 0. The error is the largest difference to the run at twice the
@@ -71,9 +71,9 @@ def reference_motion(scene: Scene, h: float, duration: float) -> ReferenceMotion
         motion_over(compiled_mechanism(scene), duration, round(duration / h * 2**halving))
         for halving in range(1, HALVINGS + 2)
     )
-    best = ReferenceMotion(next(halved), np.inf)
+    best = ReferenceRun(next(halved), np.inf)
     for along in halved:
-        fine = ReferenceMotion(along, float(np.abs(best.along.at(along.t)[0] - along.q).max()))
+        fine = ReferenceRun(along, float(np.abs(best.along.at(along.t)[0] - along.q).max()))
         if fine.error > best.error / ROUNDED:
             return min(best, fine, key=lambda motion: motion.error)
         best = fine
@@ -96,7 +96,7 @@ class Sweep:
     point: tuple[float, float] | None
     physical: bool
     repeats: int
-    reference: ReferenceMotion
+    reference: ReferenceRun
     omega: Fraction | None = None
     compiled: bool = False
     after: AfterStep = NOTHING

@@ -20,11 +20,11 @@ from bezstab.evidence import (
     STEPS,
     Cost,
     Held,
-    ReferenceMotion,
+    ReferenceRun,
     Sweep,
     SweptRuns,
     projection_sentences,
-    reference_motion,
+    reference_run,
     sweep_sentences,
     swept_runs,
 )
@@ -98,9 +98,9 @@ class TradeQuestion(motions.SceneQuestion):
         return motion.omega_h / shortest
 
     @cached_property
-    def reference(self) -> ReferenceMotion:
+    def reference(self) -> ReferenceRun:
         """The motion that runs are compared with."""
-        return reference_motion(self.moving, self.step_sizes[0], float(self.duration))
+        return reference_run(self.moving, self.step_sizes[0], float(self.duration))
 
     @property
     def compiled(self) -> bool:

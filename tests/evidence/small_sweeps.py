@@ -3,7 +3,7 @@
 from fractions import Fraction
 from functools import cache
 
-from bezstab.evidence import ReferenceMotion, Run, Sweep, measured_runs, reference_motion, swept_runs
+from bezstab.evidence import ReferenceRun, Run, Sweep, measured_runs, reference_run, swept_runs
 from bezstab.mechanism import load_scene
 from bezstab.methods import lookup
 
@@ -17,9 +17,9 @@ OMEGA = Fraction(143, 10)
 
 
 @cache
-def reference() -> ReferenceMotion:
+def reference() -> ReferenceRun:
     """Return the motion that every sweep is compared with, known to 1e-13; it takes longer than most runs do."""
-    return reference_motion(load_scene(SCENE), 2e-3, DURATION)
+    return reference_run(load_scene(SCENE), 2e-3, DURATION)
 
 
 def small_sweep(name: str, steps: tuple[float, ...], point: tuple[float, float] | None = None) -> Sweep:

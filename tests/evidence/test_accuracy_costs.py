@@ -12,7 +12,7 @@ from bezstab.evidence import (
     ErrorOf,
     SweptRuns,
     pareto_front,
-    reference_motion,
+    reference_run,
 )
 from bezstab.evidence.sweep_summaries import cost_for, known_costs
 from bezstab.mechanism import load_scene
@@ -132,7 +132,7 @@ def test_the_front_is_what_no_pair_excludes_by_ascending_cost(points: list[Point
 )
 def test_the_reference_has_the_digits_it_claims() -> None:
     # one coordinate, by quadrature with 30 digits: see tests/mechanism/test_runner.py
-    true = reference_motion(load_scene("slider_crank"), 1e-3, 2.3456)
+    true = reference_run(load_scene("slider_crank"), 1e-3, 2.3456)
     assert true.error < 1e-12
     angles = true.along.at(np.array([1.0, 2.0]))[0][:, 0]  # between its steps
     assert angles == pytest.approx([1.822086334469, 2.872938352485], abs=max(true.error, 5e-13))
@@ -140,4 +140,4 @@ def test_the_reference_has_the_digits_it_claims() -> None:
 
 def test_a_reference_that_fails_says_where() -> None:
     with pytest.raises(NumericalError, match=r"the motion of .* breaks down at t = "):
-        reference_motion(load_scene("four_bar"), 5.0, 500.0)
+        reference_run(load_scene("four_bar"), 5.0, 500.0)
