@@ -81,9 +81,6 @@ class BezstabGroup(click.Group):
         except (InputError, NumericalError) as error:
             _complain(str(error))
             sys.exit(2 if isinstance(error, InputError) else NUMERICAL_TROUBLE)
-        except click.Abort:  # Ctrl-C in a process that is not ours: ours ends by bezstab.stopping
-            _complain("interrupted")
-            sys.exit(130)
         except OSError as error:
             _give_up_output()
             _complain(f"{error.filename}: {error.strerror}" if error.filename else error.strerror or str(error))

@@ -7,17 +7,12 @@ from bezstab.engines.conversions import (
     Curve,
     Engine,
     Point,
+    point_of_gains,
     stiffness_and_damping,
 )
 from bezstab.errors import InputError
 from bezstab.rationals import ONE, ZERO
 from bezstab.units import feedback_gains, from_dimensionless, from_feedback_gains, to_dimensionless
-
-
-def _read_gains(h: Fraction, stiffness: Fraction, damping: Fraction) -> Point:
-    """Stiffness is beta^2 (1/s^2), damping 2 alpha (1/s)."""
-    return from_feedback_gains(damping, stiffness, h)
-
 
 # MuJoCo. With impedance d and its value dmax at full width, aref = -(damping / dmax) c' - (stiffness d / dmax^2) c, of
 # which d takes part: r = d / dmax scales damping once and stiffness twice. r = d0 / dmax at c = 0, 1 past the width.
@@ -37,7 +32,7 @@ def _read_solref(h: Fraction, first: Fraction, second: Fraction, *_solimp: Fract
         alpha, beta = 1 / time_constant, 1 / (time_constant * damping_ratio)
         return from_feedback_gains(2 * alpha, beta**2, h)
     if first <= 0 and second <= 0:
-        return _read_gains(h, stiffness=-first, damping=-second)
+        return point_of_gains(h, stiffness=-first, damping=-second)
     raise InputError(
         f"--engine mujoco: solref = {float(first):g} {float(second):g}: expected two numbers of the same sign"
     )
@@ -142,7 +137,7 @@ CROCODDYL = Engine(
     name="crocoddyl",
     level="acceleration",
     parameters={"gains[0]": "1/s^2", "gains[1]": "1/s"},
-    read=_read_gains,
+    read=point_of_gains,
     write=stiffness_and_damping,
     paste="gains = [{}, {}]",
     source="Crocoddyl source, contact-3d.hxx; integrator/euler.hxx (its Euler moves with the new velocity)",
@@ -155,7 +150,7 @@ PINOCCHIO = Engine(
     level="acceleration",
     method=None,
     parameters={"Kp": "1/s^2", "Kd": "1/s"},
-    read=_read_gains,
+    read=point_of_gains,
     write=stiffness_and_damping,
     marks=(("Pinocchio: Kp = Kd = 0", "0 0"),),
     source="Pinocchio source, contact-info.hpp (corrector, 0 and 0 unless set); constrained-dynamics.hxx",
@@ -187,7 +182,7 @@ RIGID_BODY_DYNAMICS = Engine(
     level="acceleration",
     method="RK4",
     parameters={"k": "1/s^2", "d": "1/s"},
-    read=_read_gains,
+    read=point_of_gains,
     write=stiffness_and_damping,
     paste="PDGains({}, {})",
     marks=(("RigidBodyDynamics.jl: PDGains(100, 20)", "100 20"),),
@@ -242,7 +237,7 @@ BRAX_SPRING = Engine(
     parameters={"constraint_stiffness": "N/m", "constraint_vel_damping": "N s/m"},
     optional={"mass": "kg"},
     above_zero=("mass",),
-    read=lambda h, stiffness, damping, mass=ONE: _read_gains(h, stiffness / mass, damping / mass),
+    read=lambda h, stiffness, damping, mass=ONE: point_of_gains(h, stiffness / mass, damping / mass),
     write=lambda alpha_hat, beta_hat, h: (*stiffness_and_damping(alpha_hat, beta_hat, h), 1.0),
     source="Brax source, spring/joints.py, spring/pipeline.py, spring/integrator.py; io/mjcf.py (2000, 0 unless set)",
     excludes="angles (constraint_ang_damping); vel_damping and ang_damping; spring_mass_scale; contacts: brax-contact",

@@ -8,7 +8,7 @@ from typing import Any, Literal
 from bezstab.engines.sweeping import Sweeping
 from bezstab.errors import InputError
 from bezstab.rationals import rational, within_float64
-from bezstab.units import feedback_gains
+from bezstab.units import feedback_gains, from_feedback_gains
 
 Level = Literal["acceleration", "velocity", "position"]
 
@@ -179,6 +179,11 @@ def engine_without_parameters(point: Point, **facts: Any) -> Engine:
 
 def _typed(number: str, h: Fraction) -> Fraction:
     return Fraction(number.removesuffix("h")) * (h if number.endswith("h") else 1)
+
+
+def point_of_gains(h: Fraction, stiffness: Fraction, damping: Fraction) -> Point:
+    """Return the point of a stiffness beta^2 (1/s^2) and a damping 2 alpha (1/s), h in s."""
+    return from_feedback_gains(damping, stiffness, h)
 
 
 def stiffness_and_damping(alpha_hat: float, beta_hat: float, h: float) -> tuple[float, float]:

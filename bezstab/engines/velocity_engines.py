@@ -22,12 +22,12 @@ from bezstab.engines.conversions import (
     Point,
     engine_without_parameters,
     hard,
+    point_of_gains,
     stiffness_and_damping,
 )
 from bezstab.engines.sweeping import Move, Pass, Sweeping, SweptStep, hard_velocity_step
 from bezstab.errors import InputError
 from bezstab.rationals import ONE, ZERO
-from bezstab.units import from_feedback_gains
 
 STIFFEST = 0.999
 """The alpha_hat that soft constraints are chosen with: rigid but for a thousandth; beyond, their words are huge."""
@@ -503,7 +503,7 @@ PHYSX_DRIVE = Engine(
     method="implicit-euler",
     parameters={"stiffness": "1/s^2", "damping": "1/s"},
     from_zero=("stiffness", "damping"),
-    read=lambda h, stiffness, damping: from_feedback_gains(damping, stiffness, h),
+    read=point_of_gains,
     write=stiffness_and_damping,
     source="PhysX source, DyCpuGpuArticulation.h, computeImplicitDriveParams (AccelerationDrive)",
     excludes="the inertia, by which both are divided in force drives (see --pd); force limits; h is TGS's substep",

@@ -102,9 +102,9 @@ class Field:
         make = self.otherwise if value is None and self.otherwise else self.text
         return visible(make(row) if make else formatted(value, self.form))
 
-    def shown(self, heading: str, form: Form = "", text: Text | None = None) -> Field:
-        """Return the same field as another table shows it."""
-        return replace(self, heading=heading, form=form, text=text, otherwise=None)
+    def shown(self, heading: str, text: Text | None = None) -> Field:
+        """Return the same field as another table shows it: as it is, or as the text made of the row."""
+        return replace(self, heading=heading, form="", text=text, otherwise=None)
 
     def of(self, path: str) -> Field:
         """Return the same field where another result has it."""
