@@ -155,7 +155,7 @@ def write_held(question: "questions.HeldQuestion", points: int, files: Files) ->
 def show_held(question: "questions.HeldQuestion") -> "list[questions.HeldAnswer]":
     """Print and return the answer for each way of applying a held or late drive; print what is not judged."""
     found = list(questions.held_answers(question))
-    heading = show.timing_words(question.timing, float(question.h))
-    show_rows(show.HELD, map(show.HELD.row, found), heading=heading)
+    show_text(f"{show.timing_words(question.timing, float(question.h))}\n")
+    show_rows(show.HELD, map(show.HELD.row, found))
     show_text(f"\n{show.LATE_COMMANDS}")
     return found

@@ -62,11 +62,9 @@ def lint(model: Path, gains: "Sequence[evidence.MotorGains]", every: int, late: 
     timing = stability.Timing(every, late)
     model_data = evidence.read_mujoco_model(model)
     linted = list(progress(evidence.linted_model(model_data, gains, timing), "lint", len(model_data.elements)))
-    heading = f"{model.name}: timestep {float(model_data.h):g} s, integrator {model_data.integrator}"
+    show_text(f"{model.name}: timestep {float(model_data.h):g} s, integrator {model_data.integrator}\n")
     if linted or not for_reading():
-        show_rows(LINTED, (LINTED.row(each, advice=each.advice or None) for each in linted), heading=heading)
+        show_rows(LINTED, (LINTED.row(each, advice=each.advice or None) for each in linted))
     else:
-        show_text(
-            f"{heading}\n\nNothing to judge: no equality, limit, friction loss, contact, spring, damper or drive."
-        )
+        show_text("Nothing to judge: no equality, limit, friction loss, contact, spring, damper or drive.")
     return not any(each.unsafe for each in linted)

@@ -59,22 +59,13 @@ def for_reading() -> bool:
     return chosen_format() in ("text", "markdown")
 
 
-def show_rows(
-    kind: RowKind,
-    found: Iterable[Row],
-    without: Collection[str] = (),
-    heading: str = "",
-    *,
-    in_blocks: bool = False,
-) -> None:
-    """Print rows of a kind on standard output, below a heading where people read them; `without` as RowKind.columns.
+def show_rows(kind: RowKind, found: Iterable[Row], without: Collection[str] = (), *, in_blocks: bool = False) -> None:
+    """Print rows of a kind on standard output; `without` as RowKind.columns.
 
     As text, a single row is a block of lines below its sentence; so is each row of a table wider than the terminal, and
     with `in_blocks` of every table.
     """
     form, rows = chosen_format(), list(found)
-    if heading:
-        show_text(f"{heading}\n")
     columns = kind.columns(rows, without) if for_reading() else []
     answer = render(rows, columns, form)
     if form == "text" and rows and (in_blocks or len(rows) == 1 or not fits(answer, text_width())):

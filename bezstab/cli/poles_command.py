@@ -6,7 +6,7 @@ from typing import Any
 from bezstab import questions
 from bezstab.cli.asking import asked_of_scene, show_below
 from bezstab.cli.options import USUAL_METHODS, Rule, changed, command, flag
-from bezstab.cli.output import show_rows
+from bezstab.cli.output import show_rows, show_text
 from bezstab.show import POLES, one_pole_sentence, pole_rows
 
 
@@ -45,5 +45,6 @@ def poles(all_poles: bool, **typed: Any) -> None:
     kind = replace(POLES, sentence=one_pole_sentence) if all_poles else POLES
     alpha_hat, beta_hat = map(float, question.given.point)
     without = () if costs_shown else ("total_error", "times_least")
-    show_rows(kind, rows, without, f"α̂ = {alpha_hat:.10g}, β̂ = {beta_hat:.10g}")
+    show_text(f"α̂ = {alpha_hat:.10g}, β̂ = {beta_hat:.10g}\n")
+    show_rows(kind, rows, without)
     show_below(question, at_point, motion=not all_poles)
