@@ -62,7 +62,7 @@ def safety_words(row: Row) -> str:
         safe = f"One constraint alone: {safe.lower()}"
     at_rest = change_words(row["z_abs"], row["verdict"])
     varying = f" when steps vary ({row['varying']})" if "varying" in row else ""
-    if row.get("z_abs_moving") is None:
+    if "z_abs_moving" not in row:
         begin = f"With constant steps {at_rest}" if varying else at_rest[0].upper() + at_rest[1:]
         return f"{safe}{varying}. {begin}."
     moves = f"{safe}{varying}. At rest {at_rest}. Over the motion {_over_the_motion(row)}"
@@ -76,7 +76,7 @@ def safety_words(row: Row) -> str:
 
 def _over_the_motion(row: Row) -> str:
     """Return what a step does to an error over a motion, or that this is not settled."""
-    if row["moving_verdict"] in SETTLED and row["z_abs_moving"] is not None:
+    if row["moving_verdict"] in SETTLED:
         return change_words(row["z_abs_moving"], row["moving_verdict"])
     return f"it is {row['moving_verdict']}"
 
