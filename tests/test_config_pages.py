@@ -8,7 +8,8 @@ from typing import Any
 
 import pytest
 
-from bezstab.mechanism import compiled_mechanism, parse_scene, simulate
+from bezstab.mechanism import compiled_mechanism, simulate
+from bezstab.mechanism.scene_files import parse_scene
 from bezstab.methods import accuracy, closed_loop_polynomial, lookup, read_method, steps
 from bezstab.toml_tables import TomlTable
 

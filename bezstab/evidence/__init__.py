@@ -19,16 +19,14 @@ if TYPE_CHECKING:
         Sweep,
         SweptRuns,
         measured_runs,
-        pareto_front,
         reference_run,
         swept_runs,
     )
     from bezstab.evidence.chunks import Arrays, chunk_store, completed_chunks, worker_pool
     from bezstab.evidence.extremes import Check, extreme_checks
     from bezstab.evidence.forced_runs import SHARES, HalvedStep, forced_sentence, halved_steps
-    from bezstab.evidence.kicks import LINEAR, kicked_motions
-    from bezstab.evidence.linear_prediction import SPREAD, Fit, fit_dominant_pole
-    from bezstab.evidence.logs import UNEVEN, Log, error_columns, log_from, parse_log, read_log, row_step, time_column
+    from bezstab.evidence.linear_prediction import Fit
+    from bezstab.evidence.logs import UNEVEN, Log, error_columns, log_from, read_log, row_step, time_column
     from bezstab.evidence.measured_poles import (
         MeasuredVerdict,
         Measurement,
@@ -36,18 +34,12 @@ if TYPE_CHECKING:
         measurement_summary,
         random_points,
     )
-    from bezstab.evidence.moving_mechanisms import (
-        LAW_HOLDS,
-        MovingPole,
-        MovingVerdict,
-        growth_rates,
-        moving_poles,
-    )
-    from bezstab.evidence.moving_regions import MovingRegion, moving_growth, moving_modulus, moving_region
+    from bezstab.evidence.moving_mechanisms import LAW_HOLDS, MovingPole, MovingVerdict, moving_poles
+    from bezstab.evidence.moving_regions import MovingRegion, moving_modulus, moving_region
     from bezstab.evidence.mujoco_controllers import MotorGains
-    from bezstab.evidence.mujoco_lint import Linted, linted_model
-    from bezstab.evidence.mujoco_models import ModelData, model_data, mujoco_module, read_mujoco_model
-    from bezstab.evidence.mujoco_witness import TIMES, Outcome, Witnessed, model_xml, mujoco_witnesses, witness_count
+    from bezstab.evidence.mujoco_lint import linted_model
+    from bezstab.evidence.mujoco_models import model_data, read_mujoco_model
+    from bezstab.evidence.mujoco_witness import TIMES, Outcome, mujoco_witnesses, witness_count
     from bezstab.evidence.probed_poles import (
         Likeness,
         LikePoint,
@@ -58,6 +50,6 @@ if TYPE_CHECKING:
         probed_pole,
     )
     from bezstab.evidence.sweep_summaries import Held, projection_sentences, sweep_sentences
-    from bezstab.evidence.verdict_maps import MapRows, VerdictMap, map_rows, simulated_verdicts, verdict_map
+    from bezstab.evidence.verdict_maps import VerdictMap, map_rows, simulated_verdicts, verdict_map
 
 __getattr__ = lazy_names(__name__)

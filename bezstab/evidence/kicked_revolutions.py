@@ -18,7 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bezstab.evidence.exact_rates import OwnMotions
-from bezstab.evidence.kicks import kicked_states, steps_before_a_kick
+from bezstab.evidence.kicks import kicked_states
+from bezstab.methods import steps
 from bezstab.stability import FloatArray
 
 KICK_OF_GROWTH, KICK_OF_DECAY = 1e-9, 1e-4  # m, rad: up and down together only cubic terms are left, of about 1e-8
@@ -36,7 +37,7 @@ def rates_of_kicked_revolutions(motions: OwnMotions) -> FloatArray:
     """
     rates, stepped = np.full(motions.rates.size, np.nan), motions.stepped
     there = np.flatnonzero(np.isfinite(motions.states).all(axis=(0, 2, 3)))
-    known = 1 + steps_before_a_kick(stepped.method)
+    known = 1 + steps(stepped.method)
     if known > stepped.steps or not there.size:
         return rates
     with np.errstate(all="ignore"):  # of runs that run into infinity

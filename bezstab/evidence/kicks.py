@@ -43,7 +43,6 @@ from bezstab.mechanism import (
     march,
     perturbed_state,
     resume,
-    states_needed,
 )
 from bezstab.methods import Method, steps
 from bezstab.stability import BoolArray, FloatArray
@@ -73,11 +72,6 @@ PARTS = 8
 OF_ALL = 0.1
 """What an error that grows accounts for, at least, of all that two runs differ by; two motions differ by a hundredth of
 that in their c."""
-
-
-def steps_before_a_kick(method: Method) -> int:
-    """Return how many steps of its own a run has to have taken until a method has all that it remembers."""
-    return max(steps(method), states_needed(method) - 1)
 
 
 def kicked_states(
@@ -124,7 +118,7 @@ def kicked_motions(
     step, gains = h * float(method.step_multiple), feedback_gains(alpha_hat, beta_hat, h)
     q, v = initial_state(mechanism)
     start = np.repeat(np.concatenate([q, v])[:, np.newaxis], alpha_hat.size, axis=1)
-    first_steps = even_steps(step, steps_before_a_kick(method), gains, start.shape[1:])
+    first_steps = even_steps(step, steps(method), gains, start.shape[1:])
     before = march(mechanism, method, first_steps, start)
     history = [start, *(state for block in before for state in block.states)]
     by_a_unit = np.concatenate([perturbed_state(mechanism, 1.0)[0] - q, 0 * v])  # linear in the constraint error

@@ -20,16 +20,9 @@ from bezstab.mechanism.linearized import StepsTaken, changes_handed_on, steps_ta
 from bezstab.mechanism.motions import Motion, motion, motion_over, regular_motion
 from bezstab.mechanism.observation import Observation, energy_balance, observe, singular_passages
 from bezstab.mechanism.programs import even_steps
-from bezstab.mechanism.runner import (
-    Start,
-    Trajectory,
-    march,
-    resume,
-    simulate,
-    states_needed,
-)
-from bezstab.mechanism.scene_files import load_scene, parse_scene, read_scene, shipped_scenes
-from bezstab.mechanism.scenes import COORDINATES, GROUND, Body, Driver, Force, Revolute, Scene, at_speed
+from bezstab.mechanism.runner import Start, Trajectory, march, resume, simulate
+from bezstab.mechanism.scene_files import load_scene, shipped_scenes
+from bezstab.mechanism.scenes import GROUND, Body, Driver, Force, Revolute, Scene, at_speed
 from bezstab.mechanism.second_order_memory import Memory, memory
 from bezstab.mechanism.simulation import MOST_STEPS, Simulation, simulated
 from bezstab.mechanism.start import constraint_errors, constraint_jacobian, initial_state, perturbed_state

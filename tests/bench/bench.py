@@ -24,8 +24,10 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from bezstab.evidence import MapRows, map_rows, model_xml, simulated_verdicts
+from bezstab.evidence import map_rows, simulated_verdicts
 from bezstab.evidence.exact_rates import find_own_motions
+from bezstab.evidence.mujoco_witness import model_xml
+from bezstab.evidence.verdict_maps import MapRows
 from bezstab.mechanism import (
     Mechanism,
     T,
@@ -35,9 +37,9 @@ from bezstab.mechanism import (
     load_scene,
     march,
     motion,
-    parse_scene,
     simulate,
 )
+from bezstab.mechanism.scene_files import parse_scene
 from bezstab.methods import (
     LinearMultistep,
     Method,

@@ -8,7 +8,7 @@ from itertools import chain, pairwise
 
 import numpy as np
 
-from bezstab.evidence import kicked_motions
+from bezstab.evidence.kicks import kicked_motions
 from bezstab.evidence.measured_poles import SURROUNDINGS
 from bezstab.mechanism import (
     Mechanism,

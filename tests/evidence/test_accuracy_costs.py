@@ -6,14 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bezstab.errors import NumericalError
-from bezstab.evidence import (
-    METHODS,
-    Cost,
-    ErrorOf,
-    SweptRuns,
-    pareto_front,
-    reference_run,
-)
+from bezstab.evidence import METHODS, Cost, ErrorOf, SweptRuns, reference_run
+from bezstab.evidence.accuracy_costs import pareto_front
 from bezstab.evidence.sweep_summaries import cost_for, known_costs
 from bezstab.mechanism import load_scene
 from bezstab.methods import accuracy, evaluations, lookup

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from bezstab.evidence import Check, extreme_checks, extremes, root_digits
+from bezstab.evidence import extreme_checks, extremes, root_digits
+from bezstab.evidence.extremes import Check
 from bezstab.mechanism import Observation, observe
 from bezstab.methods import Method, lookup
 from bezstab.stability import critical_damping_limit, poles

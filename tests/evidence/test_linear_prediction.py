@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bezstab.evidence import LINEAR, SPREAD, fit_dominant_pole
-from bezstab.evidence.linear_prediction import SAMPLES, fit_window
+from bezstab.evidence.kicks import LINEAR
+from bezstab.evidence.linear_prediction import SAMPLES, SPREAD, fit_dominant_pole, fit_window
 from tests.reference.sampled_responses import for_every_kick, two_poles
 
 root = st.tuples(st.floats(0.4, 0.999), st.floats(0, np.pi))

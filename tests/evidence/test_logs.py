@@ -8,7 +8,8 @@ import pytest
 from numpy.typing import ArrayLike
 
 from bezstab.errors import InputError
-from bezstab.evidence import Log, error_columns, log_from, parse_log, read_log, row_step, time_column
+from bezstab.evidence import Log, error_columns, log_from, read_log, row_step, time_column
+from bezstab.evidence.logs import parse_log
 
 ROWS = [[0.0, 1.0], [0.5, -0.25], [1.0, 0.0625]]
 

@@ -5,7 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from bezstab.evidence import LINEAR, SPREAD, Measurement, measure_poles, measurement_summary, random_points
+from bezstab.evidence import Measurement, measure_poles, measurement_summary, random_points
+from bezstab.evidence.kicks import LINEAR
+from bezstab.evidence.linear_prediction import SPREAD
 from bezstab.evidence.measured_poles import KICKS, _measured_verdict
 from bezstab.mechanism import Mechanism, compiled_mechanism, load_scene
 from bezstab.methods import LinearMultistep, PredictorCorrector, SecondOrder, implicit, lookup

@@ -5,11 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from bezstab.evidence import (
-    LAW_HOLDS,
-    growth_rates,
-    moving_poles,
-)
+from bezstab.evidence import LAW_HOLDS, moving_poles
+from bezstab.evidence.moving_mechanisms import growth_rates
 from bezstab.mechanism import compiled_mechanism, load_scene, turning_normals
 from bezstab.methods import lookup
 from bezstab.stability import poles

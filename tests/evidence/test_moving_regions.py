@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from bezstab.evidence import moving_growth, moving_modulus, moving_poles, moving_region
+from bezstab.evidence import moving_modulus, moving_poles, moving_region
+from bezstab.evidence.moving_regions import moving_growth
 from bezstab.methods import lookup
 from bezstab.stability import region, spectral_radius
 from tests.evidence.driven_four_bar import turning

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from bezstab.errors import InputError
-from bezstab.evidence import Linted, MotorGains, linted_model, model_data
+from bezstab.evidence import MotorGains, linted_model, model_data
+from bezstab.evidence.mujoco_lint import Linted
 from bezstab.stability import Timing
 
 mujoco: Any = pytest.importorskip("mujoco")

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from bezstab.evidence import Linted, linted_model, model_data
+from bezstab.evidence import linted_model, model_data
+from bezstab.evidence.mujoco_lint import Linted
 from bezstab.stability import Timing
 from tests.evidence.samples import of_campaign
 from tests.reference.mujoco_steps import grown, settled, step_moduli

@@ -7,8 +7,8 @@ from typing import Any
 import pytest
 
 from bezstab.errors import InputError
-from bezstab.evidence import ModelData, model_data, mujoco_module, read_mujoco_model
-from bezstab.evidence.mujoco_models import Constraint, Feedback
+from bezstab.evidence import model_data, read_mujoco_model
+from bezstab.evidence.mujoco_models import Constraint, Feedback, ModelData, mujoco_module
 
 mujoco: Any = pytest.importorskip("mujoco")
 

@@ -9,15 +9,10 @@ import numpy as np
 import pytest
 
 from bezstab.errors import InputError
-from bezstab.evidence import TIMES, model_xml, mujoco_witnesses, witness_count
-from bezstab.mechanism import (
-    Force,
-    compiled_mechanism,
-    load_scene,
-    parse_scene,
-    perturbed_state,
-    shipped_scenes,
-)
+from bezstab.evidence import TIMES, mujoco_witnesses, witness_count
+from bezstab.evidence.mujoco_witness import model_xml
+from bezstab.mechanism import Force, compiled_mechanism, load_scene, perturbed_state, shipped_scenes
+from bezstab.mechanism.scene_files import parse_scene
 from bezstab.stability import spectral_radius
 from tests.evidence.samples import of_campaign
 from tests.mechanism.test_scenes import pendulum, small

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from bezstab.mechanism import Simulation, compiled_mechanism, load_scene, parse_scene, simulated
+from bezstab.mechanism import Simulation, compiled_mechanism, load_scene, simulated
 from bezstab.mechanism.observation import NODES, running_integral
+from bezstab.mechanism.scene_files import parse_scene
 from bezstab.methods import accuracy, lookup
 from tests.mechanism.test_scenes import pendulum
 from tests.reference.one_coordinate_motion import ANGLE, shown_order, slider_crank_energies

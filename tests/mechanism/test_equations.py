@@ -5,13 +5,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from bezstab.mechanism import (
-    Mechanism,
-    compiled_mechanism,
-    initial_state,
-    observe,
-    parse_scene,
-)
+from bezstab.mechanism import Mechanism, compiled_mechanism, initial_state, observe
+from bezstab.mechanism.scene_files import parse_scene
 from tests.mechanism.test_scenes import pendulum
 
 FloatArray = NDArray[np.float64]

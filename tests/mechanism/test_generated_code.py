@@ -5,15 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from bezstab.mechanism import (
-    Mechanism,
-    compiled_mechanism,
-    initial_state,
-    load_scene,
-    parse_scene,
-    state_function,
-)
+from bezstab.mechanism import Mechanism, compiled_mechanism, initial_state, load_scene, state_function
 from bezstab.mechanism.generated_code import code_of, function_by_operations, machine_source, operations
+from bezstab.mechanism.scene_files import parse_scene
 from tests.mechanism.test_scenes import pendulum
 
 

@@ -12,11 +12,11 @@ from bezstab.mechanism import (
     constraint_errors,
     load_scene,
     motion,
-    parse_scene,
     regular_motion,
     turning_normals,
 )
 from bezstab.mechanism.motions import STEPS
+from bezstab.mechanism.scene_files import parse_scene
 from tests.evidence.driven_four_bar import swinging_four_bar
 
 MECHANISM = compiled_mechanism(load_scene("driven_four_bar"))

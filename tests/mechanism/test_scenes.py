@@ -5,16 +5,8 @@ import numpy as np
 import pytest
 
 from bezstab.errors import InputError
-from bezstab.mechanism import (
-    Scene,
-    at_speed,
-    compiled_mechanism,
-    initial_state,
-    load_scene,
-    parse_scene,
-    shipped_scenes,
-    simulate,
-)
+from bezstab.mechanism import Scene, at_speed, compiled_mechanism, initial_state, load_scene, shipped_scenes, simulate
+from bezstab.mechanism.scene_files import parse_scene
 from bezstab.methods import lookup
 
 SHIPPED = [

@@ -5,14 +5,9 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from bezstab.mechanism import (
-    Mechanism,
-    compiled_mechanism,
-    parse_scene,
-    perturbed_state,
-    simulate,
-    states_needed,
-)
+from bezstab.mechanism import Mechanism, compiled_mechanism, perturbed_state, simulate
+from bezstab.mechanism.runner import states_needed
+from bezstab.mechanism.scene_files import parse_scene
 from bezstab.methods import Method, closed_loop_at, lookup
 from bezstab.units import feedback_gains
 from tests.mechanism.test_scenes import pendulum

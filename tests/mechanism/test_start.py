@@ -7,14 +7,8 @@ import pytest
 from numpy.typing import NDArray
 
 from bezstab.errors import InputError, NumericalError
-from bezstab.mechanism import (
-    compiled_mechanism,
-    initial_state,
-    load_scene,
-    observe,
-    parse_scene,
-    perturbed_state,
-)
+from bezstab.mechanism import compiled_mechanism, initial_state, load_scene, observe, perturbed_state
+from bezstab.mechanism.scene_files import parse_scene
 from tests.mechanism.test_scenes import SHIPPED, pendulum
 
 

@@ -17,10 +17,9 @@ from bezstab.mechanism import (
     runner,
     shipped_scenes,
     simulate,
-    states_needed,
 )
 from bezstab.mechanism.array_stepping import invert
-from bezstab.mechanism.runner import Block
+from bezstab.mechanism.runner import Block, states_needed
 from bezstab.mechanism.stepping import MOST_ITERATIONS
 from bezstab.methods import REGISTRY, implicit, lookup
 from bezstab.units import feedback_gains

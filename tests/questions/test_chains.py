@@ -5,7 +5,8 @@ from itertools import pairwise
 import pytest
 
 from bezstab.engines import ENGINES
-from bezstab.mechanism import Scene, parse_scene
+from bezstab.mechanism import Scene
+from bezstab.mechanism.scene_files import parse_scene
 from bezstab.questions import Question, answers
 from bezstab.questions.chains import SweptConstraints, constraints_of, constraints_of_chain
 from bezstab.stability import chain, swept_growth

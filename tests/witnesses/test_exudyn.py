@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from bezstab.evidence import fit_dominant_pole
+from bezstab.evidence.linear_prediction import fit_dominant_pole
 from bezstab.methods import lookup
 from bezstab.stability import dominant_pole, spectral_radius, stability_margins
 
