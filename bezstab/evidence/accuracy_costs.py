@@ -3,7 +3,7 @@
 import json
 import time
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from fractions import Fraction
 from typing import Literal
 
@@ -56,7 +56,7 @@ NO_FEEDBACK = (0.0, 0.0)
 class ReferenceRun:
     """A motion without feedback from a consistent start, and how far its coordinates may be off (SI)."""
 
-    along: Motion = field(repr=False)
+    along: Motion
     error: float
 
 
@@ -139,8 +139,8 @@ class Run:
     seconds_max: float
     failure: str | None
     order: float | None
-    stabilise: Stabilise = "baumgarte"
-    advised: bool = True
+    stabilise: Stabilise
+    advised: bool
 
     def cost(self, against: Cost) -> float:
         """Return its evaluations, its processor time (s), or its factorizations."""

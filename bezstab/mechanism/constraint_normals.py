@@ -98,10 +98,6 @@ class TurningNormals:
         scaled = self.rates / size[:, np.newaxis] * size
         return float(np.linalg.norm(scaled, ord=2, axis=(1, 2)).max())
 
-    def __repr__(self) -> str:
-        motion = "revolution" if self.closed else "run"
-        return f"TurningNormals(kappa = {self.kappa:.6g} 1/s over a {motion} of {self.duration:.6g} s)"
-
 
 @cache
 def turning_normals(mechanism: Mechanism, duration: float) -> TurningNormals:

@@ -72,9 +72,6 @@ class Motion(ReadOnlyArrays):
         q, v, a = (polyval(s, polyder(quintic, order), tensor=False) / step**order for order in range(3))
         return q, v, a
 
-    def __repr__(self) -> str:
-        return f"Motion({'a revolution' if self.closed else 'a run'} of {self.duration:.6g} s)"
-
 
 @cache
 def motion(mechanism: Mechanism, duration: float) -> Motion:

@@ -58,10 +58,6 @@ class Observation(ReadOnlyArrays):
         """The largest |cdot|, as c_max (m/s or rad/s)."""
         return float(np.abs(self.cdot).max())
 
-    def __repr__(self) -> str:
-        times, constraints = self.c.shape
-        return f"Observation({times} times, {constraints} constraints)"
-
 
 def observe(
     mechanism: Mechanism,

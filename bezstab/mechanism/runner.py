@@ -92,11 +92,6 @@ class Trajectory(ReadOnlyArrays):
         """How often S = C_q M^-1 C_q^T was factored: once for each evaluation, and once for each of `projections`."""
         return self.evaluations + self.projections
 
-    def __repr__(self) -> str:
-        failed = ", failed" if self.failure else ""
-        run = f"{self.mechanism.scene.name}, {self.method.name}"
-        return f"Trajectory({run}, {len(self.t)} times, to t = {self.t[-1]:.6g} s{failed})"
-
 
 def simulate(
     mechanism: Mechanism,

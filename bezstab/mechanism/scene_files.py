@@ -73,7 +73,9 @@ def parse_scene(data: dict[str, Any]) -> Scene:
 
     bodies = (*(_body(table) for table in top.tables("body")), *chain_bodies)
     body_names = [body.name for body in bodies]
-    _refuse_taken_names(body_names)
+    for number, body_name in enumerate(body_names):
+        if body_name in (GROUND, *body_names[:number]):
+            raise InputError(f"body: the name {body_name!r} is taken")
     coordinates = tuple(f"{body.name}.{axis}" for body in bodies for axis in body.free)
     if not coordinates:
         raise top.mistake("no body has a free coordinate")
@@ -92,14 +94,6 @@ def parse_scene(data: dict[str, Any]) -> Scene:
     return Scene(name, gravity, bodies, joints, forces, springs, position, velocity, {**upright, **guess}, duration)
 
 
-def _refuse_taken_names(body_names: Sequence[str]) -> None:
-    taken = {GROUND}
-    for name in body_names:
-        if name in taken:
-            raise InputError(f"body: the name {name!r} is taken")
-        taken.add(name)
-
-
 def _body(table: TomlTable) -> Body:
     name = table.text("name")
     table.where = f"body {name!r}"
@@ -111,10 +105,7 @@ def _body(table: TomlTable) -> Body:
 
     # What moves needs a positive mass, what turns a positive inertia. A body on a fixed pivot may go without a mass
     # (0, it then has no weight either), and the inertia of what does not turn does not enter.
-    if on_fixed_pivot and "mass" not in table.data:
-        mass = table.number("mass", default=0.0)
-    else:
-        mass = table.positive_number("mass")
+    mass = table.positive_number("mass", default=0.0 if on_fixed_pivot else None)
     inertia = table.positive_number("inertia") if "theta" in free else table.number("inertia", default=0.0)
 
     center = table.point("center", default=NOWHERE)
@@ -183,15 +174,13 @@ def _spring(table: TomlTable, body_names: Sequence[str]) -> Spring:
     ends = _ends(table, body_names)
     stiffness = table.number("stiffness", default=0.0)
     damping = table.number("damping", default=0.0)
-    for key, value in (("stiffness", stiffness), ("damping", damping)):
+    free_length = table.number("free_length", default=None if stiffness > 0 else 0.0)
+    table.refuse_unknown_keys()
+    for key, value in (("stiffness", stiffness), ("damping", damping), ("free_length", free_length)):
         if value < 0:
             raise table.mistake(f"{key} = {value:g}: expected 0 or more")
-    free_length = table.number("free_length", default=None if stiffness else 0.0)
-    table.refuse_unknown_keys()
     if stiffness == damping == 0:
         raise table.mistake("stiffness and damping are both 0: expected one of them positive")
-    if free_length < 0:
-        raise table.mistake(f"free_length = {free_length:g}: expected 0 or more")
     return Spring(*ends, stiffness, free_length, damping)
 
 
