@@ -85,12 +85,11 @@ def _within_squares(text: str, unit: str) -> Fraction:
 
 def _sequence(text: str) -> list[Fraction]:
     """Return the steps (s) of a text such as 3*0.01,0.02 (0.01 three times, then 0.02), or of a file of such texts."""
-    path = Path(text)
-    try:
-        if path.is_file():
-            text = path.read_text(encoding="utf-8")
-    except (OSError, ValueError) as error:  # no name of a file, or no text in it
-        raise InputError(f"cannot read {text[:50]!r}: {error}") from None
+    if os.path.isfile(text):  # pathlib raises for a sequence that is too long to be a file's name
+        try:
+            text = Path(text).read_text(encoding="utf-8")
+        except (OSError, ValueError) as error:
+            raise InputError(f"cannot read {text[:50]!r}: {error}") from None
     sequence: list[Fraction] = []
     for part in re.split(r"[,\s]+", text.strip()):
         count, star, step = part.rpartition("*")

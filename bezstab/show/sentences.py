@@ -60,8 +60,6 @@ def held_sentence(row: Row) -> str:
     if not row["safe"]:
         remedy = f"It is stable with one of these alone: {changes}." if changes else "No single change makes it stable."
         return f"{sentence} {CAUSES[row['held_by']]} {remedy}"
-    if not changes:
-        return sentence
     nearest = f"; {NEAREST[row['held_by']]}" if row["held_by"] else ""
     return f"{sentence} It stays stable with one of these alone: {changes}{nearest}."
 

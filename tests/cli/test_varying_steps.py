@@ -23,6 +23,8 @@ def test_steps_that_are_refuted_together_may_be_typed_or_stand_in_a_file() -> No
     Path("steps.txt").write_text(steps.replace(",", "\n"), encoding="utf-8")
     typed, from_file = (rows(at, each)[0]["c_max"] for each in (steps, "steps.txt"))
     assert typed == from_file > 1e-2
+    longer_than_the_name_of_a_file = ",".join([steps] * 20)
+    assert rows(at, longer_than_the_name_of_a_file)[0]["c_max"] == typed
 
 
 @pytest.mark.promise(
