@@ -5,5 +5,3 @@ question (`asking`), and shows the answers (`output`). It returns whether what i
 """
 
 from bezstab.cli.command_group import main
-
-__all__ = ["main"]

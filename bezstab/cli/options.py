@@ -48,7 +48,7 @@ class ParsedType(click.ParamType):  # type: ignore[type-arg]  # generic since cl
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """Return the parsed value; fail with a message that names the option if there is none."""
         try:
-            return self.parse(value) if isinstance(value, str) else value
+            return self.parse(value)
         except InputError as error:
             self.fail(str(error), param, ctx)
 

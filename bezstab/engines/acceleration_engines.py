@@ -74,10 +74,10 @@ MUJOCO = Engine(
     write=_write_solref,
     paste='solref="{} {}" solimp="{} {}"',
     apply=_apply_mujoco,
-    marks=(
-        ("MuJoCo: timeconst = 2h", "2h 1 0.95 0.95"),  # equal impedances: r = 1
-        ("MuJoCo: solref = 0.02 1", "0.02 1 0.95 0.95"),
-    ),
+    marks={
+        "MuJoCo: timeconst = 2h": "2h 1 0.95 0.95",  # equal impedances: r = 1
+        "MuJoCo: solref = 0.02 1": "0.02 1 0.95 0.95",
+    },
     source="MuJoCo documentation, Modeling, Constraint parameters: Reference; engine_core_constraint.c",
     excludes="the soft bias of 1 - d; the shape of solimp between no error and its width; implicit joint damping; "
     "contacts; integrator RK4, for which give --method RK4",
@@ -152,7 +152,7 @@ PINOCCHIO = Engine(
     parameters={"Kp": "1/s^2", "Kd": "1/s"},
     read=point_of_gains,
     write=stiffness_and_damping,
-    marks=(("Pinocchio: Kp = Kd = 0", "0 0"),),
+    marks={"Pinocchio: Kp = Kd = 0": "0 0"},
     source="Pinocchio source, contact-info.hpp (corrector, 0 and 0 unless set); constrained-dynamics.hxx",
     excludes="errors of orientation, which are logarithms of rotations; the proximal solver's mu",
 )
@@ -170,7 +170,7 @@ RBDL = Engine(
     read=_read_time_constant,
     write=_write_time_constant,
     reaches="β̂ = α̂²/4, as it has one time constant",
-    marks=(("RBDL: T_stab = 0.1", "0.1"),),
+    marks={"RBDL: T_stab = 0.1": "0.1"},
     curve=_critical_damping(FASTEST_ASKED_FOR),
     source="RBDL source, Constraint.h (setBaumgarteTimeConstant, default 0.1 s, off unless enabled)",
     excludes="contact constraints, which have it on velocities alone",
@@ -185,7 +185,7 @@ RIGID_BODY_DYNAMICS = Engine(
     read=point_of_gains,
     write=stiffness_and_damping,
     paste="PDGains({}, {})",
-    marks=(("RigidBodyDynamics.jl: PDGains(100, 20)", "100 20"),),
+    marks={"RigidBodyDynamics.jl: PDGains(100, 20)": "100 20"},
     source="RigidBodyDynamics.jl source, mechanism_algorithms.jl, pdcontrol.jl, simulate.jl (Munthe-Kaas with RK4)",
     excludes="errors of orientation; integrators other than its simulate",
 )

@@ -58,9 +58,9 @@ class Engine:
     the values of a point, in float64. As many `digits` of each are pasted: all, 17, where a value may be next to
     another. Points without values are found by reading them back: `reaches` says which have some. `paste` is the line
     to paste where it is not name = value, for as many values as it has {}. `apply(h, *values)` is what the engine does
-    to values before it uses them (clamps, scaling), None if nothing. `marks` are the settings everybody meets: a label,
-    and the values as they are typed, or 2h for two steps. `excludes` is what the conversion leaves out. `curve` are the
-    points to choose among, None for all of the plane. `jointly` is whether it solves all constraints together below
+    to values before it uses them (clamps, scaling), None if nothing. `marks` are the settings everybody meets: by
+    label, the values as they are typed, or 2h for two steps. `excludes` is what the conversion leaves out. `curve` are
+    the points to choose among, None for all of the plane. `jointly` is whether it solves all constraints together below
     acceleration level, too. `sweeping` is how it goes through a step in which it solves one after another, None where
     that is not written down here.
     """
@@ -78,7 +78,7 @@ class Engine:
     from_zero: tuple[str, ...] = ()
     reaches: str = "α̂ >= 0 and β̂ >= 0 within the range of float64"
     apply: Callable[..., Applied] | None = None
-    marks: tuple[tuple[str, str], ...] = ()
+    marks: Mapping[str, str] = field(default_factory=dict)
     paste: str | None = None
     curve: Curve | None = None
     digits: int = 9
@@ -102,7 +102,7 @@ class Engine:
         """Return the points of the settings everybody meets, by their labels; h in s."""
         return {
             label: self.applied(tuple(_typed(number, h) for number in typed.split()), h).point
-            for label, typed in self.marks
+            for label, typed in self.marks.items()
         }
 
     def applied(self, values: tuple[Fraction, ...], h: Fraction, *, as_typed: bool = False) -> Applied:

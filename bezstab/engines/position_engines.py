@@ -72,7 +72,7 @@ JOLT = Engine(
     write=_write_jolt,
     digits=17,  # it may be small
     reaches="α̂ = 1 with β̂ <= 1",
-    marks=(("Jolt: 0.2, 2 position steps", "0.2"),),
+    marks={"Jolt: 0.2, 2 position steps": "0.2"},
     curve=hard,
     source="Jolt source, PhysicsSettings.h, AxisConstraintPart.h (SolvePositionConstraint)",
     excludes="constraints with springs, which are jolt-spring; contacts' slop; constraints that share bodies",
@@ -100,7 +100,7 @@ PBD = Engine(
     read=_read_pbd,
     write=_write_share,
     reaches="α̂ = β̂",
-    marks=(("PBD: stiffness 1", "1"),),
+    marks={"PBD: stiffness 1": "1"},
     curve=lambda share: (share, share),  # not more than all
     source="Mueller et al., Position based dynamics, J. Vis. Commun. Image R. 18, 2007; derived",
     excludes="other constraints in between; above 1 it is over-relaxation; velocity damping",
@@ -152,7 +152,7 @@ BRAX_POSITIONAL = Engine(
     read=lambda h, share: (share, share),
     write=_write_share,
     reaches="α̂ = β̂",
-    marks=(("Brax positional: 0.5", "0.5"),),
+    marks={"Brax positional: 0.5": "0.5"},
     curve=lambda share: (share, share),  # not more than all
     source="Brax source, positional/pipeline.py, joints.py, integrator.py (project_xd); io/mjcf.py (default)",
     excludes="joint_scale_ang (0.2 unless set), the same for angles; constraint_vel_damping; joints that share bodies",

@@ -50,7 +50,7 @@ def _engine_with_erp(name: str, default: str, word: str = "ERP", **facts: Any) -
         read=lambda h, erp: (ONE, erp),
         write=lambda alpha_hat, beta_hat, h: (beta_hat,),
         reaches="α̂ = 1",
-        marks=((f"{name}: {word} = {default}", default),),
+        marks={f"{name}: {word} = {default}": default},
         curve=hard,
         **facts,
     )
@@ -106,7 +106,7 @@ ODE = Engine(
     read=_read_ode,
     write=_write_ode,
     reaches="0 < α̂ <= 1",
-    marks=(("ode: ERP = 0.2", "0.2"),),
+    marks={"ode: ERP = 0.2": "0.2"},
     source="ODE wiki, Manual: Concepts",
     curve=hard,  # which needs no effective mass
     excludes=f"CFM = 0 unless given, with the effective mass 1 / (J M^-1 J'); {IMPULSES}",
@@ -185,7 +185,7 @@ BOX2D = Engine(
     digits=12,
     reaches=f"α̂ = 1 with 0 < β̂ <= {LARGEST_SHARE:.4g}",
     apply=_apply_box2d,
-    marks=(("Box2D joints: 60 Hz, 2", "60 2"),),
+    marks={"Box2D joints: 60 Hz, 2": "60 2"},
     curve=lambda share: (1.0, LARGEST_SHARE * share),
     source="Box2D v3 source, solver.h: b2MakeSoft; joint.c; revolute_joint.c (solved, then relaxed without bias)",
     excludes="h is the substep's; contacts, joint springs, warm starts and the error of Gauss-Seidel sweeps",
@@ -230,7 +230,7 @@ RAPIER = Engine(
     write=_write_rapier,
     digits=17,  # 1 - scale may be small
     reaches="0 < β̂ < 1 and 0 < α̂ < 1 with two real poles and a damping ratio above 0",
-    marks=(("Rapier joints: 1e6 Hz, 1", "1e6 1"),),
+    marks={"Rapier joints: 1e6 Hz, 1": "1e6 1"},
     curve=lambda share: (STIFFEST, STIFFEST * DOUBLE_POLE * share),
     source="Rapier source, integration_parameters.rs, solve.rs in staged_island_solver, joint_velocity_constraint.rs",
     excludes="h is the substep's, dt / num_solver_iterations; limits' largest corrective speed; warmstart_joints",
@@ -266,7 +266,7 @@ CHIPMUNK = Engine(
     write=_write_chipmunk,
     digits=17,  # for a small beta_hat it is next to one
     reaches="α̂ = 1 with β̂ <= 1, where errorBias is within float64",
-    marks=(("Chipmunk: errorBias = 0.9^60", str(Fraction("0.9") ** 60)),),
+    marks={"Chipmunk: errorBias = 0.9^60": str(Fraction("0.9") ** 60)},
     curve=hard,
     source="Chipmunk source, cpConstraint.c, cpPivotJoint.c, cpSpaceStep.c (pymunk: error_bias)",
     excludes="maxBias and maxForce (infinite unless set); warm starts and the error of iterations; damped springs",
@@ -351,7 +351,7 @@ DRAKE_SAP = Engine(
     curve=lambda share: (STIFFEST, STIFFEST * share),
     apply=_apply_sap,
     jointly=True,
-    marks=(("Drake SAP: near rigid", ""),),
+    marks={"Drake SAP: near rigid": ""},
     source="Drake source, sap_holonomic_constraint.h and .cc; sap_ball_constraint.cc",
     excludes="without values a ball or a weld, which are near rigid; limits of impulses; constraints that share bodies",
 )
