@@ -86,9 +86,9 @@ class Engine:
     sweeping: Sweeping | None = None
 
     @property
-    def units(self) -> tuple[str, ...]:
-        """The units of all values, in their order."""
-        return (*self.parameters.values(), *self.optional.values())
+    def units(self) -> Mapping[str, str]:
+        """The unit of each value, those that may follow included, by its name."""
+        return {**self.parameters, **self.optional}
 
     @property
     def sweeps(self) -> bool:
@@ -143,8 +143,8 @@ class Engine:
         values = self.values(point, h)
         if self.paste and self.paste.count("{}") == len(values):
             return self.paste.format(*values)
-        names = (*self.parameters, *self.optional)
-        return ", ".join(f"{name} = {value}" for name, value in zip(names, values, strict=False)) or "nothing to set"
+        named = zip(self.units, values, strict=False)
+        return ", ".join(f"{name} = {value}" for name, value in named) or "nothing to set"
 
     def words(self) -> str:
         """Return the parameters as they are typed, the optional ones in brackets: solref[0],solref[1][,solimp[0]]."""
@@ -153,12 +153,12 @@ class Engine:
 
     def _check(self, values: tuple[Fraction, ...]) -> None:
         """Raise InputError for another number of values, and for those that mean nothing."""
-        option, names = f"--engine {self.name}", (*self.parameters, *self.optional)
-        if not len(self.parameters) <= len(values) <= len(names):
+        option = f"--engine {self.name}"
+        if not len(self.parameters) <= len(values) <= len(self.units):
             expected = ", ".join(self.parameters) or "none"
             then = f", then {', '.join(self.optional)} if you like" if self.optional else ""
             raise InputError(f"{option}: {len(values)} values, expected {expected}{then}")
-        for name, value in zip(names, values, strict=False):
+        for name, value in zip(self.units, values, strict=False):
             if (value < 0 and name in self.from_zero) or (value <= 0 and name in self.above_zero):
                 expected = "0 or more" if name in self.from_zero else "above 0"
                 raise InputError(f"{option}: {name} = {float(value):g}: expected {expected}")

@@ -202,7 +202,8 @@ def engine_row(engine: Engine, point: tuple[Fraction, Fraction] | None, h: Fract
             setting = engine.setting(point, h)
         except InputError as error:
             setting = str(error)
-    return ENGINES_LISTED.row(engine, witness=WITNESSES.get(engine.name), setting=setting)
+    units = tuple(engine.units.values())
+    return ENGINES_LISTED.row(engine, units=units, witness=WITNESSES.get(engine.name), setting=setting)
 
 
 def answer_row(answer: Answer) -> Row:

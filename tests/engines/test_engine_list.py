@@ -53,7 +53,7 @@ def likely_values(draw: st.DrawFn, engine: Engine) -> tuple[Fraction, ...]:
         numbers = [draw(st.floats(0.05, 1.0)), draw(st.integers(1, 4))][: draw(st.integers(1, 2))]
     else:
         count = len(engine.parameters) + draw(st.sampled_from([0, len(engine.optional)]))
-        numbers = [draw(st.floats(*LIKELY[unit])) for unit in engine.units[:count]]
+        numbers = [draw(st.floats(*LIKELY[unit])) for unit in list(engine.units.values())[:count]]
     return tuple(map(Fraction, numbers))
 
 
