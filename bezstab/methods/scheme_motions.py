@@ -18,6 +18,7 @@ from math import comb, factorial
 from bezstab.linear_equations import solution
 from bezstab.methods.second_order import SecondOrder
 from bezstab.methods.step_equations import POSITION, Combination, Quantity
+from bezstab.rationals import ONE, ZERO
 
 AT_REST, STEADY, ACCELERATED = range(3)
 
@@ -40,7 +41,7 @@ def exact_motions(scheme: SecondOrder, highest: int = ACCELERATED) -> Motions:
 
     def add_row(combination: Combination, power: int, values: list[Fraction]) -> None:
         """Demand of a combination that its coefficient of j^power has these values in the motions."""
-        row = [Fraction(0)] * len(column)
+        row = [ZERO] * len(column)
         for coefficient, quantity in combination:
             for own_power in range(power, len(powers)):  # (j + step)^own_power
                 shifted = comb(own_power, power) * quantity.step ** (own_power - power)
@@ -52,17 +53,17 @@ def exact_motions(scheme: SecondOrder, highest: int = ACCELERATED) -> Motions:
         """Return the coefficient of j^power in the acceleration of a motion, (j + time)^(motion - 2) / (motion - 2)!"""
         left = motion - ACCELERATED - power
         if left < 0:
-            return Fraction(0)
-        return (times[result] if left else Fraction(1)) ** left / (factorial(power) * factorial(left))
+            return ZERO
+        return (times[result] if left else ONE) ** left / (factorial(power) * factorial(left))
 
     for equation in scheme.equations:
         right_side = ((-coefficient, quantity) for coefficient, quantity in equation.without_feedback)
-        difference = ((Fraction(1), equation.result), *right_side)
+        difference = ((ONE, equation.result), *right_side)
         evaluated = equation in scheme.evaluated
         for power in powers:
-            values = [acceleration(equation.result, power, motion) if evaluated else Fraction(0) for motion in powers]
+            values = [acceleration(equation.result, power, motion) if evaluated else ZERO for motion in powers]
             add_row(difference, power, values)
-    position = ((Fraction(1), Quantity(POSITION, 0)),)
+    position = ((ONE, Quantity(POSITION, 0)),)
     for power in (AT_REST, STEADY):
         add_row(position, power, [Fraction(motion == power) for motion in powers])
     found = solution(rows, right_sides)
@@ -77,7 +78,7 @@ def value_at_start(motions: Motions, combination: Combination, motion: int) -> F
             for coefficient, quantity in combination
             for power in range(len(motions[quantity.name]))
         ),
-        Fraction(0),
+        ZERO,
     )
 
 
@@ -88,14 +89,14 @@ def evaluation_times(scheme: SecondOrder) -> dict[Quantity, Fraction]:
 
 
 def evaluation_errors(scheme: SecondOrder, power: int) -> dict[Quantity, tuple[Fraction, Fraction]]:
-    """Return by how much position and velocity are off at each evaluation in the motion j^power / power!
+    """Return by how much position and velocity are off at each evaluation in the motion j^power / power!, power >= 2.
 
     By the evaluation's result, in the turn that begins at j = 0, with h = 1.
     """
-    motions = exact_motions(scheme, max(power, ACCELERATED))
+    motions, times = exact_motions(scheme, power), evaluation_times(scheme)
     errors = {}
     for evaluation in scheme.evaluated:
-        time = value_at_start(motions, evaluation.position, STEADY)
+        time = times[evaluation.result]
         position = value_at_start(motions, evaluation.position, power) - time**power / factorial(power)
         velocity = value_at_start(motions, evaluation.velocity, power) - time ** (power - 1) / factorial(power - 1)
         errors[evaluation.result] = position, velocity

@@ -195,7 +195,7 @@ def _newmark_updates(beta: Fraction, gamma: Fraction) -> dict[str, str]:
 def hht(alpha: Fraction, name: str) -> Method:
     """Return the method of Hilber, Hughes and Taylor, alpha from -1/3 (most damping) to 0: forces at t_{1 + alpha}."""
     equations = _alpha_equations(
-        alpha_m=Fraction(0),
+        alpha_m=ZERO,
         alpha_f=-alpha,
         beta=(1 - alpha) ** 2 / 4,
         gamma=HALF - alpha,

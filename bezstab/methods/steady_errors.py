@@ -33,7 +33,7 @@ what is forced.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cache
 from itertools import count
@@ -76,7 +76,7 @@ KEPT_DIGITS = 2
 """Of an irrational coefficient's rational, so many digits less than it has: what their sums leave over is not there."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class ForcedErrors:
     """The steady errors of position and velocity: two numerators over one denominator, exact, of the method's own step.
 
@@ -84,10 +84,10 @@ class ForcedErrors:
     terms' sizes below which a sum is taken for zero: 0 where the coefficients are the method's own.
     """
 
-    position: ExponentialSum = field(repr=False)
-    velocity: ExponentialSum = field(repr=False)
-    denominator: ExponentialSum = field(repr=False)
-    rounding: Fraction = field(repr=False)
+    position: ExponentialSum
+    velocity: ExponentialSum
+    denominator: ExponentialSum
+    rounding: Fraction
 
     def coefficient(self, terms: ExponentialSum, power: int) -> PlanePolynomial:
         """Return the coefficient of theta^power in one of the sums."""
@@ -182,8 +182,11 @@ def leading_error(method: Method, part: Part = "x") -> LeadingTerm:
     """
     errors = forced_errors(method)
     terms, by_theta = (errors.position, 0) if part == "x" else (errors.velocity, 1)  # h v of the motion is theta
-    power = next(power for power in count() if errors.coefficient(terms, power + by_theta))
-    return _in_h(method, power, errors.coefficient(terms, power + by_theta))
+    return next(
+        _in_h(method, power, numerator)
+        for power in count()
+        if (numerator := errors.coefficient(terms, power + by_theta))
+    )
 
 
 @cache

@@ -18,9 +18,8 @@ from fractions import Fraction
 from functools import lru_cache
 
 from bezstab.methods import Method, turning_factors
+from bezstab.rationals import ONE, ZERO
 from bezstab.stability.closed_loop import converges
-
-ONE, ZERO = Fraction(1), Fraction(0)
 
 
 @dataclass(frozen=True)
