@@ -40,7 +40,7 @@ ALONG: FloatArray = (1 - np.cos(np.linspace(0, np.pi, 34)[1:-1])) / 2  # of it, 
 PANEL_STEP = 1 / 4  # of tanh-sinh: 25 nodes, good to 1e-9 where every other one is good to 1e-5
 CURVE_ERROR = 2e-2  # of the area: chords enclose less by 1e-5, and of a region of 1e10, drawn by few, by a hundredth
 # A panel is halved where half the nodes are off by such a share of the area; points on a line. The last of verdicts in
-# rationals: next to one float64 may tell no edge well enough.
+# rationals: next to one float64 may tell no edge well enough, as at level 0.999999 of average-acceleration.
 EFFORTS = ((1e-5, 128), (1e-7, 256), (1e-4, 8))
 CROSSING_HALVINGS = 36  # of a bracket of a hundredth of a line: its end is good to 1e-12 of the line
 TOWARDS = np.geomspace(1e-9, 1e18, 217)  # times what is seen: where a line is looked at, from what is known there
