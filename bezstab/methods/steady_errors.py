@@ -38,7 +38,6 @@ from fractions import Fraction
 from functools import cache
 from itertools import count
 from math import ceil, factorial, lcm
-from types import MappingProxyType
 from typing import Literal
 
 import sympy as sp
@@ -129,7 +128,7 @@ def forced_errors(method: Method) -> ForcedErrors:
     step = method.scheme.second_order
     forcing = THETA**2 + ALPHA * THETA + BETA
     alike = dict.fromkeys(evaluation_times(step), RING.one)
-    position, velocity = (forcing * _determinant(step, name, alike) for name in (POSITION, VELOCITY))
+    position, velocity = (forcing * _determinant(step, (name, alike)) for name in (POSITION, VELOCITY))
     unforced = _determinant(step)
     lowest = max(k for _, k, _, _ in unforced)
     return ForcedErrors(
@@ -140,23 +139,22 @@ def forced_errors(method: Method) -> ForcedErrors:
     )
 
 
-def _determinant(
-    step: SecondOrder, name: str | None = None, forced: Mapping[Quantity, PolyElement] = MappingProxyType({})
-) -> PolyElement:
-    """Return the determinant D of the equations, or D_name: with what is forced in place of the column of a quantity.
+def _determinant(step: SecondOrder, forced: tuple[str, Mapping[Quantity, PolyElement]] | None = None) -> PolyElement:
+    """Return the determinant D of the equations, or D_x: with what is forced in place of the column of x.
 
-    `forced` is what each evaluation adds to its acceleration, by its result, at its own time: times e^(time theta). The
-    power of z that is left out is the same in all of them.
+    `forced` is that quantity's name, and what each evaluation adds to its acceleration, by its result, at its own time:
+    times e^(time theta). The power of z that is left out is the same in all of them.
     """
     times, parts = evaluation_times(step), _parts(step)
     rows = coefficient_rows(step.equations, parts)
     latest = max(1, ceil(max(times.values())))  # of a step; x and v are those of its end
-    if name is None:
+    if forced is None:
         return determinant(rows).mul_monom((parts * (latest - 1), 0, 0)).set_ring(FORCED_RING)
+    name, added = forced
     column = [equation.result.name for equation in step.equations].index(name)
     for row, equation in zip(rows, step.equations, strict=True):
         earlier = int((latest - times.get(equation.result, ZERO)) * parts)
-        row[column] = forced.get(equation.result, RING.zero).mul_monom((earlier, 0, 0))
+        row[column] = added.get(equation.result, RING.zero).mul_monom((earlier, 0, 0))
     return determinant(rows).set_ring(FORCED_RING)
 
 
@@ -204,7 +202,7 @@ def turning_error(method: Method) -> LeadingTerm | None:
         normal = {result: RING_BETA * position + RING_ALPHA * velocity for result, (position, velocity) in off.items()}
         across = {result: RING_ALPHA * position for result, (position, _) in off.items()}
         by_normal, by_across = (
-            errors.coefficient(_exponential_sum(_determinant(step, POSITION, forced), step), by_theta)
+            errors.coefficient(_exponential_sum(_determinant(step, (POSITION, forced)), step), by_theta)
             for forced, by_theta in ((normal, 1), (across, 0))  # at theta^0 those along the normal cancel
         )
         sums = {at: -by_normal.get(at, ZERO) - by_across.get(at, ZERO) for at in {*by_normal, *by_across}}
