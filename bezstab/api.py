@@ -193,10 +193,11 @@ def verdict(method: str | Method, **point: Unpack[PointAtStep[Number]]) -> Verdi
     return stability.verdict(_method(method), *_plane_point(point))
 
 
+@_in_keywords()
 def region(method: str | Method, level: float = 1.0) -> stability.Region:
     """Return the exact region of the plane of alpha_hat and beta_hat in which |z_p| < level.
 
-    level: above 0, at most 1. At 1 the region is where the method is stable.
+    level: above 0, at most 0.9999999, or 1. At 1 the region is where the method is stable.
 
     Returns a Region, dimensionless. `boundary` is a list of closed curves, arrays of shape (points, 2)
     with the columns alpha_hat and beta_hat. `area` and `extent` are its size. `contains(alpha_hat,

@@ -28,6 +28,7 @@ from bezstab.stability import (
     FloatArray,
     Region,
     best_point_or_reason,
+    check_level,
     choose,
     combined_error,
     critical_damping_limit,
@@ -138,8 +139,8 @@ class MapQuestion:
         for option, ends in (("--alpha-range", self.alpha_range), ("--beta-range", self.beta_range)):
             if ends:
                 self._check_window(option, *ends)
-        if any(level > 1 for level in self.levels):
-            raise InputError(f"--level {float(max(self.levels)):g}: must be at most 1, the stability boundary")
+        for level in self.levels:
+            check_level(float(level))
         if self.compare and len(self.levels) > 1:
             raise InputError(f"--compare takes one --level, but {len(self.levels)} were given")
         if self.accuracy and len(self.speeds) > 1:

@@ -17,6 +17,7 @@ from bezstab.stability.region_checks import check_region
 from bezstab.stability.shapes import ATTAINED, GOES_ON, Approached
 
 MARGIN = 0.05  # of what is to be seen of a bounded region
+NEXT_TO_ONE = 1 - 1e-7  # the last level below one: from 1 - 1e-8 on edges of regions as large are lost to rounding
 
 
 @dataclass(frozen=True, repr=False)
@@ -68,13 +69,12 @@ def region(method: Method, level: float = 1.0) -> Region:
 
     Where it grows without limit as the level goes to one, next to one they are good to about 1e-15 / (1 - level).
     Dimensionless; from the boundary locus of paper Eq. 17, or from the exact strips of the plane of a method that has
-    no mu, held against the poles beside its edges and along lines (region_checks). InputError for another level;
+    no mu, held against the poles beside its edges and along lines (region_checks). InputError as `check_level`;
     NumericalError if they disagree, or its edges leave a gap, on a finer sampling of the locus as well: not found is an
     edge on which several roots have |z| = level, or one so short, where the level is hardly above the least |z_p|, that
     it lies between two samples.
     """
-    if not 0 < level <= 1:
-        raise InputError(f"level {level:g}: expected above 0 and at most 1, the stability boundary")
+    check_level(level)
     stuck = fixed_poles(method)
     empty = Region(method, level, stuck)
     if stuck and abs(stuck[0]) >= level * (1 - ROUNDING):
@@ -83,6 +83,14 @@ def region(method: Method, level: float = 1.0) -> Region:
     shape = pencil_of(method, free=True).shape(level)
     check_region(method, level, shape)
     return Region(method, level, stuck, **vars(shape)) if shape else empty
+
+
+def check_level(level: float) -> None:
+    """Refuse a region that cannot be asked about: InputError unless 0 < level <= NEXT_TO_ONE, or level = 1."""
+    if not 0 < level <= NEXT_TO_ONE and level != 1:
+        raise InputError(
+            f"--level {level:.10g}: expected above 0 and at most {NEXT_TO_ONE:.10g}, or 1, the stability boundary"
+        )
 
 
 def chart_of(pencil: Pencil, stable: Region, finer: int = 1) -> Chart:
