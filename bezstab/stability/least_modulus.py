@@ -137,7 +137,7 @@ def _solved(chart: Chart, start: FloatArray, active: Sequence[Cluster], edges: S
         for pole in [about] if cluster.real or not chart.real else [about, about.conj()]:
             others = others[np.argsort(np.abs(others - pole))]
             meeting, others = np.split(others, [len(cluster.members)])
-            if not abs(meeting.mean() - pole) <= DOUBLE * abs(pole):
+            if not meeting.size or not abs(meeting.mean() - pole) <= DOUBLE * abs(pole):
                 return None  # two clusters have become one
     z_abs = np.abs(z).max()
     if np.abs(others).max(initial=0.0) > z_abs * (1 + DOUBLE):
