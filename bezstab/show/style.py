@@ -55,6 +55,7 @@ ABOVE_THE_AXES = 3  # their lines and ticks are drawn at 2.5
 CONVERGES, DIVERGES = "#9ecae1", "0.45"
 LEGEND_WIDTH = 0.97  # of the figure's, at most: a little room for letters that are wider in the file than here
 LEGEND_HEIGHT = 0.8  # inches: what a legend takes beyond that makes the figure taller, not its axes smaller
+LABEL_WIDTH = 45  # characters of a label that has to be broken into lines
 TITLE_WIDTH = 44  # characters of a line above axes, which need not stand in the middle of a figure of column width
 HARD_SPACE = "\N{NO-BREAK SPACE}"
 
@@ -147,13 +148,18 @@ def marked_line_at(place: int) -> dict[str, Any]:
 def with_legend(figure: Figure, **box: Any) -> Figure:
     """Return the figure with a legend below its axes: of all that has a label, or of some lines as `handles`.
 
-    It has as many columns as its width allows.
+    It has as many columns as its width allows. A label that is too long even for one column is broken into lines.
     """
     for columns in (4, 3, 2, 1):
         legend = figure.legend(loc="outside lower center", ncols=columns, **box)
-        if columns == 1 or legend.get_window_extent().width <= LEGEND_WIDTH * figure.bbox.width:
+        if legend.get_window_extent().width <= LEGEND_WIDTH * figure.bbox.width:
             break
-        legend.remove()
+        if columns > 1:
+            legend.remove()
+    else:
+        for text in legend.get_texts():
+            if "$" not in text.get_text():  # a formula cannot be broken
+                text.set_text(fill(text.get_text(), LABEL_WIDTH))
     height = legend.get_window_extent().height / figure.dpi
     figure.set_figheight(figure.get_figheight() + max(0.0, height - LEGEND_HEIGHT))
     return figure

@@ -11,13 +11,22 @@ from bezstab.methods import lookup
 from bezstab.questions import MapQuestion
 from bezstab.show import FIGURE_FORMS
 from bezstab.show.map_figures import comparison_figure
-from bezstab.show.style import line_at, marked_line_at, save, title_lines
+from bezstab.show.style import line_at, marked_line_at, new_axes, save, styled, title_lines, with_legend
 
 
 def test_lines_in_a_figure_differ_in_colour_or_dashes_and_neighbours_in_marker_too() -> None:
     assert len({str(line_at(place)) for place in range(42)}) == 42
     for key in ("color", "linestyle", "marker", "markersize"):  # of neighbours all
         assert len({str(marked_line_at(place)[key]) for place in range(6)}) == 6
+
+
+def test_a_label_that_is_wider_than_the_figure_is_broken_into_lines() -> None:
+    with styled():
+        figure, axes = new_axes("", "", "")
+        axes.plot([0, 1], label=10 * "method of my own ")
+        (legend,) = with_legend(figure).legends
+        figure.draw_without_rendering()
+        assert legend.get_window_extent().width < figure.bbox.width
 
 
 @pytest.mark.parametrize("form", FIGURE_FORMS)
