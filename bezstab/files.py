@@ -1,7 +1,7 @@
 """Input files that are read or refused in one line; output files that are written whole or not at all."""
 
 import io
-import secrets
+import os
 import tempfile
 import tomllib
 from collections.abc import Callable
@@ -49,7 +49,7 @@ def write_whole(path: Path, write: Callable[[BinaryIO], object]) -> None:
     # even when they are collected. So the system is asked for one plain write, all that can fail for its reasons.
     content = io.BytesIO()
     write(content)
-    temporary = path.with_name(f".{path.name}.{secrets.token_hex(4)}")
+    temporary = path.with_name(f".{path.name}.{os.urandom(4).hex()}")
     with if_stopped(lambda: temporary.unlink(missing_ok=True)):
         try:
             with temporary.open("xb") as file:

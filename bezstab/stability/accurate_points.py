@@ -12,8 +12,8 @@ from bezstab.stability.arrays import BoolArray, Extent, FloatArray
 from bezstab.stability.forced_errors import combined_error
 from bezstab.stability.searches import grid_of, lowest_minima
 
-Within = Callable[[FloatArray, FloatArray, float], BoolArray]
-"""Whether |z_p| is below a level, over arrays of alpha_hat and beta_hat."""
+Within = Callable[[FloatArray, FloatArray, FloatArray | float], BoolArray]
+"""Whether |z_p| is below a level, one or one for each, over arrays of alpha_hat and beta_hat."""
 
 DECAY = 0.5
 """Of the motion's own rate: in 14 rad of the motion, some two turns, what was there has fallen a thousandfold."""

@@ -265,9 +265,10 @@ def _slowest(method: Method, modulus: Modulus, within: Within, spread: float) ->
     A step of share s of the largest turns (alpha_hat, beta_hat) into (s alpha_hat, s^2 beta_hat) and takes 1/s steps;
     in the limit of small steps what remains is exp(Re mu), the continuous decay. Of the spread the corners and the
     centre are taken. The least of all values is exact. A point that is slower than some other with small, half or whole
-    steps alone, which takes no poles to tell, has infinity.
+    steps alone, which takes no poles to tell, has infinity. Poles of smaller steps are solved for only where Schur's
+    recursion says that they are slower than the whole step.
     """
-    shares = np.linspace(1, 0, SHARES + 1)[:-1, np.newaxis, np.newaxis]
+    smaller = np.linspace(1, 0, SHARES + 1)[1:-1, np.newaxis, np.newaxis]
     multiple = float(method.step_multiple)
 
     def of_small_steps(a: FloatArray, b: FloatArray) -> FloatArray:
@@ -275,8 +276,12 @@ def _slowest(method: Method, modulus: Modulus, within: Within, spread: float) ->
         return np.asarray(np.exp(multiple * slower_mu).max(axis=0))
 
     def of_all_steps(a: FloatArray, b: FloatArray) -> FloatArray:
-        decay = modulus(shares * a, shares**2 * b) ** (1 / shares)
-        return np.asarray(np.maximum(of_small_steps(a, b), decay.max(axis=(0, 1))))
+        worst = np.maximum(of_small_steps(a, b), modulus(a, b).max(axis=0))
+        some_a, some_b = smaller * a, smaller**2 * b
+        slower = ~within(some_a, some_b, (worst * (1 - TOLD)) ** smaller)
+        decay = np.zeros(some_a.shape)
+        decay[slower] = modulus(some_a[slower], some_b[slower]) ** (1 / np.broadcast_to(smaller, slower.shape)[slower])
+        return np.asarray(np.maximum(worst, decay.max(axis=(0, 1))))
 
     reached = math.inf  # by any point so far
 
@@ -286,7 +291,7 @@ def _slowest(method: Method, modulus: Modulus, within: Within, spread: float) ->
         if math.isinf(reached):
             reached = float(of_all_steps(a[:, ::SCOUTS], b[:, ::SCOUTS]).min())
         left = kept = np.flatnonzero(of_small_steps(a, b) <= reached)
-        for share in shares.ravel()[::4].tolist():  # most points fail with whole or half steps
+        for share in (1.0, 0.5):  # most points fail with whole or half steps
             level = (reached * (1 + TOLD)) ** share
             kept = kept[within(share * a[:, kept], share**2 * b[:, kept], level).all(axis=0)]
         left = kept if kept.size else left  # next to a double pole even the point that was reached may seem larger

@@ -89,15 +89,15 @@ class MuPencil:
         of_each_mu = z.reshape(len(z), *mu.shape).swapaxes(0, 1)
         return of_each_mu.reshape(self.degree, alpha_hat.size)
 
-    def all_within(self, alpha_hat: FloatArray, beta_hat: FloatArray, level: float) -> BoolArray:
-        """Return whether every pole has |z| < level at each point, by Schur's recursion.
+    def all_within(self, alpha_hat: FloatArray, beta_hat: FloatArray, level: FloatArray | float) -> BoolArray:
+        """Return whether every pole has |z| < level at each point, by Schur's recursion; level: one, or one for each.
 
         False where an implicit step has no solution.
         """
         first, second = self.feedback_roots(alpha_hat, beta_hat)
         within = all_inside(self, first, level)
         real = within & (first.imag == 0)  # of a conjugate pair both have the same moduli
-        within[real] = all_inside(self, second[real], level)
+        within[real] = all_inside(self, second[real], np.broadcast_to(level, real.shape)[real])
         return within
 
     def largest_poles(self, alpha_hat: FloatArray, beta_hat: FloatArray) -> ComplexArray:
@@ -224,7 +224,7 @@ def deadbeat_mu(pencil: MuPencil) -> ComplexArray:
     return np.asarray(roots_of_table(numerator[:, np.newaxis], np.zeros(1, complex))[:, 0])
 
 
-def all_inside(pencil: MuPencil, mu: ComplexArray, level: float) -> BoolArray:
+def all_inside(pencil: MuPencil, mu: ComplexArray, level: FloatArray | float) -> BoolArray:
     """Return whether every root z of pi(., mu) has |z| < level, by Schur's recursion; shape of mu."""
     with np.errstate(over="ignore", invalid="ignore"):  # far out, where nothing is inside
         coefficients = [np.full(mu.shape, horner(row, mu)) for row in pencil.table]

@@ -67,8 +67,8 @@ class PlanePencil:
         self._check_finite(z, alpha_hat, beta_hat)
         return z
 
-    def all_within(self, alpha_hat: FloatArray, beta_hat: FloatArray, level: float) -> BoolArray:
-        """Return whether every pole has |z| < level at each point, by Schur's recursion.
+    def all_within(self, alpha_hat: FloatArray, beta_hat: FloatArray, level: FloatArray | float) -> BoolArray:
+        """Return whether every pole has |z| < level at each point, by Schur's recursion; level: one, or one for each.
 
         False where an implicit step has no solution.
         """
