@@ -31,7 +31,7 @@ from bezstab.evidence.linear_prediction import NEGLIGIBLE, SAMPLES, SPREAD, Fit,
 from bezstab.evidence.logs import decimal_place
 from bezstab.evidence.measured_poles import CLOSE, GROWN
 from bezstab.evidence.noisy_prediction import ITERATIONS, RESOLVED, VISIBLE, NoisyFit, fit_in_noise
-from bezstab.methods import Method, closed_loop_at, closed_loop_table
+from bezstab.methods import Method, closed_loop_table
 from bezstab.stability import EPS, ComplexArray, FloatArray, poles, region, spectral_radius, turning_shift, window
 
 ORDER = 8
@@ -94,8 +94,8 @@ class Likeness:
 
     `predicted` is the method's dominant pole, per row of the log; `distance` is that of the nearest of its poles, and
     `dominant` says whether that is the dominant one. It fits if the distance is at most `allowed`: the `error` of the
-    fit and what the motion of the mechanism may do. `same_as` names methods with the same polynomial there but for
-    factors of z, which no log can tell from this one.
+    fit and what the motion of the mechanism may do. Methods with the same polynomial there but for factors of z, which
+    no log can tell from each other, have the same distance.
     """
 
     method: Method
@@ -104,7 +104,6 @@ class Likeness:
     error: float
     allowed: float
     dominant: bool
-    same_as: str
 
     def __repr__(self) -> str:
         fit = "fits" if self.fits else "does not fit"
@@ -303,16 +302,10 @@ def likenesses(
     """
     if probed.pole is None:
         return []
-    recursions = {
-        method: (between, _polynomial_without_zeros(method, alpha_hat, beta_hat))
-        for method, between in own_steps.items()
-    }
     found = []
-    for method, recursion in recursions.items():
-        alike = ", ".join(other.name for other, its in recursions.items() if its == recursion and other is not method)
+    for method, between in own_steps.items():
         with suppress(NumericalError):
-            point = float(alpha_hat), float(beta_hat)
-            found.append(_likeness(probed, method, own_steps[method], point, turned, alike))
+            found.append(_likeness(probed, method, between, (float(alpha_hat), float(beta_hat)), turned))
     return sorted(found, key=lambda one: one.distance)
 
 
@@ -346,14 +339,8 @@ def kicked_responses(
     return responses
 
 
-def _polynomial_without_zeros(method: Method, alpha_hat: Fraction, beta_hat: Fraction) -> tuple[Fraction, ...]:
-    """Return P at one point in ascending powers of z, monic and without roots at zero."""
-    polynomial = np.trim_zeros(np.array(closed_loop_at(method, alpha_hat, beta_hat)))
-    return tuple(polynomial / polynomial[-1])
-
-
 def _likeness(
-    probed: ProbedPole, method: Method, between: int, point: tuple[float, float], turned: float | None, same_as: str
+    probed: ProbedPole, method: Method, between: int, point: tuple[float, float], turned: float | None
 ) -> Likeness:
     assert probed.pole is not None
     assert probed.uncertainty is not None
@@ -376,7 +363,6 @@ def _likeness(
         error=probed.uncertainty,
         allowed=probed.uncertainty + moved,
         dominant=bool(leading[nearest]),
-        same_as=same_as,
     )
 
 

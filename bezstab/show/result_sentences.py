@@ -245,10 +245,8 @@ def likeness_sentence(like: Sequence[Likeness], point: Point) -> str:
     first, excluded = fitting[0], [one for one in like if not one.fits]
     lesser = "" if first.dominant else ", by a lesser pole of it"
     words = f"this behaves like {first.method.name} at {at} to {max(first.distance, first.error):.1g}{lesser}"
-    equal = first.same_as.split(", ")
     listed = {
-        "the same poles there": equal,
-        "not to be told from it": [one.method.name for one in fitting[1:] if one.method.name not in equal],
+        "not to be told from it": [one.method.name for one in fitting[1:]],
         "excluded": [one.method.name for one in excluded[:NAMED]],
     }
     words += "".join(f"; {what}: {', '.join(names)}" for what, names in listed.items() if any(names))

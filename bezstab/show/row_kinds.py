@@ -487,7 +487,6 @@ LIKENESS = (
     number("distance", "Distance of the fitted pole from that of the method", "distance", ".1e"),
     number("allowed", "Largest distance that still fits", "allowed", ".1e"),
     truth("dominant", "Whether the method's nearest pole is its dominant one"),
-    text("same_as", "Methods that no log can tell from this one"),
     truth(
         "fits",
         "Whether the log may be the method's: it agrees with it within its uncertainty",
