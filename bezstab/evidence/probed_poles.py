@@ -95,7 +95,7 @@ class Likeness:
     `predicted` is the method's dominant pole, per row of the log; `distance` is that of the nearest of its poles, and
     `dominant` says whether that is the dominant one. It fits if the distance is at most `allowed`: the `error` of the
     fit and what the motion of the mechanism may do. Methods with the same polynomial there but for factors of z, which
-    no log can tell from each other, have the same distance.
+    no log can tell from each other, have the same distance but for rounding.
     """
 
     method: Method

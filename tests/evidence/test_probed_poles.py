@@ -25,6 +25,8 @@ from tests.reference.sampled_responses import geometric, of_poles, two_poles
 ALL = dict.fromkeys(map(lookup, REGISTRY), 1)
 """All methods, with one of their steps from row to row."""
 POINT = Fraction(1, 2), Fraction(1, 10)
+ROUNDING = 1e-12
+"""Of distances: methods with the same polynomial, but for factors of z, do not always share the last bit of a pole."""
 
 
 def of_method(name: str, alpha_hat: float = 0.5, beta_hat: float = 0.1, every: int = 1) -> ProbedPole:
@@ -42,8 +44,8 @@ def told(c: FloatArray, minus: FloatArray | None = None) -> ProbedPole:
 
 def test_methods_with_the_same_polynomial_are_equally_near() -> None:
     like = {one.method.name: one for one in likenesses(of_method("AB2"), ALL, *POINT)}
-    assert like["B2"].distance == like["AB2"].distance
-    assert like["SYM"].distance == like["verlet-half"].distance  # but for a factor of z
+    for one, other in (("B2", "AB2"), ("SYM", "verlet-half"), ("trapezoid", "average-acceleration")):
+        assert like[one].distance == pytest.approx(like[other].distance, abs=ROUNDING)
     assert not like["RK4"].fits
 
 
@@ -62,7 +64,7 @@ def test_rows_several_steps_apart_have_powers_of_the_poles() -> None:
     assert found.pole == pytest.approx(complex(dominant_pole(lookup("SYM"), 0.05, 0.01)) ** 3, abs=1e-6)
     like = likenesses(found, dict.fromkeys(ALL, 3), Fraction(1, 20), Fraction(1, 100), turned=0.0)
     assert like[0].fits
-    assert "SYM" in [one.method.name for one in like if one.distance == like[0].distance]
+    assert "SYM" in [one.method.name for one in like if one.distance < like[0].distance + ROUNDING]
     (point,), _ = points_like(found, lookup("SYM"), 3)
     assert (point.alpha_hat, point.beta_hat) == pytest.approx((0.05, 0.01), abs=1e-6)
 
@@ -223,7 +225,7 @@ def outcome(log: RandomLog, found: ProbedPole, turned: float | None) -> str:
     (true,) = [one for one in like if one.method.name == log.method.name]
     if not true.fits:
         return "wrong"
-    return "first" if true.distance == like[0].distance else "among"
+    return "first" if true.distance < like[0].distance + ROUNDING else "among"
 
 
 @pytest.mark.promise(
