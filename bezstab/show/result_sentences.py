@@ -249,7 +249,7 @@ def likeness_sentence(like: Sequence[Likeness], point: Point) -> str:
         "not to be told from it": [one.method.name for one in fitting[1:]],
         "excluded": [one.method.name for one in excluded[:NAMED]],
     }
-    words += "".join(f"; {what}: {', '.join(names)}" for what, names in listed.items() if any(names))
+    words += "".join(f"; {what}: {', '.join(names)}" for what, names in listed.items() if names)
     if len(excluded) <= NAMED:
         return f"{words}."
     return f"{words} and {len(excluded) - NAMED} others, the nearest {excluded[0].distance:.1g} off."

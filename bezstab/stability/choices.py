@@ -265,8 +265,8 @@ def _slowest(method: Method, modulus: Modulus, within: Within, spread: float) ->
     A step of share s of the largest turns (alpha_hat, beta_hat) into (s alpha_hat, s^2 beta_hat) and takes 1/s steps;
     in the limit of small steps what remains is exp(Re mu), the continuous decay. Of the spread the corners and the
     centre are taken. The least of all values is exact. A point that is slower than some other with small, half or whole
-    steps alone, which takes no poles to tell, has infinity. Poles of smaller steps are solved for only where Schur's
-    recursion says that they are slower than the whole step.
+    steps alone, which takes no poles to tell, has infinity. Poles of smaller steps are solved for only where these
+    are not within what the whole step and the limit have.
     """
     smaller = np.linspace(1, 0, SHARES + 1)[1:-1, np.newaxis, np.newaxis]
     multiple = float(method.step_multiple)
@@ -279,9 +279,9 @@ def _slowest(method: Method, modulus: Modulus, within: Within, spread: float) ->
         worst = np.maximum(of_small_steps(a, b), modulus(a, b).max(axis=0))
         some_a, some_b = smaller * a, smaller**2 * b
         slower = ~within(some_a, some_b, (worst * (1 - TOLD)) ** smaller)
-        decay = np.zeros(some_a.shape)
-        decay[slower] = modulus(some_a[slower], some_b[slower]) ** (1 / np.broadcast_to(smaller, slower.shape)[slower])
-        return np.asarray(np.maximum(worst, decay.max(axis=(0, 1))))
+        z_abs = np.zeros(some_a.shape)
+        z_abs[slower] = modulus(some_a[slower], some_b[slower])
+        return np.asarray(np.maximum(worst, (z_abs ** (1 / smaller)).max(axis=(0, 1))))
 
     reached = math.inf  # by any point so far
 
