@@ -43,6 +43,9 @@ Points = Callable[[Fraction], list[tuple[Point, str]]]
 IMPLICIT_IN_VELOCITY = lookup("imex-euler")
 """What an integrator is for springs and drives whose damping is all implicit."""
 
+DEFAULT_SOLREF = (0.02, 1.0)
+"""What MuJoCo takes where one number of solref is positive and the other not."""
+
 FACTORS = np.geomspace(1, 1e3, 120)
 """On the step, or its inverse, where an end of stability is looked for first: the maps here have no gap of 6 %."""
 
@@ -224,9 +227,12 @@ class _Pull:
 def _pulls(model: ModelData, constraint: Constraint, factor: Fraction) -> list[_Pull]:
     """Return what a constraint does at the constraint, and past solimp's width, at a factor on the step."""
     h = model.h * factor
-    (first, second), why = map(exact, constraint.solref), ""
+    solref, why = (
+        (constraint.solref, "") if _of_one_sign(constraint.solref) else (DEFAULT_SOLREF, " as the signs differ")
+    )
+    first, second = map(exact, solref)
     if model.refsafe and 0 < first < 2 * h:
-        first, why = 2 * h, " by refsafe"
+        first, why = 2 * h, why or " by refsafe"
     alpha_hat, beta_hat = ENGINES["mujoco"].read(h, first, second)
     at_rest, largest, width = constraint.solimp
     impedances = [at_rest, largest] if width > 0 else [(at_rest + largest) / 2]
@@ -287,6 +293,9 @@ def _constraint_advice(model: ModelData, constraint: Constraint, found: Linted) 
     at_rest, _, width = constraint.solimp
     firm = replace(constraint, solref=(float(2 * model.h), 1.0))
     write_firm = f'solref="{_numbers(firm.solref)}"'
+    if not _of_one_sign(constraint.solref):
+        taken = _numbers(DEFAULT_SOLREF)
+        return f'MuJoCo takes {taken}, as the signs differ: write solref="{taken}"'
     no_stiffness = "no stiffness: errors stay; " if constraint.positional and not first else ""
     if no_stiffness or found.verdict != "converges":
         return f"{no_stiffness}write {write_firm}"
@@ -300,6 +309,10 @@ def _constraint_advice(model: ModelData, constraint: Constraint, found: Linted) 
     faster, now = np.log(np.maximum(ROUNDING, [_moduli(model.method, points).max(), found.z_abs]))
     times = faster / now
     return f"needlessly soft: {write_firm} settles {times:.0f} times as fast" if times > SOFT else ""
+
+
+def _of_one_sign(solref: tuple[float, float]) -> bool:
+    return (solref[0] > 0) == (solref[1] > 0)
 
 
 def _numbers(values: Iterable[float | Fraction]) -> str:

@@ -69,11 +69,6 @@ class Constraint:
     def __post_init__(self) -> None:
         _require_sizes(f"{self.element}: solref", self.solref)
         _require_sizes(f"{self.element}: solimp", self.solimp)
-        first, second = self.solref
-        if (first > 0) != (second > 0):
-            raise InputError(
-                f'{self.element}: solref = {first:g} {second:g}: the signs differ, so MuJoCo takes solref="0.02 1"'
-            )
 
 
 @dataclass(frozen=True)

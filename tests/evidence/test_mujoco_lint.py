@@ -249,6 +249,7 @@ def test_a_drive_in_a_closed_loop_is_decided_by_the_loop(
         ("-900000 -100", "", UNSAFE, "write", ""),
         (".002 1", "", "", "relies on refsafe", f'solref="{2 * H:g} 1" by refsafe, d = 0.9 at the constraint'),
         (".5 1", "", "", "needlessly soft", ""),
+        (".02 -1", "", "", "signs differ", 'solref="0.02 1" as the signs differ, d = 0.9'),
         ("0 -50", "", "", "no stiffness", ""),
         (".02 1", 'solimp=".05 .9 .001"', "", "solimp leaves small errors alone: d = 0.05", ""),
         (".02 1", 'solimp=".2 .9 .001"', "", "", ""),
@@ -257,7 +258,7 @@ def test_a_drive_in_a_closed_loop_is_decided_by_the_loop(
 def test_the_line_to_write_is_safe_and_it_is_said_why(
     solref: str, solimp: str, flags: str, advised: str, judged: str
 ) -> None:
-    """What is unsafe, relies on refsafe or is soft: the advised solref has no advice left."""
+    """What is unsafe, relies on refsafe, is soft or mixes signs: the advised solref has no advice left."""
     (before,) = lint(held(solref, solimp, flags))
     assert advised in before.advice
     assert bool(before.advice) is bool(advised)

@@ -108,11 +108,6 @@ def test_options_hold_for_all_that_is_read() -> None:
             ROBOT.replace("0.05 2", "0.05 inf"),
             "'slide': solref = 0.05 inf: expected 0, or sizes from 1e-15 to 1e",
         ),
-        (
-            "mixed.xml",
-            ROBOT.replace('solreflimit="0.05 2"', 'solreflimit="0.05 -2"'),
-            "'slide': solref = 0.05 -2: the signs differ, so MuJoCo takes",
-        ),
         ("small.xml", f'<mujoco><size memory="60K"/><worldbody>{MARBLES}</worldbody></mujoco>', "memory"),
         ("includes.xml", '<mujoco><include file="nowhere.xml"/></mujoco>', "nowhere.xml"),
     ],
