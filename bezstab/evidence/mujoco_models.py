@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cache, cached_property
 from pathlib import Path
-from typing import Any, Literal, TypeVar, get_args
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -42,9 +42,8 @@ ANY_DISTANCE = 1e6
 DIGITS = 12
 """Of inertias and shares: what linear algebra in float64 leaves of small matrices."""
 
-Integrator = Literal["Euler", "RK4", "implicit", "implicitfast"]
-INTEGRATORS: tuple[Integrator, ...] = get_args(Integrator)
-"""In the order of MuJoCo's own numbers."""
+INTEGRATORS = {"Euler": "SYM", "RK4": "RK4", "implicit": "SYM", "implicitfast": "SYM"}
+"""In the order of MuJoCo's own numbers, each with the method that it is for constraints."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,7 +125,7 @@ class ModelData:
     """
 
     h: Fraction
-    integrator: Integrator
+    integrator: str
     refsafe: bool
     mass: FloatArray
     elements: tuple[Constraint | Feedback | Motor | Unjudged, ...]
@@ -138,7 +137,7 @@ class ModelData:
     @property
     def method(self) -> Method:
         """The method that the integrator is for constraints."""
-        return lookup("RK4" if self.integrator == "RK4" else "SYM")
+        return lookup(INTEGRATORS[self.integrator])
 
     def springs_and_dampers(self) -> FloatArray:
         """Return the matrices of stiffness, of damping, and of what is implicit of it, (3, dofs, dofs), SI units."""
@@ -234,7 +233,7 @@ def model_data(mujoco: types.ModuleType, model: Any) -> ModelData:
         raise InputError(f"timestep = {model.opt.timestep:g}: expected a positive number")
     return ModelData(
         h=exact(model.opt.timestep),
-        integrator=INTEGRATORS[model.opt.integrator],
+        integrator=list(INTEGRATORS)[model.opt.integrator],
         refsafe=loaded.has("REFSAFE"),
         mass=mass,
         elements=tuple(found),
@@ -267,7 +266,7 @@ class _Loaded:
 
     def is_implicit(self, at_joint: bool) -> bool:
         """Return whether the integrator treats a damping implicitly: RK4 none, Euler that of joints alone."""
-        integrator = INTEGRATORS[self.model.opt.integrator]
+        integrator = list(INTEGRATORS)[self.model.opt.integrator]
         return at_joint and self.has("EULERDAMP") if integrator == "Euler" else integrator != "RK4"
 
     def named(self, kind: str, number: int) -> str:

@@ -14,7 +14,7 @@ import numpy as np
 
 from bezstab.engines import MOST_IMPEDANCE
 from bezstab.errors import InputError
-from bezstab.evidence.mujoco_models import mujoco_module, silent
+from bezstab.evidence.mujoco_models import INTEGRATORS, mujoco_module, silent
 from bezstab.mechanism import GROUND, Body, Mechanism, Revolute, Scene, constraint_errors, perturbed_state
 from bezstab.methods import Method, lookup
 from bezstab.stability import FloatArray, bisected, region, spectral_radius
@@ -22,8 +22,8 @@ from bezstab.units import feedback_gains
 
 Outcome = Literal["converges", "diverges", "neither"]
 
-INTEGRATORS = {"Euler": "SYM", "RK4": "RK4"}
-"""MuJoCo's integrators, and the method that each of them is."""
+RUN_WITH = ("Euler", "RK4")
+"""Those of MuJoCo's integrators that are run: the others are symplectic Euler for constraints, too."""
 
 RAYS = (15.0, 30.0, 45.0, 60.0, 75.0)
 """Degrees, in the plane scaled by the region's extent."""
@@ -40,8 +40,8 @@ KICK = 1e-3
 GROWN_TO = 1.0
 """m: |z_p| >= 1.1 takes the kick there within a hundred steps."""
 
-ALONG_A_RAY = 0.005, 2.0
-"""In units of the region's extent: stable and unstable. The two regions have one boundary on each ray in between."""
+OUTSIDE = 2.0
+"""Times the region's extent: unstable. The two regions have one boundary on each ray up to there."""
 
 
 @dataclass(frozen=True)
@@ -69,8 +69,8 @@ def mujoco_witnesses(mechanism: Mechanism, h: float) -> Iterator[Witnessed]:
     InputError without MuJoCo, or for a scene that is not made of revolute joints and gravity alone.
     """
     mujoco = mujoco_module("--witness mujoco")
-    for integrator, name in INTEGRATORS.items():
-        method = lookup(name)
+    for integrator in RUN_WITH:
+        method = lookup(INTEGRATORS[integrator])
         for boundary, times in product(_boundary_points(method), TIMES):
             alpha_hat, beta_hat = (times * boundary).tolist()
             model = mujoco.MjModel.from_xml_string(model_xml(mechanism.scene, integrator, h, alpha_hat, beta_hat))
@@ -94,7 +94,7 @@ def mujoco_witnesses(mechanism: Mechanism, h: float) -> Iterator[Witnessed]:
 
 def witness_count() -> int:
     """Return how many answers `mujoco_witnesses` yields."""
-    return len(INTEGRATORS) * len(RAYS) * len(TIMES)
+    return len(RUN_WITH) * len(RAYS) * len(TIMES)
 
 
 def model_xml(scene: Scene, integrator: str, h: float, alpha_hat: float, beta_hat: float) -> str:
@@ -150,8 +150,8 @@ def _boundary_points(method: Method) -> FloatArray:
     assert view
     angles = np.radians(RAYS)
     rays = np.stack([np.cos(angles), np.sin(angles)], axis=-1) * [largest for _, largest in view]
-    stable, unstable = (np.full(len(RAYS), times) for times in ALONG_A_RAY)
-    _, met = bisected(lambda times: spectral_radius(method, *(times * rays.T)) >= 1, stable, unstable)
+    unstable = np.full(len(RAYS), OUTSIDE)
+    _, met = bisected(lambda times: spectral_radius(method, *(times * rays.T)) >= 1, 0 * unstable, unstable)
     return np.asarray(met[:, np.newaxis] * rays)
 
 
