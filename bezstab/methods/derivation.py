@@ -92,7 +92,7 @@ def mapping_equation(method: Method) -> sp.Equality | None:
     if pi.is_zero:
         return None
     if isinstance(method.scheme, RungeKutta):
-        in_z = sp.Poly(pi.as_expr(), Z)
+        in_z = pi.eject(MU)
         return sp.Eq(Z, (-in_z.nth(0) / in_z.nth(1)).subs(MU, h * S))
     if pi.degree(MU) == 1:
         return _solved_for_s(pi, h)
@@ -102,7 +102,7 @@ def mapping_equation(method: Method) -> sp.Equality | None:
 
 def _solved_for_s(pi: sp.Poly, h: sp.Expr) -> sp.Equality:
     """Return s = rho / (h sigma), rho factored, and whole numbers but for one factor in front (as the paper prints)."""
-    minus_sigma, rho = sp.Poly(pi.as_expr(), MU).all_coeffs()
+    minus_sigma, rho = pi.eject(Z).all_coeffs()
     rho_factor, numerator = sp.factor(rho).as_content_primitive()
     sigma_factor, denominator = sp.expand(-minus_sigma).as_content_primitive()
     return sp.Eq(S, rho_factor / sigma_factor * numerator / (h * denominator))

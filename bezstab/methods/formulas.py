@@ -6,7 +6,7 @@ from math import lcm
 
 import sympy as sp
 
-from bezstab.methods.derivation import ALPHA_HAT, BETA_HAT, MU, Z, closed_loop_polynomial, mapping_equation
+from bezstab.methods.derivation import ALPHA_HAT, BETA_HAT, MU, PLANE, Z, closed_loop_polynomial, mapping_equation
 from bezstab.methods.schemes import LinearMultistep, Method, PredictorCorrector, RungeKutta
 from bezstab.methods.second_order import SecondOrder
 from bezstab.methods.second_order_formulas import (
@@ -69,11 +69,11 @@ def characteristic_text(method: Method, latex: bool = False) -> str:
 
     With decimals where rationals stand for irrational coefficients.
     """
-    polynomial = sp.Poly(closed_loop_polynomial(method).as_expr(), Z, ALPHA_HAT, BETA_HAT, domain="QQ")
+    polynomial = closed_loop_polynomial(method).inject()
     if method.digits is None:
         _, polynomial = polynomial.clear_denoms(convert=True)
     terms = []
-    for (power,), coefficient in sp.Poly(polynomial.as_expr(), Z).terms():
+    for (power,), coefficient in polynomial.eject(ALPHA_HAT, BETA_HAT).terms():
         terms.append(_power_term(_readable(coefficient), power, latex))
     return " + ".join(terms).replace("+ -", "- ") + " = 0"
 
@@ -109,8 +109,7 @@ def _quotient(error: LeadingTerm, exact: bool) -> sp.Expr:
 
 def _plane_expression(terms: PlanePolynomial) -> sp.Expr:
     """Return a polynomial in alpha_hat and beta_hat as an expression."""
-    own_copy = dict(terms)  # sympy writes its own numbers into it
-    return sp.Poly.from_dict(own_copy, ALPHA_HAT, BETA_HAT, domain="QQ").as_expr()
+    return PLANE.ring.from_dict(terms).as_expr()
 
 
 def _readable(expression: sp.Expr) -> sp.Expr:
