@@ -13,7 +13,8 @@ large, by a share of its own decay, so that what is found has room for the corne
 short to be sampled.
 
 Proven in exact arithmetic: corner p, edge from e to f, M = N(s) / d(s). The image lies on the inner side of the edge
-if and only if (e x f) d(s) + (f - e) x N(s) p > 0, a polynomial in the length s of the step.
+if and only if (e x f) d(s) + (f - e) x N(s) p > 0, a polynomial in the length s of the step, where d(s) > 0. That is
+so where it holds for -p, too: the two add up to 2 (e x f) d(s).
 """
 
 from fractions import Fraction
@@ -25,8 +26,6 @@ from bezstab.rationals import whole_multiples
 from bezstab.stability.arrays import SAME, FloatArray
 from bezstab.stability.lyapunov_quadratics import rounded
 from bezstab.stability.positive_polynomials import positivity
-
-Corner = tuple[Fraction, Fraction]
 
 RAYS = 720  # directions in the half plane: linear interpolation of V errs by 1e-6 there
 RESERVES = (0.5, 0.2, 0.1, 0.05, 0.025)  # shares of each step's decay; the first that leaves V finite is taken
@@ -47,11 +46,12 @@ def invariant_polygon(
     matrices: FloatArray,
     form: FloatArray,
     shortest: Fraction,
-) -> list[Corner] | None:
+) -> ExactArray | None:
     """Return corners of half a polygon that every step from `shortest` to 1 maps inside; None if none was found.
 
-    The other half is their negatives. `matrices` (steps, 2, 2) belong to the lengths `steps`, a sample of the range;
-    the root of a quadratic `form` (2, 2) maps the state to where its motion is round. Proven for all of the range.
+    Shape (corners, 2). The other half is their negatives. `matrices` (steps, 2, 2) belong to the lengths `steps`, a
+    sample of the range; the root of a quadratic `form` (2, 2) maps the state to where its motion is round. Proven for
+    all of the range.
     """
     frame = np.linalg.cholesky(form).T
     back = np.linalg.inv(frame)
@@ -64,16 +64,15 @@ def invariant_polygon(
         ball = back @ (CIRCLE * np.exp(-growth))
         for count in CORNERS:
             some = ball[:, np.arange(count) * RAYS // count]
-            corners = [(x, v) for x, v in rounded(some / np.abs(some[0]).max()).T]
+            corners = rounded(some / np.abs(some[0]).max()).T
             if proves_decay(corners, matrix, shortest):
                 return corners
     return None
 
 
-def proves_decay(corners: list[Corner], matrix: StepMatrix, shortest: Fraction) -> bool:
+def proves_decay(corners: ExactArray, matrix: StepMatrix, shortest: Fraction) -> bool:
     """Return whether the corners and their negatives are a convex polygon that all steps to 1 map inside: exact."""
-    whole, _ = whole_multiples([coordinate for corner in corners for coordinate in corner])
-    half = np.array(whole, object).reshape(-1, 2)
+    half = np.array(whole_multiples(corners.ravel().tolist())[0], object).reshape(corners.shape)
     ring = np.concatenate([half, -half[:1]])
     edges = np.diff(ring, axis=0)
     spans = _cross(ring[:-1], ring[1:])
@@ -82,8 +81,6 @@ def proves_decay(corners: list[Corner], matrix: StepMatrix, shortest: Fraction) 
     if not (np.concatenate([spans, convex, once_around]) > 0).all():
         return False
     images = np.moveaxis(half @ np.swapaxes(matrix.numerators, 1, 2), 0, -1)  # (corners, 2, powers of s)
-    if positivity([matrix.denominator], shortest, Fraction(1)) is not True:
-        return False
     for (x, v), span in zip(edges, spans, strict=True):
         beside, room = x * images[:, 1] - v * images[:, 0], span * matrix.denominator
         if positivity([*(room + beside), *(room - beside)], shortest, Fraction(1)) is not True:

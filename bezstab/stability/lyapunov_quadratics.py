@@ -3,6 +3,7 @@
 X > 0 with X - M(s)^T X M(s) > 0 for all lengths s of a step: the form x^T X x falls with each step, whatever the order.
 X is found in float64 for a sample of steps, by a barrier method, and rounded. It is proven in exact arithmetic: with
 M = N / d the leading minors of X d^2 - N^T X N are polynomials in s, which must be positive on the range (Sylvester).
+Where they are, d is not zero: there -N^T X N has none that is.
 """
 
 import math
@@ -83,7 +84,7 @@ def proves_decay(form: ExactArray, matrix: StepMatrix, shortest: Fraction) -> bo
     for i, j in product(powers, powers):
         lost[i + j] += below[i] * below[j] * whole - above[i].T @ whole @ above[j]
     minors = [determinant(each[:, :n, :n]) for each in (whole[np.newaxis], lost) for n in range(1, len(form) + 1)]
-    return positivity([below, *minors], shortest, Fraction(1)) is True
+    return positivity(minors, shortest, Fraction(1)) is True
 
 
 def determinant(matrix: ExactArray) -> ExactArray:

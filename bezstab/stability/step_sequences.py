@@ -114,8 +114,8 @@ def varying_steps(
         return refuted(word)
     if matrix.size == 2 and form is not None:
         corners = invariant_polygon(matrix, np.array(samples, np.float64), matrices, form, shortest)
-        if corners:
-            return replace(unknown, varying="proven", kind="polygon", certificate=tuple(corners))
+        if corners is not None:
+            return replace(unknown, varying="proven", kind="polygon", certificate=tuple(map(tuple, corners)))
     return unknown
 
 
