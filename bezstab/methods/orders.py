@@ -77,8 +77,7 @@ Force = Callable[[Polynomial], Fraction]
 
 def _order(method: Method, force: Force) -> int:
     """Return the largest p such that nothing is left over of one kind of force up to mu^p, relative to mu."""
-    rounding = _rounding(method)
-    return next(p for p in count() if any(abs(force(each)) > rounding for each in _left_over(method, p + 1)))
+    return next(p for p in count() if any(abs(force(each)) > method.rounding for each in _left_over(method, p + 1)))
 
 
 def _left_over(method: Method, power: int) -> Iterator[Polynomial]:
@@ -93,12 +92,7 @@ def _error_under(method: Method, force: Force) -> Accuracy:
     """Return order and constant for one kind of force."""
     p = _order(method, force)
     growth, ratio = map(force, method.scheme.second_order.left_over(p + 1))
-    if abs(growth) > _rounding(method):
+    if abs(growth) > method.rounding:
         # P(e^mu) = (e^mu - z) (mu - mu_2) ... is so much, mu_2 the other root: -mu, or 0 without a force of position
         return p, growth / (2 if force is _force_of_position else 1)
     return p, ratio
-
-
-def _rounding(method: Method) -> Fraction:
-    """Return how far an order condition may be off: not at all where the coefficients are the method's own."""
-    return ZERO if method.digits is None else Fraction(100, 10**method.digits)

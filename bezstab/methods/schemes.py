@@ -251,6 +251,11 @@ class Method:
         if not LEAST_STEP_MULTIPLE <= self.step_multiple <= LARGEST_STEP_MULTIPLE:
             raise InputError(f"step multiple {float(self.step_multiple):g}: expected 1e-6 to 1e6")
 
+    @property
+    def rounding(self) -> Fraction:
+        """How far off a sum of coefficients may be that is zero without rounding: as far as all but two digits go."""
+        return ZERO if self.digits is None else Fraction(100, 10**self.digits)
+
 
 @dataclass(frozen=True)
 class MethodGroup:

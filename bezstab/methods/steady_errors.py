@@ -71,9 +71,6 @@ PlanePolynomial = dict[Powers, Fraction]
 ExponentialSum = dict[Powers, dict[tuple[Fraction, int], Fraction]]
 """By powers of alpha_hat and beta_hat: the coefficients of theta^m e^(k theta), by (k, m)."""
 
-KEPT_DIGITS = 2
-"""Of an irrational coefficient's rational, so many digits less than it has: what their sums leave over is not there."""
-
 
 @dataclass(frozen=True, eq=False, repr=False)
 class ForcedErrors:
@@ -135,7 +132,7 @@ def forced_errors(method: Method) -> ForcedErrors:
         position=_exponential_sum(position - unforced, step, lowest),
         velocity=_exponential_sum(velocity - THETA * unforced, step, lowest),
         denominator=_exponential_sum(unforced, step, lowest),
-        rounding=ZERO if method.digits is None else Fraction(1, 10 ** (method.digits - KEPT_DIGITS)),
+        rounding=method.rounding,
     )
 
 
