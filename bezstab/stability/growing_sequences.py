@@ -11,7 +11,7 @@ from itertools import groupby
 
 import numpy as np
 
-from bezstab.methods import ExactArray, StepMatrix, characteristic, recursion_verdict
+from bezstab.methods import ExactArray, StepMatrix, characteristic, is_schur
 from bezstab.rationals import exact
 
 LENGTHS = 40  # tried for either kind of step, evenly spaced
@@ -50,7 +50,7 @@ def growing_words(matrix: StepMatrix, shortest: Fraction) -> Iterator[list[Fract
 def grows(matrix: StepMatrix, word: Sequence[Fraction]) -> bool:
     """Return whether the product of the steps has a spectral radius of one or more, or one has no solution: exact."""
     try:
-        return recursion_verdict(characteristic(_product(matrix, word).tolist())) != "converges"
+        return not is_schur(characteristic(_product(matrix, word).tolist()))
     except ZeroDivisionError:
         return True
 
