@@ -23,6 +23,7 @@ from fractions import Fraction
 from itertools import product
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 from numpy.polynomial.polynomial import polyder, polyval2d, polyval3d
 from numpy.typing import ArrayLike
 
@@ -57,6 +58,10 @@ seconds at 100 Hz."""
 BEYOND_THE_LAW = 1.5
 """Times what the first-order law says of a motion: in the end of a blow-up the errors turn the directions besides. Of
 2,237 random logs the true pole was off by 1.02 times at most."""
+
+LEFT_OVER = 0.3
+"""Relative, of a window that a sum of powers follows: in 1,310 random logs powers of the 180 poles that were told of
+one run left over 0.15 at most, those of what fast motions force 0.5 at least."""
 
 DIFFERENCES = 3
 """Times that samples are differenced at most: each takes off a factor omega h of what a motion forces."""
@@ -253,7 +258,7 @@ def _told_in_noise(fit: NoisyFit, of_two_runs: bool) -> Told:
 
 def _is_not_forced(fit: Fit, samples: FloatArray) -> bool:
     """Return whether one run's pole is none that a motion could force, and nothing larger has decayed before it."""
-    return abs(fit.pole - 1) > RESOLVED and _explains_the_start(fit, samples)
+    return abs(fit.pole - 1) > RESOLVED and _explains_the_start(fit, samples) and _follows(fit, samples)
 
 
 def _is_slow_pole(fit: Fit, of_changes: Fit, samples: FloatArray) -> bool:
@@ -276,6 +281,22 @@ def _explains_the_start(fit: Fit, samples: FloatArray) -> bool:
     with np.errstate(over="ignore"):
         traced_back = within.max() * np.minimum(abs(fit.pole), 1.0) ** -fit.start  # what grows was no larger
     return bool(before.max(initial=0.0) <= GROWN * traced_back)
+
+
+def _follows(fit: Fit, samples: FloatArray) -> bool:
+    """Return whether powers of the fit's poles follow the responses all through the window.
+
+    A recursion goes from sample to sample through whatever is smooth, such as what a fast motion forces, but what it
+    leaves open adds up. Each sample counts in units of the largest near it, so that none is hidden by others.
+    """
+    window = samples[fit.start : fit.start + fit.samples]
+    window = window[:, np.isfinite(window).all(axis=0)]
+    around = np.pad(np.abs(window).max(axis=1), ORDER)
+    near = sliding_window_view(around, 2 * ORDER + 1).max(axis=1)[:, np.newaxis]
+    z = np.array([*fit.poles, *np.conjugate(fit.poles)])
+    powers, scaled = z ** np.arange(fit.samples)[:, np.newaxis] / near, window / near
+    amplitudes = np.linalg.lstsq(powers, scaled, rcond=None)[0]
+    return bool(np.linalg.norm(powers @ amplitudes - scaled) < LEFT_OVER * np.linalg.norm(scaled))
 
 
 def _linear_limits(samples: FloatArray) -> Sequence[float]:

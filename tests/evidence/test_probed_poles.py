@@ -16,6 +16,7 @@ from bezstab.evidence import (
     probed_pole,
 )
 from bezstab.evidence.probed_poles import FEWEST
+from bezstab.mechanism import compiled_mechanism, load_scene, simulated
 from bezstab.methods import REGISTRY, lookup
 from bezstab.stability import FloatArray, dominant_pole, poles, region, window
 from tests.evidence.random_logs import H, RandomLog, random_logs
@@ -178,6 +179,32 @@ def test_the_pole_is_told_and_what_is_to_be_kept_in_mind(
 def test_a_plateau_that_a_motion_forces_is_never_taken_for_a_pole(size: float) -> None:
     found = probed_pole(1e-4 * two_poles(600, 0.7, 1.0, 1.0, 0.5) + size * np.cos(0.003 * np.arange(600) + 1))
     assert found.pole is None or found.pole == pytest.approx(0.7 * np.exp(1j), abs=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("scene", "name", "h", "rows", "kick", "point"),
+    [
+        ("four_bar", "B4", 0.001, 600, 1e-4, (0.02, 1e-4)),
+        ("slider_crank_300rpm", "SYM", 0.002, 1000, 1e-4, (0.050207, 0.00063019)),
+        ("driven_four_bar", "B4", 0.005, 600, 1e-6, (0.032623, 0.00106425)),
+    ],
+)
+def test_what_a_fast_motion_forces_is_not_taken_for_growth(
+    scene: str, name: str, h: float, rows: int, kick: float, point: tuple[float, float]
+) -> None:
+    """A few growing poles go from sample to sample through what is forced of one run, but do not follow it for long."""
+    mechanism, method = compiled_mechanism(load_scene(scene)), lookup(name)
+    alpha_hat, beta_hat = point
+    run = simulated(mechanism, method, h=h, duration=rows * h, alpha_hat=alpha_hat, beta_hat=beta_hat, perturb=kick)
+    found = probed_pole(run.c[:, 0])
+    assert abs(dominant_pole(method, *point)) < 1
+    assert found.pole is None
+    assert "forced" in found.reason
+
+
+@pytest.mark.parametrize("modulus", [1.02, 1.3, 2.0])
+def test_growth_is_told_of_one_run(modulus: float) -> None:
+    assert told(growing(modulus)).pole == pytest.approx(modulus * np.exp(0.5j), abs=1e-3)
 
 
 @pytest.mark.parametrize(
