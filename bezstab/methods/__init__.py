@@ -46,6 +46,7 @@ if TYPE_CHECKING:
         closed_loop_polynomial,
         closed_loop_table,
         mapping_equation,
+        plane_elements,
         rational_feedback_roots,
         rho_and_sigma,
     )
@@ -61,6 +62,7 @@ if TYPE_CHECKING:
         stable_cells,
     )
     from bezstab.methods.recipes import recipe
+    from bezstab.methods.root_isolation import real_roots
     from bezstab.methods.shared_factors import fixed_poles, reduced_table, without_shared_factor
     from bezstab.methods.steady_errors import ExponentialSum, ForcedErrors, forced_errors, leading_error, turning_error
     from bezstab.methods.step_matrices import ExactArray, StepMatrix, step_matrix

@@ -19,10 +19,9 @@ import numpy as np
 from bezstab.methods import Method, rational_feedback_roots, without_shared_factor
 from bezstab.stability.arrays import FloatArray
 from bezstab.stability.path_crossings import ONE, ZERO, Path, crossing_factors, verdict_end
-from bezstab.stability.quadrant_proofs import stable_for_all
 from bezstab.stability.searches import first_where
 
-RATIOS: FloatArray = 1000 / 2 ** np.arange(21.0)
+RATIOS: FloatArray = 1024 / 2 ** np.arange(21.0)
 """Damping ratios from one that stands for all large ones down to a thousandth: the last without a limit is bisected."""
 
 KNOWN_TO = Fraction(1, 2**60)
@@ -35,7 +34,7 @@ def critical_damping_limit(method: Method) -> float | None:
 
     Zero where not even small steps are stable; dimensionless, good to rounding.
     """
-    limit = _limit_at(method, ONE)
+    limit = limit_at(method, ONE)
     return None if limit is None else float(limit)
 
 
@@ -46,7 +45,7 @@ def exact_critical_damping_limit(method: Method) -> Fraction | None:
     A root z = 1 or z = -1 is at a rational mu wherever pi(z, mu) has a linear factor: of multistep methods always. Of
     second-order schemes it is not looked for.
     """
-    limit = _limit_at(method, ONE)
+    limit = limit_at(method, ONE)
     if not limit:
         return limit
     rational_mu = [mu for z in (1, -1) for mu in rational_feedback_roots(without_shared_factor(method), z)]
@@ -60,13 +59,11 @@ def unconditional_damping_ratio(method: Method) -> float | None:
 
     Zero where all of alpha_hat, beta_hat > 0 is stable; dimensionless, to rounding.
     """
-    if _limit_at(method, Fraction(RATIOS[0])) is not None or _limit_at(method, ONE) is not None:
+    if limit_at(method, Fraction(RATIOS[0])) is not None or limit_at(method, ONE) is not None:
         return None
-    if stable_for_all(method) == "proven":
-        return 0.0
 
     def is_limited(ratio: float) -> bool:
-        return _limit_at(method, Fraction(ratio)) is not None
+        return limit_at(method, Fraction(ratio)) is not None
 
     ends = first_where(np.vectorize(is_limited, otypes=[bool]), RATIOS)
     return ends[0] if ends else 0.0
@@ -79,12 +76,12 @@ def stable_up_to(method: Method, alpha: Fraction, beta: Fraction) -> float:
     """
     if not beta:
         return 0.0  # nothing takes an error back: z = 1 at every step
-    limit = _limit_at(method, alpha / abs(beta))
+    limit = limit_at(method, alpha / abs(beta))
     return math.inf if limit is None else float(limit / abs(beta))
 
 
 @cache
-def _limit_at(method: Method, damping_ratio: Fraction) -> Fraction | None:
+def limit_at(method: Method, damping_ratio: Fraction) -> Fraction | None:
     """Return the largest beta h up to which every smaller one is stable at one damping ratio; None without limit.
 
     A step at which the path meets an edge without crossing it is a limit too: there errors do not decay.

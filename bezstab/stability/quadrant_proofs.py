@@ -9,31 +9,22 @@ none of the three does, the whole quadrant is as stable as any point of it:
                | o             what is stable at one o is stable at the other
                +------- alpha_hat
 
-A sum over powers of alpha_hat has no zero there if its factors, polynomials in beta_hat, are nowhere negative by
-Sturm's theorem, and one has no negative coefficient.
+A sum over powers of alpha_hat has no zero there if its factors, polynomials in beta_hat, are nowhere negative, as their
+isolated roots tell, and one has no negative coefficient.
 """
 
 from fractions import Fraction
 from functools import cache
 from typing import Literal
 
-import sympy as sp
+from sympy.polys.rings import PolyElement
 
-from bezstab.methods import ALPHA_HAT, BETA_HAT, Method, closed_loop_polynomial, crossing_polynomials
-from bezstab.stability.closed_loop import verdict
+from bezstab.methods import Method, closed_loop_table, crossing_polynomials, plane_elements, real_roots
+from bezstab.stability.damping_limits import RATIOS, limit_at
 
 StableForAll = Literal["proven", "no unstable point found", "no"]
 
 MOST_ROOTS = 16  # of P, for which a determinant is computed: beyond, it takes minutes
-DAMPING_RATIOS = [
-    *(Fraction(1, part) for part in (1000, 100, 30, 10, 4, 2)),
-    *(Fraction(part, 20) for part in (15, 18, 20, 25, 40)),
-    *(Fraction(10**power) for power in (1, 2, 3)),
-]
-BETA_STEPS = [
-    Fraction(numerator, 12) * Fraction(10) ** power for power in range(-3, 7) for numerator in (12, 17, 25, 40, 60, 85)
-]
-"""beta h from 1e-3 to 7e6, six to the decade."""
 
 
 @cache
@@ -43,33 +34,25 @@ def stable_for_all(method: Method) -> StableForAll:
     "no": some point is proven not to converge (marginal counts, as there the error does not decay); "proven": for all
     of the quadrant, in exact arithmetic; "no unstable point found": neither.
     """
-    for damping_ratio in DAMPING_RATIOS:
-        for beta_step in reversed(BETA_STEPS):  # most methods fail at large steps
-            if verdict(method, 2 * damping_ratio * beta_step, beta_step**2) != "converges":
-                return "no"
-    polynomial = closed_loop_polynomial(method)
-    if polynomial.degree() <= MOST_ROOTS:
-        ascending = polynomial.rep.to_list()[::-1]
-        at_one, at_minus_one, _, of_pairs = crossing_polynomials(ascending)
-        edges = [polynomial.domain.to_sympy(edge) for edge in (at_one, at_minus_one, of_pairs)]
-        if all(_positive(edge) or _positive(-edge) for edge in edges):
+    if any(limit_at(method, Fraction(ratio)) is not None for ratio in RATIOS):
+        return "no"
+    coefficients = plane_elements(closed_loop_table(method))
+    if len(coefficients) - 1 <= MOST_ROOTS:
+        at_one, at_minus_one, _, of_pairs = crossing_polynomials(coefficients)
+        if all(_positive(edge) or _positive(-edge) for edge in (at_one, at_minus_one, of_pairs)):
             return "proven"
     return "no unstable point found"
 
 
-def _positive(expression: sp.Expr) -> bool:
-    """Return whether a polynomial is proven positive wherever alpha_hat, beta_hat > 0."""
-    factors = [sp.Poly(c, BETA_HAT, domain="QQ") for c in sp.Poly(expression, ALPHA_HAT).coeffs()]
+def _positive(polynomial: PolyElement) -> bool:
+    """Return whether a polynomial other than zero is proven positive wherever alpha_hat, beta_hat > 0."""
+    by_power_of_alpha = (polynomial.coeff_wrt(0, k).drop(0) for k in range(polynomial.degree() + 1))
+    factors = [factor for factor in by_power_of_alpha if factor]
     without_negative = any(all(c > 0 for c in factor.coeffs()) for factor in factors)
     return without_negative and all(map(_nowhere_negative, factors))
 
 
-def _nowhere_negative(polynomial: sp.Poly) -> bool:
+def _nowhere_negative(polynomial: PolyElement) -> bool:
     """Return whether a polynomial in one variable is >= 0 for all positive ones: no simple crossing of zero there."""
-    if polynomial.LC() < 0:
-        return False
-    for factor, multiplicity in polynomial.sqf_list()[1]:
-        at_zero = 1 if factor.eval(0) == 0 else 0
-        if multiplicity % 2 and factor.count_roots(0, None) > at_zero:
-            return False
-    return True
+    crossing = [factor for factor, multiplicity in polynomial.sqf_list()[1] if multiplicity % 2]
+    return polynomial.LC > 0 and not any(root > 0 for factor in crossing for root in real_roots(factor))
