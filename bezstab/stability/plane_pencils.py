@@ -55,8 +55,8 @@ class PlanePencil:
     def poles(self, alpha_hat: FloatArray, beta_hat: FloatArray) -> ComplexArray:
         """Return all poles at a row of points, in any order; shape (degree, points).
 
-        Errors are rounding times the condition of the root; a double pole of two keeps all its digits. NumericalError
-        if one leaves the range of float64.
+        Errors are rounding times the condition of the root; a double pole of two keeps all its digits. All infinite
+        where one is: an implicit step has no solution. NumericalError if a finite one leaves the range of float64.
         """
         with np.errstate(all="ignore"):
             if self.degree == 2:
@@ -64,8 +64,7 @@ class PlanePencil:
                 z = quadratic_roots(half, last, np.sqrt(discriminant.astype(complex)))
             else:
                 z = roots_of_rows(np.stack(self.coefficients_at(alpha_hat, beta_hat)))
-        self._check_finite(z, alpha_hat, beta_hat)
-        return z
+        return self._with_infinite(z, alpha_hat, beta_hat)
 
     def all_within(self, alpha_hat: FloatArray, beta_hat: FloatArray, level: FloatArray | float) -> BoolArray:
         """Return whether every pole has |z| < level at each point, by Schur's recursion; level: one, or one for each.
@@ -79,13 +78,8 @@ class PlanePencil:
 
         Infinite where an implicit step has no solution. NumericalError if a finite pole leaves the range of float64.
         """
-        z = self.followed_poles(alpha_hat, beta_hat)
-        lost = ~np.isfinite(z)
-        if lost.any():
-            leading = self.coefficients_at(alpha_hat[lost], beta_hat[lost])[-1]
-            self._check_finite(np.where(leading == 0, 0, z[lost])[np.newaxis], alpha_hat[lost], beta_hat[lost])
-            z[lost] = np.inf
-        return z
+        followed = self.followed_poles(alpha_hat, beta_hat)
+        return self._with_infinite(followed[np.newaxis], alpha_hat, beta_hat)[0]
 
     def followed_poles(self, alpha_hat: FloatArray, beta_hat: FloatArray) -> ComplexArray:
         """Return the same without a check; not finite where a pole is infinite, or leaves the range of float64."""
@@ -134,13 +128,20 @@ class PlanePencil:
             discriminant[close] = np.where(np.isfinite(better), better, discriminant[close])
         return half, last, discriminant
 
-    def _check_finite(self, z: ComplexArray, alpha_hat: FloatArray, beta_hat: FloatArray) -> None:
-        """Raise NumericalError where a pole is not finite: it is beyond float64, or the step has no solution."""
-        finite = np.isfinite(z).all(axis=0)
-        if not finite.all():
-            worst = int(np.argmin(finite))
-            place = f"alpha_hat = {alpha_hat[worst]:.6g}, beta_hat = {beta_hat[worst]:.6g}"
+    def _with_infinite(self, z: ComplexArray, alpha_hat: FloatArray, beta_hat: FloatArray) -> ComplexArray:
+        """Return poles in columns, changed in place: all infinite where P's leading coefficient is zero.
+
+        NumericalError where another one is not finite: it is beyond float64.
+        """
+        lost = ~np.isfinite(z).all(axis=0)
+        z[:, lost] = np.inf
+        alpha_hat, beta_hat = alpha_hat[lost], beta_hat[lost]
+        with np.errstate(all="ignore"):
+            beyond = self.coefficients_at(alpha_hat, beta_hat)[-1] != 0
+        if beyond.any():
+            place = f"alpha_hat = {alpha_hat[beyond][0]:.6g}, beta_hat = {beta_hat[beyond][0]:.6g}"
             raise NumericalError(f"{self.method.name}: at {place} a pole leaves the range of float64")
+        return z
 
 
 def out_of_range(method: Method) -> NumericalError:

@@ -137,8 +137,8 @@ def test_where_a_step_has_no_solution_a_pole_is_infinite(method: Method, alpha_h
     assert closed_loop_at(method, *point)[-1] == 0
     assert verdict(method, *point) == "diverges"
     assert spectral_radius(method, *map(float, point)) > 1e14  # infinite, or as rounding of its coefficients has it
-    for ask, said in ((poles, "no solution|leaves the range"), (dominant_pole, "no solution")):
-        with pytest.raises(NumericalError, match=said):
+    for ask in (poles, dominant_pole):
+        with pytest.raises(NumericalError, match="no solution"):
             ask(method, *map(float, point))
 
 
