@@ -24,7 +24,6 @@ from bezstab.stability.far_limits import FarLimit
 from bezstab.stability.least_modulus import least_on
 from bezstab.stability.pencils import Pencil, pencil_of
 from bezstab.stability.regions import Region, chart_of, region
-from bezstab.stability.searches import checked
 
 
 @dataclass(frozen=True, repr=False)
@@ -97,13 +96,13 @@ def _best_or_limit(method: Method) -> BestPoint | FarLimit | None:
             return None
         limit = pencil.far_limit()
         far = limit if limit.z_abs == 0 else None
-        found = found or far or checked(partial(_from_grid, pencil, stable, limit))
+        found = found or far or _from_grid(pencil, stable, limit)
     return _beside_a_fixed_pole(method, stuck[0], found) if stuck else found
 
 
-def _from_grid(pencil: Pencil, stable: Region, limit: FarLimit, finer: int) -> BestPoint | FarLimit:
-    """Return the best point, or what |z_p| falls towards, from one search; NumericalError if it fails its check."""
-    chart = chart_of(pencil, stable, finer)
+def _from_grid(pencil: Pencil, stable: Region, limit: FarLimit) -> BestPoint | FarLimit:
+    """Return the best point, or what |z_p| falls towards; NumericalError if its search fails a check."""
+    chart = chart_of(pencil, stable)
     sampled, alike = least_on(chart)
     if limit.z_abs < min([sampled, *(each.z_abs for each in alike)]) * (1 - DOUBLE):
         return limit

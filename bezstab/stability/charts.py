@@ -49,15 +49,12 @@ class Chart:
     real: bool
 
 
-def mu_chart(pencil: MuPencil, view: Extent, curves: Sequence[FloatArray], finer: int) -> Chart:
-    """Return the chart of a method with a mu, from what there is to see of its region, whose curves close if given.
-
-    finer: so many times the points of its grid.
-    """
+def mu_chart(pencil: MuPencil, view: Extent, curves: Sequence[FloatArray]) -> Chart:
+    """Return the chart of a method with a mu, from what there is to see of its region, whose curves close if given."""
     seen = np.concatenate(curves) if curves else np.array(list(product(*view)))
     corners = np.abs(seen * [pencil.multiple, pencil.multiple**2])
     reach = float(np.max(corners[:, 0] + np.sqrt(corners[:, 1])))  # of both roots of the feedback
-    axis = np.linspace(0, reach, finer * SPACINGS + 1)
+    axis = np.linspace(0, reach, SPACINGS + 1)
 
     def mu_of(points: Points) -> ComplexArray:
         return np.asarray(-points[..., 0] + 1j * points[..., 1])
@@ -80,26 +77,25 @@ def mu_chart(pencil: MuPencil, view: Extent, curves: Sequence[FloatArray], finer
     )
 
 
-def plane_chart(pencil: PlanePencil, view: Extent, curves: Sequence[FloatArray], finer: int) -> Chart:
+def plane_chart(pencil: PlanePencil, view: Extent, curves: Sequence[FloatArray]) -> Chart:
     """Return the chart of any other method, in the same way."""
     high = np.array([max(view[0][1], 0.0), np.sqrt(max(view[1][1], 0.0))])
     if not curves:
         high = np.maximum(high, FAR)
-    points = finer * SPACINGS + 1
     return Chart(
         coefficients=lambda points: np.asarray(
             polyval2d(points[..., 0], points[..., 1], np.moveaxis(pencil.table, 0, -1))
         ),
         modulus=lambda points: np.abs(pencil.largest_poles(points[..., 0], points[..., 1])),
         user_point=lambda place: place,
-        axes=(_axis(high[0], NEAR[0], points), _axis(high[1], NEAR[1] ** 0.5, points) ** 2),
+        axes=(_axis(high[0], NEAR[0]), _axis(high[1], NEAR[1] ** 0.5) ** 2),
         real=True,
     )
 
 
-def _axis(end: float, near: float, count: int) -> FloatArray:
+def _axis(end: float, near: float) -> FloatArray:
     """Return a grid's points on one axis: evenly up to where least values lie, and in even ratios from there."""
     if end <= near:
-        return np.linspace(0, end, count)
-    beyond = count // 3
-    return np.concatenate([np.linspace(0, near, count - beyond), np.geomspace(near, end, beyond + 1)[1:]])
+        return np.linspace(0, end, SPACINGS + 1)
+    beyond = SPACINGS // 3
+    return np.concatenate([np.linspace(0, near, SPACINGS + 1 - beyond), np.geomspace(near, end, beyond + 1)[1:]])

@@ -6,8 +6,8 @@ on a grid, and whether all are below a level. Of the plane they know
 
     deadbeat_points()           the points known from R(mu) at which every pole is zero
     far_limit()                 the least value that |z_p| tends to as parameters grow
-    chart(view, curves, finer)  where least values are looked for: of the region what is seen, and its curves if it is
-                                bounded; by how much the grid is finer
+    chart(view, curves)         where least values are looked for: of the region what is seen, and its curves if it is
+                                bounded
     shape(level)                the region below a level, None if empty
 """
 

@@ -70,9 +70,8 @@ def region(method: Method, level: float = 1.0) -> Region:
     Where it grows without limit as the level goes to one, next to one they are good to about 1e-15 / (1 - level).
     Dimensionless; from the boundary locus of paper Eq. 17, or from the exact strips of the plane of a method that has
     no mu, held against the poles beside its edges and along lines (region_checks). InputError as `check_level`;
-    NumericalError if they disagree, or its edges leave a gap, on a finer sampling of the locus as well: not found is an
-    edge on which several roots have |z| = level, or one so short, where the level is hardly above the least |z_p|, that
-    it lies between two samples.
+    NumericalError if they disagree, or its edges leave a gap: not found is an edge on which several roots have
+    |z| = level, or one so short, where the level is hardly above the least |z_p|, that it lies between two samples.
     """
     check_level(level)
     stuck = fixed_poles(method)
@@ -93,10 +92,10 @@ def check_level(level: float) -> None:
         )
 
 
-def chart_of(pencil: Pencil, stable: Region, finer: int = 1) -> Chart:
-    """Return a pencil's chart over what there is to see of a region that is not empty, with a grid so much finer."""
+def chart_of(pencil: Pencil, stable: Region) -> Chart:
+    """Return a pencil's chart over what there is to see of a region that is not empty."""
     assert stable.view
-    return pencil.chart(stable.view, stable.boundary if stable.bounded else (), finer)
+    return pencil.chart(stable.view, stable.boundary if stable.bounded else ())
 
 
 def pole_place(z: complex) -> str:
