@@ -79,7 +79,7 @@ class PlanePencil:
         Infinite where an implicit step has no solution. NumericalError if a finite pole leaves the range of float64.
         """
         followed = self.followed_poles(alpha_hat, beta_hat)
-        return self._with_infinite(followed[np.newaxis], alpha_hat, beta_hat)[0]
+        return np.asarray(self._with_infinite(followed[np.newaxis], alpha_hat, beta_hat)[0])
 
     def followed_poles(self, alpha_hat: FloatArray, beta_hat: FloatArray) -> ComplexArray:
         """Return the same without a check; not finite where a pole is infinite, or leaves the range of float64."""
