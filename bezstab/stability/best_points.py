@@ -104,9 +104,10 @@ def _from_grid(pencil: Pencil, stable: Region, limit: FarLimit) -> BestPoint | F
     """Return the best point, or what |z_p| falls towards; NumericalError if its search fails a check."""
     chart = chart_of(pencil, stable)
     sampled, alike = least_on(chart)
-    if limit.z_abs < min([sampled, *(each.z_abs for each in alike)]) * (1 - DOUBLE):
+    solved = min((each.z_abs for each in alike), default=math.inf)
+    if limit.z_abs <= sampled * (1 + SAME) and limit.z_abs < solved * (1 - DOUBLE):
         return limit
-    if not alike or alike[0].z_abs > sampled * (1 + SAME) + EPS**0.5 * (sampled < EPS**0.25):
+    if solved > sampled * (1 + SAME) + EPS**0.5 * (sampled < EPS**0.25):
         name = pencil.method.name
         raise NumericalError(f"{name}: |z_p| = {sampled:.6g} was sampled, but no kink as low could be solved for")
     least, modulus = alike[0], partial(largest_modulus, pencil)

@@ -12,7 +12,6 @@ degree, loses digits: mu has neither. Any other method has alpha_hat and beta_ha
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from itertools import product
 
 import numpy as np
 from numpy.polynomial.polynomial import polyval, polyval2d
@@ -51,10 +50,13 @@ class Chart:
 
 def mu_chart(pencil: MuPencil, view: Extent, curves: Sequence[FloatArray]) -> Chart:
     """Return the chart of a method with a mu, from what there is to see of its region, whose curves close if given."""
-    seen = np.concatenate(curves) if curves else np.array(list(product(*view)))
-    corners = np.abs(seen * [pencil.multiple, pencil.multiple**2])
-    reach = float(np.max(corners[:, 0] + np.sqrt(corners[:, 1])))  # of both roots of the feedback
-    axis = np.linspace(0, reach, SPACINGS + 1)
+    if curves:
+        corners = np.abs(np.concatenate(curves) * [pencil.multiple, pencil.multiple**2])
+        reach = float(np.max(corners[:, 0] + np.sqrt(corners[:, 1])))  # of both roots of the feedback
+        axis = np.linspace(0, reach, SPACINGS + 1)
+    else:
+        furthest = view[0][1] + float(np.sqrt(view[1][1]))
+        axis = pencil.multiple * _axis(max(furthest, FAR[0]), NEAR[0])
 
     def mu_of(points: Points) -> ComplexArray:
         return np.asarray(-points[..., 0] + 1j * points[..., 1])

@@ -257,3 +257,25 @@ def test_the_least_value_of_random_methods(draw: Callable[[int], Method], number
         assert abs(on_the_way[1] - limit.z_abs) < abs(on_the_way[0] - limit.z_abs)
     else:
         assert min(near, far) > 1 - 1e-6
+
+
+@pytest.mark.parametrize(
+    ("rho", "sigma"), [("1 -371/200 171/200", "2/11 -81/2200 0"), ("1 -527/280 247/280", "15/56 -3/20 0")]
+)
+def test_the_best_point_of_a_region_without_end_may_lie_far_beyond_what_is_seen_of_it(rho: str, sigma: str) -> None:
+    """At mu = -x the two z have z_1 z_2 = r_0 / (1 + s_2 x), which falls until they meet; then one grows."""
+    method = multistep("far", rho, sigma)
+    (_, r_1, r_0), (s_2, s_1, _) = ([float(F(c)) for c in text.split()] for text in (rho, sigma))
+    x = np.roots([s_1**2, 2 * r_1 * s_1 - 4 * r_0 * s_2, r_1**2 - 4 * r_0]).max()
+    found = best(method)
+    assert found.z_abs == pytest.approx(np.sqrt(r_0 / (1 + s_2 * x)), rel=1e-12)
+    assert (found.alpha_hat, found.beta_hat) == pytest.approx((2 * x, x**2), rel=1e-10)
+
+
+def test_what_is_almost_reached_far_out_is_no_best_point() -> None:
+    """z = (1 + 9/11 x) / (1 + 20/11 x) at mu = -x falls towards 9/20."""
+    method = multistep("theta", "1 -1", "20/11 -9/11")
+    assert best_point(method) is None
+    limit = falls_towards(method)
+    assert limit
+    assert limit.z_abs == pytest.approx(0.45, rel=1e-12)
