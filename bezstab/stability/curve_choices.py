@@ -74,7 +74,7 @@ def mildest_along(curve: Curve, modulus: Modulus, rate: float, name: str) -> tup
     share = found[1]
     looked_at = np.concatenate([share * NEARER, CHECKED])
     milder = looked_at[(looked_at < share) & (looked_at >= SAMPLES[0])]
-    if values(milder).min(initial=1) < rate - EPS**0.5:
+    if values(np.array([share]))[0] > rate + EPS**0.5 or values(milder).min(initial=1) < rate - EPS**0.5:
         raise NumericalError(f"{name}: a milder point than the gentle one has |z_p| <= {rate:.9g}")
     return _point(curve, share)
 
