@@ -194,14 +194,13 @@ def roots_in_mu(pencil: MuPencil, z: ComplexArray) -> ComplexArray:
 def deadbeat_points(pencil: MuPencil) -> list[tuple[float, float]]:
     """Return alpha_hat and beta_hat where every pole of a one-step method is zero, z = R(mu), the most damped first.
 
-    Of an implicit method those where Re mu <= 0; none of several steps. NumericalError where at the first a pole is
-    not zero, to rounding.
+    Those where Re mu <= 0, as nobody damps negatively; none of several steps. NumericalError where at the first a pole
+    is not zero, to rounding.
     """
     zeros = np.sort_complex(deadbeat_mu(pencil))
     height = np.abs(zeros.imag)
     zeros = zeros.real + 1j * np.where(height > SAME * np.abs(zeros), height, 0)
-    if pencil.implicit:
-        zeros = zeros[zeros.real <= SAME * np.abs(zeros)]
+    zeros = zeros[zeros.real <= SAME * np.abs(zeros)]
     apart = np.abs(zeros[:, np.newaxis] - zeros) > DOUBLE * np.abs(zeros)
     zeros = zeros[[apart[k, :k].all() for k in range(zeros.size)]]  # each multiple, or conjugate, zero once
     points = pencil.user_points(zeros, zeros.conj())

@@ -152,6 +152,14 @@ def test_where_poles_meet_in_other_ways_nothing_nearby_is_lower(method: Method, 
     assert len(found.meeting) == meeting
 
 
+@pytest.mark.parametrize("name", ["dopri5", "tsit5", "cash-karp"])
+def test_where_all_poles_are_zero_with_negative_damping_nobody_is_sent(name: str) -> None:
+    """Of degree five or six, R has zeros on either side of the imaginary axis."""
+    found = best(lookup(name))
+    assert found.z_abs == 0
+    assert all(alpha_hat > 0 for alpha_hat, _ in places(found))
+
+
 def test_zeros_of_r_a_third_of_a_percent_apart_are_two_deadbeat_points() -> None:
     first, second = F(3), F("3.01")
     zeros = [first, second, 1 / (1 - 1 / first - 1 / second)]  # so that R'(0) = 1
