@@ -56,7 +56,7 @@ quick: .venv/tested
 	$(BIN)/python -m pytest -m "not slow" -n 2 --dist loadfile
 
 test-slow: .venv/tested  ## the checks that take minutes
-	$(BIN)/python -m pytest -m slow -n 2
+	$(BIN)/python -m pytest -m slow -n 2 --dist worksteal
 
 test-oldest:  ## the same tests with the oldest versions that pyproject.toml allows
 	$(PYTHON) -m venv .venv-oldest
