@@ -294,7 +294,10 @@ def _follows(fit: Fit, samples: FloatArray) -> bool:
     around = np.pad(np.abs(window).max(axis=1), ORDER)
     near = sliding_window_view(around, 2 * ORDER + 1).max(axis=1)[:, np.newaxis]
     z = np.array([*fit.poles, *np.conjugate(fit.poles)])
-    powers, scaled = z ** np.arange(fit.samples)[:, np.newaxis] / near, window / near
+    with np.errstate(all="ignore"):
+        powers, scaled = z ** np.arange(fit.samples)[:, np.newaxis] / near, window / near
+    if not np.isfinite(powers).all():
+        return False  # they leave float64, which the samples do not, or the samples are zero for a while
     amplitudes = np.linalg.lstsq(powers, scaled, rcond=None)[0]
     return bool(np.linalg.norm(powers @ amplitudes - scaled) < LEFT_OVER * np.linalg.norm(scaled))
 
