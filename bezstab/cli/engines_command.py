@@ -4,7 +4,7 @@ from fractions import Fraction
 
 from bezstab.cli.options import TypedPoint, changed, command
 from bezstab.cli.output import show_rows, show_text
-from bezstab.engines import ENGINES, RUN_UNDERNEATH
+from bezstab.engines import ENGINE_ALIASES, ENGINES, RUN_UNDERNEATH
 from bezstab.show import ENGINES_LISTED, engine_row
 
 
@@ -26,5 +26,7 @@ def engines(h: Fraction, point: TypedPoint) -> None:
     """
     show_rows(ENGINES_LISTED, (engine_row(engine, point.numbers, h) for engine in ENGINES.values()))
     show_text("\nAnd others, by what they run underneath:\n")
+    for name, engine in ENGINE_ALIASES.items():
+        show_text(f"{name}: another name of {engine}")
     for name, underneath in RUN_UNDERNEATH.items():
         show_text(f"{name}: {underneath}")

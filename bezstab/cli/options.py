@@ -12,7 +12,7 @@ from typing import Any, get_args
 import click
 from click.shell_completion import CompletionItem
 
-from bezstab.cli.output import Files, Work
+from bezstab.cli.output import Files, Work, say
 from bezstab.compiling import COMPILED_CHOICE, compiler
 from bezstab.engines import ENGINES, Drive, Engine, Point, engine_and_values, engine_named
 from bezstab.errors import InputError
@@ -100,6 +100,15 @@ def _sequence(text: str) -> list[Fraction]:
     return sequence
 
 
+def _engine_values(text: str) -> EngineValues:
+    """Return an engine and its values; say on standard error which they are if its defaults are taken."""
+    engine, values = engine_and_values(text)
+    if engine.defaults and not text.partition("=")[2]:
+        listed = ", ".join(f"{name} = {float(value):g}" for name, value in zip(engine.units, values, strict=False))
+        say(f"{engine.name}: without values, its defaults are taken: {listed}")
+    return engine, values
+
+
 def _drive(text: str) -> Drive:
     """Return the drive of a text such as 100,2,0.01."""
     try:
@@ -124,7 +133,7 @@ SEQUENCE = ParsedType("steps", _sequence)
 METHOD = ParsedType("method", lookup, lambda: REGISTRY)
 SHARE = ParsedType("number", lambda text: float(rational(text)))
 ENGINE = ParsedType("name", engine_named, lambda: ENGINES)
-ENGINE_VALUES = ParsedType("name=values", engine_and_values, lambda: [f"{name}=" for name in ENGINES])
+ENGINE_VALUES = ParsedType("name[=values]", _engine_values, lambda: [f"{name}=" for name in ENGINES])
 SCENE = ParsedType("scene", str, _scenes)
 DRIVE = ParsedType(",".join(GAINS), _drive)
 INERTIA = ParsedType("inertia", _inertia)
@@ -171,7 +180,7 @@ OPTIONS = {
     "engine_values": option(
         "--engine",
         ENGINE_VALUES,
-        "An engine's own values, such as mujoco=0.02,1, in place of --alpha and --beta; needs --h.",
+        "An engine's own values, such as mujoco=0.02,1 [its defaults], in place of --alpha and --beta; needs --h.",
     ),
     "drive": option(
         "--pd drive",

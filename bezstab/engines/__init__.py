@@ -9,7 +9,14 @@ What an engine has no words for is refused, not guessed.
 from bezstab.engines.acceleration_engines import LEAST_IMPEDANCE, MOST_IMPEDANCE
 from bezstab.engines.conversions import Applied, Curve, Engine, Level, Point
 from bezstab.engines.drives import DRIVE_METHODS, Drive
-from bezstab.engines.engine_list import ENGINES, RUN_UNDERNEATH, WITNESSES, engine_and_values, engine_named
+from bezstab.engines.engine_list import (
+    ENGINE_ALIASES,
+    ENGINES,
+    RUN_UNDERNEATH,
+    WITNESSES,
+    engine_and_values,
+    engine_named,
+)
 from bezstab.engines.sweeping import (
     MOST_SWEEPS,
     Move,

@@ -56,7 +56,8 @@ class Engine:
     `parameters` are the values needed, `optional` those that may follow, each with its unit; those in `above_zero` and
     `from_zero` mean nothing below. `read(h, *values)` is the point of such values. `write(alpha_hat, beta_hat, h)` are
     the values of a point, in float64. As many `digits` of each are pasted: all, 17, where a value may be next to
-    another. Points without values are found by reading them back: `reaches` says which have some. `paste` is the line
+    another. `defaults` are the values, as they are typed, that it has unless somebody sets them, empty where it has
+    none. Points without values are found by reading them back: `reaches` says which have some. `paste` is the line
     to paste where it is not name = value, for as many values as it has {}. `apply(h, *values)` is what the engine does
     to values before it uses them (clamps, scaling), None if nothing. `marks` are the settings everybody meets: by
     label, the values as they are typed, or 2h for two steps. `excludes` is what the conversion leaves out. `curve` are
@@ -74,6 +75,7 @@ class Engine:
     excludes: str
     method: str | None = "SYM"
     optional: Mapping[str, str] = field(default_factory=dict)
+    defaults: str = ""
     above_zero: tuple[str, ...] = ()
     from_zero: tuple[str, ...] = ()
     reaches: str = "α̂ >= 0 and β̂ >= 0 within the range of float64"

@@ -18,11 +18,12 @@ ENGINES = {
 }
 """Every engine by name, in the order of the files that they stand in."""
 
+ENGINE_ALIASES = {"pybullet": "bullet", "pymunk": "chipmunk"}
+"""Engines that are one of the list under another name."""
+
 RUN_UNDERNEATH = {
     "avian": "its joints are XPBD: ask about xpbd, or about pbd=1 where the compliance is 0; h is the substep's",
     "newton": "it has several solvers: ask about kamino, mujoco (MuJoCo Warp) or xpbd",
-    "pybullet": "it is Bullet: ask about bullet",
-    "pymunk": "it is Chipmunk: ask about chipmunk",
     "unity": "it runs PhysX in 3D and Box2D in 2D: ask about physx or physx-tgs (joints), about "
     "physx-drive (a drive of its joints and articulations), about box2d-v2, or about box2d (that of version 3)",
 }
@@ -42,6 +43,7 @@ The rows of others rest on their sources alone.
 
 def engine_named(name: str) -> Engine:
     """Return the engine of that name; InputError for another, with what it runs underneath or the nearest name."""
+    name = ENGINE_ALIASES.get(name.lower(), name)
     if name in ENGINES:
         return ENGINES[name]
     if name.lower() in RUN_UNDERNEATH:
@@ -50,13 +52,17 @@ def engine_named(name: str) -> Engine:
 
 
 def engine_and_values(text: str) -> tuple[Engine, tuple[Fraction, ...]]:
-    """Return an engine and values of its parameters, from text such as mujoco=0.02,1; InputError as `engine_named`."""
+    """Return an engine and values of its parameters, from text such as mujoco=0.02,1, without values its defaults.
+
+    InputError as `engine_named`, and for values that are missing where the engine has no defaults.
+    """
     name, _, numbers = text.partition("=")
     engine = engine_named(name)
+    numbers = numbers or engine.defaults
     if not numbers and not engine.parameters:  # it has none, or none that it needs
         return engine, ()
     if not numbers:
-        raise InputError(f"{name!r} comes without values: expected {name}={engine.words()}")
+        raise InputError(f"{name!r} comes without values and has no defaults: expected {name}={engine.words()}")
     try:
         return engine, tuple(rational(number) for number in numbers.split(","))
     except InputError as error:

@@ -68,6 +68,7 @@ JOLT = Engine(
     level="position",
     parameters={"mBaumgarte": "-"},
     optional={"mNumPositionSteps": "-"},
+    defaults="0.2,2",
     read=_read_jolt,
     write=_write_jolt,
     digits=17,  # it may be small
@@ -149,6 +150,7 @@ BRAX_POSITIONAL = Engine(
     name="brax-positional",
     level="position",
     parameters={"joint_scale_pos": "-"},
+    defaults="0.5",
     read=lambda h, share: (share, share),
     write=_write_share,
     reaches="α̂ = β̂",

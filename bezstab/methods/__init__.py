@@ -6,6 +6,7 @@ What needs sympy is loaded when first used: naming a multistep or Runge-Kutta me
 from typing import TYPE_CHECKING
 
 from bezstab.lazy import lazy_names
+from bezstab.methods.aliases import OTHER_NAMES
 from bezstab.methods.method_files import read_method
 from bezstab.methods.multistep_methods import STEP_FAMILIES, adams_bashforth, bezier, is_bezier
 from bezstab.methods.polynomials import Polynomial

@@ -1,5 +1,6 @@
 """Methods in TOML files; configs/methods/README.md documents the format."""
 
+from fractions import Fraction
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -12,7 +13,7 @@ from bezstab.toml_tables import TomlTable, list_of, of_type
 
 EXAMPLE = "x0 + v0 + 1/2 a0"
 EQUATIONS = f"a table of equations like x1 = {EXAMPLE!r}"
-RATIONAL_STRINGS = 'a list of rational strings like "175/108"'
+RATIONAL_STRINGS = 'a list of whole numbers and rational strings like "175/108"'
 
 MOST_STAGES = 40  # of a tableau: its exact P takes 3 s
 MOST_STEPS = 100  # of a multistep method: its region takes 20 s
@@ -40,7 +41,10 @@ def _parse_scheme(table: TomlTable, keys: list[str]) -> Scheme:
     """Return the scheme by the table or the pair of keys that the file has; InputError for other keys."""
     from bezstab.methods.recipes import exact_number, recipe  # loads sympy
 
-    row = list_of(lambda text: exact_number(of_type(str, text)))
+    def coefficient(value: object) -> Fraction:
+        return exact_number(str(value) if type(value) is int else of_type(str, value))  # not bool, which is an int, too
+
+    row = list_of(coefficient)
     match keys:
         case ["update"]:
             equations = table.entry("update", partial(of_type, dict), EQUATIONS)

@@ -652,6 +652,7 @@ LISTED_METHODS = RowKind(
             text=lambda row: "yes" if row["implicit"] else "",
         ),
         integer("digits", "Digits to which rationals stand for irrational coefficients", null="where none do"),
+        text("other_names", "What else it is called", "also called", null="where nothing else is known"),
         GROUP.hidden,
     ),
     sentence=method_sentence,

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from bezstab.engines import WITNESSES
 from bezstab.errors import InputError
-from bezstab.methods import Method, evaluations, implicit, steps
+from bezstab.methods import OTHER_NAMES, Method, evaluations, implicit, steps
 from bezstab.show.cells import LIMITS
 from bezstab.show.fields import Field, Row, Value, cells
 from bezstab.show.result_sentences import best_point_words, falling_words
@@ -86,6 +86,7 @@ def method_row(method: Method) -> Row:
         "implicit": implicit(method),
         "order_position_forces": by_force.position[0],
         "order_velocity_forces": by_force.velocity[0],
+        "other_names": OTHER_NAMES.get(method.name),
     }
     return cells(LISTED_METHODS.fields[:-1], method, found)  # those of a group are beside it in the list
 

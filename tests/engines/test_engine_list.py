@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from bezstab.engines import ENGINES, WITNESSES, Engine
+from bezstab.engines import ENGINES, RUN_UNDERNEATH, WITNESSES, Engine, engine_and_values, engine_named
 from bezstab.errors import InputError
 from bezstab.methods import lookup
 from bezstab.stability import poles, spectral_radius
@@ -116,6 +116,40 @@ def test_the_pole_of_an_engines_defaults_is_the_known_one(name: str) -> None:
     assert engine.method
     found = spectral_radius(lookup(engine.method), *map(float, engine.marked(h)[label]))
     assert found == pytest.approx(z_abs, abs=5e-6)
+
+
+OWN_POLES = [name for name, (label, _, _) in DEFAULTS.items() if ENGINES[name].parameters and "2h" not in label]
+
+
+@pytest.mark.parametrize("name", sorted({*OWN_POLES, "pymunk", "PyBullet"} - {"pbd"}))
+def test_an_engine_without_values_has_its_defaults_whatever_it_is_called(name: str) -> None:
+    engine, values = engine_and_values(name)
+    _, h, z_abs = DEFAULTS[engine.name]
+    assert engine.method
+    point = engine.applied(values, h).point
+    assert spectral_radius(lookup(engine.method), *map(float, point)) == pytest.approx(z_abs, abs=5e-6)
+
+
+def test_mujocos_defaults_are_its_solref_and_solimp() -> None:
+    engine, values = engine_and_values("mujoco")
+    typed = engine_and_values("mujoco=0.02,1")
+    assert typed[0] == engine
+    assert engine.applied(values, Fraction(1, 500)) == engine.applied(typed[1], Fraction(1, 500))
+
+
+@pytest.mark.parametrize("name", [name for name, each in ENGINES.items() if each.parameters and not each.defaults])
+def test_an_engine_without_defaults_asks_for_its_values_in_one_line(name: str) -> None:
+    expected = f"{name!r} comes without values and has no defaults: expected {name}={ENGINES[name].words()}"
+    with pytest.raises(InputError, match=f"^{re.escape(expected)}$"):
+        engine_and_values(name)
+
+
+def test_a_name_is_that_of_one_engine_or_answered_with_several() -> None:
+    assert engine_named("pymunk") is ENGINES["chipmunk"]
+    assert engine_named("pybullet") is ENGINES["bullet"]
+    for name in RUN_UNDERNEATH:
+        with pytest.raises(InputError, match="ask about"):
+            engine_named(name)
 
 
 @settings(max_examples=20, deadline=None)

@@ -72,6 +72,15 @@ def test_a_file_has_the_scheme_of_its_coefficients_whatever_it_is_called(name: s
     assert read_method(path) == Method("AB4", scheme, "me")
 
 
+def test_bare_whole_numbers_are_coefficients(tmp_path: Path) -> None:
+    for content in (HEUN, EBDF2):
+        bare = content
+        for number in ("0", "1"):
+            bare = bare.replace(f'"{number}"', number)
+        assert bare != content
+        assert read_method(written(tmp_path, bare)) == read_method(written(tmp_path, content))
+
+
 def test_a_file_of_many_steps_is_read_at_once(tmp_path: Path) -> None:
     """Explicit Euler, its weight followed by 99 zeros."""
     zeros = [Fraction(0)] * 99
@@ -84,6 +93,8 @@ REFUSED: dict[str, tuple[str | bytes, str]] = {
     "inconsistent": ('rho = ["1", "-1/2"]\nsigma = ["0", "1/2"]', "rho(1) = 1/2"),
     "empty A": ("A = []\nb = []", ""),
     "floats": ("rho = [1.0, -1.0]\nsigma = [0.0, 1.0]", "rational strings"),
+    "a float in a tableau": ('A = [[0, 0], [1.0, 0]]\nb = ["1/2", "1/2"]', "whole numbers and rational strings"),
+    "truth": ("rho = [true, -1]\nsigma = [0, 1]", "whole numbers and rational strings"),
     "code": ('rho = ["__import__(\'os\')", "-1"]\nsigma = ["0", "1"]', "rho"),
     "huge digits": (f'rho = ["{DIGITS}", "-{DIGITS}"]\nsigma = ["0", "{DIGITS}"]', "rho"),
     "squares beyond float64": ('A = [["0", "0"], ["1e200", "0"]]\nb = ["1/2", "1/2"]', "numbers up to 1e100 in size"),
