@@ -266,6 +266,7 @@ def choose(
     chain, mass_ratio, iterations: with an engine that solves its constraints one after another, in
         sweeps: a straight chain of so many bodies, the last so many times as heavy, solved in so many
         sweeps. The answer is at most what such a chain, or the scene, allows with the spread to spare.
+        Without both it is for a chain of 10 equal bodies.
 
     Returns an Answer, dimensionless: `alpha_hat`, `beta_hat`, `pole`, `margins`, `safe` and all else
     that `check` says. `from_dimensionless` turns it into alpha and beta in 1/s.

@@ -10,7 +10,7 @@ from bezstab.cli.options import TypedPoint, changed, command, typed_options
 from bezstab.cli.output import for_reading, say, show_rows, show_text
 from bezstab.errors import InputError, NumericalError
 from bezstab.methods import Method
-from bezstab.show import CHECKED, LARGEST_STEPS, answer_row, costs_words, largest_step_row, left_out
+from bezstab.show import CHECKED, LARGEST_STEPS, answer_row, costs_words, largest_step_row, left_out, spare_words
 
 OF_EVERY_STEP = {"--alpha", "--beta", "--physical", "--method", "--format", "--speed"}
 """With no other option, a question about α and β in 1/s is about every step."""
@@ -73,7 +73,8 @@ def check(**typed: Any) -> bool:
         show_sentences(map(costs_words, given if not question.drive else ()))
         if instead := [answer for answer in found if answer.role == "instead"]:
             show_text("\nWhat `choose` gives instead:\n")
-            show_rows(CHECKED, map(answer_row, instead), without)
+            show_rows(CHECKED, map(answer_row, instead), left_out(instead[0].question))
+            show_sentences(map(spare_words, instead))
     else:
         show_rows(CHECKED, map(answer_row, found))
     show_below(question, found)

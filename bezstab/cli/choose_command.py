@@ -14,7 +14,7 @@ from bezstab.cli.output import for_reading, progress, show_rows, show_text
 from bezstab.goals import GOALS, Goal
 from bezstab.methods import lookup
 from bezstab.rationals import typed_number
-from bezstab.show import CHOICES, alone_words, answer_row, left_out, trade_words
+from bezstab.show import CHOICES, answer_row, left_out, spare_words, trade_words
 
 
 @command(
@@ -73,9 +73,9 @@ def choose(goal: Goal | None, equal: str | None, bandwidth: Fraction | None, **t
     They also allow for a controller that is slower than the physics (--every, --late, --filter).
 
     With --h-min, "varying steps" says whether errors decay for every sequence of steps up to --h-max. Many engines
-    solve their constraints one after another, in sweeps. With --chain or --scene their answer is at most the strongest
-    feedback that these constraints allow with --spread to spare, at --iterations sweeps. Below it is what one
-    constraint alone would get, and how many sweeps that takes.
+    solve their constraints one after another, in sweeps. Their answer is at most the strongest feedback that the
+    constraints of --chain or --scene, by default a chain of 10 equal bodies, allow with --spread to spare, at
+    --iterations sweeps. Below it is what one constraint alone would get, and how many sweeps that takes.
 
     Example: bezstab choose --method B4 --h 0.001
     """
@@ -93,7 +93,7 @@ def choose(goal: Goal | None, equal: str | None, bandwidth: Fraction | None, **t
         if not (drive or question.swept):
             show_sentences(_trades(chosen))
     show_below(question, chosen)
-    show_sentences(map(alone_words, chosen))
+    show_sentences(map(spare_words, chosen))
     return all(answer.safe for answer in chosen)
 
 

@@ -10,13 +10,13 @@ for, and then kept:
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
 from typing import Literal, cast
 
 from bezstab import evidence
-from bezstab.engines import DRIVE_METHODS, Curve, Engine
+from bezstab.engines import DRIVE_METHODS, READ_BACK, Curve, Engine
 from bezstab.errors import InputError, NumericalError
 from bezstab.goals import UP_TO_LONGEST, Goal
 from bezstab.methods import Method
@@ -203,9 +203,14 @@ class Answer(Choice):
 
     @cached_property
     def sweeps_to_spare(self) -> int | None:
-        """The number of sweeps from which the choice is stable, even if it were stronger by the spread."""
+        """The number of sweeps from which the choice is stable, even if it were stronger by the spread.
+
+        None, too, where there is nothing to set, or the engine expresses all of the plane.
+        """
         swept = self.question.swept
-        return swept.sweeps_to_spare(self.point, self.question.spread) if swept and swept.engine.curve else None
+        if swept is None or not (swept.engine.curve and swept.engine.parameters):
+            return None
+        return swept.sweeps_to_spare(self.point, self.question.spread)
 
     @cached_property
     def gains(self) -> Gains | None:
@@ -236,7 +241,8 @@ class Answer(Choice):
         InputError where nothing is stable or the engine cannot express it, NumericalError where it cannot be found.
         """
         goal = usual_goal(self.question.engine, self.question.drive is not None)
-        found = _chosen(self.question, "instead", self.method, goal)
+        question = replace(self.question, chain=self.question.chain_to_choose_for)
+        found = _chosen(question, "instead", self.method, goal)
         _ = found.setting
         return found
 
@@ -314,7 +320,7 @@ def _chosen(
     if strongest is None:
         words = f"no feedback is stable in {swept.constraints.words}: ask with more --iterations"
         raise InputError(f"{swept.engine.name}: {words}")
-    if found.beta_hat <= strongest[1]:
+    if found.beta_hat <= strongest[1] * (1 + READ_BACK):  # as is all of the curve but its end, which is not tried
         return found
     return _answer(question, role, describe_point(method, goal, *strongest, question.spread, margins))
 

@@ -26,6 +26,9 @@ SHARES = np.geomspace(1e-6, 1 - 1e-9, 50)
 """Shares of the strongest feedback. The largest share that constraints allow is searched for between two neighbours.
 The last is below 1, because the engine may not be able to express the strongest feedback itself."""
 
+USUAL_CHAIN = 10
+"""Equal bodies of the chain that a choice is for, where nobody says what the engine sweeps over."""
+
 
 @dataclass(frozen=True, eq=False)
 class Constraints:
@@ -54,7 +57,7 @@ def constraints_of_chain(bodies: int, mass_ratio: Fraction | None = None) -> Con
     InputError for numbers that are no chain.
     """
     ratio = 1.0 if mass_ratio is None else float(mass_ratio)
-    last = "" if ratio == 1 else f" with the last body {ratio:g} times as heavy"
+    last = " equal bodies" * (bodies > 1) if ratio == 1 else f" with the last body {ratio:g} times as heavy"
     return Constraints(f"a chain of {bodies}{last}", chain(bodies, ratio), tuple(range(bodies)))
 
 

@@ -14,7 +14,7 @@ from bezstab.errors import InputError
 from bezstab.goals import SETTLING, UP_TO_LONGEST, Goal
 from bezstab.mechanism import Scene, TurningNormals
 from bezstab.methods import Method, check_one_step, lookup
-from bezstab.questions.chains import SweptConstraints, check_sweeps, constraints_of, constraints_of_chain
+from bezstab.questions.chains import USUAL_CHAIN, SweptConstraints, check_sweeps, constraints_of, constraints_of_chain
 from bezstab.questions.motions import ReferenceMotion, check_speed, motion_of, turn_too_far, turning_of
 from bezstab.stability import verdict
 from bezstab.units import check_step, feedback_gains
@@ -54,7 +54,8 @@ class Question:
     `settle` (s) is the time in which errors fall to a thousandth. `equal` keeps alpha = beta. `as_typed` leaves out an
     engine's clamps. With a `chain` of so many bodies, the last `mass_ratio` times as heavy as each other one (None: 1),
     or a scene of several constraints, safe also means: stable while the engine sweeps over them, `iterations` times in
-    a step (None: the engine's own number).
+    a step (None: the engine's own number). Without both, a choice for an engine that sweeps is for USUAL_CHAIN equal
+    bodies.
     InputError for arguments that do not go together.
     """
 
@@ -88,6 +89,7 @@ class Question:
             self._check_given()
         else:
             self._check_goal(self.goal)
+            object.__setattr__(self, "chain", self.chain_to_choose_for)
         check_speed(self.scene, self.speed)
         check_sweeps(self.chain, self.mass_ratio, self.iterations, self.engine, self.scene, self.speed)
         object.__setattr__(self, "methods", methods_for(self.methods, self.engine, self.drive))
@@ -179,6 +181,13 @@ class Question:
             if self.omega is not None or not at_rest:
                 raise
             return motion_of(None, None, Fraction(1), self.h, longest)  # the sweeps are what is asked about
+
+    @property
+    def chain_to_choose_for(self) -> int | None:
+        """The bodies of the chain that a choice allows for, also where none is asked about and the engine sweeps."""
+        if self.engine and self.engine.sweeping and self.chain is None and self.scene is None:
+            return USUAL_CHAIN
+        return self.chain
 
     @cached_property
     def swept(self) -> SweptConstraints | None:

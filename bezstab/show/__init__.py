@@ -11,13 +11,13 @@ from bezstab.show.fields import Field, Row, RowKind, cells, column, formatted, v
 from bezstab.show.file_forms import FIGURE_FORMS, TABLE_FORMS
 from bezstab.show.result_sentences import (
     LATE_COMMANDS,
-    alone_words,
     combined_words,
     costs_words,
     exact_rate_words,
     likeness_sentence,
     motion_words,
     passages_words,
+    spare_words,
     timing_words,
     trade_words,
     varying_words,

@@ -95,14 +95,22 @@ def _errors_words(times: tuple[float, float]) -> str:
     return f"{times_words(of_constraint)} times the error, {times_words(of_velocity)} times that of velocities"
 
 
-def alone_words(answer: Answer) -> str | None:
-    """Return what a choice would be for one constraint alone, and how many sweeps it takes; None where it is this."""
+def spare_words(answer: Answer) -> str | None:
+    """Return what a choice leaves to spare in an engine that sweeps, and what one constraint alone would get.
+
+    The latter where it is another; None where no spare is known, as without sweeps.
+    """
+    swept, enough = answer.swept, answer.sweeps_to_spare
+    if swept is None or enough is None or enough > swept.iterations:
+        return None
+    spread, sweeps = 100 * answer.question.spread, counted(swept.iterations, "sweep")
+    words = f"This leaves {spread:g} % to spare at {sweeps} over {swept.constraints.words}."
     alone = answer.alone
     if alone is None:
-        return None
+        return words
     needed = alone.sweeps_to_spare
     takes = "no number of sweeps that was tried" if needed is None else counted(needed, "sweep")
-    return f"One constraint alone would get {alone.setting}: with the spread to spare that takes {takes}."
+    return f"{words} One constraint alone would get {alone.setting}: with as much to spare that takes {takes}."
 
 
 def motion_words(motion: ReferenceMotion) -> str:

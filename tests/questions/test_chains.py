@@ -5,9 +5,10 @@ from itertools import pairwise
 import pytest
 
 from bezstab.engines import ENGINES
+from bezstab.errors import InputError
 from bezstab.mechanism import Scene
 from bezstab.mechanism.scene_files import parse_scene
-from bezstab.questions import Question, answers
+from bezstab.questions import Question, answers, usual_goal
 from bezstab.questions.chains import SweptConstraints, constraints_of, constraints_of_chain
 from bezstab.stability import chain, swept_growth
 
@@ -26,7 +27,7 @@ def test_a_chain_decides_whether_an_answer_is_safe() -> None:
     (safe,) = answers(asked(iterations=12))
     assert safe.safe
     assert safe.swept_over == "a chain of 10 with the last body 10 times as heavy"
-    assert constraints_of_chain(3).words == "a chain of 3"
+    assert constraints_of_chain(3).words == "a chain of 3 equal bodies"
     assert "one constraint alone: safe" in repr(next(answers(Question(engine=CHIPMUNK, values=DEFAULT, h=Fraction(1)))))
 
 
@@ -43,7 +44,7 @@ def test_what_is_chosen_for_a_chain_is_safe_there(name: str) -> None:
     engine, h = ENGINES[name], Fraction(1, 240)
     alone, chained = (
         next(answers(Question(engine=engine, goal="fastest", h=h, chain=bodies, mass_ratio=ratio)))
-        for bodies, ratio in ((None, None), (6, Fraction(20)))
+        for bodies, ratio in ((1, None), (6, Fraction(20)))
     )
     assert chained.safe
     assert chained.beta_hat <= alone.beta_hat
@@ -53,6 +54,38 @@ def test_what_is_chosen_for_a_chain_is_safe_there(name: str) -> None:
         assert chained.sweeps_to_spare
         assert chained.swept
         assert chained.swept.iterations >= chained.sweeps_to_spare
+
+
+@pytest.mark.parametrize("name", [name for name, each in ENGINES.items() if each.sweeping and each.parameters])
+def test_a_line_to_paste_is_stable_in_a_chain_of_ten_also_if_it_were_a_tenth_stronger(name: str) -> None:
+    """Whether the chain is asked about or not, and from `choose` as from what `check` gives instead."""
+    engine, h = ENGINES[name], Fraction(1, 60)
+    (chosen,) = answers(Question(engine=engine, goal=usual_goal(engine, False), h=h))
+    assert chosen.safe
+    assert chosen.swept_over == "a chain of 10 equal bodies"
+    assert engine.sweeping
+    stronger = chosen.alpha_hat, chosen.beta_hat * 1.1
+    try:
+        values = tuple(map(Fraction, engine.values((Fraction(stronger[0]), Fraction(stronger[1])), h)))
+    except InputError:  # it has no words for so strong a feedback
+        values = tuple(map(Fraction, engine.values(chosen.point, h)))
+    step = engine.sweeping.step(engine.sweeping.iterations, h, *values)
+    pairs = range(10) if engine.sweeping.together else None
+    assert swept_growth(chain(10), step, pairs).decays
+    given = next(answers(Question(engine=engine, values=tuple(map(Fraction, engine.values(chosen.point, h))), h=h)))
+    assert given.swept_over == "one constraint alone"
+    assert given.instead.setting == chosen.setting
+    (asked,) = answers(Question(engine=engine, goal=usual_goal(engine, False), h=h, chain=10))
+    assert asked.setting == chosen.setting
+
+
+def test_chipmunk_would_get_a_line_that_lets_ten_bodies_grow_if_one_alone_were_asked_about() -> None:
+    (chosen,) = answers(Question(engine=CHIPMUNK, goal="robust", h=Fraction(1, 60)))
+    assert chosen.alone
+    assert chosen.question.swept
+    alone = tuple(map(Fraction, CHIPMUNK.values(chosen.alone.point, Fraction(1, 60))))
+    assert chosen.question.swept.growth(alone).factor > 1.05
+    assert chosen.sweeps_to_spare == 10
 
 
 def test_what_is_chosen_for_a_chain_may_be_stronger_by_the_spread() -> None:
