@@ -82,7 +82,7 @@ mutants: .venv/tested  ## are the tests able to fail? wrong versions of a file, 
 	cd $(MUTANTS) && cosmic-ray exec mutants.toml session.sqlite
 	cd $(MUTANTS) && cr-report --surviving-only --show-diff session.sqlite
 
-extremes: .venv/installed  ## what holds at the extremes, in minutes; the tests run the short form
+extremes: .venv/installed  ## what holds at the extremes; the tests run the short form
 	$(BIN)/bezstab extremes
 
 lint: .venv/tested  ## style, format and types

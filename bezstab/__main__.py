@@ -15,8 +15,9 @@ except KeyboardInterrupt:  # so early that there is no handler yet; earlier stil
 def run() -> None:
     """Run the command line of sys.argv and exit; standard streams that were closed are opened or refused first."""
     end_when_told()
-    from bezstab.cli.command_group import prepare_streams
+    from bezstab.cli.command_group import one_thread_for_algebra, prepare_streams
 
+    one_thread_for_algebra()
     prepare_streams()
     from bezstab.cli import main
 

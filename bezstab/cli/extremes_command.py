@@ -6,7 +6,7 @@ from bezstab.cli.output import progress, show_rows
 from bezstab.show import EXTREMES
 
 
-@command(flag("--short", "Fewer methods and runs of 1e5 steps, in seconds instead of minutes."), "compiled", "form")
+@command(flag("--short", "Fewer methods, and runs of 1e5 steps."), "compiled", "form")
 def extremes(short: bool) -> bool:
     """Measure what holds at the extremes of sizes, steps and masses.
 

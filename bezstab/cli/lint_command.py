@@ -62,7 +62,9 @@ def lint(model: Path, gains: "Sequence[evidence.MotorGains]", every: int, late: 
     timing = stability.Timing(every, late)
     model_data = evidence.read_mujoco_model(model)
     linted = list(progress(evidence.linted_model(model_data, gains, timing), "lint", len(model_data.elements)))
-    show_text(f"{model.name}: timestep {float(model_data.h):g} s, integrator {model_data.integrator}\n")
+    step = f"timestep {float(model_data.h):g} s, integrator {model_data.integrator}"
+    poses = f"; keyframes not judged: {', '.join(model_data.keyframes)}" if model_data.keyframes else ""
+    show_text(f"{model.name} at qpos0: {step}{poses}\n")
     if linted or not for_reading():
         show_rows(LINTED, (LINTED.row(each, advice=each.advice or None) for each in linted))
     else:

@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bezstab.engines import LEAST_IMPEDANCE, MOST_IMPEDANCE
 from bezstab.errors import InputError, NumericalError
@@ -35,6 +36,9 @@ LEAST_SIZE = 1e-15
 
 MOST_ROWS = 300
 """Of one equality, such as a flex's: eigenvalues of as many are found some two hundred times, within seconds."""
+
+STILL = "it moves nothing at qpos0"
+"""Why what pulls at bodies that cannot move, or has no moment arm there, is not judged."""
 
 ANY_DISTANCE = 1e6
 """m and rad: farther than anything is from a limit or a contact, and float64 still resolves what is near."""
@@ -121,7 +125,8 @@ Element = TypeVar("Element", Constraint, Feedback, Motor, Unjudged)
 class ModelData:
     """What a MuJoCo model says of its feedback; h in s, mass (dofs, dofs) in kg and kg m^2 with armatures, at qpos0.
 
-    `refsafe` raises a timeconst below 2h.
+    `refsafe` raises a timeconst below 2h. `keyframes` are names, else numbers from zero, of
+    other poses.
     """
 
     h: Fraction
@@ -129,6 +134,7 @@ class ModelData:
     refsafe: bool
     mass: FloatArray
     elements: tuple[Constraint | Feedback | Motor | Unjudged, ...]
+    keyframes: tuple[str, ...]
 
     def of(self, kind: type[Element]) -> list[Element]:
         """Return the elements of one kind."""
@@ -237,6 +243,9 @@ def model_data(mujoco: types.ModuleType, model: Any) -> ModelData:
         refsafe=loaded.has("REFSAFE"),
         mass=mass,
         elements=tuple(found),
+        keyframes=tuple(
+            mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_KEY, number) or str(number) for number in range(model.nkey)
+        ),
     )
 
 
@@ -285,21 +294,29 @@ def _constraint(element: str, kind: str, solref: FloatArray, solimp: FloatArray,
 
 
 def _of_rows(loaded: _Loaded) -> Iterator[Constraint | Unjudged]:
-    """Yield what MuJoCo has rows of: equalities, limits and frictions; it has none of kinds that are switched off."""
+    """Yield equalities, limits and frictions that are not switched off; not judged is what has no rows at qpos0."""
     mujoco, model, data = loaded.mujoco, loaded.model, loaded.data
     kinds = {
-        "EQUALITY": ("equality", model.eq_solref, model.eq_solimp),
-        "LIMIT_JOINT": ("joint limit", model.jnt_solref, model.jnt_solimp),
-        "LIMIT_TENDON": ("tendon limit", model.tendon_solref_lim, model.tendon_solimp_lim),
-        "FRICTION_DOF": ("joint friction", model.dof_solref, model.dof_solimp),
-        "FRICTION_TENDON": ("tendon friction", model.tendon_solref_fri, model.tendon_solimp_fri),
+        "EQUALITY": ("equality", np.ones(model.neq), model.eq_solref, model.eq_solimp),
+        "LIMIT_JOINT": ("joint limit", model.jnt_limited, model.jnt_solref, model.jnt_solimp),
+        "LIMIT_TENDON": ("tendon limit", model.tendon_limited, model.tendon_solref_lim, model.tendon_solimp_lim),
+        "FRICTION_DOF": ("joint friction", model.dof_frictionloss, model.dof_solref, model.dof_solimp),
+        "FRICTION_TENDON": (
+            "tendon friction",
+            model.tendon_frictionloss,
+            model.tendon_solref_fri,
+            model.tendon_solimp_fri,
+        ),
     }
-    jacobian = data.efc_J.reshape(data.nefc, model.nv)
+    jacobian = data.efc_J[: data.nefc * model.nv].reshape(data.nefc, model.nv)  # room for rows that are zero follows
     impedance = data.efc_KBIP[:, 2]
     diagonal = data.efc_R * impedance / (1 - impedance)  # as R = (1 - d) / d times the diagonal
-    for name, (kind, solref, solimp) in kinds.items():
+    for name, (kind, wanted, solref, solimp) in kinds.items():
         of_kind = data.efc_type == getattr(mujoco.mjtConstraint, f"mjCNSTR_{name}")
-        for number in np.unique(data.efc_id[of_kind]).tolist():
+        switch = "FRICTIONLOSS" if "FRICTION" in name else name.split("_")[0]
+        if not (loaded.has("CONSTRAINT") and loaded.has(switch)):
+            continue
+        for number in np.flatnonzero(wanted).tolist():
             own = np.flatnonzero(of_kind & (data.efc_id == number))
             element = loaded.named(kind.split()[0], model.dof_jntid[number] if name == "FRICTION_DOF" else number)
             full_kind = kind
@@ -307,6 +324,9 @@ def _of_rows(loaded: _Loaded) -> Iterator[Constraint | Unjudged]:
                 full_kind = f"{mujoco.mjtEq(model.eq_type[number]).name.removeprefix('mjEQ_').lower()} {kind}"
             else:
                 own = own[:1]  # of a limit's two ends one
+            if not own.size:
+                yield Unjudged(element, full_kind, STILL)
+                continue
             if len(own) > MOST_ROWS:
                 yield Unjudged(element, full_kind, f"it has {len(own)} rows, at most {MOST_ROWS} are judged")
                 continue
@@ -330,6 +350,8 @@ def _contacts(loaded: _Loaded) -> Iterator[Constraint]:
     mujoco, model, data = loaded.mujoco, loaded.model, loaded.data
     for margins in (model.geom_margin, model.pair_margin):
         margins[:] = ANY_DISTANCE
+    copies = _same_geoms(model)
+    model.geom_contype[copies] = model.geom_conaffinity[copies] = 0
     model.opt.o_margin = ANY_DISTANCE
     model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_MIDPHASE  # which goes by margins of before
     mujoco.mj_collision(model, data)
@@ -341,6 +363,22 @@ def _contacts(loaded: _Loaded) -> Iterator[Constraint]:
     for place in np.sort(first):
         element = " and ".join(loaded.named("geom", geom) for geom in geoms[order[place]])
         yield _constraint(element, "contact", solrefs[place], solimps[place])
+
+
+def _same_geoms(model: Any) -> NDArray[np.intp]:
+    """Return the geoms that touch nothing otherwise than an earlier one does, such as the boxes of a terrain.
+
+    They are of one shape and one body, or of bodies fixed to each other, and have the same parameters.
+    """
+    bodies = np.arange(model.nbody)
+    excluded = np.isin(bodies, [model.exclude_signature >> 16, model.exclude_signature & 0xFFFF])
+    what_decides = (
+        np.where(excluded, bodies, -1 - model.body_weldid)[model.geom_bodyid],  # exclusions are of single bodies
+        *(model.geom_type, model.geom_contype, model.geom_conaffinity, model.geom_priority, model.geom_solmix),
+        *(model.geom_solref, model.geom_solimp),
+    )
+    _, first = np.unique(np.column_stack(what_decides), axis=0, return_index=True)
+    return np.setdiff1d(np.arange(model.ngeom), first)
 
 
 # Springs, dampers and drives
@@ -374,7 +412,7 @@ def _actuators(loaded: _Loaded) -> Iterator[Feedback | Motor | Unjudged]:
             continue  # its group is switched off
         element, direction = loaded.named("actuator", number), loaded.directions["actuator"][outputs[number]]
         if not direction.any():
-            yield Unjudged(element, "drive", "it moves nothing at qpos0")
+            yield Unjudged(element, "drive", STILL)
             continue
         bias = mujoco.mjtBias(model.actuator_biastype[number]).name
         gain = mujoco.mjtGain(model.actuator_gaintype[number]).name

@@ -36,6 +36,15 @@ def test_what_is_unsafe_ends_with_status_one_and_what_is_safe_gets_no_advice() -
     assert "Nothing to judge" in run("lint model.xml").stdout
 
 
+def test_the_first_line_says_at_which_pose_it_judges_and_at_which_it_does_not() -> None:
+    model = MODEL.format(flag="", solref="0.02 1")
+    keys = '<keyframe><key name="home" qpos="1"/><key qpos="2"/></keyframe></mujoco>'
+    for text, poses in ((model, ""), (model.replace("</mujoco>", keys), "; keyframes not judged: home, 1")):
+        Path("model.xml").write_text(text, encoding="utf-8")
+        first, *_ = run("lint model.xml").stdout.splitlines()
+        assert first == f"model.xml at qpos0: timestep 0.004 s, integrator Euler{poses}"
+
+
 def test_without_mujoco_one_line_says_how_to_install_it(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "mujoco", None)
     result = run("lint", str(DATA / "motor.xml"))

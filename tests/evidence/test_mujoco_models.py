@@ -1,14 +1,15 @@
 """What is read of a MuJoCo model is what MuJoCo itself makes of it, and what it refuses is one line."""
 
 import sys
+from itertools import product
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from bezstab.errors import InputError
-from bezstab.evidence import model_data, read_mujoco_model
-from bezstab.evidence.mujoco_models import Constraint, Feedback, ModelData, mujoco_module
+from bezstab.evidence import model_data, mujoco_models, read_mujoco_model
+from bezstab.evidence.mujoco_models import Constraint, Feedback, ModelData, Unjudged, mujoco_module
 
 mujoco: Any = pytest.importorskip("mujoco")
 
@@ -70,9 +71,66 @@ def test_geoms_of_all_shapes_meet_however_far_apart_they_are() -> None:
     assert model.geom_margin.max() == 0  # the model itself is left as it was
 
 
+@pytest.mark.parametrize(
+    "apart", ["", "".join(f'<exclude body1="fixed{place}" body2="moving1"/>' for place in range(32))]
+)
+def test_a_terrain_of_a_thousand_boxes_makes_the_contacts_that_it_makes_in_a_gigabyte(
+    apart: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Boxes alike are asked about once: nothing else touches otherwise, with parameters, filters and exclusions of any.
+
+    A fixed body that is excluded keeps its own boxes, as others touch what it does not.
+    """
+
+    def contacts_of(boxes: int, memory: str = "") -> list[tuple[tuple[float, float], tuple[float, float, float]]]:
+        terrain = "".join(f'<geom type="box" size=".2 .2 .1" pos="{place} 0 0"/>' for place in range(boxes))
+        of_each_kind = product((2, 1), (2, 1), (1, 3), ("", 'priority="1"'), (0.01, 0.03))
+        fixed = "".join(
+            f'<body name="fixed{place}"><geom size=".1" contype="{contype}" conaffinity="{conaffinity}"'
+            f' solmix="{solmix}" {priority} solref="{time} 1"/></body>'
+            for place, (contype, conaffinity, solmix, priority, time) in enumerate([*of_each_kind] * 2)
+        )
+        moving = "".join(
+            f'<body name="moving{place}" pos="0 0 {place}"><freejoint/>'
+            f'<geom type="box" size="1 1 1" solref=".05 {place}" contype="{1 << place % 3}"'
+            f' conaffinity="{place % 2}"/></body>'
+            for place in range(1, 31)
+        )
+        model = mujoco.MjModel.from_xml_string(
+            f"<mujoco>{memory}<worldbody>{terrain}{fixed}{moving}</worldbody><contact>{apart}</contact></mujoco>"
+        )
+        return sorted((each.solref, each.solimp) for each in model_data(mujoco, model).of(Constraint))
+
+    with_little = contacts_of(1000)
+    monkeypatch.setattr(mujoco_models, "_same_geoms", lambda _: [])
+    assert with_little == contacts_of(10, '<size memory="1G"/>')
+    assert len(with_little) > 100
+
+
 def test_geoms_that_cannot_touch_make_no_contact(contacts: dict[str, tuple[float, float]]) -> None:
     """Parent and child, excluded bodies, and what is welded to the world."""
     assert not contacts.keys() & {"geom 'a' and geom 'b'", "geom 'a' and geom 'c'", "geom 'b' and geom 'c'"}
+
+
+def test_what_moves_nothing_at_qpos0_is_not_judged_and_the_rest_is() -> None:
+    """MuJoCo keeps room for its rows, and has none: of a tendon at its longest, and of a weld of fixed bodies."""
+    robot = """<mujoco><worldbody><site name="hook" pos="0 0 1"/>
+      <body><joint name="rail" type="slide" axis="1 0 0" limited="true" range="-1 1"/><geom size=".1"/>
+        <site name="load"/></body>
+      <body name="a"><geom size=".1"/></body><body name="b"><geom size=".1"/></body></worldbody>
+    <tendon><spatial name="rope" limited="true" range="0 1.2" frictionloss="1">
+      <site site="hook"/><site site="load"/></spatial></tendon>
+    <equality><weld name="fixed" body1="a" body2="b"/><joint name="held" joint1="rail"/></equality></mujoco>"""
+    found = read("", robot)
+    assert [(each.element, each.kind) for each in found.of(Unjudged)] == [
+        ("equality 'fixed'", "weld equality"),
+        ("tendon 'rope'", "tendon limit"),
+        ("tendon 'rope'", "tendon friction"),
+    ]
+    assert [(each.kind, abs(each.jacobian).tolist()) for each in found.of(Constraint)][:2] == [
+        ("joint equality", [[1.0]]),
+        ("joint limit", [[1.0]]),
+    ]
 
 
 def read(option: str, robot: str = ROBOT) -> ModelData:
