@@ -1,6 +1,7 @@
 """A mechanism: a scene with its equations of motion as sympy expressions, M, c, C_q, gamma and g, paper Eqs 1 to 5."""
 
 import math
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -36,7 +37,8 @@ class Mechanism(ReadOnlyArrays):
     `jacobian` C_q (m, n), `constraints_t` dc/dt at fixed q (m, 1), `gamma` (m, 1) the right-hand side of
     C_q qddot = gamma, and `forces` g (n, 1). `potential` is the potential energy (J) of gravity and springs, and
     `applied` (n, 1) what else there is in g, constant forces, torques and dampers: g is the negative gradient of the
-    one, plus the other. `spring_lengths` has the distance (m) of each spring's ends.
+    one, plus the other. `spring_lengths` has the distance (m) of each spring's ends, `joints` the joint of each
+    constraint, by its number in the scene, from zero.
 
     M is diagonal by construction: a body's frame sits at its centre of mass or turns about a fixed pivot.
     """
@@ -53,11 +55,26 @@ class Mechanism(ReadOnlyArrays):
     potential: sp.Expr
     applied: sp.Matrix
     spring_lengths: tuple[sp.Expr, ...]
+    joints: tuple[int, ...]
 
     @property
     def size(self) -> int:
         """The number n of coordinates."""
         return len(self.q)
+
+    @property
+    def constraint_names(self) -> tuple[str, ...]:
+        """What messages call each constraint, in order: its joint by number, kind and bodies, and of several, which."""
+        names = []
+        for number, count in Counter(self.joints).items():
+            joint = self.scene.joints[number]
+            if isinstance(joint, Driver):
+                what = f"driver of {joint.coordinate}"
+            else:
+                what = f"{joint.kind}, {' and '.join(joint.bodies)}"
+            name, which = f"joint {number + 1} ({what})", "xy" if isinstance(joint, Revolute) else range(1, count + 1)
+            names += [f"{one} of {name}" for one in which] if count > 1 else [name]
+        return tuple(names)
 
     def __repr__(self) -> str:
         return f"Mechanism({self.scene.name}, {self.size} coordinates, {len(self.constraints)} constraints)"
@@ -85,7 +102,8 @@ def compiled_mechanism(scene: Scene) -> Mechanism:
     frames |= {body.name: _frame(body, symbol_of) for body in scene.bodies}
 
     mass = [body.inertia if axis == "theta" else body.mass for body in scene.bodies for axis in body.free]
-    c = sp.Matrix([row for joint in scene.joints for row in _constraints(joint, frames, symbol_of)])
+    of_joints = [_constraints(joint, frames, symbol_of) for joint in scene.joints]
+    c = sp.Matrix([row for rows in of_joints for row in rows])
     jacobian = c.jacobian(q)
     c_t = c.diff(T)
     velocity = sp.Matrix(v)
@@ -111,6 +129,7 @@ def compiled_mechanism(scene: Scene) -> Mechanism:
         potential=potential,
         applied=applied,
         spring_lengths=tuple(lengths),
+        joints=tuple(number for number, rows in enumerate(of_joints) for _ in rows),
     )
 
 

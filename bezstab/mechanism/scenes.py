@@ -140,18 +140,6 @@ class Scene:
         return tuple(f"{body.name}.{axis}" for body in self.bodies for axis in body.free)
 
     @property
-    def constraint_names(self) -> tuple[str, ...]:
-        """What messages call each constraint, in order: its joint by number, kind and bodies, and of a pair, which."""
-        names = []
-        for number, joint in enumerate(self.joints, start=1):
-            if isinstance(joint, Driver):
-                names.append(f"joint {number} (driver of {joint.coordinate})")
-                continue
-            name = f"joint {number} ({joint.kind}, {' and '.join(joint.bodies)})"
-            names += [f"x of {name}", f"y of {name}"] if isinstance(joint, Revolute) else [name]
-        return tuple(names)
-
-    @property
     def attachments(self) -> tuple[tuple[str, Point], ...]:
         """Each body's or the ground's name, and the point in its frame (m), wherever a joint holds it."""
         joined = (joint for joint in self.joints if isinstance(joint, Between))

@@ -87,7 +87,7 @@ def _closed_position(mechanism: Mechanism) -> FloatArray:
 
 def _refuse_dependent_constraints(mechanism: Mechanism, q: FloatArray) -> None:
     """Raise InputError, naming them, if constraints depend on others in a closed position q."""
-    names, jacobian = mechanism.scene.constraint_names, constraint_jacobian(mechanism, 0.0, q)
+    names, jacobian = mechanism.constraint_names, constraint_jacobian(mechanism, 0.0, q)
     rows = jacobian / np.maximum(np.linalg.norm(jacobian, axis=1, keepdims=True), np.finfo(float).tiny)
     if np.linalg.matrix_rank(rows, tol=DEPENDENT) == len(rows):
         return

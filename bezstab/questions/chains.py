@@ -9,7 +9,7 @@ import numpy as np
 
 from bezstab.engines import Engine, Point, check_iterations
 from bezstab.errors import InputError
-from bezstab.mechanism import Revolute, Scene, compiled_mechanism, constraint_jacobian, initial_state
+from bezstab.mechanism import Scene, compiled_mechanism, constraint_jacobian, initial_state
 from bezstab.questions.motions import name_of, scene_at_speed
 from bezstab.rationals import rational
 from bezstab.stability import (
@@ -66,15 +66,11 @@ def constraints_of(scene: str | Scene, speed: Fraction) -> Constraints:
 
     A driver is one of them. InputError as `load_scene` and `initial_state`.
     """
-    moving = scene_at_speed(scene, speed)
-    mechanism = compiled_mechanism(moving)
+    mechanism = compiled_mechanism(scene_at_speed(scene, speed))
     q, _ = initial_state(mechanism)
-    joints = [
-        number for number, joint in enumerate(moving.joints) for _ in range(2 if isinstance(joint, Revolute) else 1)
-    ]
     masses = inverse_effective_masses(np.diag(mechanism.mass), constraint_jacobian(mechanism, 0.0, q))
-    words = f"{name_of(scene)} at its start, with its {len(joints)} constraints"
-    return Constraints(words, masses, tuple(joints))
+    words = f"{name_of(scene)} at its start, with its {len(mechanism.joints)} constraints"
+    return Constraints(words, masses, mechanism.joints)
 
 
 def check_sweeps(
@@ -110,7 +106,7 @@ def check_sweeps(
         )
     if engine.sweeping is None:
         raise InputError(f"{option}: how {engine.name} sweeps over its constraints is not known here")
-    if scene and len(scene_at_speed(scene, speed).constraint_names) == 1:
+    if scene and len(compiled_mechanism(scene_at_speed(scene, speed)).joints) == 1:
         raise InputError(f"--iterations: {name_of(scene)} has one constraint alone: there is nothing to sweep over")
 
 
