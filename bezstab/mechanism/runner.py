@@ -15,7 +15,7 @@ from bezstab.mechanism.equations import Mechanism
 from bezstab.mechanism.generated_code import SINGULAR, accelerations
 from bezstab.mechanism.programs import Steps, even_steps, program_of, room_of
 from bezstab.mechanism.second_order_memory import memory
-from bezstab.mechanism.start import initial_state
+from bezstab.mechanism.start import CLOSED, constraint_errors, initial_state
 from bezstab.mechanism.stepping import (
     BLOWN_UP,
     EVALUATIONS,
@@ -174,20 +174,29 @@ def march(
 ) -> Iterator[Block]:
     """Yield the method's whole steps from a state (q then v, shape (2n, *batch)) on, in blocks.
 
-    The first values of a multistep method come from `start`, by steps that are not compiled. A run alone ends where it
-    breaks down; in a batch what goes wrong shows in the numbers. InputError where steps are to be `compiled` without
-    numba.
+    The first values of a multistep method come from `start`, by steps that are not compiled. From a state that keeps
+    the constraints those of "rk4" have no feedback: its stages would answer the strong feedback of a multistep method
+    with an error far above all that follows, which the trajectory keeps. A run alone ends where it breaks down; in a
+    batch what goes wrong shows in the numbers. InputError where steps are to be `compiled` without numba.
     """
     history = [np.asarray(state)]
+    of_start = steps
+    if start == "rk4" and _keeps_constraints(mechanism, float(steps.times[0]), history[0][: mechanism.size]):
+        of_start = steps._replace(gains=np.zeros_like(steps.gains))
     for starter, count in _starters(method, start):
         taken = len(history) - 1
-        for block in resume(mechanism, starter, steps.part(taken, taken + count), history, after=after):
+        for block in resume(mechanism, starter, of_start.part(taken, taken + count), history, after=after):
             yield block
             if block.cause:
                 return
             history += list(block.states)
     left = steps.part(len(history) - 1, len(steps.lengths))
     yield from resume(mechanism, method, left, history, compiled, after=after)
+
+
+def _keeps_constraints(mechanism: Mechanism, t: float, q: FloatArray) -> bool:
+    """Return whether positions (n, *batch) keep the constraints as well as a scene's initial state does."""
+    return bool(np.abs(constraint_errors(mechanism, t, q)).max(initial=0.0) <= CLOSED)
 
 
 def resume(

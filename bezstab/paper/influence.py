@@ -17,6 +17,7 @@ from bezstab.stability import FloatArray, poles
 
 KICK = 1e-3  # m: Table 4 is about decay and growth, so there must be something that decays or grows
 DURATION = 0.4  # s
+LONGER = 0.5  # s: from a consistent start an error grows from rounding
 DECAYED = 1e-6  # of the kick: what a run does below it is no longer counted
 FALLEN = 0.01  # of the largest: when a history counts as converged, to compare how fast
 APART = 0.05  # in |z_p|: poles whose speeds differ by more than what double poles lag behind
@@ -300,14 +301,14 @@ def dominant_pole_is_seen_late() -> Finding:
 
 def physics_decides() -> Finding:
     """Return what B4 makes of the energy, which nothing changes, with parameters of cases 4 and 6."""
-    energies = [experiment("B4", *TABLE_4[case - 1][1:], duration=DURATION).energy for case in (4, 6)]
+    energies = [experiment("B4", *TABLE_4[case - 1][1:], duration=LONGER).energy for case in (4, 6)]
     kept, left = (energy[-1] / energy[0] for energy in energies)
     return Finding(
         "Section 3",
         "wrong parameters give results against physics",
         "“improper selection of the Baumgarte coefficients can lead to unacceptable results in terms of the physics "
         "associated with the dynamic response”",
-        f"B4 from a consistent start: after {DURATION:g} s the energy, which nothing changes, is {left:.0f} times the "
+        f"B4 from a consistent start: after {LONGER:g} s the energy, which nothing changes, is {left:.0f} times the "
         f"first with case 6, {kept:.4f} times with case 4",
         [left > 2 and abs(kept - 1) < 1e-3],
     )

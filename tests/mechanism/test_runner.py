@@ -11,8 +11,10 @@ from numpy.typing import NDArray
 from bezstab.mechanism import (
     Start,
     compiled_mechanism,
+    constraint_errors,
     load_scene,
     observe,
+    perturbed_state,
     simulate,
     simulated,
 )
@@ -131,6 +133,22 @@ def test_the_start_provides_the_first_values(start: Start) -> None:
     if start == "rk4":  # a run shorter than its start counts what it took
         short = simulate(compiled_mechanism(load_scene("slider_crank")), method, H, 2 * H, (0.0, 0.0))
         assert short.evaluations == 2 * 4
+
+
+def test_strong_feedback_does_not_answer_the_steps_of_the_start() -> None:
+    """RK4 with the feedback of ABM4 (alpha = 159, beta = 319) left 9e-8 m at its third step, 500 times what follows."""
+    mechanism = compiled_mechanism(load_scene("driven_four_bar"))
+    run = simulate(mechanism, lookup("ABM4"), h=0.002, duration=1.0, gains=(318.0, 319.0**2))
+    sizes = np.abs(constraint_errors(mechanism, run.t, run.q.T)).max(axis=0)
+    assert sizes[:20].max() < sizes[20:].max()
+
+
+def test_from_a_state_off_the_constraints_the_feedback_acts_at_once() -> None:
+    mechanism = compiled_mechanism(load_scene("slider_crank"))
+    q, v = perturbed_state(mechanism, 1e-4)
+    run = simulate(mechanism, lookup("AB4"), h=0.001, duration=0.003, gains=(600.0, 9e4), state=(q, v))
+    sizes = np.abs(constraint_errors(mechanism, run.t, run.q.T)).max(axis=0)
+    assert sizes[3] < 0.9 * sizes[0]
 
 
 def test_a_ramp_follows_the_family_whatever_the_method_is_called() -> None:
