@@ -191,8 +191,8 @@ def _stable_on_line(
 #
 #      |  .-|-.-|--|-.        the length is an analytic function of alpha_hat between two corners or turns of the
 #      | (  |  \|  |  )       curves, where it may begin like any root: tanh-sinh quadrature does not mind. A corner
-#      |  '-|---|--|-'        that does not turn back is found by halving panels
-#      +----corner-turn
+#      |  '-|---|--|-'        that does not turn back is found by halving panels, but half the nodes can be wrong by
+#      +----corner-turn       just as much: so panels also end where a curve is highest or lowest, often a corner
 
 
 def _wrong_sizes(shape: Shape, inside: Verdicts, proven: Verdicts) -> Iterator[str]:
@@ -209,13 +209,14 @@ def _wrong_sizes(shape: Shape, inside: Verdicts, proven: Verdicts) -> Iterator[s
 
 
 def _panels(shape: Shape) -> FloatArray:
-    """Return the ends of panels of alpha_hat between the ends and turns of all curves; shape (panels, 2)."""
+    """Return the ends of panels of alpha_hat between the ends, turns and peaks of all curves; shape (panels, 2)."""
     first, last = shape.view[0]
     ends = [np.array([first, last])]
     for curve in shape.boundary:
         chords = np.diff(curve, axis=0)
         turning = chords[:-1, 0] * chords[1:, 0] <= 0  # where it turns between two points hardly differs
-        ends += [curve[[0, -1], 0], curve[1:-1, 0][turning]]
+        peaks = np.array([curve[:, 1].argmin(), curve[:, 1].argmax()])  # often corners
+        ends += [curve[[0, -1], 0], curve[peaks, 0], curve[1:-1, 0][turning]]
     places = np.unique(np.concatenate(ends))
     places = places[(places >= first) & (places <= last)]
     places = places[np.append(True, np.diff(places) > SAME * (last - first))]

@@ -2,6 +2,8 @@
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from fractions import Fraction
+from itertools import combinations
 
 import numpy as np
 import pytest
@@ -24,6 +26,24 @@ REGIONS = [
 ]
 
 Wrong = Callable[[Bounds], Bounds]
+
+
+@pytest.mark.parametrize("level", ["0.99", "0.97", "0.9", "0.5"])
+def test_a_triangle_with_a_corner_near_one_end_has_its_area(level: str) -> None:
+    """Newmark's polynomial at gamma = 1/2, beta = 1/6 (Hughes 1987) has three lines for edges: the area is exact."""
+    r = Fraction(level)
+
+    half, sixth = Fraction(1, 2), Fraction(1, 6)
+    edges = [
+        *(((z - 1) ** 2, half * (z**2 - 1), sixth * (z**2 + 4 * z + 1)) for z in (r, -r)),  # P(z) = 0
+        (1 - r**2, -half * (1 + r**2), sixth * (1 - r**2)),  # |z|^2 = the last over the first coefficient
+    ]
+    corners = []
+    for (c, a, b), (f, d, e) in combinations(edges, 2):
+        corners.append(((b * f - c * e) / (a * e - b * d), (c * d - a * f) / (a * e - b * d)))
+    (ax, ay), (bx, by), (cx, cy) = corners
+    area = abs((bx - ax) * (cy - ay) - (cx - ax) * (by - ay)) / 2
+    assert region(lookup("linear-acceleration"), float(level)).area == pytest.approx(float(area), rel=1e-9)
 
 
 @pytest.fixture(autouse=True)
