@@ -243,7 +243,10 @@ def choose(
       "accurate", the usual one: the least error that the feedback makes on a motion, among the points
           that settle within `settle` (s). Without `settle` they may take as long as the motion needs to
           turn by 14 rad. The motion turns by `omega` (1/s, with the step `h` in s), or by `omega_h` rad
-          a step (0.01 unless given).
+          a step. Where alpha and beta are multiples of omega, whatever the step, as with most
+          Runge-Kutta methods, one of them or a scene is needed. There `omega` alone will do: `alpha`,
+          `beta` and `h_limit` of the answer do not depend on `h`, which is then 0.01 / omega. With
+          other methods `omega_h` is 0.01 unless given.
       "robust": the fastest decay in the worst case. alpha and beta may be off by the share `spread`,
           and the step may be smaller. The usual goal with `pd`, and with an engine whose alpha and beta
           depend on each other.
@@ -319,7 +322,8 @@ def check(
     h_min, h_max: steps vary from h_min to h_max (s). `hold`: alpha_hat and beta_hat stay the same,
         instead of alpha, beta.
     spread: the share by which alpha and beta may be off, for `worst`.
-    omega, omega_h: how fast the motion is, in 1/s or in rad a step, for `cost`.
+    omega, omega_h: how fast the motion is, in 1/s or in rad a step, for `cost`: only where one of them
+        or a scene is given, it says how many times the least error it is.
     scene, speed: a mechanism that moves so many times as fast as given there.
     chain, mass_ratio, iterations: with an engine that solves its constraints one after another, in
         sweeps: a straight chain of so many bodies, the last so many times as heavy, solved in so many

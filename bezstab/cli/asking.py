@@ -89,7 +89,7 @@ def show_below(question: "questions.Question", found: "Sequence[questions.Answer
     say_each(answer.cost_or_reason[1] for answer in found)
     if not for_reading():
         return
-    if motion and not question.drive:
+    if motion and not question.drive and (question.goal or not question.motion.assumed):
         show_text(f"\n{show.motion_words(question.motion)}")
     if question.engine:
         for note in () if question.goal else question.given.notes or ():

@@ -14,12 +14,12 @@ from bezstab.cli.output import for_reading, progress, show_rows, show_text
 from bezstab.goals import GOALS, Goal
 from bezstab.methods import lookup
 from bezstab.rationals import typed_number
-from bezstab.show import CHOICES, answer_row, left_out, spare_words, trade_words
+from bezstab.show import CHOICES, STEPS_OF_CHOICES, answer_row, left_out, spare_words, trade_words
 
 
 @command(
     "methods",
-    changed("h", required=True),
+    changed("h", help="Step size in s. Not needed with --omega where α and β follow the motion, whatever the step."),
     option(
         "--goal",
         click.Choice(list(GOALS)),
@@ -60,7 +60,9 @@ def choose(goal: Goal | None, equal: str | None, bandwidth: Fraction | None, **t
 
     On a mechanism that moves, feedback makes errors of its own. The default goal, accurate, makes them as small as it
     can. It allows only points that settle within --settle, or while the motion turns by 14 rad. --omega or --scene say
-    how fast the motion is. Two lines below the answer say what faster decay would cost and what slower decay would
+    how fast the motion is. With most Runge-Kutta methods α and β are multiples of that rate, so it is asked for; then
+    --omega needs no --h, and you are told up to which h they are stable. Other methods take ωh = 0.01 unless you say
+    more. Two lines below the answer say what faster decay would cost and what slower decay would
     gain.
 
     "within the spread" is the largest |z_p| if α and β are off by --spread. At the goal fastest |z_p| rises steeply as
@@ -86,7 +88,12 @@ def choose(goal: Goal | None, equal: str | None, bandwidth: Fraction | None, **t
         return _choose_held(held, bandwidth, settle)
     goal = goal or questions.usual_goal(typed["engine"], drive is not None)
     question = asked_of_scene(questions.Question, goal=goal, equal=equal is not None, **typed)
+    if question.h is None:
+        raise click.MissingParameter(param_hint="'--h'", param_type="option")
     chosen = list(progress(questions.answers(question), goal, len(question.methods)))
+    if typed["h"] is None:
+        show_rows(STEPS_OF_CHOICES, map(STEPS_OF_CHOICES.row, chosen))
+        return all(answer.safe for answer in chosen)
     show_rows(CHOICES, map(answer_row, chosen), left_out(question))
     if for_reading():
         say_varying(chosen)

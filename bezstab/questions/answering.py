@@ -140,6 +140,11 @@ class Answer(Choice):
         return None if steps is None else varying_steps(self.method, *self.point, **vars(steps))
 
     @property
+    def compared(self) -> bool:
+        """Whether errors are compared with the least: of a point that was given, if the motion's rate was, too."""
+        return self.question.goal is not None or not self.question.motion.assumed
+
+    @property
     def cost(self) -> FeedbackCost | None:
         """What accuracy the feedback costs on the motion of the question; None where that is not known."""
         return self.cost_or_reason[0]
@@ -149,7 +154,7 @@ class Answer(Choice):
         """The same, and why it is not known."""
         omega_h = self.question.motion.omega_h
         try:
-            return feedback_cost(self.method, *self.point, omega_h), None
+            return feedback_cost(self.method, *self.point, omega_h, least=self.compared), None
         except (InputError, NumericalError) as error:  # the verdict stands without it
             return None, f"what accuracy the feedback costs is not known: {error}"
 
@@ -242,6 +247,8 @@ class Answer(Choice):
         """
         goal = usual_goal(self.question.engine, self.question.drive is not None)
         question = replace(self.question, chain=self.question.chain_to_choose_for)
+        if goal == "accurate":
+            replace(question, methods=(self.method,)).check_motion()
         found = _chosen(question, "instead", self.method, goal)
         _ = found.setting
         return found

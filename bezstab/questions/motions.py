@@ -26,12 +26,14 @@ class ReferenceMotion:
     """The motion on which errors are told: it turns by omega_h rad in a step, as `words` say.
 
     `omega_h_max` is the same at the longest step that may occur. `amplitude` is that of a scene's motion (m or rad).
+    `assumed` is whether nobody said how fast it is.
     """
 
     omega_h: Fraction
     omega_h_max: Fraction
     words: str
     amplitude: float | None = None
+    assumed: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -97,7 +99,8 @@ def motion_of(
         check_omega_h(turned * longer)
     except InputError as error:
         raise InputError(f"{given}: {error}") from None
-    return ReferenceMotion(turned, turned * longer, words, amplitude)
+    assumed = omega is None and omega_h is None
+    return ReferenceMotion(turned, turned * longer, words, amplitude, assumed)
 
 
 def check_speed(scene: str | Scene | None, speed: Fraction) -> None:

@@ -16,8 +16,8 @@ from bezstab.mechanism import Scene, TurningNormals
 from bezstab.methods import Method, check_one_step, lookup
 from bezstab.questions.chains import USUAL_CHAIN, SweptConstraints, check_sweeps, constraints_of, constraints_of_chain
 from bezstab.questions.motions import ReferenceMotion, check_speed, motion_of, turn_too_far, turning_of
-from bezstab.stability import verdict
-from bezstab.units import check_step, feedback_gains
+from bezstab.stability import OMEGA_H, choose, follows_motion, verdict
+from bezstab.units import check_step, feedback_gains, from_dimensionless
 
 LARGE = 10
 """From this alpha_hat or beta_hat on, 1/s was probably meant: as alpha_hat it leaves e^-5 of an error after a step."""
@@ -50,7 +50,8 @@ class Question:
     `h_max` (s) a choice is for all steps up to it. With `h_min` (s) errors must also decay for every sequence of steps
     from h_min to h_max: alpha and beta stay the same while steps vary; with `hold` alpha_hat and beta_hat do.
     The motion has a rate `omega` (1/s) or `omega_h` (rad a step), or is that of a `scene`, `speed` times as fast as
-    given there. Safe then means: safe while the scene moves. `spread` is the share by which alpha and beta may be off.
+    given there. Safe then means: safe while the scene moves. Where the most accurate feedback follows the motion,
+    `omega` is enough, and h is what makes OMEGA_H of it. `spread` is the share by which alpha and beta may be off.
     `settle` (s) is the time in which errors fall to a thousandth. `equal` keeps alpha = beta. `as_typed` leaves out an
     engine's clamps. With a `chain` of so many bodies, the last `mass_ratio` times as heavy as each other one (None: 1),
     or a scene of several constraints, safe also means: stable while the engine sweeps over them, `iterations` times in
@@ -90,12 +91,16 @@ class Question:
         else:
             self._check_goal(self.goal)
             object.__setattr__(self, "chain", self.chain_to_choose_for)
+            if self.h is None and self.omega and all(map(follows_motion, self.methods)):
+                object.__setattr__(self, "h", OMEGA_H / self.omega)
         check_speed(self.scene, self.speed)
         check_sweeps(self.chain, self.mass_ratio, self.iterations, self.engine, self.scene, self.speed)
         object.__setattr__(self, "methods", methods_for(self.methods, self.engine, self.drive))
         if self.steps:
             for method in self.methods:
                 check_one_step(method)
+        if self.goal == "accurate" and self.settle is None:
+            self.check_motion()
 
     def _check_given(self) -> None:
         """Raise InputError unless a point is given in one way, with the step that this way needs."""
@@ -141,6 +146,18 @@ class Question:
             raise InputError(
                 f"--h-max and --h-min: what {self.engine.name} makes of its values at other steps is told by "
                 "`check --engine`"
+            )
+
+    def check_motion(self) -> None:
+        """Raise InputError if the most accurate feedback of a method follows a motion whose rate is not known."""
+        if not self.motion.assumed:
+            return
+        for method in filter(follows_motion, self.methods):
+            chosen = choose(method, "accurate", spread=self.spread, equal=self.equal, margins=False)
+            alpha, beta = from_dimensionless(chosen.alpha_hat, chosen.beta_hat, float(OMEGA_H))
+            raise InputError(
+                f"{method.name}: α = {alpha:.2g} ω, β = {beta:.2g} ω, ω the rate of your motion in rad/s: give --omega "
+                "or --scene; --goal robust needs neither"
             )
 
     @cached_property

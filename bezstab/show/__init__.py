@@ -46,6 +46,7 @@ from bezstab.show.row_kinds import (
     REGIONS,
     ROW_KINDS,
     SIMULATIONS,
+    STEPS_OF_CHOICES,
     SUMMARIES,
     SWEPT,
     VERDICT_MAPS,

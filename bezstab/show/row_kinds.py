@@ -24,6 +24,7 @@ from bezstab.show.fields import Field, RowKind, column, integer, number, text, t
 from bezstab.show.sentences import (
     answer_sentence,
     chain_sentence,
+    chosen_step_sentence,
     held_sentence,
     measurement_sentence,
     method_sentence,
@@ -41,6 +42,7 @@ UNSTABLE = "where the point is not stable"
 NOT_MEASURED = "where nothing could be measured; `reason` says why"
 LEVEL_ROW = "in the row of a level below 1, which is of the mechanism at rest"
 NO_ERROR = "where errors do not decay, or it is not known"
+NOT_COMPARED = "where errors do not decay, or it is not known, or that point is not; in `check` without a rate, too"
 NO_CHOICE = "where no feedback decays so fast"
 NO_BEST = "where there is no best point; `best_reason` says why"
 NO_SWEEPS = "where the engine does not sweep, or it is not known how"
@@ -155,6 +157,11 @@ OMEGA_H = number(
     unit="rad",
     path="question.motion.omega_h",
 )
+OMEGA_ASSUMED = truth(
+    "omega_assumed",
+    "Whether that angle is assumed, as neither a rate nor a scene was given",
+    path="question.motion.assumed",
+)
 FORCED_ERROR = number(
     "forced_error",
     "Constraint error that the method forces on that motion in the steady state, as a share of its amplitude",
@@ -189,7 +196,7 @@ TIMES_LEAST = number(
     "Total error over that at the point of the goal accurate, which weighs velocities as well",
     "× least",
     times_words,
-    null="where errors do not decay, or it is not known, or that point is not",
+    null=NOT_COMPARED,
     path="cost.times_least",
 )
 TIMES_LEAST_VELOCITY = number(
@@ -197,7 +204,7 @@ TIMES_LEAST_VELOCITY = number(
     "Velocity error over that at the same point",
     "× least of velocity",
     times_words,
-    null="where errors do not decay, or it is not known, or that point is not",
+    null=NOT_COMPARED,
     path="cost.times_least_velocity",
 )
 ROLE = text("role", "Whether the point was given, or is what to take instead", values_of="questions.CheckedRole")
@@ -793,6 +800,7 @@ CHOICES = RowKind(
             path="margins.beta.1",
         ),
         OMEGA_H,
+        OMEGA_ASSUMED,
         FORCED_ERROR,
         TOTAL_ERROR,
         VELOCITY_ERROR,
@@ -811,17 +819,22 @@ CHECKED = RowKind(
     sometimes=("excludes",),
     sentence=answer_sentence,
 )
-# printed by `check --physical` without --h
-LARGEST_STEPS = RowKind(
-    "the largest step of alpha and beta, without a step",
+# printed by `choose --omega` without --h
+STEPS_OF_CHOICES = RowKind(
+    "a choice whose alpha and beta do not depend on the step",
     fields=(
-        ROLE,
         METHOD,
         ALPHA,
         BETA,
         SAFE,
         H_LIMIT.shown("stable for constant h (s) to", text=safe_step_text),
     ),
+    sentence=chosen_step_sentence,
+)
+# printed by `check --physical` without --h
+LARGEST_STEPS = RowKind(
+    "the largest step of alpha and beta, without a step",
+    fields=(ROLE, *STEPS_OF_CHOICES.fields),
     sentence=step_sentence,
 )
 # printed by `lint`
@@ -1333,7 +1346,7 @@ ROW_KINDS: Mapping[str, Sequence[RowKind]] = {
         NAMED_METHODS,
     ),
     "family": (MEMBERS,),
-    "choose": (CHOICES, HELD),
+    "choose": (CHOICES, STEPS_OF_CHOICES, HELD),
     "check": (
         CHECKED,
         LARGEST_STEPS,

@@ -42,7 +42,8 @@ from bezstab.units import alpha_and_beta
 EXCLUDED_SHOWN = 5
 """Methods that do not fit and are shown where people read, the nearest; rows for programs have all."""
 
-WITHOUT_ACCURACY = ("total_error", "velocity_error", "order_left", "times_least", "times_least_velocity")
+OF_A_MOTION = ("total_error", "velocity_error", "times_least", "times_least_velocity")
+WITHOUT_ACCURACY = (*OF_A_MOTION, "order_left")
 """Columns that tables of a drive omit: nothing feeds the acceleration of its target forward."""
 
 OF_ONE_ALONE = (
@@ -224,7 +225,9 @@ def pole_rows(answer: Answer, poles: Iterable[complex]) -> list[Row]:
 
 def left_out(question: Question) -> tuple[str, ...]:
     """Return the keys that tables of a question leave out."""
-    return (*(WITHOUT_ACCURACY if question.drive else ()), *(OF_ONE_ALONE if question.swept else ()))
+    assumed = not question.goal and question.motion.assumed
+    unknown = WITHOUT_ACCURACY if question.drive else OF_A_MOTION if assumed else ()
+    return (*unknown, *(OF_ONE_ALONE if question.swept else ()))
 
 
 def _added_cells(answer: Answer, *of_engine: Field) -> dict[str, Value]:

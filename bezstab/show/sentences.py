@@ -6,6 +6,16 @@ from bezstab.show.words import change_words, counted, growth_words, safety_words
 
 
 def answer_sentence(row: Row) -> str:
+    """Return what there is to say of a point, and which motion was assumed if it was chosen for one."""
+    sentence = point_sentence(row)
+    if row["goal"] != "accurate" or not row["omega_assumed"]:
+        return sentence
+    turn = f"ωh = {row['omega_h']:g}"
+    motion = f"with {turn}" if row["h"] is None else f"of {row['omega_h'] / row['h']:.3g} rad/s ({turn})"
+    return f"{sentence} Without --omega a motion {motion} is assumed."
+
+
+def point_sentence(row: Row) -> str:
     """Return whether a point is safe, what a step does to the error, and how far step, α and β may grow, at rest."""
     if not row["safe"] or "swept_z_abs" in row:
         return safety_words(row)
@@ -27,6 +37,11 @@ def step_sentence(row: Row) -> str:
     if limit == "none":
         return "Not safe at small steps."
     return "Safe at any h." if limit == "unlimited" else f"Safe up to h = {limit} s."
+
+
+def chosen_step_sentence(row: Row) -> str:
+    """Return alpha and beta of a choice that does not depend on the step, and up to which step they are safe."""
+    return f"α = {row['alpha']:.3g} 1/s, β = {row['beta']:.3g} 1/s at any step. {step_sentence(row)}"
 
 
 CAUSES = {

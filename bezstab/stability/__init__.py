@@ -15,7 +15,7 @@ from bezstab.stability.choices import Choice, choose, describe_point, gain_facto
 from bezstab.stability.closed_loop import QUALITY, dominant_pole, pole_map, poles, spectral_radius, verdict
 from bezstab.stability.error_fronts import RATES, FrontPoint, error_front
 from bezstab.stability.far_limits import FarLimit
-from bezstab.stability.feedback_costs import FeedbackCost, feedback_cost, order_left
+from bezstab.stability.feedback_costs import FeedbackCost, feedback_cost, follows_motion, order_left
 from bezstab.stability.forced_errors import (
     LARGEST_OMEGA_H,
     OMEGA_H,

@@ -28,6 +28,7 @@ from bezstab.stability.root_finding import TOLD
 from bezstab.stability.searches import checked, lowest_minima
 
 SCOUTS = 64  # of the points one in so many is looked at first, for a value that the others must be below
+USUAL_SPREAD = 0.1  # the share by which alpha and beta may be off
 THOUSANDFOLD = 1e-3  # what "settled" means for the constraint error
 
 FIRST_GRID = 52  # points per axis of the first grid over the region's box: every valley is seen
@@ -104,7 +105,7 @@ def choose(
     h: Fraction | None = None,
     h_max: Fraction | None = None,
     settle: Fraction | None = None,
-    spread: float = 0.1,
+    spread: float = USUAL_SPREAD,
     equal: bool = False,
     modulus: Modulus | None = None,
     along: Curve | None = None,
@@ -226,7 +227,7 @@ def describe_point(
     goal: str,
     alpha_hat: Fraction,
     beta_hat: Fraction,
-    spread: float = 0.1,
+    spread: float = USUAL_SPREAD,
     margins: bool = True,
 ) -> Choice:
     """Return what there is to say of an exact, dimensionless point; `goal` is only kept.

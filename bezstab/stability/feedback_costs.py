@@ -9,9 +9,16 @@ import numpy as np
 from bezstab.errors import InputError, NumericalError
 from bezstab.methods import Method, accuracy, leading_error
 from bezstab.rationals import exact
-from bezstab.stability.choices import choose
+from bezstab.stability.accurate_points import DECAY
+from bezstab.stability.choices import USUAL_SPREAD, choose
 from bezstab.stability.closed_loop import converges
 from bezstab.stability.forced_errors import OMEGA_H, check_omega_h, forced_error
+
+LEAST_DAMPING = DECAY / (1 - USUAL_SPREAD)
+"""alpha over omega: with less, and off by the spread, errors that swing do not settle as the goal accurate demands."""
+
+HARDLY_MORE = 1.1
+"""Times that: at OMEGA_H the built-in methods that take the least have 1.001, the next (AB8) has 2.7."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -42,16 +49,22 @@ class FeedbackCost:
 
 
 def feedback_cost(
-    method: Method, alpha_hat: float | Fraction, beta_hat: float | Fraction, omega_h: Fraction = OMEGA_H
+    method: Method,
+    alpha_hat: float | Fraction,
+    beta_hat: float | Fraction,
+    omega_h: Fraction = OMEGA_H,
+    *,
+    least: bool = True,
 ) -> FeedbackCost:
     """Return what accuracy a feedback costs on a motion of omega_h rad a step; InputError unless 1e-6 <= omega_h < 1.
 
-    InputError, too, where what the method forces would take too long to find (methods/steady_errors.py, the source);
-    the goal accurate is this package's.
+    Without `least` it is not compared with the point of the goal accurate, which takes most of the time. InputError,
+    too, where what the method forces would take too long to find (methods/steady_errors.py, the source); the goal
+    accurate is this package's.
     """
     order, _ = accuracy(method)
     position, total, velocity = _shares(method, alpha_hat, beta_hat, omega_h)
-    least_at = _least_at(method, omega_h)
+    least_at = _least_at(method, omega_h) if least else None
     _, least_total, least_velocity = _shares(method, *least_at, omega_h) if least_at else (None, None, None)
     return FeedbackCost(
         omega_h=float(omega_h),
@@ -64,6 +77,15 @@ def feedback_cost(
         times_least_velocity=_times(velocity, least_velocity),
         least_at=least_at,
     )
+
+
+def follows_motion(method: Method) -> bool:
+    """Return whether the goal accurate takes the least damping that settles: so alpha and beta are multiples of omega.
+
+    Stronger feedback would force larger errors, at any step. Of other methods alpha and beta follow the step.
+    """
+    least_at = _least_at(method, OMEGA_H)
+    return least_at is not None and least_at[0] / 2 <= HARDLY_MORE * LEAST_DAMPING * OMEGA_H
 
 
 def order_left(method: Method) -> int:

@@ -1,13 +1,17 @@
 """Answers: what is asked of them is found then, and agrees with the function that finds it."""
 
 from fractions import Fraction
+from functools import partial
 from math import inf
+from typing import Any
 
 import pytest
 
 from bezstab.engines import ENGINES, Drive
+from bezstab.errors import InputError
 from bezstab.methods import lookup
 from bezstab.questions import Answer, LargestStep, Question, answers
+from bezstab.rationals import exact
 from bezstab.stability import choose, describe_point, feedback_cost
 
 SYM = (lookup("SYM"),)
@@ -23,7 +27,7 @@ def test_an_answer_has_what_a_description_of_its_point_has() -> None:
     for name in ("verdict", "pole", "worst", "margins", "settle_steps"):
         assert getattr(answer, name) == getattr(described, name)
     assert (answer.role, answer.point, answer.safe) == ("given", POINT, True)
-    assert answer.cost == feedback_cost(SYM[0], *POINT)
+    assert answer.cost == feedback_cost(SYM[0], *POINT, least=False)
     assert (answer.moving, answer.varying, answer.gains, answer.setting) == (None, None, None, None)
 
 
@@ -87,8 +91,59 @@ def test_gains_reach_the_edge_of_what_is_stable(
     assert found.used_up == used_up
 
 
+def test_a_given_point_is_compared_with_the_least_error_where_the_motion_is_known() -> None:
+    """alpha = beta = 20 1/s, which is 270 times the least on a motion that nobody asked about."""
+    asked = partial(Question, methods=(lookup("RK4"),), point=(Fraction("0.4"), Fraction("0.04")), h=Fraction("0.01"))
+    told = first(asked())
+    assert told.cost
+    assert (told.cost.times_least, told.cost.times_least_velocity, told.cost.least_at) == (None, None, None)
+    rates: list[dict[str, Any]] = [{"omega": Fraction(10)}, {"omega_h": Fraction("0.1")}]
+    for known in rates:
+        compared = first(asked(**known)).cost
+        assert compared
+        assert compared.times_least == pytest.approx(4.9, rel=0.01)
+    assert first(asked(scene="slider_crank")).compared
+
+
+RK4 = (lookup("RK4"),)
+ASKED = r"RK4: α = 0\.56 ω, β = 0\.83 ω, ω the rate of your motion in rad/s: give --omega or --scene"
+
+
+def test_a_choice_that_follows_the_motion_asks_for_its_rate() -> None:
+    h = Fraction("0.05")
+    wanting: list[dict[str, Any]] = [{}, {"h": h}, {"h": h, "h_max": 2 * h}]
+    for asked in wanting:
+        with pytest.raises(InputError, match=ASKED):
+            Question(methods=RK4, goal="accurate", **asked)
+    with pytest.raises(InputError, match=ASKED):
+        Question(methods=(*SYM, *RK4), goal="accurate", h=h)
+    with pytest.raises(InputError, match=ASKED):
+        _ = first(Question(methods=RK4, point=POINT, h=h)).instead
+    enough: list[dict[str, Any]] = [
+        {"omega": Fraction(1)},
+        {"omega_h": Fraction("0.01")},
+        {"settle": Fraction(2)},
+        {"goal": "robust"},
+    ]
+    for known in enough:
+        assert first(Question(**{"methods": RK4, "goal": "accurate", "h": h, **known})).safe
+    assert first(Question(methods=SYM, goal="accurate", h=h)).question.motion.assumed
+
+
+def test_the_rate_of_a_motion_alone_gives_alpha_and_beta_and_how_large_the_step_may_be() -> None:
+    chosen = first(Question(methods=RK4, goal="accurate", omega=Fraction(10)))
+    at_a_step = first(Question(methods=RK4, goal="accurate", omega=Fraction(10), h=Fraction(1, 500)))
+    assert (chosen.alpha, chosen.beta) == pytest.approx((at_a_step.alpha, at_a_step.beta), rel=1e-3)
+    assert (chosen.alpha, chosen.beta) == pytest.approx((5.56, 8.28), rel=1e-3)
+    assert chosen.alpha
+    assert chosen.beta
+    assert chosen.h_limit == pytest.approx(LargestStep(RK4[0], exact(chosen.alpha), exact(chosen.beta)).h_limit)
+    with pytest.raises(InputError, match="--omega needs --h"):
+        Question(methods=SYM, goal="accurate", omega=Fraction(10))
+
+
 def test_faster_decay_costs_and_slower_decay_gains() -> None:
-    chosen = first(Question(methods=(lookup("RK4"),), goal="accurate", h=Fraction("0.002")))
+    chosen = first(Question(methods=(lookup("RK4"),), goal="accurate", h=Fraction("0.002"), omega=Fraction(5)))
     assert chosen.faster
     assert abs(chosen.faster.pole) < abs(chosen.pole)
     assert chosen.slower

@@ -130,4 +130,9 @@ def test_tables_of_rows_leave_out_times_and_say_what_is_missing_by_its_kind() ->
 def test_a_table_of_a_drive_leaves_out_accuracy() -> None:
     drive = Drive(Fraction(200), Fraction(5), Fraction("0.1"))
     assert "total_error" in left_out(Question(drive=drive, h=Fraction(1, 500)))
-    assert not left_out(ANSWER.question)
+    assert "order_left" not in left_out(ANSWER.question)
+
+
+def test_a_table_of_a_given_point_leaves_out_errors_on_a_motion_that_nobody_gave() -> None:
+    assert "times_least" in left_out(ANSWER.question)
+    assert not left_out(replace(ANSWER.question, omega_h=Fraction(1, 50)))

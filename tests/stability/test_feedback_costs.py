@@ -5,8 +5,8 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from bezstab.methods import lookup
-from bezstab.stability import choose, feedback_cost
+from bezstab.methods import REGISTRY, lookup
+from bezstab.stability import choose, feedback_cost, follows_motion
 
 
 @pytest.mark.parametrize(("name", "left", "order"), [("RK4", 2, 4), ("dopri5", 2, 5), ("B4", 2, 2), ("AB4", 4, 4)])
@@ -24,6 +24,26 @@ def test_at_the_goal_accurate_it_is_once_the_least_and_at_robust_thousands_of_ti
     times = feedback_cost(method, robust.alpha_hat, robust.beta_hat, omega_h).times_least
     assert times is not None
     assert times > 1000
+
+
+FOLLOWING = (*("RK3", "RK4", "ssprk3", "bs3", "dopri5", "tsit5", "cash-karp", "rkn4"), *("dirk3", "radau5", "gauss4"))
+"""Explicit methods with stages, of order three and more, and implicit ones whose velocities strong feedback spoils."""
+
+
+@pytest.mark.slow_except("RK3", "RK4", "RK2", "AB4", "SYM", "gauss4", "sdirk2")
+@pytest.mark.parametrize("name", REGISTRY)
+def test_which_methods_take_the_least_damping_that_settles(name: str) -> None:
+    """Then alpha and beta are the same multiples of the motion's rate, however fast it is for the step."""
+    method = lookup(name)
+    assert follows_motion(method) is (name in FOLLOWING)
+    if follows_motion(method):
+        slow, fast = (
+            (chosen.alpha_hat / 2 / rate, chosen.beta_hat**0.5 / rate)
+            for rate in (0.01, 0.05)
+            for chosen in [choose(method, omega_h=Fraction(str(rate)), margins=False)]
+        )
+        assert fast == pytest.approx(slow, rel=0.05)
+        assert slow[0] == pytest.approx(0.5 / 0.9, rel=1e-3)  # e^(-1/2) in a radian, with a tenth less than that
 
 
 @pytest.mark.parametrize("point", [(10.0, 10.0), (1.0, 2.0), (1.0, 0.0)])  # diverges; marginal twice
