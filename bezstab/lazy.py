@@ -9,6 +9,7 @@ A package names them once, in imports that only tools which read, instead of run
 """
 
 import importlib
+import sys
 from collections.abc import Callable, Mapping
 from functools import cache
 
@@ -33,14 +34,18 @@ def lazy_names(package: str) -> Callable[[str], object]:
 
 @cache
 def imported_for_types(package: str) -> Mapping[str, str]:
-    """Return each name that a package imports under TYPE_CHECKING, with the module that has it."""
-    import ast  # which nobody needs who uses none of these names
-    import pkgutil
+    """Return each name that a package imports from another module, under TYPE_CHECKING or at once, with that module.
 
-    homes: dict[str, str] = {}
-    for node in ast.parse(pkgutil.get_data(package, "__init__.py") or b"").body:
-        if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING":
-            for each in node.body:
-                if isinstance(each, ast.ImportFrom) and each.module:
-                    homes |= {alias.name: each.module for alias in each.names}
+    It is looked up in the compiled package: there may be no source.
+    """
+    import dis  # which nobody needs who uses none of these names
+    from typing import Any
+
+    loader: Any = sys.modules[package].__loader__
+    home, homes = "", {}
+    for each in dis.get_instructions(loader.get_code(package)):
+        if each.opname == "IMPORT_NAME":
+            home = each.argval
+        elif each.opname == "IMPORT_FROM":
+            homes[each.argval] = home
     return homes

@@ -102,7 +102,7 @@ def _kept_file(made_of: object) -> Path:
     from importlib.metadata import version
 
     # every file of this room, so that no number that one of them lends can be forgotten, and the options of numba
-    room = sorted(Path(__file__).parent.glob("*.py"))
+    room = sorted(Path(__file__).parent.glob("*.py*"))
     made_from = [file.read_bytes() for file in (*room, Path(compiling.__file__), Path(stabilising.__file__))]
     made_from += [repr(each).encode() for each in (made_of, sys.version, version("numba"), version("llvmlite"))]
     name = hashlib.sha256(b"\0".join(made_from)).hexdigest()
