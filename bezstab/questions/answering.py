@@ -22,7 +22,7 @@ from bezstab.goals import UP_TO_LONGEST, Goal
 from bezstab.methods import Method
 from bezstab.questions.chains import ALONE, SweptAnswer
 from bezstab.questions.question import Question, usual_goal
-from bezstab.rationals import rational
+from bezstab.rationals import rational, typed_number
 from bezstab.stability import (
     Choice,
     FeedbackCost,
@@ -41,6 +41,9 @@ from bezstab.units import alpha_and_beta
 CheckedRole = Literal["given", "instead"]
 Role = Literal[CheckedRole, "chosen"]
 """A point was given, or is to be taken instead of a given one, or was chosen by a goal."""
+
+SHORTER = (2, 4)
+"""A step may be so many times as short for a choice that is not safe: a mechanism then turns less in a step."""
 
 SLOWER = 2
 """Slower decay takes this many times as long to settle."""
@@ -256,11 +259,26 @@ class Answer(Choice):
     @cached_property
     def faster(self) -> "Answer | None":
         """The choice of robust, else of fastest, that decays faster than this one; None if neither does."""
-        goals: tuple[Goal, ...] = ("robust", "fastest")
-        for goal in goals:
-            found = self._alternative(goal)
-            if found and abs(found.pole) < abs(self.pole):
-                return found
+        if self._robust and abs(self._robust.pole) < abs(self.pole):
+            return self._robust
+        fastest = self._alternative("fastest")
+        return fastest if fastest and abs(fastest.pole) < abs(self.pole) else None
+
+    @cached_property
+    def safe_with(self) -> str | None:
+        """The option with which a choice is safe that is not: --goal robust, else a shorter step; None if neither."""
+        if self.safe or self.role == "given":
+            return None
+        if self.goal != "robust" and self._robust and self._robust.safe:
+            return "--goal robust"
+        question = self.question
+        if question.scene is None or question.h is None or question.h_min or question.h_max or question.engine:
+            return None
+        for share in SHORTER:
+            shorter = replace(question, h=question.h / share)
+            found = self._alternative(cast(Goal, self.goal), question.settle, shorter)
+            if found and found.safe:
+                return f"--h {typed_number(question.h / share)}"
         return None
 
     @property
@@ -283,10 +301,16 @@ class Answer(Choice):
             return there.total_error / here.total_error, there.velocity_error / here.velocity_error
         return None
 
-    def _alternative(self, goal: Goal, settle: Fraction | None = None) -> "Answer | None":
+    @cached_property
+    def _robust(self) -> "Answer | None":
+        return self._alternative("robust")
+
+    def _alternative(
+        self, goal: Goal, settle: Fraction | None = None, question: Question | None = None
+    ) -> "Answer | None":
         """Return another choice; None if there is none or it cannot be found: this answer does not need it."""
         try:
-            return _chosen(self.question, "chosen", self.method, goal, settle, margins=False)
+            return _chosen(question or self.question, "chosen", self.method, goal, settle, margins=False)
         except (InputError, NumericalError):
             return None
 

@@ -799,6 +799,11 @@ CHOICES = RowKind(
             null="where the point is not stable, or any",
             path="margins.beta.1",
         ),
+        text(
+            "safe_with",
+            "The option with which a choice is safe that is not",
+            null="where it is safe, a point was given, or neither --goal robust nor a shorter step was found safe",
+        ),
         OMEGA_H,
         OMEGA_ASSUMED,
         FORCED_ERROR,

@@ -8,6 +8,8 @@ from bezstab.show.words import change_words, counted, growth_words, safety_words
 def answer_sentence(row: Row) -> str:
     """Return what there is to say of a point, and which motion was assumed if it was chosen for one."""
     sentence = point_sentence(row)
+    if row["safe_with"]:
+        sentence += f" With {row['safe_with']} it is safe."
     if row["goal"] != "accurate" or not row["omega_assumed"]:
         return sentence
     turn = f"ωh = {row['omega_h']:g}"

@@ -142,6 +142,28 @@ def test_the_rate_of_a_motion_alone_gives_alpha_and_beta_and_how_large_the_step_
         Question(methods=SYM, goal="accurate", omega=Fraction(10))
 
 
+UNSAFE_CHOICES: dict[str, tuple[dict[str, Any], str]] = {
+    "the step": ({"methods": SYM, "goal": "accurate", "h": Fraction("0.01"), "scene": "four_bar"}, "--h 0.005"),
+    "the goal": (
+        {"methods": (lookup("AB4"),), "goal": "fastest", "h": Fraction("0.01"), "scene": "driven_four_bar"},
+        "--goal robust",
+    ),
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("what", UNSAFE_CHOICES)
+def test_a_choice_that_is_not_safe_says_with_what_it_is(what: str) -> None:
+    asked, option = UNSAFE_CHOICES[what]
+    chosen = first(Question(**asked))
+    assert (chosen.safe, chosen.safe_with) == (False, option)
+    name, value = option.removeprefix("--").split()
+    taken = first(Question(**{**asked, name: Fraction(value) if name == "h" else value}))
+    assert (taken.safe, taken.safe_with) == (True, None)
+    robust = first(Question(**{**asked, "goal": "robust"}))
+    assert robust.safe is (name == "goal")
+
+
 def test_faster_decay_costs_and_slower_decay_gains() -> None:
     chosen = first(Question(methods=(lookup("RK4"),), goal="accurate", h=Fraction("0.002"), omega=Fraction(5)))
     assert chosen.faster
