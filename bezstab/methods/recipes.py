@@ -129,18 +129,26 @@ class _Reader:
 
     def combination(self) -> Combination:
         """Return a sum of numbers times quantities; none is zero."""
-        value = self.sum()
-        coefficients = {quantity: value.coeff(symbol) for symbol, quantity in self.quantities.items()}
-        if sp.expand(value - sum(c * symbol for symbol, c in zip(self.quantities, coefficients.values(), strict=True))):
-            raise InputError(f"{shown(self.text)}: expected a sum of numbers times quantities")
-        return tuple((_in_decimals(c), quantity) for quantity, c in coefficients.items() if c)
+        value = sp.expand(self.sum())
+        coefficients: dict[sp.Symbol, sp.Expr] = {}
+        for term in sp.Add.make_args(value) if value else ():
+            symbol = next(iter(term.free_symbols), sp.S.One)
+            number = term / symbol
+            if symbol == 1 or number.free_symbols:
+                raise InputError(f"{shown(self.text)}: expected a sum of numbers times quantities")
+            coefficients[symbol] = coefficients.get(symbol, 0) + number
+        return tuple(
+            (_in_decimals(coefficients[symbol]), quantity)
+            for symbol, quantity in self.quantities.items()
+            if symbol in coefficients
+        )
 
     def sum(self) -> sp.Expr:
         """Return a sum of products."""
-        total = -self.product() if self.take("+", "-") == "-" else self.product()
+        products = [-self.product() if self.take("+", "-") == "-" else self.product()]
         while sign := self.take("+", "-"):
-            total += self.product() if sign == "+" else -self.product()
-        return total
+            products.append(self.product() if sign == "+" else -self.product())
+        return sp.Add(*products)  # at once: one after another, sums of a hundred would take seconds
 
     def product(self) -> sp.Expr:
         """Return a product of factors, or a quotient, taken from left to right, multiplied out."""

@@ -1,5 +1,6 @@
 """Recipes as text: a linear grammar, exact, and one line with equation and word for everything else."""
 
+import cProfile
 from fractions import Fraction
 
 import pytest
@@ -86,3 +87,17 @@ def test_any_text_is_a_scheme_or_one_short_line(result: str, text: str) -> None:
         assert len(message.splitlines()) <= 1
         assert len(message) < 300
         assert message.isprintable()
+
+
+def test_four_times_as_long_a_sum_takes_four_times_as_many_calls() -> None:
+    """Not sixteen times, as adding one term after another does: forty sums of seventy terms took seconds to refuse."""
+
+    def calls(terms: int) -> int:
+        text = " + ".join(f"{terms}{number} q{terms}{number}" for number in range(terms))
+        profile = cProfile.Profile()
+        with profile, pytest.raises(InputError, match="no equation gives x1"):
+            recipe({f"w{terms}": text})
+        return sum(each.callcount for each in profile.getstats())
+
+    calls(4)  # loads modules
+    assert calls(120) < 6 * calls(30)
