@@ -21,6 +21,7 @@ entry of C_q in row 1 and column 2; two_alpha and beta_squared, the gains. The t
 and these names; least of all the names that a user gave to bodies.
 """
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -241,6 +242,39 @@ def state_function(mechanism: Mechanism, name: str, library: Any) -> StateFuncti
     given = [f"given[{place}]" for place in range(len(code.given))]
     results = ", ".join(map(str, (*code.results, *code.pivots)))
     function: StateFunction = compiled_source(source(code, "found(given)", given, [f"return ({results},)"]), library)
+    return function
+
+
+LaneFunction = Callable[[float, NDArray[Any], NDArray[Any], NDArray[Any]], tuple[NDArray[Any], float]]
+"""A function of t (s), gains (2, lanes), q and v (n, lanes), of runs side by side; SI units.
+
+It returns its values, (values, lanes), and of a run alone the least relative pivot of S, else 1.
+"""
+
+
+def lane_function(mechanism: Mechanism, name: str) -> LaneFunction:
+    """Return the function of that name for runs side by side, of floats or complex numbers.
+
+    What Python refuses to compute of a run alone is infinite, or no number, as with arrays.
+    """
+    of_numbers, of_arrays = (state_function(mechanism, name, library) for library in (math, np))
+    count = len(mechanism.constraints)
+
+    def function(t: float, gains: NDArray[Any], q: NDArray[Any], v: NDArray[Any]) -> tuple[NDArray[Any], float]:
+        lanes, kind = q.shape[1], np.result_type(gains, q, v)
+        if lanes == 1 and kind == np.float64:  # of few numbers arrays are slower
+            given = [t, *gains[:, 0].tolist(), *q[:, 0].tolist(), *v[:, 0].tolist()]
+            try:
+                found = of_numbers(given)
+            except (ArithmeticError, ValueError):
+                found = of_arrays(list(np.array(given)))
+            return np.array(found[:-count])[:, np.newaxis], float(min(1.0, *found[-count:]))
+        found = of_arrays([t, *gains, *q, *v])
+        values = np.empty((len(found) - count, lanes), kind)
+        for into, value in zip(values, found, strict=False):
+            into[:] = value
+        return values, 1.0
+
     return function
 
 

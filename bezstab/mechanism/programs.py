@@ -74,6 +74,11 @@ class Program(NamedTuple):
     after: AfterStep
 
     @property
+    def registers(self) -> int:
+        """How many quantities are carried, found and combined."""
+        return int(self.table.shape[1]) + len(self.table) - 2 * len(self.moments)
+
+    @property
     def implicit(self) -> bool:
         """Whether there are equations to solve."""
         return bool(self.groups[:, 2].any())
