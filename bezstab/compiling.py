@@ -9,9 +9,6 @@ from bezstab.errors import InputError
 COMPILED_CHOICE = "BEZSTAB_COMPILED"
 """The environment variable that says whether runs are compiled: auto (also if it is not set), yes or no."""
 
-INNER = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
-"""Options for functions that machine code alone calls: what Python needs to call one takes as long to compile again."""
-
 
 def compiled_choice() -> str:
     """Return auto, yes or no; InputError for anything else."""

@@ -219,7 +219,8 @@ OPTIONS = {
     "compiled": option(
         "--compiled",
         click.Choice(["auto", "yes", "no"]),
-        "Compile runs with numba. auto: if numba is installed and compiling saves time.",
+        "Compile runs of explicit methods without projection, with numba. auto: if numba is installed and compiling "
+        "saves time.",
         default="auto",
         envvar=COMPILED_CHOICE,
         expose_value=False,

@@ -1,6 +1,6 @@
 r"""The exact rate of a moving mechanism: the discrete step's own linearisation, multiplied over a motion.
 
-Over a revolution of N steps, each of which takes small changes by a matrix M_k (`mechanism.linearized`),
+Over a revolution of N steps, each of which takes small changes by a matrix M_k,
 
     change after = Q change before,      Q = M_{N-1} ... M_1 M_0,      |z| = (largest |eigenvalue| of Q)^(1/N):
 
@@ -36,12 +36,13 @@ from bezstab.mechanism import (
     Mechanism,
     Memory,
     Motion,
-    StepsTaken,
-    changes_handed_on,
+    Stepper,
     constraint_jacobian,
+    lane_function,
+    linearized_step,
     memory,
+    program_of,
     regular_motion,
-    steps_taken,
 )
 from bezstab.methods import Method
 from bezstab.stability import BoolArray, FloatArray
@@ -88,6 +89,13 @@ class SteppedMotion:
         q = q + np.multiply.outer(turns, self.whole_turn)
         by_q, by_v, by_a = np.array(self.memory.shares, float).T[:, :, np.newaxis]
         return np.asarray(by_q * q + by_v * self.step * v + by_a * self.step**2 * a)
+
+
+class StepsTaken(NamedTuple):
+    """Steps side by side (h = 1): what each hands on to the next, (points, quantities, n), its new state."""
+
+    handed_on: FloatArray
+    states: FloatArray
 
 
 class Changed(NamedTuple):
@@ -171,14 +179,20 @@ def _changed(
 
     A run goes on from `first`, (points, quantities, n); without it each step starts on the motion of the mechanism.
     """
-    mechanism, method, step = stepped.mechanism, stepped.method, stepped.step
+    step, program = stepped.step, program_of(stepped.method.scheme.second_order)
+    function = lane_function(stepped.mechanism, "accelerations")
     log_scale, start = np.zeros(len(changes)), first
     for k, along in enumerate(stepped.starts[:-1]):
         if start is None or first is None:
             start = np.repeat(along[np.newaxis], len(changes), axis=0)
-        taken = steps_taken(mechanism, method, step, k * step, gains, start)
-        start = taken.handed_on
-        changes = changes_handed_on(method, taken.jacobians, changes)
+        by_lane = np.moveaxis(start, 0, -1)
+        stepper = Stepper(program, by_lane, step, function)
+        with np.errstate(all="ignore"):
+            state = stepper.step(k * step, step, gains)
+            state[1] *= step
+            of_lanes = linearized_step(program, function, k * step, step, gains, by_lane, np.moveaxis(changes, 0, 2))
+        start, changes = np.moveaxis(stepper.carried, -1, 0).copy(), np.moveaxis(of_lanes, 2, 0)
+        taken = StepsTaken(start, np.moveaxis(state, -1, 0))
         largest = np.abs(changes).max(axis=(1, 2, 3))
         largest[largest == 0] = 1
         changes = changes / largest[:, np.newaxis, np.newaxis, np.newaxis]

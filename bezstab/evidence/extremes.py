@@ -28,7 +28,7 @@ from bezstab.mechanism import (
     simulate,
     state_function,
 )
-from bezstab.methods import LinearMultistep, Method, evaluations, lookup, rho_and_sigma, steps
+from bezstab.methods import LinearMultistep, Method, lookup, rho_and_sigma, steps
 from bezstab.stability import critical_damping_limit, poles
 from bezstab.units import feedback_gains
 
@@ -167,7 +167,7 @@ def _long_run(name: str, count: int, stabilized: bool) -> Check:
     """Over millions of steps c does not grow with feedback, and does without."""
     mechanism, method = compiled_mechanism(load_scene("slider_crank")), lookup(name)
     gains = feedback_gains(*POINT, H) if stabilized else (0.0, 0.0)
-    start, compiled = np.concatenate(initial_state(mechanism)), runs_compiled(count * evaluations(method))
+    start, compiled = np.concatenate(initial_state(mechanism)), runs_compiled(method, count)
     every_step = even_steps(H, count, gains)
     blocks = march(mechanism, method, every_step, start, compiled=compiled)  # whose states need not be kept
     positions = (block.states[:, : mechanism.size].T for block in blocks)

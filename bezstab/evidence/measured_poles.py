@@ -26,7 +26,7 @@ from bezstab.evidence.kicks import AT_ONCE, GROWN, LINEAR, kicked_motions, throw
 from bezstab.evidence.linear_prediction import NEGLIGIBLE, SAMPLES, SPREAD, fit_dominant_pole
 from bezstab.evidence.moving_mechanisms import MovingPole, moving_poles
 from bezstab.mechanism import Mechanism, runs_compiled, turning_normals
-from bezstab.methods import Method, Verdict, evaluations
+from bezstab.methods import Method, Verdict
 from bezstab.rationals import exact
 from bezstab.stability import ComplexArray, FloatArray, dominant_pole, poles, region, useful_window, verdict
 
@@ -237,7 +237,7 @@ def _kicked_responses(
 ) -> tuple[FloatArray, FloatArray]:
     """Return half the difference of c_1 after kicks up and down, and the largest |c|; shape (steps, kicks, points)."""
     differences, sizes = [], []
-    compiled = runs_compiled(2 * len(KICKS) * (RUN + 1) * alpha_hat.size * evaluations(method), together=True)
+    compiled = runs_compiled(method, 2 * len(KICKS) * (RUN + 1) * alpha_hat.size, together=True)
     with np.errstate(all="ignore"):  # what diverges runs into infinity, and is cut off there
         for c, _ in kicked_motions(mechanism, method, h, alpha_hat, beta_hat, KICKS, RUN, compiled):
             differences.append((c[:, 0, 0] - c[:, 0, 1]) / 2)

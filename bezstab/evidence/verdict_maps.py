@@ -11,7 +11,7 @@ from bezstab.errors import InputError, NumericalError
 from bezstab.evidence.kicks import fates, kicked_motions, thrown_apart
 from bezstab.evidence.mixing_poles import nearest_poles
 from bezstab.mechanism import Scene, compiled_mechanism, runs_compiled, turning_normals
-from bezstab.methods import Method, evaluations
+from bezstab.methods import Method
 from bezstab.read_only import ReadOnlyArrays
 from bezstab.stability import BoolArray, FloatArray, pole_map, region, useful_window
 
@@ -121,7 +121,7 @@ def map_rows(scene: Scene, method: Method, h: float, count: int) -> list[MapRows
     They are compiled where that is asked for or pays. InputError where it is asked for and numba is missing;
     NumericalError as `region`.
     """
-    compiled = runs_compiled(2 * count**2 * MAP_RUN * evaluations(method), together=True)
+    compiled = runs_compiled(method, 2 * count**2 * MAP_RUN, together=True)
     centres = (np.arange(count) + 0.5) / count
     alpha_hat, beta_hat = (low + (high - low) * centres for low, high in useful_window(region(method)))
     rows_at_once = max(1, BATCH // count)

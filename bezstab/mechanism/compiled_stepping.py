@@ -1,23 +1,26 @@
-"""The loop of `stepping` as machine code, by numba: one compilation a scene, whatever the methods.
+"""Explicit steps as machine code, by numba: one compilation a mechanism, whatever the methods.
 
-Its operations are loops over entries, innermost those over lanes, of which a processor takes several at once. What
-numba makes of a scene is kept in the user's cache folder, under a name that is the hash of all that it is made from.
+The loop is that of `stepper` for methods without equations to solve, entry by entry, innermost over lanes, of which a
+processor takes several at once. What numba makes of a mechanism is kept in the user's cache folder, under a name that
+is the hash of all that it is made from.
 """
 
 import os
 import sys
+from collections.abc import Callable, Iterator
 from functools import cache
 from pathlib import Path
-from types import FunctionType
 from typing import Any
 
 import numpy as np
 
-from bezstab import compiling, stabilising
-from bezstab.compiling import INNER, compiled_choice, compiler, numba_is_installed
+from bezstab import compiling
+from bezstab.compiling import compiled_choice, compiler, numba_is_installed
 from bezstab.mechanism.equations import Mechanism
-from bezstab.mechanism.generated_code import LONG, code_of, compiled_source, function_by_operations, machine_source
-from bezstab.mechanism.stepping import TakeSteps, read
+from bezstab.mechanism.generated_code import code_of, compiled_source, machine_source
+from bezstab.mechanism.programs import EVALUATIONS, PIVOT, FloatArray, Program, Steps, steps_at_once
+from bezstab.methods import Method, evaluations, implicit
+from bezstab.stabilising import NOTHING, AfterStep
 
 WORTH_COMPILING = 3 * 10**5
 """Evaluations: Python takes as long for so many as numba takes to be loaded and to compile the scene.
@@ -30,68 +33,127 @@ CHEAPER_TOGETHER = 20
 LANES = 32
 """Runs side by side: what they remember stays in the fastest memory."""
 
+TakeSteps = Callable[[Program, Steps, float, FloatArray, FloatArray, FloatArray], None]
 
-def runs_compiled(evaluations: int, together: bool = False) -> bool:
-    """Return whether runs, or runs together, of so many evaluations are to be compiled.
 
-    By default where numba is there and they are long enough to pay. `evaluations` do not include what iterations and
-    projections take. InputError where BEZSTAB_COMPILED says neither auto nor yes nor no.
+def loop_of(accelerations_of: Any, combine: Any, width: int) -> TakeSteps:
+    """Return the loop over steps, with these functions as machine code, for registers of this width, n times lanes."""
+
+    def take_steps(
+        program: Program, steps: Steps, h: float, registers: FloatArray, states: FloatArray, pivots: FloatArray
+    ) -> None:
+        """Take steps; h (s) is that of which registers (quantities, width) are in units, later that of the last step.
+
+        `states` (steps, 2, width) get q and v after each, `pivots` the least that a run alone has met in it.
+        """
+        carried, evaluated, known = len(program.powers), len(program.moments), program.table.shape[1]
+        state, found = np.zeros((2, width)), np.zeros(width)
+        for k in range(len(steps.lengths)):
+            if steps.lengths[k] != h:
+                for number in range(carried):
+                    factor = (steps.lengths[k] / h) ** program.powers[number]
+                    for place in range(width):
+                        registers[number, place] *= factor
+                h = steps.lengths[k]
+            pivots[k] = 1.0
+            for number in range(evaluated):
+                combine(program.table[2 * number : 2 * number + 2], registers, state)
+                for place in range(width):
+                    state[1, place] /= h
+                time = steps.times[k] + program.moments[number] * h
+                for lane in range(steps.gains.shape[2]):
+                    pivot = accelerations_of(time, steps.gains[k], state, found, lane)
+                pivots[k] = min(pivots[k], pivot)
+                for place in range(width):
+                    registers[carried + number, place] = h * h * found[place]
+            combine(program.table[2 * evaluated :], registers, registers[known:])
+            for place in range(width):
+                states[k, 0, place] = registers[known, place]
+                states[k, 1, place] = registers[known + 1, place] / h
+            for number in range(carried):
+                for place in range(width):
+                    registers[number, place] = registers[program.moved[number], place]
+
+    return take_steps
+
+
+def combine(rows: FloatArray, registers: FloatArray, into: FloatArray) -> None:
+    """Write the sums of registers that rows of a program stand for."""
+    for number in range(len(rows)):
+        for place in range(into.shape[1]):
+            into[number, place] = 0.0
+        for source in range(rows.shape[1]):
+            share = rows[number, source]
+            if share != 0:
+                for place in range(into.shape[1]):
+                    into[number, place] += share * registers[source, place]
+
+
+def runs_compiled(method: Method, steps: int, together: bool = False, after: AfterStep = NOTHING) -> bool:
+    """Return whether runs, or runs together, of so many steps are to be compiled.
+
+    Never those that solve equations, or project after each step. By default others where numba is there and they are
+    long enough to pay. InputError where BEZSTAB_COMPILED says neither auto nor yes nor no.
     """
     choice = compiled_choice()
+    if implicit(method) or after.projecting:
+        return False
     if choice != "auto":
         return choice == "yes"
-    return numba_is_installed() and evaluations >= WORTH_COMPILING * (CHEAPER_TOGETHER if together else 1)
+    worth = WORTH_COMPILING * (CHEAPER_TOGETHER if together else 1)
+    return numba_is_installed() and steps * evaluations(method) >= worth
 
 
 @cache
-def machine_steps(mechanism: Mechanism, solving: bool, projecting: bool, stride: int = 1) -> tuple[TakeSteps, int]:
-    """Return the function that takes a mechanism's steps as machine code, and how long its row is.
+def machine_steps(mechanism: Mechanism, stride: int) -> TakeSteps:
+    """Return that loop as machine code, for so many runs side by side. It is kept for the next process.
 
-    `solving` and `projecting` say what it can do besides explicit steps, `stride` for how many runs side by side. What
-    is compiled is kept for the next process. InputError without numba.
+    InputError without numba.
     """
-    numba = compiler()
-    n = mechanism.size
-    codes = {name: code_of(mechanism, name) for name in ("accelerations", "corrections")[: 1 + projecting]}
-    texts = {name: machine_source(code, name, stride) for name, code in codes.items()}
-    own: dict[str, Any] = {"N": n, "STRIDE": stride, "WIDTH": n * stride, "SOLVING": solving, "PROJECTING": projecting}
-    file = _kept_file((*own.values(), *texts.values()))
-
-    def made(function: Any) -> Any:
-        """Return a function as machine code that other machine code calls, under a name of the scene's own.
-
-        Code from disk is linked by its names: two scenes must not share any.
-        """
-        inline = "always" if function.__name__ in PARTS else "never"
-        name = f"{function.__name__}_{file.parent.name}"
-        named = FunctionType(function.__code__, function.__globals__, name, None, function.__closure__)
-        named.__qualname__ = name
-        # where nothing allocates, nothing need count references to arrays: that takes longer than most operations
-        return numba.njit(error_model="numpy", _nrt=False, inline=inline, **INNER)(named)
-
-    row = 0
-    for name, code in codes.items():
-        if len(code.assignments) > LONG:
-            function, length = function_by_operations(code, stride, made)
-            row = max(row, length)
-        else:
-            function = compiled_source(texts[name], np)
-        own[f"{name}_of"] = made(function)
+    made = compiler().njit
+    text = machine_source(code_of(mechanism, "accelerations"), "accelerations", stride)
+    width = mechanism.size * stride
+    accelerations_of = made(inline="always")(compiled_source(text, np))
+    loop = made(inline="always")(loop_of(accelerations_of, made(inline="always")(combine), width))
+    file = _kept_file((stride, width, text))
     # numba keeps what is called from a text with a file, if it has nothing but that text from around it
-    take = compiled_source(TAKE, np, {"take_steps": read(own, made)}, str(file))
+    take = compiled_source(TAKE, np, {"take_steps": loop}, str(file))
     take.__name__ = take.__qualname__ = f"take_{file.parent.name}"
-    steps = numba.njit(error_model="numpy", _nrt=False, no_cfunc_wrapper=True, cache=_keep(file))(take)
-    return steps, row
+    machine_code: TakeSteps = made(error_model="numpy", no_cfunc_wrapper=True, cache=_keep(file))(take)
+    return machine_code
 
 
-PARTS = (
-    *("accelerations_of", "corrections_of", "accelerations_at", "finish"),
-    *("solve", "residual", "correct", "renew", "advance"),
-)
-"""What becomes a part of what calls it: to hand over all the arrays of a program and its room takes a while."""
+def compiled_steps(
+    mechanism: Mechanism, program: Program, carried: FloatArray, steps: Steps
+) -> Iterator[tuple[FloatArray, FloatArray, str]]:
+    """Yield states, (steps, 2n, lanes), and what is told of each step, in blocks; and no failure.
 
-TAKE = """def take(program, steps, room, states, told):
- take_steps(program, steps, room, states, told)
+    `carried` (quantities, n, lanes) is what an explicit program begins with, in units of the first step. InputError
+    without numba.
+    """
+    quantities, n, lanes = carried.shape
+    stride = 1 if lanes == 1 else LANES
+    take_steps, h = machine_steps(mechanism, stride), float(steps.lengths[0])
+    groups = [slice(first, first + stride) for first in range(0, lanes, stride)]
+    registers = np.zeros((len(groups), program.registers, n, stride))
+    for own, group in zip(registers, groups, strict=True):
+        own[:quantities, :, : carried[0, 0, group].size] = carried[:, :, group]
+    at_once = steps_at_once(n, stride)
+    for first in range(0, len(steps.lengths), at_once):
+        times, lengths, gains = (np.ascontiguousarray(each) for each in steps.part(first, first + at_once))
+        states, pivots = np.empty((len(groups), len(lengths), 2, n, stride)), np.empty(len(lengths))
+        for own, group, found in zip(registers, groups, states, strict=True):
+            part = Steps(times, lengths, np.ascontiguousarray(gains[:, :, group]))
+            take_steps(program, part, h, own.reshape(len(own), -1), found.reshape(len(lengths), 2, -1), pivots)
+        told = np.zeros((len(lengths), 4))
+        told[:, PIVOT], told[:, EVALUATIONS] = pivots, len(program.moments)
+        h = float(lengths[-1])
+        side_by_side = states.transpose(1, 2, 3, 0, 4).reshape(len(lengths), 2 * n, -1)
+        yield side_by_side[:, :, :lanes], told, ""
+
+
+TAKE = """def take(program, steps, h, registers, states, pivots):
+ take_steps(program, steps, h, registers, states, pivots)
 """
 """A function of the scene's own name in front of the loop that takes steps: what numba keeps on disk goes by it."""
 
@@ -103,7 +165,7 @@ def _kept_file(made_of: object) -> Path:
 
     # every file of this room, so that no number that one of them lends can be forgotten, and the options of numba
     room = sorted(Path(__file__).parent.glob("*.py*"))
-    made_from = [file.read_bytes() for file in (*room, Path(compiling.__file__), Path(stabilising.__file__))]
+    made_from = [file.read_bytes() for file in (*room, Path(compiling.__file__))]
     made_from += [repr(each).encode() for each in (made_of, sys.version, version("numba"), version("llvmlite"))]
     name = hashlib.sha256(b"\0".join(made_from)).hexdigest()
     home = os.environ.get("XDG_CACHE_HOME") or os.environ.get("LOCALAPPDATA") or Path.home() / ".cache"

@@ -1,12 +1,12 @@
 """Generated code: accelerations, multipliers and corrections as assignments, and the functions that are made of them.
 
 Only this file writes source, and only here it is executed; others hand it equations and take functions. What a method
-does with them is no text: `programs` and `stepping` have it.
+does with them is no text: `programs` and `stepper` have it.
 
     assignments          all that solves paper Eq. 9, and brings a state back to its constraints, one after the other
     Code                 those of them that some results need
     state_function       a code as text that becomes a function, of one state or of many
-    operations           a long code as a table of single operations, for machine code
+    lane_function        the same for runs side by side
 
 All of it is plain arithmetic, one assignment a line, with `sin`, `cos` and `sqrt` as the only functions. What they are
 is decided when the text is compiled, so one source serves four kinds of numbers:
@@ -290,22 +290,9 @@ def accelerations(
 # Machine code
 #
 # Machine code takes runs side by side, each in a lane: arrays have room for `stride` lanes of each coordinate. Each
-# function is NAME_of(t, gains, state, found, row, lane): it writes the results of the code of that name for a lane, and
+# function is NAME_of(t, gains, state, found, lane): it writes the results of the code of that name for a lane, and
 # returns the least relative pivot of S. gains (2, lanes); state (2, n stride), q and v; found (n stride,), or as much
 # for each of the results.
-#
-# What turning text into machine code costs grows faster than the text. So thousands of lines, as of a long mechanism,
-# become a table of single operations on a row of all variables and numbers, which one short loop takes:
-#
-#     W6_5 = C6_46 * 12.0 - W5_4        C6_46 * 12.0                  (TIMES, 1, places of C6_46 and of 12.0)
-#                                       -1 W5_4                       (TIMES, 2, places of -1 and of W5_4)
-#                                       their sum                     (PLUS, 3, 1, 2)
-
-LONG = 1000
-"""Lines above which a code becomes a table of operations; a shorter one runs faster as it is."""
-
-PLUS, TIMES, POWER, SINE, COSINE = range(5)
-KINDS = {sp.Add: PLUS, sp.Mul: TIMES, sp.Pow: POWER, sp.sin: SINE, sp.cos: COSINE}
 
 
 def machine_source(code: Code, name: str, stride: int) -> str:
@@ -315,79 +302,4 @@ def machine_source(code: Code, name: str, stride: int) -> str:
     given += [f"state[{half}, {i * stride} + lane]" for half in range(2) for i in range(n)]
     end = [f"found[{place * stride} + lane] = {result}" for place, result in enumerate(code.results)]
     end += ["least = 1.0", *(f"least = min(least, {pivot})" for pivot in code.pivots), "return least"]
-    return source(code, f"{name}_of(t, gains, state, found, row, lane)", given, end)
-
-
-def function_by_operations(code: Code, stride: int, made: Callable[[Any], Any]) -> tuple[Callable[..., float], int]:
-    """Return the same function by single operations, which `made` makes machine code of; and how long the row is."""
-    rows, numbers = operations(code)
-    n, first, take = (len(code.given) - 3) // 2, len(code.given), made(take_operations)
-    last = first + len(numbers) + len(rows)
-    pivots = last - len(code.pivots)
-    results = pivots - len(code.results)
-
-    def of_a_lane(t: float, gains: Any, state: Any, found: Any, row: Any, lane: int) -> float:
-        row[0], row[1], row[2] = t, gains[0, lane], gains[1, lane]
-        for i in range(n):
-            row[3 + i] = state[0, i * stride + lane]
-            row[3 + n + i] = state[1, i * stride + lane]
-        for place in range(len(numbers)):
-            row[first + place] = numbers[place]
-        take(rows, row)
-        for place in range(results, pivots):
-            found[(place - results) * stride + lane] = row[place]
-        least = 1.0
-        for place in range(pivots, last):
-            least = min(least, row[place])
-        return least
-
-    return of_a_lane, last
-
-
-def operations(code: Code) -> tuple[NDArray[np.uint32], NDArray[np.float64]]:
-    """Return a code as single operations, and the numbers in it, which have the places after what is given.
-
-    An operation is its kind, the place of its result, and those of two operands. The last ones give all results, then
-    the pivots.
-    """
-    zero = sp.Integer(0)
-    numbers = sorted({zero}.union(*(value.atoms(sp.Number) for _, value in code.assignments)), key=float)
-    places: dict[sp.Expr, int] = {value: place for place, value in enumerate([*code.given, *numbers])}
-    rows: list[tuple[int, int, int, int]] = []
-    first = len(places)
-
-    def operation(kind: int, left: int, right: int) -> int:
-        rows.append((kind, first + len(rows), left, right))
-        return rows[-1][1]
-
-    def place_of(value: sp.Expr) -> int:
-        """Return the place of what a value comes to, each computed once."""
-        if value not in places:
-            place, *others = map(place_of, value.args)
-            for other in others or [place]:  # sines have one operand
-                place = operation(KINDS[value.func], place, other)
-            places[value] = place
-        return places[value]
-
-    for symbol, value in code.assignments:
-        places[symbol] = place_of(value)
-    for result in (*code.results, *code.pivots):
-        operation(PLUS, places[result], places[zero])
-    # without a sign: numba need not ask whether they count from the end
-    return np.array(rows, np.uint32), np.array(numbers, np.float64)
-
-
-def take_operations(rows: Any, variables: Any) -> None:
-    """Take single operations on variables, one after the other."""
-    for k in range(len(rows)):
-        kind, result, left, right = rows[k, 0], rows[k, 1], variables[rows[k, 2]], variables[rows[k, 3]]
-        if kind == TIMES:
-            variables[result] = left * right
-        elif kind == PLUS:
-            variables[result] = left + right
-        elif kind == POWER:
-            variables[result] = left**right
-        elif kind == SINE:
-            variables[result] = np.sin(left)
-        else:
-            variables[result] = np.cos(left)
+    return source(code, f"{name}_of(t, gains, state, found, lane)", given, end)

@@ -1,4 +1,4 @@
-"""A method as a program: exact rows of numbers over registers, which one loop takes again and again (`stepping`).
+"""A method as a program: exact rows of numbers over registers, which one loop takes again and again (`stepper`).
 
 A turn of any scheme, written as a second-order one, is linear but for its evaluations. So all it assigns on the way is
 eliminated here, and what is left are sums of what it carries and of the accelerations that it has found. A register
@@ -26,7 +26,6 @@ Where a row of an evaluation has an entry for what that evaluation finds, or for
 each other: a group of evaluations is solved together, each from the guess that it is what it was one step before.
 """
 
-import math
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from functools import cache
@@ -38,11 +37,9 @@ from numpy.typing import NDArray
 from bezstab.linear_equations import solution
 from bezstab.mechanism.second_order_memory import ACCELERATION, POSITION, VELOCITY, is_solved_together, memory
 from bezstab.methods import Assignment, Combination, Evaluation, Quantity, SecondOrder, evaluation_times
-from bezstab.stabilising import NOTHING, AfterStep
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
-BoolArray = NDArray[np.bool_]
 
 Row = tuple[Fraction, ...]
 """A coefficient for each register that is carried or found."""
@@ -60,8 +57,7 @@ class Program(NamedTuple):
     of evaluations, in steps after step 0 of the turn, `guesses` registers. `groups` has the evaluations that belong
     together, from the first to before the last, and whether they wait for each other. `moved` are the registers that
     move, in this order, to those that are carried. `corrected` says for each that is carried what share it has, after
-    the moves, in a change of that position, and of that velocity: none for what is older than they are. `after` is what
-    is done to the new state.
+    the moves, in a change of that position, and of that velocity: none for what is older than they are.
     """
 
     powers: IntArray
@@ -71,7 +67,6 @@ class Program(NamedTuple):
     groups: IntArray
     moved: IntArray
     corrected: FloatArray
-    after: AfterStep
 
     @property
     def registers(self) -> int:
@@ -85,7 +80,7 @@ class Program(NamedTuple):
 
 
 @cache
-def program_of(scheme: SecondOrder, after: AfterStep = NOTHING) -> Program:
+def program_of(scheme: SecondOrder) -> Program:
     """Return the program of a second-order scheme: computed exactly, then rounded once."""
     remembered, moments = memory(scheme), evaluation_times(scheme)
     carried = remembered.carried
@@ -125,7 +120,6 @@ def program_of(scheme: SecondOrder, after: AfterStep = NOTHING) -> Program:
             ],
             np.float64,
         ),
-        after=after,
     )
 
 
@@ -151,37 +145,7 @@ def _row(combination: Combination, values: Mapping[Quantity, Row]) -> Row:
     return tuple(sum((c * values[quantity][k] for c, quantity in combination), ZERO) for k in range(width))
 
 
-# Registers
-
-
-class Room(NamedTuple):
-    """What is made once, to compute in: of all steps, of an evaluation, then what Newton's method knows of each lane.
-
-    registers (registers, width), in units of the last step (s), step[0], and those of what is found, a part of them; a
-    state (2, width), its accelerations (width,) and the row of a lane's machine code; off, by which a projection
-    corrects position and velocity of a run alone, (2 n,); residuals and corrections (evaluations, width); a Jacobian
-    (unknowns, unknowns, lanes), and the inverses of the last ones, nan at first, (groups, unknowns, unknowns, lanes);
-    of each lane the size of what it computes with, how far this correction moves it and the one before did, and whether
-    it is running, this correction is its last, and its Jacobian does not serve.
-    """
-
-    registers: FloatArray
-    found: FloatArray
-    step: FloatArray
-    state: FloatArray
-    accelerations: FloatArray
-    row: FloatArray
-    off: FloatArray
-    residuals: FloatArray
-    corrections: FloatArray
-    jacobian: FloatArray
-    inverses: FloatArray
-    sizes: FloatArray
-    moved: FloatArray
-    moved_before: FloatArray
-    running: BoolArray
-    last: BoolArray
-    poor: BoolArray
+# Steps
 
 
 Gains = tuple[Any, Any]
@@ -215,35 +179,17 @@ def even_steps(h: float, count: int, gains: Gains, batch: tuple[int, ...] = (), 
     return Steps(times, lengths, np.broadcast_to(of_runs, (count + 1, *of_runs.shape)))
 
 
-def room_of(program: Program, carried: FloatArray, h: float, stride: int, row: int = 0) -> Room:
-    """Return the room for a program's steps, from what is carried, shape (quantities, n, lanes), in units of h (s).
+PIVOT, EVALUATIONS, ITERATIONS, PROJECTIONS = range(4)
+"""Places in what is told of each step.
 
-    Of each coordinate a register has a stride of places, at least as many as there are lanes. `row` is the
-    length of that of a lane's machine code.
-    """
-    quantities, n, lanes = carried.shape
-    evaluations, width = len(program.moments), n * stride
-    unknowns = evaluations * n if program.implicit else 0
-    registers = np.zeros((program.table.shape[1] + len(program.table) - 2 * evaluations, n, stride))
-    registers[:quantities, :, :lanes] = carried
-    of_lanes, yes_or_no = np.zeros((3, lanes)), np.zeros((3, lanes), np.bool_)
-    flat = registers.reshape(-1, width)
-    return Room(
-        registers=flat,
-        found=flat[quantities : quantities + evaluations],
-        step=np.array([h]),
-        state=np.zeros((2, width)),
-        accelerations=np.zeros(width),
-        row=np.zeros(row),
-        off=np.zeros(2 * n),
-        residuals=np.zeros((evaluations, width)),
-        corrections=np.zeros((evaluations, width)),
-        jacobian=np.zeros((unknowns, unknowns, lanes)),
-        inverses=np.full((len(program.groups), unknowns, unknowns, lanes), math.nan),
-        sizes=of_lanes[0],
-        moved=of_lanes[1],
-        moved_before=of_lanes[2],
-        running=yes_or_no[0],
-        last=yes_or_no[1],
-        poor=yes_or_no[2],
-    )
+The least relative pivot that a run alone has met on the way; and how often it has evaluated, for slopes too, iterated,
+and computed how a state has to be corrected.
+"""
+
+NUMBERS_OF_A_BLOCK = 2**16
+"""Of runs side by side, between two looks at what the user wants (Ctrl-C): some tenths of a second in Python."""
+
+
+def steps_at_once(n: int, lanes: int) -> int:
+    """Return how many steps are taken between two looks, of so many coordinates and lanes."""
+    return max(1, NUMBERS_OF_A_BLOCK // (2 * n * lanes))

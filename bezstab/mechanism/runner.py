@@ -1,6 +1,5 @@
 """Runs of a mechanism with feedback or projection: a method's start, its steps in blocks, and what ends a run early."""
 
-import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
@@ -9,29 +8,27 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from bezstab.errors import InputError
-from bezstab.mechanism.array_stepping import array_steps
-from bezstab.mechanism.compiled_stepping import LANES, machine_steps, runs_compiled
+from bezstab.mechanism.compiled_stepping import compiled_steps, runs_compiled
 from bezstab.mechanism.equations import Mechanism
-from bezstab.mechanism.generated_code import SINGULAR, accelerations
-from bezstab.mechanism.programs import Steps, even_steps, program_of, room_of
-from bezstab.mechanism.second_order_memory import memory
-from bezstab.mechanism.start import CLOSED, constraint_errors, initial_state
-from bezstab.mechanism.stepping import (
-    BLOWN_UP,
+from bezstab.mechanism.generated_code import SINGULAR, accelerations, lane_function
+from bezstab.mechanism.programs import (
     EVALUATIONS,
     ITERATIONS,
-    MOST_ITERATIONS,
     PIVOT,
     PROJECTIONS,
-    UNSETTLED,
-    UNSOLVED,
+    Steps,
+    even_steps,
+    program_of,
+    steps_at_once,
 )
+from bezstab.mechanism.second_order_memory import memory
+from bezstab.mechanism.start import CLOSED, constraint_errors, initial_state
+from bezstab.mechanism.stepper import BLOWN_UP, Stepper
 from bezstab.methods import (
     Method,
     SecondOrder,
     adams_bashforth,
     bezier,
-    evaluations,
     implicit,
     is_bezier,
     lookup,
@@ -47,12 +44,9 @@ fewer steps, or implicit Euler.
 """
 FloatArray = NDArray[np.float64]
 
-NUMBERS_OF_A_BLOCK = 2**16
-"""Of runs side by side, between two looks at what the user wants (Ctrl-C): some tenths of a second in Python."""
-
 
 class Block(NamedTuple):
-    """States after each of some steps, shape (steps, 2n, *batch), SI units, and what `stepping` has told of each step.
+    """States after each of some steps, shape (steps, 2n, *batch), SI units, and what is told of each step (`programs`).
 
     `cause` says why a run ends here: with a step that is told of, but whose state is not among these.
     """
@@ -127,16 +121,17 @@ def simulate_steps(
     Those of a one-step method may have lengths of their own. The first values of a multistep method come from RK4, from
     its family's members of fewer steps ("ramp") or from explicit Euler. A blow-up, a singular S, a number that is not
     finite or an implicit step that Newton's method does not solve ends the run, and `failure` says so. `compiled` says
-    whether machine code takes the steps; by default that is as BEZSTAB_COMPILED says, or where it pays. What is done
-    `after` a step is done to each new state, those of the start too.
+    whether machine code takes the steps, which it does of explicit methods without projection; by default that is as
+    BEZSTAB_COMPILED says, or where it pays. What is done `after` a step is done to each new state, those of the start
+    too.
     InputError for a start that has blown up before, where numba is asked for and missing, and as `memory`.
     """
     first = np.concatenate(initial_state(mechanism) if state is None else state).astype(np.float64)
-    if broken := breakdown(first[np.newaxis], np.eye(1, 6)):  # told of a step that went well: its pivot is 1
+    if broken := breakdown(first[np.newaxis], np.ones((1, 4))):  # told of a step with a pivot of 1
         raise InputError(f"the start: {broken[1]}")
     if compiled is None:
-        compiled = runs_compiled(len(steps.lengths) * evaluations(method))
-    parts, of_steps, cause = [first[np.newaxis]], [np.empty((0, 6))], None
+        compiled = runs_compiled(method, len(steps.lengths), after=after)
+    parts, of_steps, cause = [first[np.newaxis]], [np.empty((0, 4))], None
     for block in march(mechanism, method, steps, first, start, compiled, after):
         parts.append(block.states)
         of_steps.append(block.told)
@@ -177,7 +172,8 @@ def march(
     The first values of a multistep method come from `start`, by steps that are not compiled. From a state that keeps
     the constraints those of "rk4" have no feedback: its stages would answer the strong feedback of a multistep method
     with an error far above all that follows, which the trajectory keeps. A run alone ends where it breaks down; in a
-    batch what goes wrong shows in the numbers. InputError where steps are to be `compiled` without numba.
+    batch what goes wrong shows in the numbers. InputError where explicit steps are to be
+    `compiled` without numba.
     """
     history = [np.asarray(state)]
     of_start = steps
@@ -218,36 +214,46 @@ def resume(
     before begins with r times that h v and r^2 times that h^2 a. The acceleration itself is what it was, whatever the
     gains do.
     """
-    count = len(steps.lengths)
-    if count == 0:
+    if not len(steps.lengths):
         return
     given = [np.asarray(state) for state in (*history, history[-1] if undisturbed is None else undisturbed)]
     batch = np.broadcast_shapes(*(state.shape[1:] for state in given))
     *states, calm = (np.stack([np.broadcast_to(row, batch).ravel() for row in state]) for state in given)
-    program, n, lanes, variables = program_of(method.scheme.second_order, after), mechanism.size, math.prod(batch), 0
-    if compiled:
-        stride = 1 if lanes == 1 else LANES
-        take_steps, variables = machine_steps(mechanism, program.implicit, after.projecting, stride)
-    else:
-        stride, take_steps = lanes, array_steps(mechanism, lanes)
+    program, h = program_of(method.scheme.second_order), float(steps.lengths[0])
     carried, evaluated = carried_quantities(mechanism, method, steps, states, calm)
-    groups = [slice(first, first + stride) for first in range(0, lanes, stride)]
-    rooms = [room_of(program, carried[:, :, group], float(steps.lengths[0]), stride, variables) for group in groups]
-    at_once = max(1, NUMBERS_OF_A_BLOCK // (2 * n * stride))
-    for first in range(0, count, at_once):
-        times, lengths, gains = (np.ascontiguousarray(each) for each in steps.part(first, first + at_once))
-        parts, told = [], np.zeros((len(lengths), 6))
-        for group, room in zip(groups, rooms, strict=True):
-            found = np.empty((len(lengths), 2, n * stride))
-            take_steps(program, Steps(times, lengths, np.ascontiguousarray(gains[:, :, group])), room, found, told)
-            parts.append(found.reshape(len(lengths), 2 * n, stride)[:, :, : len(room.poor)])
-        told[0, EVALUATIONS] += evaluated if first == 0 else 0
-        block = np.concatenate(parts, axis=2).reshape(len(lengths), 2 * n, *batch)
-        if not batch and (broken := breakdown(block, told)):
+    if compiled and not (program.implicit or after.projecting):
+        taken = compiled_steps(mechanism, program, carried, steps)
+    else:
+        corrections = lane_function(mechanism, "corrections") if after.projecting else None
+        accelerated = lane_function(mechanism, "accelerations")
+        stepper = Stepper(program, carried, h, accelerated, corrections, after.iterations)
+        taken = _steps_taken(stepper, steps, alone=not batch)
+    for found, told, failure in taken:
+        told[0, EVALUATIONS] += evaluated
+        evaluated = 0
+        block = found.reshape(len(found), -1, *batch)
+        if not batch and (broken := breakdown(block, told, failure)):
             end, cause = broken
             yield Block(block[:end], told[: end + 1], cause)
             return
         yield Block(block, told)
+
+
+def _steps_taken(stepper: Stepper, steps: Steps, alone: bool) -> Iterator[tuple[FloatArray, FloatArray, str]]:
+    """Yield states, (steps, 2, n, lanes), and what is told of each step, in blocks; and why the last one is none.
+
+    A run alone ends there.
+    """
+    times, lengths, at_once = steps.times.tolist(), steps.lengths.tolist(), steps_at_once(*stepper.carried.shape[1:])
+    for first in range(0, len(lengths), at_once):
+        states, told = [], []
+        with np.errstate(all="ignore"):  # what runs into infinity is judged by its numbers
+            for k in range(first, min(first + at_once, len(lengths))):
+                states.append(stepper.step(times[k], lengths[k], steps.gains[k]))
+                told.append((stepper.pivot, stepper.evaluations, stepper.iterations, stepper.projections))
+                if alone and stepper.failure:
+                    break
+        yield np.array(states), np.array(told), stepper.failure
 
 
 def carried_quantities(
@@ -278,25 +284,22 @@ def carried_quantities(
     return np.array(carried), counted * len(found)
 
 
-def breakdown(states: FloatArray, told: FloatArray) -> tuple[int, str] | None:
+def breakdown(states: FloatArray, told: FloatArray, failure: str = "") -> tuple[int, str] | None:
     """Return the first of a run's steps after which it cannot go on, and why; None if there is none.
 
-    `states` after each step, shape (steps, 2n), and what is told of it.
+    `states` after each step, shape (steps, 2n), what is told of it, and the `failure` of the last one, if it is none.
     """
-    pivots, unsolved, unsettled = told[:, [PIVOT, UNSOLVED, UNSETTLED]].T
     with np.errstate(all="ignore"):
         # not sound if it is not a number
-        sound = (pivots > SINGULAR) & (np.abs(states).sum(axis=1) < BLOWN_UP) & (unsolved == 0) & (unsettled == 0)
+        sound = (told[:, PIVOT] > SINGULAR) & (np.abs(states).sum(axis=1) < BLOWN_UP)
+    sound[-1] &= not failure
     if sound.all():
         return None
     end = int(sound.argmin())
-    for left, what in ((unsolved, "Newton's method"), (unsettled, "projection: Newton's method for the position")):
-        if left[end]:
-            if not math.isfinite(left[end]):
-                return end, f"{what} did not converge: its iterates are not finite"
-            return end, f"{what} did not converge in {MOST_ITERATIONS} iterations (last correction {left[end]:.2g})"
-    if pivots[end] <= SINGULAR:
-        lost = f"C_q M^-1 C_q^T has lost its rank (relative pivot {pivots[end]:.2g})"
+    if failure and end == len(sound) - 1:
+        return end, failure
+    if told[end, PIVOT] <= SINGULAR:
+        lost = f"C_q M^-1 C_q^T has lost its rank (relative pivot {told[end, PIVOT]:.2g})"
         return end, f"singular configuration: {lost}"
     return end, f"blow-up: the coordinates and velocities exceed {BLOWN_UP:g} in sum, or are not finite"
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from bezstab.errors import InputError, NumericalError
 from bezstab.mechanism.equations import Mechanism, T
 from bezstab.mechanism.generated_code import SINGULAR
+from bezstab.mechanism.newton import newton
 
 FloatArray = NDArray[np.float64]
 
@@ -67,13 +68,15 @@ def _closed_position(mechanism: Mechanism) -> FloatArray:
     scene = mechanism.scene
     q = np.array([scene.position.get(name, scene.guess.get(name, 0.0)) for name in scene.coordinates])
     unknown = np.array([name not in scene.position for name in scene.coordinates])
-    for _ in range(NEWTON_STEPS):
+
+    def correct(_before: FloatArray) -> FloatArray:
         # least squares: it also has an answer where the linear system has none, on the way or for good
         jacobian, errors = constraint_jacobian(mechanism, 0.0, q), constraint_errors(mechanism, 0.0, q)
         step = np.linalg.lstsq(jacobian[:, unknown], errors, rcond=None)[0]
         q[unknown] -= step
-        if np.abs(step).max(initial=0.0) < SETTLED:
-            break
+        return np.array([np.abs(step).max(initial=0.0)])
+
+    newton(correct, np.array([SETTLED]), NEWTON_STEPS)
     error = float(np.abs(constraint_errors(mechanism, 0.0, q)).max())
     closed = error <= CLOSED  # not if it is not a number
     if closed:

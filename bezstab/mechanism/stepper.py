@@ -53,14 +53,17 @@ class Stepper:
         accelerations: LaneFunction,
         corrections: LaneFunction | None = None,
         most: int = 0,
+        alike: int = 1,
     ) -> None:
         """Begin with what is carried, (quantities, n, lanes), in units of h (s): floats or complex numbers.
+
+        So many lanes in a row are `alike` but for imaginary parts, and share Jacobians.
 
         With `corrections`, dq and then dv, each new state of a run alone is brought back to its constraints, its
         position by at most so many corrections; 0: by as many as it takes.
         """
         self.program, self.h, self.accelerations, self.corrections = program, h, accelerations, corrections
-        self.most, self.inverses = most, dict[int, Array]()
+        self.most, self.alike, self.inverses = most, alike, dict[int, Array]()
         self.evaluations = self.iterations = self.projections = 0
         self.pivot, self.failure = 1.0, ""
         _, n, self.lanes = carried.shape
@@ -140,20 +143,22 @@ class Stepper:
         """Return what the kept inverse Jacobians of a group make of what is missing; no numbers without any."""
         if first not in self.inverses:
             return np.full(missing.shape, np.nan)
-        of_lanes = missing.reshape(-1, self.lanes).T[:, :, np.newaxis]
-        return (self.inverses[first] @ of_lanes)[:, :, 0].T.reshape(missing.shape)
+        by_inverse = missing.reshape(-1, self.lanes // self.alike, self.alike).transpose(1, 0, 2)
+        return (self.inverses[first] @ by_inverse).transpose(1, 0, 2).reshape(missing.shape)
 
     def _jacobians(self, first: int, last: int, t: float, gains: Array) -> Array:
-        """Return the derivatives of what is missing by each unknown, (lanes, unknowns, unknowns), by complex steps."""
+        """Return the derivatives of what is missing by each unknown, by complex steps.
+
+        Shape (lanes, unknowns, unknowns), one for lanes that are alike.
+        """
         unknowns, pivot = self.found[first:last, :, 0].size, self.pivot
-        beside = np.repeat(
-            self.known.real.astype(np.complex128), unknowns, axis=2
-        )  # each unknown of a lane has its own
-        units = np.tile(np.eye(unknowns), self.lanes).reshape(last - first, -1, unknowns * self.lanes)
+        known, gains = (each[..., :: self.alike].real for each in (self.known, gains))
+        beside = np.repeat(known, unknowns, axis=2).astype(np.complex128)  # a lane for each unknown of each
+        units = np.tile(np.eye(unknowns), known.shape[2]).reshape(last - first, -1, beside.shape[2])
         beside[len(self.carried) :][first:last] += 1j * IMAGINARY_STEP * units
-        found = self._evaluated(first, last, t, np.repeat(gains.real, unknowns, axis=1), beside)
+        found = self._evaluated(first, last, t, np.repeat(gains, unknowns, axis=1), beside)
         self.pivot = pivot  # of states that are met, not of those beside them
-        slopes = found.imag.reshape(unknowns, self.lanes, unknowns) / IMAGINARY_STEP
+        slopes = found.imag.reshape(unknowns, -1, unknowns) / IMAGINARY_STEP
         return np.asarray(np.eye(unknowns) - slopes.transpose(1, 0, 2))
 
     # Projection, of a run alone
@@ -223,6 +228,6 @@ def linearized_step(
     """
     *shape, columns = changes.shape
     ahead = np.repeat(carried, columns, axis=2) + 1j * IMAGINARY_STEP * changes.reshape(*shape[:2], -1)
-    stepper = Stepper(program, ahead, h, accelerations)
+    stepper = Stepper(program, ahead, h, accelerations, alike=columns)
     stepper.step(t, h, np.repeat(gains, columns, axis=1))
     return stepper.carried.imag.reshape(changes.shape) / IMAGINARY_STEP

@@ -29,7 +29,7 @@ from bezstab.evidence import (
     swept_runs,
 )
 from bezstab.mechanism import Scene, runs_compiled
-from bezstab.methods import Method, evaluations
+from bezstab.methods import Method
 from bezstab.questions import motions
 from bezstab.rationals import exact
 from bezstab.stabilising import NOTHING, AfterStep, Stabilise, after_step
@@ -110,8 +110,9 @@ class TradeQuestion(motions.SceneQuestion):
         """
         user_steps = self.repeats * sum(float(self.duration) / h for h in self.step_sizes)
         return all(
-            runs_compiled(round(user_steps / float(method.step_multiple)) * evaluations(method))
+            runs_compiled(method, round(user_steps / float(method.step_multiple)), after=after)
             for method in self.methods
+            for _, after in self.treatments
         )
 
     @cached_property

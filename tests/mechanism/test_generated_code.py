@@ -1,12 +1,13 @@
-"""The text of generated accelerations, and what machine code makes of it where it is long."""
+"""Generated accelerations: their text, and functions of it for runs alone and side by side."""
 
 import math
 
 import numpy as np
 import pytest
+import sympy as sp
 
 from bezstab.mechanism import Mechanism, compiled_mechanism, initial_state, load_scene, state_function
-from bezstab.mechanism.generated_code import code_of, function_by_operations, machine_source, operations
+from bezstab.mechanism.generated_code import code_of, compiled_source, lane_function, machine_source
 from bezstab.mechanism.scene_files import parse_scene
 from tests.mechanism.test_scenes import pendulum
 
@@ -42,22 +43,31 @@ def chain(count: int) -> Mechanism:
     return compiled_mechanism(parse_scene({"name": "chain", "four_bar_chain": links, "initial": upright}))
 
 
-@pytest.mark.slow
-def test_single_operations_are_the_text() -> None:
+def test_the_text_for_machine_code_is_that_of_the_function() -> None:
     """Here as Python, in the second of two lanes."""
-    mechanism, gains = chain(12), (3.0, 4.0)
+    mechanism, gains = compiled_mechanism(load_scene("slider_crank")), (3.0, 4.0)
     state = 0.1 * np.sin(7.0 * np.arange(4 * mechanism.size)).reshape(2, -1)
-    for name in ("accelerations", "corrections"):
-        code = code_of(mechanism, name)
-        function, length = function_by_operations(code, 2, lambda each: each)
-        found = np.zeros(2 * len(code.results))
-        pivot = function(0.0, np.array([gains, gains]).T, state, found, np.zeros(length), 1)
-        expected = state_function(mechanism, name, np)([0.0, *gains, *state[:, 1::2].ravel()])
-        *results, least = *expected[: len(code.results)], min(expected[len(code.results) :])
-        # sums may be taken in another order: what is left of a small pivot has lost about that factor of its digits
-        assert found[1::2] == pytest.approx(results, abs=1e-14 / least * max(map(abs, results)))
-        assert pivot == pytest.approx(least, rel=1e-14 / least)
-        assert not found[::2].any()
+    code = code_of(mechanism, "accelerations")
+    function, found = compiled_source(machine_source(code, "accelerations", 2), np), np.zeros(2 * mechanism.size)
+    pivot = function(0.0, np.array([gains, gains]).T, state, found, 1)
+    expected = state_function(mechanism, "accelerations", np)([0.0, *gains, *state[:, 1::2].ravel()])
+    assert found[1::2] == pytest.approx(expected[: mechanism.size], rel=1e-14)
+    assert pivot == pytest.approx(min(expected[mechanism.size :]), rel=1e-14)
+    assert not found[::2].any()
+
+
+def test_runs_side_by_side_have_the_accelerations_of_each() -> None:
+    """Of floats one by one and together; of complex numbers together."""
+    mechanism = compiled_mechanism(load_scene("slider_crank"))
+    state = 0.1 * np.sin(7.0 * np.arange(6 * mechanism.size)).reshape(2, mechanism.size, 3)
+    gains, function = np.array([[3.0, 4.0, 5.0], [9.0, 1.0, 2.0]]), lane_function(mechanism, "accelerations")
+    together, _ = function(0.0, gains, *state)
+    as_complex, _ = function(0.0, gains, *state.astype(complex))
+    assert as_complex == pytest.approx(together, rel=1e-14)
+    for lane in range(3):
+        alone, pivot = function(0.0, gains[:, [lane]], *state[:, :, [lane]])
+        assert alone[:, 0] == pytest.approx(together[:, lane], rel=1e-14)
+        assert 0 < pivot < 1
 
 
 @pytest.mark.slow
@@ -65,5 +75,5 @@ def test_a_chain_twice_as_long_takes_twice_the_arithmetic() -> None:
     """Its matrices are banded: entries that are zero are not computed."""
     short, long = (code_of(chain(count), "accelerations") for count in (12, 24))
     assert len(long.assignments) < 2.2 * len(short.assignments)
-    of_short, of_long = (operations(code)[0] for code in (short, long))
-    assert len(of_long) < 2.2 * len(of_short)
+    of_short, of_long = (sum(sp.count_ops(value) for _, value in code.assignments) for code in (short, long))
+    assert of_long < 2.2 * of_short

@@ -1,6 +1,7 @@
-"""The loop that takes steps, by numpy and as machine code, alone and in batches: against plain steps; how runs end."""
+"""Loops that take steps, numpy's and machine code's, alone and in batches: against plain steps; how runs end."""
 
 from collections.abc import Iterable
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,15 +14,15 @@ from bezstab.mechanism import (
     initial_state,
     load_scene,
     march,
+    programs,
     resume,
-    runner,
     shipped_scenes,
     simulate,
 )
-from bezstab.mechanism.array_stepping import invert
 from bezstab.mechanism.runner import Block, states_needed
-from bezstab.mechanism.stepping import MOST_ITERATIONS
+from bezstab.mechanism.stepper import MOST_ITERATIONS, _inverses
 from bezstab.methods import REGISTRY, implicit, lookup
+from bezstab.stabilising import NOTHING, after_step
 from bezstab.units import feedback_gains
 from tests.evidence.samples import of_campaign
 from tests.methods.kinds import EXPLICIT
@@ -31,11 +32,11 @@ H = 1e-3  # s
 EPS = np.finfo(float).eps
 EXPLICIT_KINDS = ("B4", "AB3", "ABM2", "RK4", "SYM", "verlet-half")
 KINDS = (*EXPLICIT_KINDS, "bdf2", "gauss4", "sdirk2", "hht")
-"""Of each kind of method one. Where equations are solved code compiles for a quarter of a minute: in few scenes."""
+"""Of each kind of method one."""
 UNSTABLE = {"AB6", "AB7", "AB8"}
 """With the feedback of these tests: rounding grows."""
 SCENES = [name for name in shipped_scenes() if name != "n_four_bar"]
-"""Besides the chain of 40 four-bars, for which one of twelve stands, compiled as single operations, too."""
+"""Besides the chain of 40 four-bars, which takes a minute to compile: one of twelve stands for it."""
 
 
 def step_for(scene: str) -> float:
@@ -75,12 +76,12 @@ def both(mechanism: Mechanism, name: str, count: int, gains: tuple[float, float]
 @pytest.mark.parametrize("name", of_campaign(sorted({*KINDS, *EXPLICIT} - UNSTABLE), KINDS))
 @pytest.mark.slow_except("SYM")
 def test_many_steps_are_the_plain_ones(name: str) -> None:
-    """By numpy and compiled."""
+    """By numpy and, of explicit methods, compiled."""
     method, gains = lookup(name), feedback_gains(0.2, 0.02, H)
     solving = implicit(method)
     mechanism = compiled_mechanism(load_scene("pendulum" if solving else "slider_crank"))
     count = 100 if solving else 2000  # the plain steps of implicit methods take long
-    run = both(mechanism, name, count, gains)
+    run = simulate(mechanism, method, H, count * H, gains) if solving else both(mechanism, name, count, gains)
     states = np.concatenate([run.q, run.v], axis=1)
     first = states_needed(method)
     expected = plain_run(mechanism, method, H, gains, states[:first], count + 1 - first)
@@ -92,10 +93,9 @@ def test_many_steps_are_the_plain_ones(name: str) -> None:
 @pytest.mark.promise(
     "Compiled runs (`--compiled`)",
     measured=(
-        "those of numpy to 1e-12 of the coordinates' size after 200 steps, with the same count of evaluations, "
-        "iterations and, where they end, the same end: every method in every shipped scene but the chain of 40 "
-        "four-bars, for which one of twelve stands; both those of the plain formulas after 2000 steps, 100 where "
-        "equations are solved. Kicked batches: 1e-9"
+        "those of numpy to 1e-12 of the coordinates' size after 200 steps, with the same count of evaluations and, "
+        "where they end, the same end: every explicit method in every shipped scene but the chain of 40 four-bars, for "
+        "which one of twelve stands; both those of the plain formulas after 2000 steps. Kicked batches: 1e-9"
     ),
 )
 @pytest.mark.slow
@@ -103,25 +103,38 @@ def test_many_steps_are_the_plain_ones(name: str) -> None:
 def test_every_method_is_the_same_compiled_in_every_scene(scene: str) -> None:
     mechanism, h = compiled_mechanism(load_scene(scene)), step_for(scene)
     for name in of_campaign(tuple(REGISTRY), EXPLICIT_KINDS):
-        if name not in UNSTABLE:
+        if name not in UNSTABLE and not implicit(lookup(name)):
             run = both(mechanism, name, 200, feedback_gains(0.1, 0.01, h), h)
             assert len(run.t) == 201 or run.failure
 
 
-@pytest.mark.promise("Compiled runs (`--compiled`)")
-@pytest.mark.slow
-def test_newtons_method_ends_runs_alike(monkeypatch: pytest.MonkeyPatch) -> None:
-    """By its iterations, too, and across blocks, which keep the Jacobian from step to step."""
+@pytest.mark.parametrize("point", [{"name": "bdf2"}, {"name": "RK4", "after": after_step("projection")}])
+def test_what_solves_equations_or_projects_is_not_compiled(point: dict[str, Any]) -> None:
+    """Also where that is asked for."""
+    mechanism, method = compiled_mechanism(load_scene("pendulum")), lookup(point["name"])
+    after = point.get("after", NOTHING)
+    gains = (0.0, 0.0) if after.projecting else (20.0, 100.0)
+    plain, asked = (
+        simulate(mechanism, method, H, 20 * H, gains, after=after, compiled=compiled) for compiled in (False, True)
+    )
+    assert_alike(plain, asked, tolerance=0.0)
+
+
+def test_newtons_method_ends_runs_and_keeps_its_jacobian_across_blocks(monkeypatch: pytest.MonkeyPatch) -> None:
     mechanism = compiled_mechanism(load_scene("pendulum"))
-    run = both(mechanism, "bdf2", 500, feedback_gains(0.3, 0.04, H))
+
+    def bdf2(count: int, gains: tuple[float, float], h: float = H) -> Trajectory:
+        return simulate(mechanism, lookup("bdf2"), h, count * h, gains)
+
+    run = bdf2(500, feedback_gains(0.3, 0.04, H))
     assert run.failure is None
     assert run.iterations is not None
     assert run.iterations + 20 >= 3 * 500
     assert run.evaluations < 1.2 * run.iterations  # Jacobians are kept as long as they serve
-    assert "blow-up" in str(both(mechanism, "bdf2", 100, feedback_gains(-1.0, 0.1, 0.3), 0.3).failure)
-    monkeypatch.setattr(runner, "NUMBERS_OF_A_BLOCK", 7 * 2 * mechanism.size)
-    assert_alike(both(mechanism, "bdf2", 500, feedback_gains(0.3, 0.04, H)), run, tolerance=0.0)
-    ended = both(mechanism, "bdf2", 400, (0.0, 0.0), 0.1)
+    assert "blow-up" in str(bdf2(100, feedback_gains(-1.0, 0.1, 0.3), 0.3).failure)
+    monkeypatch.setattr(programs, "NUMBERS_OF_A_BLOCK", 7 * 2 * mechanism.size)
+    assert_alike(bdf2(500, feedback_gains(0.3, 0.04, H)), run, tolerance=0.0)
+    ended = bdf2(400, (0.0, 0.0), 0.1)
     assert len(ended.t) > 10
     assert f"Newton's method did not converge in {MOST_ITERATIONS} iterations (last correction " in str(ended.failure)
 
@@ -183,10 +196,7 @@ def states_of(blocks: Iterable[Block]) -> FloatArray:
 
 
 def test_a_matrix_without_inverse_spoils_no_other() -> None:
-    matrices = np.stack([np.eye(2), np.ones((2, 2)), np.array([[0.0, 2.0], [4.0, 0.0]])], axis=-1)
-    found = np.zeros_like(matrices)
-    with np.errstate(all="ignore"):
-        invert(matrices, 2, np.ones(3, np.bool_), found)
-    assert not np.isfinite(found[:, :, 1]).all()
-    assert np.array_equal(found[:, :, 0], np.eye(2))
-    assert np.array_equal(found[:, :, 2], [[0.0, 0.25], [0.5, 0.0]])
+    found = _inverses(np.stack([np.eye(2), np.ones((2, 2)), np.array([[0.0, 2.0], [4.0, 0.0]])]))
+    assert not np.isfinite(found[1]).all()
+    assert np.array_equal(found[0], np.eye(2))
+    assert np.array_equal(found[2], [[0.0, 0.25], [0.5, 0.0]])
