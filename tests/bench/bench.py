@@ -45,7 +45,6 @@ from bezstab.methods import (
     Method,
     RungeKutta,
     bezier,
-    implicit,
     lookup,
     recipe,
     steps,
@@ -85,7 +84,6 @@ SAME = 1e-12  # SI units: rounding; less, even 0, where h times a slope's roundi
 FLOQUET_POINTS = (200, 50)
 STEPS_A_TURN = 200
 COMPILED_STEPS = 100_000  # of a run that pays for compiling
-COMPILED_IMPLICIT_STEPS = 20_000  # of a method that solves equations, ten times as long in Python
 COMPILED_CELLS = 44  # per axis of a map of verdicts: as many as one batch of numpy takes
 MUJOCO = {"SYM": "Euler", "RK4": "RK4"}
 UPDATES = 60  # of the window, as the mouse moves
@@ -474,13 +472,12 @@ def compiled_runs() -> Iterator[Line]:
     """Yield how much faster compiled runs are than Python's and MuJoCo's, and what compiling takes."""
     moving = compiled_mechanism(load_scene("slider_crank"))
     state = initial_state(moving)
-    for name in ("B4", "RK4", "SYM", "hht", "bdf4"):
-        method = lookup(name)
-        count = COMPILED_IMPLICIT_STEPS if implicit(method) else COMPILED_STEPS
+    for name in ("B4", "RK4", "SYM"):
+        method, count = lookup(name), COMPILED_STEPS
         begin = time.process_time()
         alone(moving, method, state, 10, compiled=True)
         compiling = time.process_time() - begin
-        # the first method of either kind compiles the scene for all that follow, or loads what is kept from before
+        # the first method compiles the scene for all that follow, or loads what is kept from before
         note = f"{compiling:.2f} s of processor time"
         yield Line("compiled", f"{name}: 3 s, compiling or loading", 3 / compiling, None, note)
         calls: list[Callable[[], FloatArray]] = [
@@ -497,7 +494,7 @@ def compiled_runs() -> Iterator[Line]:
             note = f"{COMPILED_STEPS / ours:.1e} steps/s against {COMPILED_STEPS / theirs:.1e}, in C"
             yield Line("compiled", f"{name}: MuJoCo's {MUJOCO[name]}", theirs / ours, 15.0, note)
     with ProcessPoolExecutor(2) as pool:
-        for name in ("B4", "RK4", "hht", "bdf4"):
+        for name in ("B4", "RK4"):
             rows = map_rows(moving.scene, lookup(name), STEP, COMPILED_CELLS)
             halves = [replace(rows[0], beta_hat=half) for half in np.array_split(rows[0].beta_hat, 2)]
             maps_of_verdicts = [

@@ -21,7 +21,7 @@ from tests.mechanism.test_stepping import H, both
 
 @pytest.mark.slow
 def test_a_chain_compiled_is_the_same() -> None:
-    assert len(both(chain(12), "SYM", 100, feedback_gains(0.3, 0.04, H)).t) == 101
+    assert len(both(chain(4), "SYM", 100, feedback_gains(0.3, 0.04, H)).t) == 101
 
 
 def test_runs_are_compiled_where_that_pays_or_is_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:

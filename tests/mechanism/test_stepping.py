@@ -36,7 +36,7 @@ KINDS = (*EXPLICIT_KINDS, "bdf2", "gauss4", "sdirk2", "hht")
 UNSTABLE = {"AB6", "AB7", "AB8"}
 """With the feedback of these tests: rounding grows."""
 SCENES = [name for name in shipped_scenes() if name != "n_four_bar"]
-"""Besides the chain of 40 four-bars, which takes a minute to compile: one of twelve stands for it."""
+"""Besides the chain of 40 four-bars, which takes a minute to compile: one of four stands for it."""
 
 
 def step_for(scene: str) -> float:
@@ -95,7 +95,7 @@ def test_many_steps_are_the_plain_ones(name: str) -> None:
     measured=(
         "those of numpy to 1e-12 of the coordinates' size after 200 steps, with the same count of evaluations and, "
         "where they end, the same end: every explicit method in every shipped scene but the chain of 40 four-bars, for "
-        "which one of twelve stands; both those of the plain formulas after 2000 steps. Kicked batches: 1e-9"
+        "which one of four stands; both those of the plain formulas after 2000 steps. Kicked batches: 1e-9"
     ),
 )
 @pytest.mark.slow
