@@ -10,7 +10,7 @@ from bezstab import questions, show
 from bezstab.cli.command_group import NUMERICAL_TROUBLE
 from bezstab.cli.options import OF_A_CONTROLLER, TypedPoint, refuse_beside, typed_options
 from bezstab.cli.output import Files, for_reading, say, show_command, show_rows, show_text, worked_out
-from bezstab.engines import Engine
+from bezstab.engines import Drive, Engine
 from bezstab.errors import NumericalError
 from bezstab.methods import Method, lookup
 
@@ -152,10 +152,21 @@ def write_held(question: "questions.HeldQuestion", points: int, files: Files) ->
         files.write(files.path("region", answer.method.name, "held"), partial(show.held_figure, answer, points))
 
 
+def say_of_drive(drive: Drive, rows: Sequence[show.Row]) -> None:
+    """Print before its rows what is to be known of a drive with one gain alone, and, without --method, which ways."""
+    said = show.drive_words(drive)
+    if len(rows) > 1 and "--method" not in typed_options():
+        said.append(show.ways_words(rows))
+    for sentence in said:
+        show_text(f"{sentence}\n")
+
+
 def show_held(question: "questions.HeldQuestion") -> "list[questions.HeldAnswer]":
     """Print and return the answer for each way of applying a held or late drive; print what is not judged."""
     found = list(questions.held_answers(question))
     show_text(f"{show.timing_words(question.timing, float(question.h))}\n")
-    show_rows(show.HELD, map(show.HELD.row, found))
+    rows = [show.HELD.row(answer) for answer in found]
+    say_of_drive(question.drive, rows)
+    show_rows(show.HELD, rows)
     show_text(f"\n{show.LATE_COMMANDS}")
     return found

@@ -5,7 +5,15 @@ from itertools import groupby
 from typing import Any
 
 from bezstab import questions
-from bezstab.cli.asking import asked_of_scene, held_asked, say_varying, show_below, show_held, show_sentences
+from bezstab.cli.asking import (
+    asked_of_scene,
+    held_asked,
+    say_of_drive,
+    say_varying,
+    show_below,
+    show_held,
+    show_sentences,
+)
 from bezstab.cli.options import TypedPoint, changed, command, typed_options
 from bezstab.cli.output import for_reading, say, show_rows, show_text
 from bezstab.errors import InputError, NumericalError
@@ -50,7 +58,8 @@ def check(**typed: Any) -> bool:
     as MuJoCo's implicitfast), as stable PD (stable-pd), fully implicit (implicit-euler, as PhysX). All four must be
     safe unless --method names yours. Gains that are stable in an implicit engine may explode in an explicit one.
     "used up" names the gain that is at its limit, or nearest to it. "to" says how far each may go alone. An explicit
-    drive needs 2 kd h + kp h² < 4 inertia: mostly it is kd that is too large. An implicit velocity takes any kd.
+    drive needs 2 kd h + kp h² < 4 inertia: mostly it is kd that is too large. An implicit velocity takes any kd. With
+    kp = 0 the drive is a damper: nothing holds its position, and its velocity is judged.
 
     --every, --late and --filter are for a controller that is slower than the physics. Its torque is held for several
     steps, comes late, or uses a filtered velocity. "used up" then names gains, rate or delay. A contact of stiffness k
@@ -64,11 +73,15 @@ def check(**typed: Any) -> bool:
         questions.check_speed(None, typed["speed"])
         return _check_without_step(typed["methods"], typed["point"])
     question = asked_of_scene(questions.Question, **typed)
-    found = list(_with_instead(questions.answers(question)))
+    judged = questions.answers(question)
+    only_damps = question.drive and not question.drive.kp  # a choice would hold a position that is to move
+    found = list(judged if only_damps else _with_instead(judged))
     given = [answer for answer in found if answer.role == "given"]
     if for_reading():
-        without = left_out(question)
-        show_rows(CHECKED, map(answer_row, given), without)
+        without, rows = left_out(question), [answer_row(answer) for answer in given]
+        if question.drive:
+            say_of_drive(question.drive, rows)
+        show_rows(CHECKED, rows, without)
         say_varying(given)
         show_sentences(map(costs_words, given if not question.drive else ()))
         if instead := [answer for answer in found if answer.role == "instead"]:

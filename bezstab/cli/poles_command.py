@@ -1,13 +1,16 @@
 """The command that prints poles at a point: poles."""
 
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from bezstab import questions
 from bezstab.cli.asking import asked_of_scene, show_below
 from bezstab.cli.options import USUAL_METHODS, Rule, changed, command, flag
 from bezstab.cli.output import show_rows, show_text
 from bezstab.show import POLES, one_pole_sentence, pole_rows
+
+if TYPE_CHECKING:
+    from bezstab.stability import ComplexArray
 
 
 @command(
@@ -30,17 +33,10 @@ def poles(all_poles: bool, **typed: Any) -> None:
 
     Example: bezstab poles --alpha 0.5 --beta 0.1
     """
-    from bezstab import stability
-
     question = asked_of_scene(questions.Question, **typed)
-    poles_of = stability.poles if all_poles else stability.dominant_pole
     margins = question.drive is not None
     at_point = [each for each in questions.answers(question, margins=margins) if each.goal == "as given"]
-    rows = [
-        row
-        for each in at_point
-        for row in pole_rows(each, poles_of(each.method, each.alpha_hat, each.beta_hat).reshape(-1))
-    ]
+    rows = [row for each in at_point for row in pole_rows(each, _all_poles(each) if all_poles else [each.pole])]
     costs_shown = not (all_poles or question.drive)
     kind = replace(POLES, sentence=one_pole_sentence) if all_poles else POLES
     alpha_hat, beta_hat = map(float, question.given.point)
@@ -48,3 +44,12 @@ def poles(all_poles: bool, **typed: Any) -> None:
     show_text(f"α̂ = {alpha_hat:.10g}, β̂ = {beta_hat:.10g}\n")
     show_rows(kind, rows, without)
     show_below(question, at_point, motion=not all_poles)
+
+
+def _all_poles(answer: "questions.Answer") -> "ComplexArray":
+    """Return every pole of an answer, of a drive without stiffness those of its velocity."""
+    from bezstab import stability
+
+    if answer.question.drive and not answer.beta_hat:
+        return stability.velocity_poles(answer.method, answer.alpha_hat)
+    return stability.poles(answer.method, answer.alpha_hat, answer.beta_hat)

@@ -19,22 +19,22 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
-from itertools import accumulate
 
 import numpy as np
 
 from bezstab.engines import ENGINES, Point
 from bezstab.evidence.mujoco_controllers import Controlled, MotorGains, controlled_motors, lifted_step
 from bezstab.evidence.mujoco_models import DIGITS, LEAST_SIZE, Constraint, Feedback, ModelData, Motor, Unjudged
-from bezstab.methods import Method, Verdict, closed_loop_at, lookup, recursion_verdict
+from bezstab.methods import Method, Verdict, lookup
 from bezstab.rationals import ONE, ZERO, exact
 from bezstab.stability import (
     BoolArray,
     FloatArray,
     Timing,
+    drive_pole,
+    drive_verdict,
     first_where,
     held_method,
-    poles,
 )
 
 Points = Callable[[Fraction], list[tuple[Point, str]]]
@@ -155,21 +155,10 @@ def _not_judged(element: str, kind: str, reason: str) -> Linted:
 # One element
 
 
-def _verdict(method: Method, point: Point) -> Verdict:
-    """Return the proven verdict; where there is no stiffness, that on the velocity alone."""
-    polynomial = closed_loop_at(method, *point)
-    if point[1] == 0:  # nothing holds the position: P = (z - 1) Q, -Q's coefficients are the running sums of P's
-        polynomial = list(accumulate(polynomial))[:-1]
-    return recursion_verdict(polynomial)
-
-
 def _moduli(method: Method, points: Sequence[Point]) -> FloatArray:
-    """Return |z_p| a step of the model; where there is no stiffness, of the velocity alone: without the pole at one."""
+    """Return |z_p| a step of the model; where there is no stiffness, of the velocity alone."""
     alpha_hat, beta_hat = np.array(points, float).T
-    z = poles(method, alpha_hat, beta_hat)
-    if not beta_hat.any():
-        z = np.take_along_axis(z, np.argsort(np.abs(z - 1), axis=-1)[:, 1:], axis=-1)
-    return np.asarray(np.abs(z).max(axis=-1) ** (1 / float(method.step_multiple)))
+    return np.asarray(np.abs(drive_pole(method, alpha_hat, beta_hat)) ** (1 / float(method.step_multiple)))
 
 
 def _linted(element: str, kind: str, setting: str, method: Method, points_at: Points) -> Linted:
@@ -193,7 +182,7 @@ def _linted(element: str, kind: str, setting: str, method: Method, points_at: Po
         alpha_hat=float(alpha_hat),
         beta_hat=float(beta_hat),
         map=method.name,
-        verdict=_verdict(method, points[worst]),
+        verdict=drive_verdict(method, *points[worst]),
         z_abs=float(moduli[worst]),
         h_factor=_h_factor(unstable),
     )
@@ -398,7 +387,7 @@ def _drive_advice(model: ModelData, drive: _Drive, found: Linted) -> str:
         alpha_hat, beta_hat = replace(drive, method=model.method).point(model.h)
         used = f"kv takes {float(alpha_hat / 2):.0%} of the limit, kp {float(beta_hat / 4):.0%}; "
     all_implicit = replace(drive, method=IMPLICIT_IN_VELOCITY).point(model.h)
-    if drive.method is not IMPLICIT_IN_VELOCITY and _verdict(IMPLICIT_IN_VELOCITY, all_implicit) == "converges":
+    if drive.method is not IMPLICIT_IN_VELOCITY and drive_verdict(IMPLICIT_IN_VELOCITY, *all_implicit) == "converges":
         return f'{used}write integrator="implicitfast"'
     return f"{used}{smaller_step}"
 

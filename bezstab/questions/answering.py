@@ -31,7 +31,7 @@ from bezstab.stability import (
     choose,
     describe_point,
     feedback_cost,
-    gain_factors,
+    gain_stretches,
     largest_stable_step,
     stable_up_to,
     varying_steps,
@@ -56,8 +56,9 @@ Gain = Literal["kp", "kd"]
 class Gains:
     """The gains (SI units) that a point is on a drive's inertia, and how far each may go alone.
 
-    A limit is infinite where there is none, None where lowering that gain alone does not help. The largest kp goes with
-    this kd, the largest kd with this kp. `used_up` is the gain at its limit, or nearest to it; None without limits.
+    The limits of kp go with this kd, those of kd with this kp. The upper one is infinite where there is none. It is
+    None, as `kd_min` is, where no such gain helps: kp is only lowered, kd is raised too. `used_up` is the gain at its
+    upper limit, or nearest to it; None without limits.
     `applied` is what the method is called as a way of applying a drive, None if it is none.
     """
 
@@ -66,6 +67,7 @@ class Gains:
     kp: float
     kd: float
     kp_max: float | None
+    kd_min: float | None
     kd_max: float | None
     used_up: Gain | None
 
@@ -227,18 +229,22 @@ class Answer(Choice):
         if drive is None or h is None:
             return None
         kp, kd = (drive.kp, drive.kd) if self.role == "given" else drive.gains(self.alpha_hat, self.beta_hat, float(h))
-        kd_factor, kp_factor = gain_factors(self)
-        factors: dict[Gain, float | None] = {"kd": kd_factor, "kp": kp_factor}
+        of_alpha, of_beta = gain_stretches(self.method, *self.point)
+        kp_of_one, kd_of_one = drive.gains(1.0, 1.0, float(h))
+        kp_max = None if of_beta is None or of_beta[0] > self.beta_hat else kp_of_one * of_beta[1]
+        kd_min, kd_max = (None, None) if of_alpha is None else (kd_of_one * end for end in of_alpha)
+        pairs: dict[Gain, tuple[float, float | None]] = {"kd": (float(kd), kd_max), "kp": (float(kp), kp_max)}
         # the distance is the ratio of the gain and its limit, whichever is larger
-        ratios = {gain: max(each, 1 / each) for gain, each in factors.items() if each and math.isfinite(each)}
+        ratios = {gain: max(a / b, b / a) for gain, (a, b) in pairs.items() if a > 0 and b and math.isfinite(b)}
         nearest = min(ratios, key=lambda gain: ratios[gain], default=None)
         return Gains(
             applied=DRIVE_METHODS.get(self.method.name),
             inertia=drive.inertia,
             kp=float(kp),
             kd=float(kd),
-            kp_max=None if kp_factor is None else kp_factor * float(kp),
-            kd_max=None if kd_factor is None else kd_factor * float(kd),
+            kp_max=kp_max,
+            kd_min=kd_min,
+            kd_max=kd_max,
             used_up=nearest,
         )
 
@@ -332,7 +338,9 @@ def answers(question: Question, *, margins: bool = True) -> Iterator[Answer]:
             yield found
             continue
         for label, point in (("as given", question.given.point), *question.given.also):
-            yield _answer(question, "given", describe_point(method, label, *point, question.spread, margins))
+            of_drive = question.drive is not None
+            choice = describe_point(method, label, *point, question.spread, margins, of_drive=of_drive)
+            yield _answer(question, "given", choice)
 
 
 def _answer(question: Question, role: Role, choice: Choice) -> Answer:

@@ -13,6 +13,7 @@ from bezstab.show.result_sentences import (
     LATE_COMMANDS,
     combined_words,
     costs_words,
+    drive_words,
     exact_rate_words,
     likeness_sentence,
     motion_words,
@@ -21,6 +22,7 @@ from bezstab.show.result_sentences import (
     timing_words,
     trade_words,
     varying_words,
+    ways_words,
 )
 from bezstab.show.row_kinds import (
     CHAINS,

@@ -24,11 +24,18 @@ def modulus_words(modulus: float) -> str:
     return formatted(modulus, ".6e" if modulus >= MOST_FIXED else ".6f")
 
 
-def any_or_none(row: Row) -> str:
-    """Return what is said of a factor or a gain that has no limit: any, or that none helps where nothing is stable."""
-    if row.get("margins_reason"):
-        return MISSING
-    return {"converges": "any", None: MISSING}.get(row["verdict"], "none helps")
+def any_or_missing(row: Row) -> str:
+    """Return what is said of a factor that has no limit: any; of a point that is not stable none was looked for."""
+    return "any" if row["verdict"] == "converges" and not row.get("margins_reason") else MISSING
+
+
+def gain_limit_text(gain: str, row: Row) -> str:
+    """Return up to which kp or kd a drive is stable; that it is to be lowered to there, where it is above it."""
+    value, limit = row[gain], row[f"{gain}_max"]
+    if limit is None:
+        without_end = row["kd_min"] is not None if gain == "kd" else row["verdict"] == "converges"
+        return "any" if without_end else "none helps"
+    return f"lower {gain} to {limit:.4g}" if value > limit else f"{limit:.4g}"
 
 
 def unbounded(row: Row) -> str:

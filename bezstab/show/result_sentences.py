@@ -13,9 +13,10 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from fractions import Fraction
 
-    from bezstab.engines import Point
+    from bezstab.engines import Drive, Point
     from bezstab.evidence import Likeness, Measurement
     from bezstab.questions import Answer, ReferenceMotion
+    from bezstab.show.fields import Row
     from bezstab.stability import BestPoint, FarLimit, Timing, VaryingSteps
 
 COSTLY = 10.0
@@ -125,6 +126,24 @@ def combined_words(motion: ReferenceMotion) -> str:
         "\nErrors of position and velocity are shares of the amplitudes of a motion's own position and velocity, here "
         f"{motion.words}."
     )
+
+
+def drive_words(drive: Drive) -> list[str]:
+    """Return what is to be known of a drive that has one gain alone; nothing of another one."""
+    if not (drive.kp or drive.kd):
+        return ["Without kp and kd nothing is driven."]
+    if not drive.kp:
+        return ["Without kp this is a damper: nothing holds the position, so the velocity is judged."]
+    return [] if drive.kd else ["Without kd this is a spring: nothing but the integrator damps."]
+
+
+def ways_words(rows: Sequence[Row]) -> str:
+    """Return in which ways of applying a drive it is safe, of a row for each way."""
+    verdicts = []
+    for verdict, safe in (("safe", True), ("not safe", False)):
+        if names := [f"{row['drive']} ({row['method']})" for row in rows if row["safe"] == safe]:
+            verdicts.append(f"{verdict} {'is' if len(names) == 1 else 'are'} {', '.join(names)}")
+    return f"Of the ways to apply the torque, of which --method names yours, {'; '.join(verdicts)}."
 
 
 def timing_words(timing: Timing, h: float) -> str:

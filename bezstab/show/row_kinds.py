@@ -9,9 +9,10 @@ from dataclasses import replace
 from functools import partial
 
 from bezstab.show.cells import (
-    any_or_none,
+    any_or_missing,
     any_speed,
     constant_text,
+    gain_limit_text,
     modulus_words,
     order_text,
     pole_text,
@@ -213,7 +214,7 @@ H_FACTOR = number(
     "Factor on h up to which this alpha and beta are stable",
     "stable for h times",
     ".4g",
-    otherwise=any_or_none,
+    otherwise=any_or_missing,
     null="where the point is not stable, or any step is",
     path="margins.h",
 )
@@ -434,19 +435,25 @@ DRIVE = (
         "kp_max",
         "Largest stable stiffness with this damping",
         "kp to",
-        ".4g",
-        otherwise=any_or_none,
+        text=partial(gain_limit_text, "kp"),
         unit="N m/rad or N/m",
         null="without a limit",
     ),
     number("kd", "Damping of the drive", "kd", ".4g", unit="N m s/rad or N s/m"),
     number("inertia", "Inertia that the drive feels", unit="kg m^2 or kg", path="question.drive.inertia"),
     number(
+        "kd_min",
+        "Least stable damping with this stiffness",
+        "kd from",
+        ".4g",
+        unit="N m s/rad or N s/m",
+        null="where none helps",
+    ),
+    number(
         "kd_max",
         "Largest stable damping with this stiffness",
         "kd to",
-        ".4g",
-        otherwise=any_or_none,
+        text=partial(gain_limit_text, "kd"),
         unit="N m s/rad or N s/m",
         null="without a limit",
     ),
@@ -778,7 +785,7 @@ CHOICES = RowKind(
             "Largest factor by which alpha alone may be scaled",
             "α times to",
             ".3g",
-            otherwise=any_or_none,
+            otherwise=any_or_missing,
             null="where the point is not stable, or any",
             path="margins.alpha.1",
         ),
@@ -795,7 +802,7 @@ CHOICES = RowKind(
             "Largest factor by which beta alone may be scaled",
             "β times to",
             ".3g",
-            otherwise=any_or_none,
+            otherwise=any_or_missing,
             null="where the point is not stable, or any",
             path="margins.beta.1",
         ),
@@ -1276,7 +1283,7 @@ CLAIMS = RowKind(
         ),
     ),
 )
-_APPLIED, KP, KP_MAX, KD, INERTIA, KD_MAX, _ = DRIVE
+_APPLIED, KP, KP_MAX, KD, INERTIA, KD_MIN, KD_MAX, _ = DRIVE
 # printed by `check`, `choose` and `region` about drives whose controller is slower than the physics
 HELD = RowKind(
     "a drive that is held or late",
@@ -1307,15 +1314,7 @@ HELD = RowKind(
         KP.of("question.drive.kp"),
         KP_MAX.of("limits.kp.1"),
         KD.of("question.drive.kd"),
-        number(
-            "kd_min",
-            "Least stable damping with this stiffness",
-            "kd from",
-            ".4g",
-            unit="N m s/rad or N s/m",
-            null="where none helps",
-            path="limits.kd.0",
-        ),
+        KD_MIN.of("limits.kd.0"),
         KD_MAX.of("limits.kd.1"),
         integer(
             "every_max",

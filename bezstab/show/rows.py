@@ -43,8 +43,11 @@ EXCLUDED_SHOWN = 5
 """Methods that do not fit and are shown where people read, the nearest; rows for programs have all."""
 
 OF_A_MOTION = ("total_error", "velocity_error", "times_least", "times_least_velocity")
-WITHOUT_ACCURACY = (*OF_A_MOTION, "order_left")
-"""Columns that tables of a drive omit: nothing feeds the acceleration of its target forward."""
+NOT_OF_DRIVES = (
+    *(*OF_A_MOTION, "order_left"),
+    *("alpha_factor_min", "alpha_factor_max", "beta_factor_min", "beta_factor_max"),
+)
+"""Columns that tables of a drive omit: nothing feeds the acceleration of its target forward; kp and kd have limits."""
 
 OF_ONE_ALONE = (
     *("worst", "settle_steps", "settle_seconds", "h_limit"),
@@ -226,8 +229,8 @@ def pole_rows(answer: Answer, poles: Iterable[complex]) -> list[Row]:
 def left_out(question: Question) -> tuple[str, ...]:
     """Return the keys that tables of a question leave out."""
     assumed = not question.goal and question.motion.assumed
-    unknown = WITHOUT_ACCURACY if question.drive else OF_A_MOTION if assumed else ()
-    return (*unknown, *(OF_ONE_ALONE if question.swept else ()))
+    not_asked = NOT_OF_DRIVES if question.drive else OF_A_MOTION if assumed else ()
+    return (*not_asked, *(OF_ONE_ALONE if question.swept else ()))
 
 
 def _added_cells(answer: Answer, *of_engine: Field) -> dict[str, Value]:

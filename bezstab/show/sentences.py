@@ -19,6 +19,8 @@ def answer_sentence(row: Row) -> str:
 
 def point_sentence(row: Row) -> str:
     """Return whether a point is safe, what a step does to the error, and how far step, α and β may grow, at rest."""
+    if "kp" in row and not {"z_abs_moving", "varying"} & row.keys():
+        return drive_sentence(row)
     if not row["safe"] or "swept_z_abs" in row:
         return safety_words(row)
     if row["margins_reason"]:
@@ -31,6 +33,42 @@ def point_sentence(row: Row) -> str:
     if {step, alpha, beta} == {growth_words(None)}:
         return f"{safety_words(row)} {begin} step, α and β may grow {step}."
     return f"{safety_words(row)} {begin} step may grow {step}, α {alpha}, β {beta}."
+
+
+def drive_sentence(row: Row) -> str:
+    """Return whether a drive is safe, what a step does to the error, and how far the step and each gain may go.
+
+    Without kp it is the velocity that is judged. Not safe. Each step multiplies the velocity by 3. Lower kd to 0.5.
+    """
+    change = change_words(row["z_abs"], row["verdict"], "error" if row["kp"] else "velocity")
+    begin = f"{'Safe' if row['safe'] else 'Not safe'}. {change[0].upper()}{change[1:]}."
+    if not row["safe"]:
+        remedies = " or ".join(_gain_remedies(row))
+        return f"{begin} {remedies[0].upper()}{remedies[1:]}." if remedies else begin
+    if row["margins_reason"]:
+        return f"{begin} How far the step, kp and kd may grow is not known: {row['margins_reason']}."
+    limits = {"the step": row["h_limit"] and seconds_words(row["h_limit"])}
+    limits |= {gain: row[f"{gain}_max"] and _plain(row[f"{gain}_max"]) for gain in ("kp", "kd")}
+    ends = ", ".join(f"{name} {f'to {limit}' if limit else 'without limit'}" for name, limit in limits.items())
+    return f"{begin} Each alone may grow: {ends}."
+
+
+def _gain_remedies(row: Row) -> list[str]:
+    """Return which change of one gain alone makes a drive stable."""
+    kp, kp_max, kd, kd_min, kd_max = (row[key] for key in ("kp", "kp_max", "kd", "kd_min", "kd_max"))
+    remedies = []
+    if kd_min is not None and kd <= kd_min:
+        remedies.append(f"raise kd above {_plain(kd_min)}{'' if kd_max is None else f', up to {_plain(kd_max)}'}")
+    if kd_max is not None and kd >= kd_max:
+        remedies.append(f"lower kd to {_plain(kd_max)}")
+    if kp_max is not None and kp >= kp_max:
+        remedies.append(f"lower kp to {_plain(kp_max)}")
+    return remedies
+
+
+def _plain(gain: float) -> str:
+    """Return a gain to four digits, 11000 without a power of ten."""
+    return f"{float(f'{gain:.4g}'):g}"
 
 
 def step_sentence(row: Row) -> str:
@@ -71,7 +109,7 @@ def held_sentence(row: Row) -> str:
     Safe (explicit). Each step multiplies the error by 0.95. It stays stable with one of these alone: kp up to 849, kd
     from 1.03 to 48.4, a torque every 19 steps, at most 6 steps late; kp is nearest to its limit.
     """
-    change = change_words(row["z_abs"], row["verdict"])
+    change = change_words(row["z_abs"], row["verdict"], "error" if row["kp"] else "velocity")
     sentence = f"{'Safe' if row['safe'] else 'Not safe'} ({row['drive']}). {change[0].upper()}{change[1:]}."
     changes = ", ".join(_changes(row))
     if not row["safe"]:
@@ -86,8 +124,10 @@ def _changes(row: Row) -> list[str]:
     kp_max, kd_min, kd_max = row["kp_max"], row["kd_min"], row["kd_max"]
     changes = []
     if kp_max is not None:
-        changes.append(f"kp up to {kp_max:.3g}")
-    if kd_min is not None:
+        changes.append(f"kp {'lowered' if row['kp'] > kp_max else 'up'} to {kp_max:.3g}")
+    if kd_max is not None and row["kd"] > kd_max:
+        changes.append(f"kd lowered to {kd_max:.3g}")
+    elif kd_min is not None:
         end = "on" if kd_max is None else f"to {kd_max:.3g}"
         changes.append(f"kd from {kd_min:.3g} {end}")
     if row["every_max"] is not None:

@@ -32,21 +32,23 @@ def times_words(factor: float) -> str:
     return f"{float(digits):,.0f}" if 100 <= float(digits) < PLAIN else digits
 
 
-def change_words(z_abs: float, verdict: Value) -> str:
+def change_words(z_abs: float, verdict: Value, what: str = "error") -> str:
     """Return what a step does to an error by its proven verdict: each step multiplies the error by 0.65.
+
+    The error, or `what` else: of a damper alone it is the velocity.
 
     Two digits of the modulus, and as many more as it takes to tell it from one. Where rounding has left it on the wrong
     side of one, the verdict alone.
     """
     if verdict == "marginal":
-        return "the error neither shrinks nor grows"
+        return f"the {what} neither shrinks nor grows"
     converges = verdict == "converges"
     if converges and z_abs < GONE:
-        return "the error is gone within a few steps"
+        return f"the {what} is gone within a few steps"
     if not (z_abs < 1 if converges else z_abs > 1):
-        return f"the error {'shrinks' if converges else 'grows'}, by less at a step than rounding shows"
+        return f"the {what} {'shrinks' if converges else 'grows'}, by less at a step than rounding shows"
     digits = next(digits for digits in range(2, MOST_DIGITS + 1) if float(f"{z_abs:.{digits}g}") != 1)
-    return f"each step multiplies the error by {z_abs:.{digits}g}"
+    return f"each step multiplies the {what} by {z_abs:.{digits}g}"
 
 
 def safety_words(row: Row) -> str:

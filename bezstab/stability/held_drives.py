@@ -23,7 +23,7 @@ from bezstab.errors import InputError
 from bezstab.methods import Assignment, Combination, Evaluation, Method, Quantity, SecondOrder, Verdict
 from bezstab.rationals import ONE
 from bezstab.stability.arrays import SLOW, BoolArray, FloatArray
-from bezstab.stability.closed_loop import spectral_radius, verdict
+from bezstab.stability.drive_poles import drive_pole, drive_verdict
 from bezstab.stability.searches import first_where
 
 MOST_STEPS = 100
@@ -137,8 +137,8 @@ def held_method(way: str, timing: Timing) -> Method:
 
 
 def held_verdict(way: str, alpha_hat: Fraction, beta_hat: Fraction, timing: Timing) -> Verdict:
-    """Return whether the drive converges, proven by Schur's test."""
-    return verdict(held_method(way, timing), alpha_hat, beta_hat)
+    """Return whether the drive converges, without kp its velocity, proven by Schur's test."""
+    return drive_verdict(held_method(way, timing), alpha_hat, beta_hat)
 
 
 def held_spectral_radius(
@@ -146,12 +146,11 @@ def held_spectral_radius(
 ) -> FloatArray:
     """Return the factor by which each step of the physics multiplies the error: |z_p| of `every` steps, its root.
 
-    Shape of alpha_hat and beta_hat broadcast, in float64: of a pole near others as many digits are lost as its
-    condition says.
+    Without kp it is the velocity that is multiplied so. Shape of alpha_hat and beta_hat broadcast, in float64: of a
+    pole near others as many digits are lost as its condition says.
     """
-    return np.asarray(
-        spectral_radius(held_method(way, timing), np.asarray(alpha_hat), np.asarray(beta_hat)) ** (1 / timing.every)
-    )
+    pole = drive_pole(held_method(way, timing), np.asarray(alpha_hat, float), np.asarray(beta_hat, float))
+    return np.asarray(np.abs(pole) ** (1 / timing.every))
 
 
 def law_bounds(way: str, alpha_hat: Any, timing: Timing) -> tuple[Any, ...]:

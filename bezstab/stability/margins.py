@@ -30,16 +30,21 @@ class Margins:
     beta: tuple[float, float]
 
 
-def stability_margins(method: Method, alpha_hat: Fraction | float, beta_hat: Fraction | float) -> Margins:
+def stability_margins(
+    method: Method, alpha_hat: Fraction | float, beta_hat: Fraction | float, *, of_drive: bool = False
+) -> Margins:
     """Return how far a stable, dimensionless point is from |z_p| = 1 along three paths, as factors.
 
     A factor s on h makes (s alpha_hat, s^2 beta_hat), on alpha (s alpha_hat, beta_hat), on beta (alpha_hat,
     s^2 beta_hat): paper Eq. 16. An end without |z_p| = 1 (a pole of paper Eq. 17) is infinite, or zero.
     Ends are where the path crosses the exact boundary, and the proven verdict turns there: one part in 1e9 nearer it
-    converges, one part further it does not. NumericalError if it does not turn so, as from a point that is not stable.
+    converges, one part further it does not. `of_drive` is as in `Path`. NumericalError if the verdict does not turn so,
+    as from a point that is not stable.
     """
     exact_point = Fraction(alpha_hat), Fraction(beta_hat)
-    by_h, by_alpha, by_beta = (_ends(Path(method, *exact_point, powers)) for powers in ((1, 2), (1, 0), (0, 2)))
+    by_h, by_alpha, by_beta = (
+        _ends(Path(method, *exact_point, powers, of_drive)) for powers in ((1, 2), (1, 0), (0, 2))
+    )
     return Margins(h=by_h[1], alpha=by_alpha, beta=by_beta)
 
 

@@ -16,20 +16,26 @@ largest steps, limits by damping ratio and the limits of single gains are all th
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
+from itertools import pairwise
 
 from bezstab.methods import Method, turning_factors
 from bezstab.rationals import ONE, ZERO
 from bezstab.stability.closed_loop import converges
+from bezstab.stability.drive_poles import drive_verdict
 
 
 @dataclass(frozen=True)
 class Path:
-    """The points (s^i alpha_hat, s^j beta_hat), s > 0, (i, j) the powers: exact, dimensionless."""
+    """The points (s^i alpha_hat, s^j beta_hat), s > 0, (i, j) the powers: exact, dimensionless.
+
+    With `of_drive` it is the velocity that is judged where there is no stiffness, as of any drive.
+    """
 
     method: Method
     alpha_hat: Fraction
     beta_hat: Fraction
     powers: tuple[int, int]
+    of_drive: bool = False
 
     def at(self, factor: Fraction) -> tuple[Fraction, Fraction]:
         """Return the point at a factor s."""
@@ -37,7 +43,10 @@ class Path:
 
     def converges_at(self, factor: Fraction) -> bool:
         """Return whether the verdict there is 'converges', proven."""
-        return converges(self.method, *self.at(factor))
+        alpha_hat, beta_hat = self.at(factor)
+        if self.of_drive and not beta_hat:
+            return drive_verdict(self.method, alpha_hat, beta_hat) == "converges"
+        return converges(self.method, alpha_hat, beta_hat)
 
 
 @lru_cache  # a margin looks both ways along one
@@ -68,3 +77,23 @@ def verdict_end(path: Path, start: Fraction = ONE, downwards: bool = False, stab
             return near
         near = far or near
     return None
+
+
+def stable_stretch(path: Path, own: Fraction) -> tuple[Fraction, Fraction | None] | None:
+    """Return between which factors the path is stable: around its `own` one, else nearest to it; None if nowhere.
+
+    The upper end is None where there is none. A place that is met, but not crossed, is no end.
+    """
+    stretches: list[tuple[Fraction, Fraction | None]] = []
+    for low, high in pairwise([ZERO, *crossing_factors(path), None]):
+        assert low is not None
+        if not path.converges_at(2 * low + 1 if high is None else (low + high) / 2):
+            continue
+        begun = stretches.pop()[0] if stretches and stretches[-1][1] == low else low
+        stretches.append((begun, high))
+
+    def distance(stretch: tuple[Fraction, Fraction | None]) -> Fraction:
+        low, high = stretch
+        return max(low - own, ZERO if high is None else own - high, ZERO)
+
+    return min(stretches, key=distance, default=None)

@@ -58,7 +58,7 @@ def test_a_motor_is_judged_with_its_controllers_gains() -> None:
     assert (row["kind"], row["verdict"]) == ("motor", None)
     assert "--pd 'hip_left=KP,KD' judges it" in str(row["advice"])
     timing = "--every 4 --late 1"
-    for kd, exit_code in (("5", 0), ("0.1", 1)):
-        (row,) = rows("lint", model, f"--pd hip.*=200,{kd}", timing, status=exit_code)
-        (answer,) = rows(f"check --pd 200,{kd},0.094 --h 0.002 --method SYM", timing, status=exit_code)
+    for gains, exit_code in (("200,5", 0), ("200,0.1", 1), ("0,5", 0), ("0,60", 1)):
+        (row,) = rows("lint", model, f"--pd hip.*={gains}", timing, status=exit_code)
+        (answer,) = rows(f"check --pd {gains},0.094 --h 0.002 --method SYM", timing, status=exit_code)
         assert (row["verdict"], row["z_abs"]) == (answer["verdict"], pytest.approx(answer["z_abs"], rel=1e-9))

@@ -73,7 +73,10 @@ LIMITS = [
     ("SYM", "3", "1/4", 2 - 1 / 8, None, "kd"),  # where one alone is too much the other does not help
     ("SYM", "1/10", "5", None, 4 - 1 / 5, "kp"),
     ("SYM", "3", "5", None, None, None),
-    ("SYM", "0", "1/100", None, None, None),  # rounding on the circle is no decay
+    ("SYM", "0", "1/100", 2 - 1 / 200, None, None),  # rounding on the circle is no decay: only more kd helps
+    ("SYM", "1", "0", 2, 2, "kd"),  # a damper: its velocity is judged
+    ("SYM", "4", "0", 2, None, "kd"),
+    ("imex-euler", "1", "8", inf, 6, "kp"),
     ("imex-euler", "1", "1", inf, 6, "kp"),
     ("implicit-euler", "1", "1", inf, inf, None),
 ]

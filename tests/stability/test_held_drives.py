@@ -1,7 +1,7 @@
 """Drives whose torque is held for several steps or applied late: exact verdicts, closed forms, plain simulation."""
 
 from fractions import Fraction
-from math import floor
+from math import floor, pi, sin
 
 import numpy as np
 import pytest
@@ -55,7 +55,9 @@ def test_a_held_drive_converges_where_its_law_says(a: Fraction, b: Fraction, eve
 
 
 @pytest.mark.promise("Drives that are held or late (`check --pd --every --late`)")
-@given(a=st.fractions(Fraction(1, 100), 2, max_denominator=100), b=st.fractions(0, 1, max_denominator=100))
+@given(
+    a=st.fractions(Fraction(1, 100), 2, max_denominator=100), b=st.fractions(Fraction(1, 100), 1, max_denominator=100)
+)
 @settings(deadline=None, max_examples=60)
 def test_a_drive_one_step_late_converges_where_its_law_says(a: Fraction, b: Fraction) -> None:
     late = Timing(late=Fraction(1))
@@ -63,10 +65,37 @@ def test_a_drive_one_step_late_converges_where_its_law_says(a: Fraction, b: Frac
 
 
 @pytest.mark.parametrize("way", ["imex-euler", "stable-pd"])
-@given(a=POSITIVE, b=st.fractions(0, 12, max_denominator=100))
+@given(a=POSITIVE, b=st.fractions(Fraction(1, 100), 12, max_denominator=100))
 @settings(deadline=None, max_examples=30)
 def test_a_fresh_drive_converges_where_its_law_says(way: str, a: Fraction, b: Fraction) -> None:
     assert converges_by_law(way, a, b, Timing()) == (held_verdict(way, a, b, Timing()) == "converges")
+
+
+VELOCITY_LIMITS = [  # of alpha_hat, without stiffness: v' = v - a v of so many steps before
+    ("SYM", Timing(), 2),
+    ("SYM", Timing(every=4), Fraction(1, 2)),
+    ("SYM", Timing(late=Fraction(1)), 1),
+    ("SYM", Timing(late=Fraction(2)), 2 * sin(pi / 10)),
+    ("imex-euler", Timing(late=Fraction(1)), 2),
+]
+
+
+@pytest.mark.parametrize(("way", "timing", "limit"), VELOCITY_LIMITS, ids=str)
+def test_without_stiffness_the_velocity_is_judged(way: str, timing: Timing, limit: Fraction | float) -> None:
+    """Late by k steps a pole is on the circle at 2 sin(pi / (4 k + 2)); implicit and one step late is explicit."""
+    zero = Fraction(0)
+    for factor, verdict in ((Fraction("0.999"), "converges"), (Fraction("1.001"), "diverges")):
+        assert held_verdict(way, factor * Fraction(limit), zero, timing) == verdict
+    stretch = held_limits(way, Fraction(limit) / 2, zero, timing).kd
+    assert stretch == pytest.approx((0, float(limit)), rel=1e-6)
+
+
+def test_without_stiffness_each_step_multiplies_the_velocity() -> None:
+    a, zero = Fraction("0.2"), Fraction(0)
+    assert held_spectral_radius("SYM", a, zero, Timing()) == pytest.approx(0.8, rel=1e-15)
+    assert held_spectral_radius("SYM", a, zero, Timing(every=4)) == pytest.approx(0.2**0.25, rel=1e-15)
+    both = held_spectral_radius("SYM", float(a), np.array([0.0, 0.04]), Timing())
+    assert both == pytest.approx([0.8, 0.8**0.5])  # with stiffness a pair, of which the product is 1 - a
 
 
 def test_where_no_closed_form_is_known_there_is_no_law() -> None:
