@@ -16,6 +16,8 @@ other; only appointed files see a library.
       |      \
     stability  mechanism
       |      /
+    motion   |             what the feedback does to a motion
+      |      |
     methods                schemes as exact data
       |
     engines                what others call the feedback
@@ -41,7 +43,8 @@ FOUNDATIONS = (
 
 STRANGERS = {
     "methods": {"engines"},
-    "mechanism": {"engines", "stability"},
+    "motion": {"engines"},
+    "mechanism": {"engines", "motion", "stability"},
     "paper": {"engines"},
     "api": {"show", "cli", "paper"},
 }
@@ -54,7 +57,7 @@ APPOINTED = {
     "sympy": {
         *("methods/determinants.py", "methods/derivation.py", "methods/formulas.py", "methods/shared_factors.py"),
         *("methods/plane_edges.py", "methods/path_edges.py", "methods/root_isolation.py", "methods/step_matrices.py"),
-        *("methods/recipes.py", "methods/steady_errors.py"),
+        *("methods/recipes.py", "methods/steady_errors.py", "methods/stage_torque.py"),
         *("stability/quadrant_proofs.py", "stability/held_drives.py"),
         *("mechanism/equations.py", "mechanism/generated_code.py", "mechanism/start.py", "mechanism/observation.py"),
     },

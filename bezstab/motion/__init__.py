@@ -1,0 +1,3 @@
+"""What the feedback does to the motion itself: the third map."""
+
+from bezstab.motion.modulated_circle import MotionEnergy, motion_energy

@@ -1,0 +1,99 @@
+"""The torque of stages on a uniform rotation, against closed forms, Butcher's D(1), and plain runs on the circle."""
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+import sympy as sp
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from bezstab.methods import Method, RungeKutta, lookup
+from bezstab.methods.stage_torque import stage_torque
+
+A, B = sp.symbols("alpha_hat beta_hat")
+
+FloatArray = NDArray[np.float64]
+
+
+@pytest.mark.parametrize(
+    ("name", "power", "coefficient"),
+    [
+        ("RK2", 2, B / (4 * (4 + B - 2 * A))),
+        ("SIE", 2, -(A - 1) / (A - B - 1)),
+        ("bs3", 2, 3 * B * (2 * A + B - 12) / (32 * (6 * A**2 - 3 * A * B - 18 * A + B**2 - 3 * B + 36))),
+        ("heun", 4, (A - 2) * (A - B - 2) / (2 * A - B - 4) ** 2),
+        ("AB2", 4, sp.Rational(1, 2)),
+        ("B4", 4, sp.Rational(5, 27)),
+        ("SYM", None, 0),
+        ("verlet-half", None, 0),
+        ("trapezoid", None, 0),
+    ],
+)
+def test_the_leading_term(name: str, power: int | None, coefficient: sp.Expr) -> None:
+    found = stage_torque(lookup(name))
+    assert found.power == power
+    assert sp.simplify(found.coefficient - coefficient) == 0
+
+
+def test_a_point_is_answered_as_the_formula_answers_it() -> None:
+    at = Fraction(1), Fraction(1, 4)
+    assert stage_torque(lookup("bs3"), at).coefficient == Fraction(-117, 11552)
+
+
+def turned_once(method: RungeKutta, alpha_hat: float, beta_hat: float, theta: float) -> float:
+    """Return omega' / omega - 1 of the steady rotation on the circle, from plain steps of a tableau in the plane."""
+    matrix, weights = np.array(method.tableau, float), np.array(method.weights, float)
+
+    def step(y: FloatArray) -> FloatArray:
+        slopes = np.zeros((len(weights), 4))
+        for i, row in enumerate(matrix):
+            q, v = np.split(y + row @ slopes, 2)
+            pull = (v @ v + alpha_hat * q @ v + beta_hat * (q @ q - 1) / 2) / (q @ q)
+            slopes[i] = np.concatenate([v, -pull * q])
+        return y + weights @ slopes
+
+    y = np.array([1.0, 0.0, 0.0, theta])
+    for _ in range(300):  # the error at the start dies; a step changes the rate by some 1e-6
+        y = step(y)
+    later = step(y)
+    return float(np.hypot(*later[2:]) / np.hypot(*y[2:]) - 1)
+
+
+@pytest.mark.parametrize("name", ["RK2", "bs3", "ssprk3", "ralston"])
+def test_it_is_what_a_run_on_the_circle_shows(name: str) -> None:
+    method, point = lookup(name), (Fraction(1), Fraction(1, 4))
+    assert isinstance(method.scheme, RungeKutta)
+    found, theta = stage_torque(method, point), 0.01
+    measured = turned_once(method.scheme, 1.0, 0.25, theta)
+    assert measured == pytest.approx(float(found.coefficient) * theta**2, rel=5e-3)  # the next term is of theta^2
+
+
+def runge_kutta(b2: Fraction, b3: Fraction, c2: Fraction, c3: Fraction, a32: Fraction) -> Method:
+    """Return the method of three stages with these coefficients."""
+    tableau = ((), (c2,), (c3 - a32, a32))
+    full = tuple(tuple(Fraction(entry) for entry in (*row, *[0] * (3 - len(row)))) for row in tableau)
+    return Method("three stages", RungeKutta(full, (1 - b2 - b3, b2, b3)), "a test")
+
+
+fractions = st.fractions(-2, 2, max_denominator=6)
+positive = st.fractions(Fraction(1, 20), 1, max_denominator=20)
+
+
+@settings(max_examples=20, deadline=None)
+@given(b2=fractions, c2=fractions, at=st.tuples(positive, positive))
+def test_with_d1_there_is_no_torque_of_second_order(b2: Fraction, c2: Fraction, at: tuple[Fraction, Fraction]) -> None:
+    """D(1), sum_i b_i a_ij = b_j (1 - c_j), asks of three stages of order two: c_3 = 1 and b_3 a_32 = b_2 (1 - c_2)."""
+    b3 = Fraction(1, 2) - b2 * c2
+    assume(b3 != 0)
+    assert stage_torque(runge_kutta(b2, b3, c2, Fraction(1), b2 * (1 - c2) / b3), at).power != 2
+
+
+@settings(max_examples=20, deadline=None)
+@given(b3=fractions, c2=fractions, c3=fractions, a32=fractions)
+def test_without_d1_there_is_one(b3: Fraction, c2: Fraction, c3: Fraction, a32: Fraction) -> None:
+    assume(c2 != 0)
+    b2 = (Fraction(1, 2) - b3 * c3) / c2
+    assume(b3 * (1 - c3) != 0 or b3 * a32 != b2 * (1 - c2))
+    assert stage_torque(runge_kutta(b2, b3, c2, c3, a32)).power == 2

@@ -1,0 +1,131 @@
+"""The third map, against runs of a mass that goes round a circle, and against the laws of the multiplier's work."""
+
+from collections.abc import Callable
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from bezstab.errors import InputError
+from bezstab.methods import REGISTRY, accuracy, lookup
+from bezstab.methods.stage_torque import stage_torque
+from bezstab.motion import motion_energy
+
+FloatArray = NDArray[np.float64]
+Field = Callable[[FloatArray, FloatArray], FloatArray]
+
+STEPS = 160
+"""In a revolution of the runs: theta = 0.039."""
+
+THETA = 2 * np.pi / STEPS
+
+
+def symplectic_euler(field: Field, q: FloatArray, v: FloatArray) -> tuple[FloatArray, FloatArray]:
+    v = v + field(q, v)
+    return q + v, v
+
+
+def heun(field: Field, q: FloatArray, v: FloatArray) -> tuple[FloatArray, FloatArray]:
+    a = field(q, v)
+    b = field(q + v, v + a)
+    return q + v + a / 2, v + (a + b) / 2
+
+
+def midpoint(field: Field, q: FloatArray, v: FloatArray) -> tuple[FloatArray, FloatArray]:
+    half = v + field(q, v) / 2
+    return q + half, v + field(q + v / 2, half)
+
+
+PLAIN = {"SYM": symplectic_euler, "heun": heun, "RK2": midpoint}
+
+
+def run(name: str, alpha_hat: float, beta_hat: float, modulation: float, harmonic: int) -> tuple[float, float, float]:
+    """Return the mean rate of a run (radians a step), the modulation, and the moment of momentum that a step adds.
+
+    This is the slope of what is no function of the place on the circle: the moment that would hold the rate.
+    """
+    strength = modulation * harmonic * THETA**2
+
+    def field(q: FloatArray, v: FloatArray) -> FloatArray:
+        square, angle = q @ q, np.arctan2(q[1], q[0])
+        pull = (v @ v + alpha_hat * q @ v + beta_hat * (square - 1) / 2) / square
+        force = strength * np.cos(harmonic * angle) / square
+        return np.asarray(force * np.array([-q[1], q[0]]) - pull * q)
+
+    states = np.zeros((14 * STEPS, 4))
+    q, v = np.array([1.0, 0.0]), np.array([0.0, THETA])
+    for state in states:
+        state[:2], state[2:] = q, v
+        q, v = PLAIN[name](field, q, v)
+    x, y, vx, vy = states[8 * STEPS :].T  # without what the start has made
+    angle, momentum = np.unwrap(np.arctan2(y, x)), x * vy - y * vx
+    places = [part(k * harmonic * angle) for k in range(1, 5) for part in (np.cos, np.sin)]
+    columns = np.stack([np.arange(len(x)), np.ones_like(x), *places], axis=1)
+    moment = np.linalg.lstsq(columns, momentum, rcond=None)[0][0]
+    rate = (angle[-1] - angle[0]) / (len(angle) - 1)
+    return float(rate), float(strength / harmonic / rate**2), float(moment)
+
+
+@pytest.mark.parametrize("harmonic", [1, 2])
+@pytest.mark.parametrize(("alpha_hat", "beta_hat"), [(0.3, 0.1), (0.8, 0.2)])
+@pytest.mark.parametrize("name", PLAIN)
+def test_it_predicts_runs(name: str, alpha_hat: float, beta_hat: float, harmonic: int) -> None:
+    rate, modulation, moment = run(name, alpha_hat, beta_hat, 0.02, harmonic)
+    predicted = motion_energy(lookup(name), alpha_hat, beta_hat, rate, harmonic).growth(modulation)
+    # the next terms: of fourth order in the modulation, and that the rate itself grows while it is measured
+    assert moment == pytest.approx(float(predicted) * rate**2 / 2, rel=0.005)
+
+
+@pytest.mark.parametrize("name", REGISTRY)
+def test_a_uniform_rotation_gains_what_the_stages_torque_says(name: str) -> None:
+    method, theta = lookup(name), 0.01
+    multiple = float(method.step_multiple)
+    found = stage_torque(method, (Fraction(1), Fraction(1, 4)))
+    rotation = float(motion_energy(method, 1 / multiple, 0.25 / multiple**2, theta / multiple).rotation)
+    leading = 2 * float(found.coefficient) * theta ** ((found.power or 1) - 1)
+    assert rotation == pytest.approx(leading, rel=0.01, abs=5e-13)  # rounding of a step, 1e-16, over theta^2 / 2
+
+
+OMEGA, ALPHA, BETA = 1.0, 1.0, 2.0
+"""1/s, of the laws below."""
+
+
+@pytest.mark.parametrize("name", ["AB2", "bdf2", "trapezoid", "B4"])
+def test_the_multipliers_work_of_methods_of_order_two(name: str) -> None:
+    """(3/2) C h^2 kappa_1^2 Omega^2 alpha (beta^2 + Omega^2) / D of theory, with lambda in phase with kappa."""
+    h, constant = 0.002, float(accuracy(lookup(name))[1])
+    kappa = 2 * OMEGA  # v^2 changes by twice the modulation
+    resonance = (BETA**2 - OMEGA**2) ** 2 + 4 * ALPHA**2 * OMEGA**2
+    power = 1.5 * constant * h**2 * kappa**2 * OMEGA**2 * ALPHA * (BETA**2 + OMEGA**2) / resonance
+    found = motion_energy(lookup(name), 2 * ALPHA * h, BETA**2 * h**2, OMEGA * h)
+    assert float(found.multiplier) == pytest.approx(2 * power, rel=0.01)  # of omega^2 / 2, per radian at 1 rad/s
+
+
+@pytest.mark.parametrize("name", ["SYM", "verlet-half"])
+def test_the_multipliers_work_of_symplectic_euler(name: str) -> None:
+    """h kappa_1^2 Omega^2 (alpha^2 + (beta^2 - Omega^2) / 4) / D: it brakes where beta^2 < Omega^2 - 4 alpha^2."""
+    h, kappa = 0.0005, 2 * OMEGA
+    for alpha, beta in [(ALPHA, BETA), (0.1, 0.5)]:
+        resonance = (beta**2 - OMEGA**2) ** 2 + 4 * alpha**2 * OMEGA**2
+        power = 0.5 * h * kappa**2 * OMEGA**2 * (2 * alpha**2 + (beta**2 - OMEGA**2) / 2) / resonance
+        found = motion_energy(lookup(name), 2 * alpha * h, beta**2 * h**2, OMEGA * h)
+        assert float(found.multiplier) == pytest.approx(2 * power, rel=0.02)
+        assert (power > 0) == (beta**2 > OMEGA**2 - 4 * alpha**2)
+
+
+def test_truncation_of_a_method_without_stages_does_not_depend_on_the_feedback() -> None:
+    found = motion_energy(lookup("AB2"), [0.01, 0.2, 0.6], [0.001, 0.05, 0.2], 0.01)
+    truncation = found.modulation - found.multiplier
+    assert truncation == pytest.approx(truncation.mean(), rel=2e-3)  # but for terms of the next order
+
+
+def test_what_cannot_be_asked() -> None:
+    with pytest.raises(InputError, match="omega h = 0 rad a step"):
+        motion_energy(lookup("SYM"), 1, 0.5, 0)
+    with pytest.raises(InputError, match="harmonic = 0"):
+        motion_energy(lookup("SYM"), 1, 0.5, 0.01, 0)
+
+
+def test_without_feedback_of_position_there_is_no_radius() -> None:
+    assert np.isnan(motion_energy(lookup("SYM"), 1, 0, 0.01).rotation)
