@@ -52,7 +52,13 @@ if TYPE_CHECKING:
         rho_and_sigma,
     )
     from bezstab.methods.determinants import characteristic
-    from bezstab.methods.formulas import characteristic_text, mapping_text, recursion_text, steady_error_text
+    from bezstab.methods.formulas import (
+        characteristic_text,
+        mapping_text,
+        recursion_text,
+        stage_torque_text,
+        steady_error_text,
+    )
     from bezstab.methods.orders import accuracy, accuracy_by_force
     from bezstab.methods.path_edges import turning_factors
     from bezstab.methods.plane_edges import (

@@ -1,4 +1,4 @@
-"""A method's recursion, s->z mapping, characteristic polynomial and steady error, written as text or LaTeX."""
+"""A method's recursion, s->z mapping, characteristic polynomial, steady error and torque, written as text or LaTeX."""
 
 from collections.abc import Iterable
 from fractions import Fraction
@@ -17,9 +17,12 @@ from bezstab.methods.second_order_formulas import (
     second_order_text,
     signed_sum,
 )
+from bezstab.methods.stage_torque import stage_torque
 from bezstab.methods.steady_errors import LeadingTerm, Part, PlanePolynomial, leading_error
 
-THETA = sp.Symbol("_theta")  # i omega h; with the underscore it is written before alpha_hat and beta_hat
+THETA = sp.Symbol(
+    "_theta"
+)  # i omega h, of a torque omega h; with the underscore it is written before alpha_hat and beta_hat
 LATEX = {ALPHA_HAT: r"\hat{\alpha}", BETA_HAT: r"\hat{\beta}", MU: r"\mu", THETA: r"\theta"}
 TEXT = {"_theta": "θ", "alpha_hat": "α̂", "beta_hat": "β̂", "**": "^", "*": " "}
 
@@ -92,6 +95,22 @@ def steady_error_text(method: Method, part: Part = "x", latex: bool = False) -> 
         return text
     lengths = f"{len(error.numerator)} terms over {len(error.denominator)}"
     return f"{_written(THETA**error.power, latex)} times {lengths}, too long to be read; as LaTeX it is written out"
+
+
+def stage_torque_text(method: Method, latex: bool = False) -> str:
+    """Return the leading term in theta = omega h of D: a step multiplies the rate of a uniform rotation by 1 + D.
+
+    Source: stage_torque.py. Where the coefficient is not found as a formula, or is too long to be read, the power is
+    said.
+    """
+    torque = stage_torque(method)
+    if torque.power is None:
+        return f"0, up to {_written(THETA**torque.highest, latex)}"
+    power = _written(THETA**torque.power, latex)
+    if torque.coefficient is None:
+        return f"{power} times a function of the feedback"
+    text = _written(THETA**torque.power * torque.coefficient, latex)
+    return text if latex or len(text) <= LONGEST else f"{power} times a quotient too long to be read"
 
 
 def _quotient(error: LeadingTerm, exact: bool) -> sp.Expr:

@@ -692,6 +692,10 @@ NAMED_METHODS = RowKind(
                 "the first term in theta = i omega h where alpha_hat and beta_hat are held",
             ),
             text("steady_velocity_error", "The same of the velocity, as a share of that of the motion"),
+            text(
+                "stage_torque",
+                "D, where a step multiplies the rate of a uniform rotation by 1 + D: the first term in theta = omega h",
+            ),
             ORDER_LEFT,
             *REGIONS.fields[1:],
         )

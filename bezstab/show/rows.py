@@ -98,13 +98,14 @@ def method_row(method: Method) -> Row:
 def whole_row(answer: RegionAnswer, *, latex: bool) -> Row:
     """Return all that is known of one method: method_row, its formulas (as text or LaTeX), and region_row.
 
-    They are the recursion, s->z mapping, characteristic polynomial (paper Tables 1 and 2) and steady errors.
+    They are the recursion, s->z mapping, characteristic polynomial (paper Tables 1 and 2), steady errors, stage torque.
     NumericalError as `region_row`.
     """
     from bezstab.methods import (  # loads sympy
         characteristic_text,
         mapping_text,
         recursion_text,
+        stage_torque_text,
         steady_error_text,
     )
     from bezstab.stability import order_left
@@ -117,6 +118,7 @@ def whole_row(answer: RegionAnswer, *, latex: bool) -> Row:
         "characteristic_polynomial": characteristic_text(method, latex),
         "steady_error": steady_error_text(method, "x", latex),
         "steady_velocity_error": steady_error_text(method, "v", latex),
+        "stage_torque": stage_torque_text(method, latex),
         "order_left": order_left(method),
         **region_row(answer),
     }

@@ -20,6 +20,7 @@ from bezstab.methods import (
     lookup,
     mapping_text,
     recursion_text,
+    stage_torque_text,
     steady_error_text,
 )
 from bezstab.methods.steady_errors import Part
@@ -130,6 +131,19 @@ def test_a_written_steady_error_is_that_of_the_method(name: str, part: Part) -> 
     written = read_back(steady_error_text(lookup(name), part), a=a, b=b, t=theta)
     exact = over / under * theta**error.power
     assert float(written) == pytest.approx(float(exact), rel=1e-7 if lookup(name).digits else 1e-15)  # ten digits shown
+
+
+@pytest.mark.parametrize(
+    ("name", "written"),
+    [
+        ("RK2", "-θ^2 β̂/(4 (2 α̂ - β̂ - 4))"),
+        ("AB4", "-13 θ^6/12"),
+        ("SYM", "0, up to θ^4"),
+        ("dopri5", "θ^4 times a function of the feedback"),
+    ],
+)
+def test_the_torque_of_stages_is_written_where_it_can_be_read(name: str, written: str) -> None:
+    assert stage_torque_text(lookup(name)) == written
 
 
 @pytest.mark.parametrize("name", PRINTED)
