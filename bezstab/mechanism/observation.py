@@ -142,6 +142,18 @@ def energy_balance(
         return driver_work, force_work, gained - driver_work - force_work
 
 
+def multiplier_work(observation: Observation) -> FloatArray:
+    """Return the work of the multipliers on what the constraints let through, since the start (J, shape (times,)).
+
+    It is -sum of lambda . (change of c), a step at a time, with the mean of lambda at its two ends. c is that of the
+    positions: of symplectic Euler C_q v is half a step off. It is the part of the energy's drift that depends on the
+    feedback, but for the torque of stages (methods/stage_torque.py).
+    """
+    with np.errstate(all="ignore"):  # of a broken-down run's last multipliers
+        means = (observation.multipliers[1:] + observation.multipliers[:-1]) / 2
+        return np.concatenate([[0.0], -np.cumsum((means * np.diff(observation.c, axis=0)).sum(axis=1))])
+
+
 def running_integral(rates: FloatArray, steps: float | FloatArray, nodes: int = NODES) -> FloatArray:
     """Return the integral from the first time to each, shape (times,), of rates given so many steps apart.
 

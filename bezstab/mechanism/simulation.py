@@ -15,6 +15,7 @@ from bezstab.mechanism.observation import (
     FloatArray,
     Observation,
     energy_balance,
+    multiplier_work,
     observe,
     singular_passages,
 )
@@ -36,13 +37,14 @@ class Simulation(Trajectory, Observation):
 
     t has shape (times,), q and v (times, coordinates), c, cdot and multipliers (times, constraints). Of energy and
     work, (times,): `driver_work` is what the drivers have put in since the start, `force_work` what constant forces and
-    torques have put in and dampers taken out, and `energy_drift` what no work explains, an error. `failure` says when
-    and why the run ended early; None if it did not.
+    torques have put in and dampers taken out, and `energy_drift` what no work explains, an error: `multiplier_work` is
+    the part that the constraint forces do on it. `failure` says when and why the run ended early; None if it did not.
     """
 
     driver_work: FloatArray
     force_work: FloatArray
     energy_drift: FloatArray
+    multiplier_work: FloatArray
     h: float
     alpha_hat: float
     beta_hat: float
@@ -122,6 +124,7 @@ def simulated(
         driver_work=driver_work,
         force_work=force_work,
         energy_drift=energy_drift,
+        multiplier_work=multiplier_work(observation),
         h=h,
         alpha_hat=alpha_hat,
         beta_hat=beta_hat,

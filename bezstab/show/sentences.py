@@ -1,5 +1,7 @@
 """What rows say, in words: for each kind of row the sentence above its block of lines."""
 
+import math
+
 from bezstab.show.cells import order_text, safe_step_text, step_limit
 from bezstab.show.fields import Row, formatted
 from bezstab.show.words import change_words, counted, growth_words, safety_words, seconds_words
@@ -171,7 +173,18 @@ def whole_method_sentence(row: Row) -> str:
 def run_sentence(row: Row) -> str:
     """Return how long a run of a mechanism went well, and how far it stayed from its constraints."""
     how = "broke down after" if row["failure"] else "went through to"
-    return f"{row['method']} {how} {seconds_words(row['time'])}; the largest |c| is {formatted(row['c_max'], '.1e')}."
+    run = f"{row['method']} {how} {seconds_words(row['time'])}; the largest |c| is {formatted(row['c_max'], '.1e')}."
+    return f"{run} {_drift_words(row['energy_drift'], row['multiplier_work'])}".rstrip()
+
+
+def _drift_words(drift: float, by_multipliers: float) -> str:
+    """Return what most of a run's energy drift is: the feedback's, or the method's own; nothing where none is told."""
+    if not (math.isfinite(drift) and math.isfinite(by_multipliers) and drift):
+        return ""
+    own = drift - by_multipliers
+    if abs(by_multipliers) >= abs(own):
+        return "Most of the energy drift is the multipliers' work on the constraint error: it depends on the feedback."
+    return "Most of the energy drift is the method's own: its truncation, and the torque of its stages if it has any."
 
 
 def measurement_sentence(row: Row) -> str:
