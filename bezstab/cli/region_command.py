@@ -35,21 +35,24 @@ from bezstab.methods import Method
     ),
     flag("--compare", "Draw the boundaries of all methods in one figure, at --level [1]."),
     flag("--accuracy", "Draw the error that the feedback makes on a motion, together with |z_p|, on logarithmic axes."),
+    flag("--motion energy", "Draw what the feedback does to the energy of a motion, together with |z_p|."),
     "omega",
     changed("drive", help="Draw a joint drive in the plane of kd and kp, and mark these gains (SI units); needs --h."),
     "timing",
     changed("engine", help="Mark this engine's default values and rules of thumb; needs --h."),
     changed(
         "scene",
-        help="Also draw the region of this mechanism as it moves; with --accuracy the motion is its own. Needs --h.",
+        help="Also draw the region of this mechanism as it moves; with --accuracy or --motion, a motion as fast. Needs "
+        "--h.",
     ),
     option("--speed speeds", SPEED, "With --scene: multiply its speed by this. Repeatable [1].", multiple=True),
     "files",
     "form",
     Rule(("--alpha-beta", "--engine"), "what it shows depends on the step in s", needs=("--h",)),
-    Rule(("--compare",), "it draws boundaries alone", excludes=("--scene", "--engine", "--accuracy")),
-    Rule(("--accuracy",), "its axes are α̂ and β̂", excludes=("--alpha-beta",)),
-    Rule(("--omega",), "it is the motion that the errors are about", needs=("--accuracy",)),
+    Rule(("--compare",), "it draws boundaries alone", excludes=("--scene", "--engine", "--accuracy", "--motion")),
+    Rule(("--accuracy",), "its axes are α̂ and β̂", excludes=("--alpha-beta", "--motion")),
+    Rule(("--motion",), "its axes are α̂ and β̂", excludes=("--alpha-beta",)),
+    Rule(("--omega",), "it is the motion that is asked about", needs=("--accuracy", "--motion")),
 )
 def region(quality: str, grid: int | None, files: Files, **typed: Any) -> int:
     """Draw where each method is stable, and |z_p| there.
@@ -59,6 +62,7 @@ def region(quality: str, grid: int | None, files: Files, **typed: Any) -> int:
 
     --scene also draws the region of that mechanism as it moves, into region_METHOD_SCENE. --accuracy draws another
     map, region_METHOD_accuracy: the error that the feedback makes in position and velocity, as a share of the motion.
+    --motion draws region_METHOD_motion: by what share the energy of a motion grows or falls in a revolution.
     --pd draws region_METHOD_held for each way of applying a joint drive. Its axes are kd and kp. The torque may be
     computed every few steps (--every) and come late (--late).
 
@@ -79,7 +83,7 @@ def region(quality: str, grid: int | None, files: Files, **typed: Any) -> int:
         rows, status = of_each(question.methods, lambda method: _write_map(question, method, files))
     show_rows(show.REGIONS, rows, () if question.levels else ("z_abs_below",))
     if question.motion:
-        show_text(show.combined_words(question.motion))
+        show_text((show.energy_words if question.energy else show.combined_words)(question.motion))
     return status if question.best_points_known else NUMERICAL_TROUBLE
 
 
@@ -90,7 +94,7 @@ def _write_map(question: "questions.MapQuestion", method: Method, files: Files) 
         say_each([answer.choice_or_reason[1]])
     if files.wanted:
         z = answer.dominant_poles(partial(progress, label=method.name, length=len(answer.axes[1])))
-        path = files.path("region", method.name, "accuracy" if question.motion else question.scene)
+        path = files.path("region", method.name, question.of_motion.lstrip("-") or question.scene)
         files.write(path, lambda: show.map_figure(answer, z), lambda: show.map_arrays(answer, z))
     return show.map_rows(answer)
 

@@ -114,6 +114,14 @@ def turned(p: Vectors) -> Vectors:
     return np.stack([-p[..., 1], p[..., 0]], axis=-1)
 
 
+def solved(matrices: Vectors, right_sides: Vectors) -> Vectors:
+    """Return the solutions of linear systems, nan where a matrix is singular or has no numbers."""
+    singular = ~(np.abs(np.linalg.det(matrices)) > 0)
+    regular = np.where(singular[..., np.newaxis, np.newaxis], np.eye(matrices.shape[-1]), matrices)
+    found = np.linalg.solve(regular, right_sides[..., np.newaxis])[..., 0]
+    return np.where(singular[..., np.newaxis], np.nan, found)
+
+
 class _Circle:
     """The equations of a method's step on the circle; a and b are its own alpha_hat and beta_hat, (..., 1), h = 1."""
 
@@ -210,7 +218,7 @@ class _Circle:
         moving = self.sums(z)
         forced = np.zeros((*self.points, self.size), complex)
         forced[..., self.found] = phase * across / rr
-        w = np.linalg.solve(self.matrix(moving, x, v, moment), forced[..., np.newaxis])[..., 0]
+        w = solved(self.matrix(moving, x, v, moment), forced)
         dx, dv = (np.einsum("eij,...j->...ei", part, w) for part in moving[1:])
 
         # the means of terms of second order: of g itself, and of the force at the place that is moved
@@ -220,7 +228,7 @@ class _Circle:
         of_force = phase * ((1j * harmonic * angle - 2 * radius) * across + turned(back)) / rr
         second = np.zeros((*self.points, self.size + 1))
         second[..., self.found] = of_g / 4 + of_force.real / 2
-        added = np.linalg.solve(bordered, second[..., np.newaxis])[..., -1, 0]
+        added = solved(bordered, second)[..., -1]
 
         # the force changes the rate by epsilon / (n theta^2) of it; the energy is theta^2 / 2
         of_modulation = harmonic * self.theta**2
@@ -253,10 +261,10 @@ class _Circle:
             bordered[..., :-1, :-1] = self.matrix(sums, x, v, moment)
             bordered[..., self.found, -1] = -turned(x) / dot(x, x)[..., np.newaxis]
             bordered[..., -1, angle] = 1.0
-            change = np.linalg.solve(bordered, missing[..., np.newaxis])[..., 0]
+            change = solved(bordered, missing)
             u, moment = u - change[..., :-1], moment - change[..., -1:]
-            if not np.any(np.abs(change) > SETTLED):
+            if not np.any(np.abs(change) > SETTLED):  # nor where there are no numbers
                 break
-        unsettled = np.abs(change).max(axis=-1) > UNSETTLED
+        unsettled = ~(np.abs(change).max(axis=-1) <= UNSETTLED)
         u[unsettled], moment[unsettled] = np.nan, np.nan
         return u, moment, bordered

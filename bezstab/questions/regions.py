@@ -16,6 +16,7 @@ from bezstab.errors import InputError, NumericalError
 from bezstab.evidence import MovingRegion, moving_region
 from bezstab.mechanism import TurningNormals, load_scene
 from bezstab.methods import Method
+from bezstab.motion import motion_energy
 from bezstab.questions.motions import ReferenceMotion, motion_of, turn_too_far, turning_of
 from bezstab.questions.question import methods_for
 from bezstab.stability import (
@@ -104,6 +105,9 @@ def _holding(shown: Extent, point: BestPoint | Choice | None) -> Extent:
     return (left, max(right, BEYOND * point.alpha_hat)), (low, max(high, BEYOND * point.beta_hat))
 
 
+MODULATION = 0.3
+"""Of a motion's rate: by so much a crank's varies that drives rods, to either side of its mean."""
+
 Window = tuple[Fraction, Fraction]
 
 
@@ -114,9 +118,9 @@ class MapQuestion:
     `levels` are further values of |z_p|, at most 1, whose regions are asked about. The windows `alpha_range` and
     `beta_range` are in alpha_hat and beta_hat; without them a window holds the region. Axes have so many `points`. With
     a step `h` (s) an `engine` gives points to mark, and the region of a `scene` is asked about as it moves, at `speeds`
-    times its own speed. With `accuracy` the error is asked about that feedback forces, on a motion of rate `omega`
-    (1/s) or on that of the scene. With `compare` boundaries are compared, at one level. Axes may be marked in alpha and
-    beta (1/s). InputError for what does not go together.
+    times its own speed. Of a motion of rate `omega` (1/s), or as fast as the scene, `accuracy` asks for the error that
+    the feedback forces, `energy` for what it does to the energy. With `compare` boundaries are compared, at one level.
+    Axes may be marked in alpha and beta (1/s). InputError for what does not go together.
     """
 
     methods: tuple[Method, ...] = ()
@@ -129,6 +133,7 @@ class MapQuestion:
     scene: str | None = None
     speeds: tuple[Fraction, ...] = ()
     accuracy: bool = False
+    energy: bool = False
     omega: Fraction | None = None
     compare: bool = False
     alpha_beta: bool = False
@@ -143,8 +148,8 @@ class MapQuestion:
             check_level(float(level))
         if self.compare and len(self.levels) > 1:
             raise InputError(f"--compare takes one --level, but {len(self.levels)} were given")
-        if self.accuracy and len(self.speeds) > 1:
-            raise InputError(f"--accuracy takes one --speed, but {len(self.speeds)} were given")
+        if self.of_motion and len(self.speeds) > 1:
+            raise InputError(f"{self.of_motion} takes one --speed, but {len(self.speeds)} were given")
         _ = self.motion
 
     def _check_window(self, option: str, low: Fraction, high: Fraction) -> None:
@@ -153,8 +158,13 @@ class MapQuestion:
             raise InputError(f"{typed}: the first value must be smaller than the second")
         if max(abs(low), abs(high)) > MOST_DRAWN:
             raise InputError(f"{typed}: expected at most {MOST_DRAWN:g}")
-        if self.accuracy and low <= 0:
-            raise InputError(f"{typed}: the axes of --accuracy are logarithmic, and begin above 0")
+        if self.of_motion and low <= 0:
+            raise InputError(f"{typed}: the axes of {self.of_motion} are logarithmic, and begin above 0")
+
+    @property
+    def of_motion(self) -> str:
+        """The option that asks what the feedback does on a motion; empty where none does."""
+        return "--accuracy" if self.accuracy else "--motion" if self.energy else ""
 
     @property
     def seconds(self) -> float | None:
@@ -163,13 +173,13 @@ class MapQuestion:
 
     @cached_property
     def motion(self) -> ReferenceMotion | None:
-        """The motion on which errors are told; None where they are not asked about. Errors as `motion_of`."""
-        return motion_of(self.omega, self.scene, self.speeds[0], self.h) if self.accuracy else None
+        """The motion that is asked about; None where none is. Errors as `motion_of`."""
+        return motion_of(self.omega, self.scene, self.speeds[0], self.h) if self.of_motion else None
 
     @cached_property
     def turnings(self) -> Mapping[Fraction, TurningNormals]:
         """How the constraints of the scene turn, by speed; none where nothing moves is asked about."""
-        found = {} if self.accuracy else {speed: turning_of(self.scene, speed, self.h) for speed in self.speeds}
+        found = {} if self.of_motion else {speed: turning_of(self.scene, speed, self.h) for speed in self.speeds}
         return {speed: turning for speed, turning in found.items() if turning}
 
     @property
@@ -270,6 +280,27 @@ class MapAnswer:
         return float(combined_error(self.method, point.alpha_hat, point.beta_hat, motion.omega_h))
 
     @property
+    def accurate_growth(self) -> float | None:
+        """The growth of energy in a revolution, a share of it, at the choice of the goal accurate."""
+        return self._growth(self.chosen)
+
+    @property
+    def best_growth(self) -> float | None:
+        """The same at the point of least |z_p|."""
+        return self._growth(self.stable.best)
+
+    def _growth(self, point: BestPoint | Choice | None) -> float | None:
+        if point is None or not self.question.energy:
+            return None
+        return float(self._grown(np.array(point.alpha_hat), np.array(point.beta_hat)))
+
+    def _grown(self, alpha_hat: FloatArray, beta_hat: FloatArray) -> FloatArray:
+        """Return the growth of energy in a revolution, a share of it, of a motion whose rate varies by MODULATION."""
+        assert self.question.motion
+        found = motion_energy(self.method, alpha_hat, beta_hat, float(self.question.motion.omega_h))
+        return 2 * np.pi * found.growth(MODULATION)
+
+    @property
     def drawn_levels(self) -> list[float]:
         """The levels of |z_p| to draw: those that were given, else one that suits the motion or the least |z_p|."""
         motion, best = self.question.motion, self.stable.best
@@ -323,3 +354,8 @@ class MapAnswer:
         alpha_hat, beta_hat = self.axes
         error = combined_error(self.method, alpha_hat, beta_hat[:, np.newaxis], self.question.motion.omega_h)
         return np.where(np.abs(z) < 1, error, np.nan)
+
+    def energy_growth(self, z: ComplexArray) -> FloatArray:
+        """Return the growth of energy in a revolution, a share of it, over both axes; nan where |z| is not below 1."""
+        alpha_hat, beta_hat = self.axes
+        return np.where(np.abs(z) < 1, self._grown(alpha_hat, beta_hat[:, np.newaxis]), np.nan)

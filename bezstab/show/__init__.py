@@ -14,6 +14,7 @@ from bezstab.show.result_sentences import (
     combined_words,
     costs_words,
     drive_words,
+    energy_words,
     exact_rate_words,
     likeness_sentence,
     motion_words,

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import FuncNorm, ListedColormap, Normalize
+from matplotlib.contour import QuadContourSet
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from matplotlib.path import Path
@@ -64,6 +65,9 @@ BELOW_MARKERS = 2.9
 HALO: list[AbstractPathEffect] = [withStroke(linewidth=1.5, foreground="black")]
 """So that a white line shows on any colour, in grey too."""
 
+WHITE_HALO: list[AbstractPathEffect] = [withStroke(linewidth=2.6, foreground="white")]
+"""So that a black line is told from the others."""
+
 PARTS = 300
 """Of each chord of a boundary, which is straight on other axes alone: the last is thinner than a line."""
 
@@ -84,12 +88,12 @@ def map_figure(answer: MapAnswer, z: ComplexArray) -> Figure:
     are 2 alpha (1/s) and beta^2 (1/s^2), marked in alpha and beta if that is asked for; else alpha_hat and beta_hat.
     The label of an unbounded region says so, and arrows along the edges of the axes point to where it goes on. Of a
     scene that moves its own boundaries are drawn as well, by times its own speed, and where the law behind the first of
-    them does not hold. Where errors are asked about it is `_accuracy_map_figure`.
+    them does not hold. Where a motion is asked about it is `_motion_map_figure`.
     """
     question, region, moving = answer.question, answer.stable.region, answer.moving
     h = question.seconds
     if question.motion:
-        return _accuracy_map_figure(answer, z, float(question.motion.omega_h))
+        return _motion_map_figure(answer, z, float(question.motion.omega_h))
     with styled():
         name = region.method.name
         title = title_lines(name, f"at rest and on the {question.scene_name}") if moving else name
@@ -168,14 +172,16 @@ def from_decay_scale(values: FloatArray) -> FloatArray:
     return np.exp(-np.exp(-np.asarray(values)))
 
 
-def _accuracy_map_figure(answer: MapAnswer, z: ComplexArray, omega_h: float) -> Figure:
-    """Return contours of the forced error over the map of |z_p|, on logarithmic axes, with both best points.
+def _motion_map_figure(answer: MapAnswer, z: ComplexArray, omega_h: float) -> Figure:
+    """Return contours of what the feedback does on a motion over the map of |z_p|, on logarithmic axes.
 
-    The error is a share of the answer's motion. Dashed are further levels of |z_p|.
+    They are of the forced error, a share of the motion, or of the growth of its energy. Marked are both best points;
+    dashed are further levels of |z_p|.
     """
     region, h, z_abs = answer.stable.region, answer.question.seconds, np.abs(z)
     with styled():
-        title = rf"{region.method.name}, forced errors at $\omega h$ = {omega_h:.3g}"
+        what = "growth of energy" if answer.question.energy else "forced errors"
+        title = rf"{region.method.name}, {what} at $\omega h$ = {omega_h:.3g}"
         figure, axes = new_axes(*plane_words(title, h))
         axes.set(xscale="log", yscale="log")
         axes.grid(visible=False)
@@ -186,19 +192,53 @@ def _accuracy_map_figure(answer: MapAnswer, z: ComplexArray, omega_h: float) -> 
         mesh = axes.pcolormesh(x, y, stable, cmap="cividis", norm=norm, shading="nearest", rasterized=True)
         bar = figure.colorbar(mesh, label="$|z_p|$", extend="both", format="{x:g}", ticks=TICKS)
         bar.ax.minorticks_off()
-        powers, errors = MaxNLocator(MOST_CONTOURS, integer=True), np.log10(answer.errors(z))
-        contours = axes.contour(x, y, errors, locator=powers, colors="white", linewidths=0.7, linestyles="-")
-        contours.set_path_effects(HALO)
-        axes.plot([], [], color="white", linewidth=0.7, path_effects=HALO, label="forced error / motion")  # a key
+        draw = _energy_contours if answer.question.energy else _error_contours
+        contours = draw(axes, x, y, answer, z)
         boundary = plot.region(region, axes, h, color="black", linestyle="-", label="$|z_p| = 1$")
         boundary.set_data(np.transpose(Path(boundary.get_xydata()).interpolated(PARTS).vertices))
         for number, level in enumerate(answer.drawn_levels, start=1):
             _level_line(axes, x, y, z_abs, level, f"$|z_p| = {level:.4g}$", DASHES[number % 4])
         _draw_points(answer, axes)
-        for text in axes.clabel(contours, fmt="$10^{%d}$", fontsize=6, colors="black", inline=False):
-            box = {"boxstyle": "round,pad=0.1", "facecolor": "white", "edgecolor": "none"}
-            text.set(rotation=0, bbox=box, clip_on=False, zorder=BELOW_MARKERS)
+        for lines, form in contours:
+            for text in axes.clabel(lines, fmt=form, fontsize=6, colors="black", inline=False):
+                box = {"boxstyle": "round,pad=0.1", "facecolor": "white", "edgecolor": "none"}
+                text.set(rotation=0, bbox=box, clip_on=False, zorder=BELOW_MARKERS)
         return with_legend(figure, facecolor="0.75")
+
+
+def _error_contours(
+    axes: Axes, x: FloatArray, y: FloatArray, answer: MapAnswer, z: ComplexArray
+) -> list[tuple[QuadContourSet, str]]:
+    """Draw powers of ten of the forced error; return the lines, and how their labels are written."""
+    powers, errors = MaxNLocator(MOST_CONTOURS, integer=True), np.log10(answer.errors(z))
+    contours = axes.contour(x, y, errors, locator=powers, colors="white", linewidths=0.7, linestyles="-")
+    contours.set_path_effects(HALO)
+    axes.plot([], [], color="white", linewidth=0.7, path_effects=HALO, label="forced error / motion")  # a key
+    return [(contours, "$10^{%d}$")]
+
+
+def _energy_contours(
+    axes: Axes, x: FloatArray, y: FloatArray, answer: MapAnswer, z: ComplexArray
+) -> list[tuple[QuadContourSet, str]]:
+    """Draw powers of ten of the growth of energy in a revolution, dashed where it falls, and where it is nought."""
+    growth = answer.energy_growth(z)
+    drawn = []
+    for sign, dashes, what in ((1, "-", "gains"), (-1, DASHES[1], "loses")):
+        with np.errstate(invalid="ignore", divide="ignore"):
+            powers = np.log10(np.where(sign * growth > 0, sign * growth, np.nan))
+        if np.isfinite(powers).sum() < growth.size / 100:  # nothing to see
+            continue
+        levels = MaxNLocator(MOST_CONTOURS, integer=True)
+        lines = axes.contour(x, y, powers, locator=levels, colors="white", linewidths=0.7, linestyles=[dashes])
+        lines.set_path_effects(HALO)
+        label = f"a revolution {what} this share"
+        axes.plot([], [], color="white", linewidth=0.7, linestyle=dashes, path_effects=HALO, label=label)  # a key
+        drawn.append((lines, "$+10^{%d}$" if sign > 0 else "$-10^{%d}$"))
+    if len(drawn) == 2:
+        kept = axes.contour(x, y, growth, levels=[0.0], colors="black", linewidths=1.2)
+        kept.set_path_effects(WHITE_HALO)
+        axes.plot([], [], color="black", linewidth=1.2, path_effects=WHITE_HALO, label="energy is kept")  # a key
+    return drawn
 
 
 def comparison_figure(question: MapQuestion) -> Figure:

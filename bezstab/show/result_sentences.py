@@ -146,6 +146,14 @@ def ways_words(rows: Sequence[Row]) -> str:
     return f"Of the ways to apply the torque, of which --method names yours, {'; '.join(verdicts)}."
 
 
+def energy_words(motion: ReferenceMotion) -> str:
+    """Return what growths of energy are shares of."""
+    return (
+        "\nGrowth is a share of the energy of a mass on a circle, in each revolution. Its rate varies by 30 % to either "
+        f"side. Here it is {motion.words}. A negative growth is a loss."
+    )
+
+
 def timing_words(timing: Timing, h: float) -> str:
     """Return how a controller works in words: the torque is computed every 8 ms and applied 2 ms late."""
     words = "The torque is computed in every step"

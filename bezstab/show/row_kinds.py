@@ -383,6 +383,20 @@ ACCURACY = (
         ".2e",
         null=NO_BEST,
     ),
+    number(
+        "accurate_growth",
+        "Growth of energy in a revolution, as a share of it, where the goal accurate chooses to be",
+        "energy gained there",
+        ".2e",
+        null="without --motion, or where that point is not known",
+    ),
+    number(
+        "best_growth",
+        "The same where |z_p| is least",
+        "energy gained at the least |z_p|",
+        ".2e",
+        null="without --motion, or where there is no such point",
+    ),
 )
 APPLIED = text(
     "applied",
