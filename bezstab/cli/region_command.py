@@ -50,8 +50,8 @@ from bezstab.methods import Method
     "form",
     Rule(("--alpha-beta", "--engine"), "what it shows depends on the step in s", needs=("--h",)),
     Rule(("--compare",), "it draws boundaries alone", excludes=("--scene", "--engine", "--accuracy", "--motion")),
-    Rule(("--accuracy",), "its axes are α̂ and β̂", excludes=("--alpha-beta", "--motion")),
-    Rule(("--motion",), "its axes are α̂ and β̂", excludes=("--alpha-beta",)),
+    Rule(("--accuracy", "--motion"), "its axes are α̂ and β̂", excludes=("--alpha-beta",)),
+    Rule(("--accuracy",), "it draws another map", excludes=("--motion",)),
     Rule(("--omega",), "it is the motion that is asked about", needs=("--accuracy", "--motion")),
 )
 def region(quality: str, grid: int | None, files: Files, **typed: Any) -> int:

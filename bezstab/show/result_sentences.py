@@ -149,8 +149,8 @@ def ways_words(rows: Sequence[Row]) -> str:
 def energy_words(motion: ReferenceMotion) -> str:
     """Return what growths of energy are shares of."""
     return (
-        "\nGrowth is a share of the energy of a mass on a circle, in each revolution. Its rate varies by 30 % to either "
-        f"side. Here it is {motion.words}. A negative growth is a loss."
+        "\nGrowth is a share of the energy of a mass on a circle, in each revolution. Its rate varies by 30 % to both "
+        f"sides. Here it is {motion.words}. A negative growth is a loss."
     )
 
 

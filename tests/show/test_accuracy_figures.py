@@ -9,7 +9,9 @@ from matplotlib.axes import Axes
 from matplotlib.contour import QuadContourSet
 
 from bezstab.methods import lookup
+from bezstab.motion import motion_energy
 from bezstab.questions import MapAnswer, MapQuestion
+from bezstab.questions.regions import MODULATION
 from bezstab.show.map_figures import error_front_figure, map_figure
 from bezstab.stability import FrontPoint, combined_error, spectral_radius
 from tests.show.drawn import lines_of
@@ -57,6 +59,19 @@ def test_the_boundary_is_exact_down_to_the_last_decade(name: str) -> None:
     for each, off in ((points, 2e-4), (between, 2e-3)):  # chords of the drawn arcs
         inside = each[(each > 1e-6).all(axis=1)]
         assert spectral_radius(lookup(name), *inside.T) == pytest.approx(1, abs=off)
+
+
+def test_energy_is_kept_on_the_line_that_says_so_and_symplectic_euler_brakes_inside_it() -> None:
+    """To first order in h the line is beta^2 = omega^2 - 4 alpha^2: b = (omega h)^2 - a^2."""
+    question = MapQuestion(methods=(lookup("SYM"),), energy=True, points=121)
+    answer = MapAnswer(question, lookup("SYM"))
+    axes = map_figure(answer, np.array(list(answer.dominant_poles()))).axes[0]
+    (kept,) = (each for each in axes.collections if isinstance(each, QuadContourSet) and list(each.levels) == [0.0])
+    (path,) = kept.get_paths()
+    alpha_hat, beta_hat = np.asarray(path.vertices).T
+    assert beta_hat[alpha_hat < 0.009] == pytest.approx((1e-4 - alpha_hat**2)[alpha_hat < 0.009], rel=0.1)
+    inside, outside = (motion_energy(lookup("SYM"), 0.005, b, 0.01).growth(MODULATION) for b in (4e-5, 3e-4))
+    assert inside < 0 < outside
 
 
 def test_the_front_figure_has_every_point_of_every_front() -> None:
