@@ -31,7 +31,17 @@ from bezstab.stability.searches import bisected, first_where
 from bezstab.stability.step_families import Limit, Member, bezier_limit, family_members
 from bezstab.stability.step_sequences import Varying, VaryingSteps, varying_steps
 from bezstab.stability.sweeps import Growth, chain, fewest_sweeps, inverse_effective_masses, swept_growth
-from bezstab.stability.turning import own_feedback_root, turning_shift
+from bezstab.stability.turning import (
+    MovingPole,
+    MovingVerdict,
+    moduli_and_shifts,
+    most_moved,
+    moving_modulus,
+    moving_pole,
+    own_feedback_root,
+    turn_limits,
+    turning_shift,
+)
 
 if TYPE_CHECKING:
     from bezstab.stability.damping_limits import (

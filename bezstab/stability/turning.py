@@ -15,14 +15,68 @@ With P(Z; alpha_hat, beta_hat) = 0 that is chi = 1 - (2 P_alpha + alpha_hat P_be
 new gains belong to the roots mu - eps of the feedback: where position and velocity are stepped alike,
 chi = 1 - 1 / (z mu'(z)), mu' = -pi_z / pi_mu, which also holds where both mu are the same and P has a double root.
 For an exact integrator z = e^mu: chi = 0, as it must be.
+
+How fast constraints turn is kappa, the largest |eig K| along a motion. So no pole moves by more than
+
+    |z chi| kappa h (1 + min(1, kappa h / r)),      r = |alpha_hat^2/4 - beta_hat|^(1/2), half the distance of both mu:
+
+twice as far as first order says where both mu are one, as the motion mixes their poles. Errors decay where that leaves
+every |z| below one. Nothing is settled where chi has no bound, two poles of one mu meet; nor where first order says
+little, as constraints turn by more than LAW_HOLDS in a step, or faster than feedback works, kappa h > SLOWER |mu|.
 """
+
+from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from bezstab.methods import Method
-from bezstab.stability.arrays import ComplexArray
+from bezstab.stability.answer_checks import Modulus
+from bezstab.stability.arrays import ComplexArray, FloatArray
+from bezstab.stability.closed_loop import poles
 from bezstab.stability.pencils import pencil_of
+
+LAW_HOLDS = 0.1
+"""rad, kappa h: beyond, terms of second order, a hundredth and more, count."""
+
+SLOWER = 2.0
+"""Times the smaller |mu|: from three on errors have been seen to grow that first order lets decay."""
+
+HOPELESS = 1e4
+"""Stands for all larger |z|: nothing is chosen there, and `choose` can still raise it to a power."""
+
+MovingVerdict = Literal["converges", "diverges", "not settled"]
+
+
+@dataclass(frozen=True)
+class MovingPole:
+    """Bounds on |z| at one point of a mechanism whose constraints turn at `kappa` (1/s), by `turned` (rad) a step.
+
+    `z_abs`: of the dominant pole at rest. `at_least`: of that pole as the mechanism moves. `at_most`: of every pole,
+    infinite where there is no bound. `turn_limit` (rad): `turned` below this is proven to first order to be safe.
+    """
+
+    z_abs: float
+    kappa: float
+    turned: float
+    at_least: float
+    at_most: float
+    turn_limit: float
+
+    @property
+    def verdict(self) -> MovingVerdict:
+        """What errors do over the motion, if the bounds settle it."""
+        if self.turned < self.turn_limit:
+            return "converges"
+        return "diverges" if self.at_least > 1 else "not settled"
+
+    @property
+    def safe_speed(self) -> float:
+        """So many times as fast the mechanism may move, at this step; nan where errors do not decay at rest."""
+        if self.z_abs >= 1:
+            return np.nan
+        return self.turn_limit / self.turned if self.turned else np.inf
 
 
 def turning_shift(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike, z: ArrayLike) -> ComplexArray:
@@ -44,3 +98,72 @@ def own_feedback_root(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike,
     """
     at = np.broadcast_arrays(alpha_hat, beta_hat, np.asarray(z, complex))
     return pencil_of(method).own_feedback_root(*at)
+
+
+def moving_pole(method: Method, kappa: float, h: float, alpha_hat: float, beta_hat: float) -> MovingPole:
+    """Return the bounds on a moving mechanism's |z| at a point; kappa in 1/s, h in s. NumericalError as `poles`."""
+    z_abs, shift = moduli_and_shifts(method, alpha_hat, beta_hat)
+    moved = most_moved(alpha_hat, beta_hat, shift, kappa * h)
+    return MovingPole(
+        z_abs=float(z_abs[0]),
+        kappa=kappa,
+        turned=kappa * h,
+        at_least=float(z_abs[0] - moved[0]),
+        at_most=float((z_abs + moved).max()),
+        turn_limit=float(turn_limits(method, alpha_hat, beta_hat)),
+    )
+
+
+def moving_modulus(method: Method, kappa_h: float) -> Modulus:
+    """Return the function that gives |z| at most as constraints turn by kappa_h rad a step, or HOPELESS if less.
+
+    Of alpha_hat and beta_hat, shape of the two broadcast, dimensionless. NumericalError, when called, as `poles`.
+    """
+
+    def modulus(alpha_hat: FloatArray, beta_hat: FloatArray) -> FloatArray:
+        z_abs, shift = moduli_and_shifts(method, alpha_hat, beta_hat)
+        moved = most_moved(alpha_hat, beta_hat, shift, kappa_h)
+        return np.asarray(np.minimum((z_abs + moved).max(axis=-1), HOPELESS))
+
+    return modulus
+
+
+def turn_limits(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> FloatArray:
+    """Return up to how many rad a step constraints may turn while errors surely decay, to first order.
+
+    Shape of alpha_hat and beta_hat broadcast; zero or negative where errors do not decay at rest. NumericalError as
+    `poles`.
+    """
+    z_abs, shift = moduli_and_shifts(method, alpha_hat, beta_hat)
+    half_gap, least_mu = _feedback_roots(alpha_hat, beta_hat)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        turned = ((1 - z_abs) / shift).min(axis=-1)  # if the first order were all
+        limits = np.fmax(turned / 2, 2 * turned / (1 + np.sqrt(1 + 4 * turned / half_gap)))
+    return np.where(turned > 0, np.minimum(limits, np.minimum(LAW_HOLDS, SLOWER * least_mu)), turned)
+
+
+def moduli_and_shifts(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> tuple[FloatArray, FloatArray]:
+    """Return |z| and |z chi| of all poles, the dominant one first, in an axis behind those of the points.
+
+    |z chi| is that of a rad by which constraints turn in a step of the user's; infinite where it has no bound.
+    """
+    z = poles(method, alpha_hat, beta_hat)
+    at = (np.asarray(each, float)[..., np.newaxis] for each in (alpha_hat, beta_hat))
+    shift = np.abs(turning_shift(method, *at, z)) * float(method.step_multiple)
+    return np.abs(z), np.where(np.isfinite(shift), shift, np.inf)
+
+
+def most_moved(alpha_hat: ArrayLike, beta_hat: ArrayLike, shift: FloatArray, turned: float) -> FloatArray:
+    """Return by how much |z| changes at most, shape of the shifts: at rest not at all, however large they are."""
+    if turned == 0:
+        return np.zeros_like(shift)
+    half_gap, _ = _feedback_roots(alpha_hat, beta_hat)
+    with np.errstate(divide="ignore"):
+        return np.asarray(shift * turned * (1 + np.minimum(1, turned / half_gap))[..., np.newaxis])
+
+
+def _feedback_roots(alpha_hat: ArrayLike, beta_hat: ArrayLike) -> tuple[FloatArray, FloatArray]:
+    """Return half the distance of the feedback's two roots mu, and the smaller |mu|; shape of both broadcast."""
+    middle = -np.asarray(alpha_hat, complex) / 2
+    half = np.sqrt(middle**2 - np.asarray(beta_hat))
+    return np.abs(half), np.minimum(np.abs(middle + half), np.abs(middle - half))
