@@ -39,7 +39,7 @@ def verify(across: int | None, accuracy: bool, witness: str | None, work: Work, 
 
     Two runs start with opposite kicks. The dominant pole is fitted to their difference. If no pole can be measured, the
     row says why. For a mechanism that moves there are several predictions: that of the map, for a mechanism at rest;
-    that of the first-order law of the motion; and with --floquet the exact one.
+    bounds for the motion; and with --floquet the exact one.
 
     --map runs a simulation at each of N×N points and draws the verdicts under the exact boundary. --workers or
     --scheduler share the work. --resume continues a run that was stopped. --witness mujoco runs the scene in MuJoCo, at

@@ -34,8 +34,6 @@ if TYPE_CHECKING:
         measurement_summary,
         random_points,
     )
-    from bezstab.evidence.moving_mechanisms import LAW_HOLDS, MovingPole, MovingVerdict, moving_poles
-    from bezstab.evidence.moving_regions import MovingRegion, moving_modulus, moving_region
     from bezstab.evidence.mujoco_controllers import MotorGains
     from bezstab.evidence.mujoco_lint import linted_model
     from bezstab.evidence.mujoco_models import model_data, read_mujoco_model

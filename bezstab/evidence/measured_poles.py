@@ -21,14 +21,22 @@ from typing import Literal
 import numpy as np
 
 from bezstab.evidence.exact_rates import find_own_motions
-from bezstab.evidence.kicked_revolutions import rates_of_kicked_revolutions
 from bezstab.evidence.kicks import AT_ONCE, GROWN, LINEAR, kicked_motions, thrown_apart
 from bezstab.evidence.linear_prediction import NEGLIGIBLE, SAMPLES, SPREAD, fit_dominant_pole
-from bezstab.evidence.moving_mechanisms import MovingPole, moving_poles
 from bezstab.mechanism import Mechanism, runs_compiled, turning_normals
 from bezstab.methods import Method, Verdict
 from bezstab.rationals import exact
-from bezstab.stability import ComplexArray, FloatArray, dominant_pole, poles, region, useful_window, verdict
+from bezstab.stability import (
+    ComplexArray,
+    FloatArray,
+    MovingPole,
+    dominant_pole,
+    moving_pole,
+    poles,
+    region,
+    useful_window,
+    verdict,
+)
 
 MeasuredVerdict = Literal["converges", "diverges", "too close to call"]
 
@@ -40,7 +48,7 @@ KICKS = (1e-4, 1e-6, 1e-8, 1e-11)
 
 CLOSE = 1e-4
 """Of |z|: nearer to the circle than a hundred of the fit's errors no verdict is given; on a mechanism that moves not
-nearer than |chi| kappa h, by which its poles move."""
+nearer than its dominant pole is moved."""
 
 SURROUNDINGS = 0.1
 """Of the window that shows the region, added on every side."""
@@ -53,11 +61,9 @@ SEED = 2024
 class Measurement:
     """Predicted and measured dominant pole at one point; `measured` is None, and `reason` says why, if it cannot be.
 
-    `predicted` and its verdict are those of the mechanism at rest, `moving` what the first-order law makes of them for
-    the motion. `floquet_abs` is the exact rate over the method's own motion, not a number unless asked for. Where the
-    motion is not `periodic` that is no exact rate, but a growth over the run. `measured` is what the first steps after
-    the kick show. `measured_rate` is |z| per step over whole revolutions beside the method's own motion, not a number
-    unless the exact rate is asked for and it can be followed so long.
+    `predicted` and its verdict are those of the mechanism at rest, `moving` has bounds for the motion. `floquet_abs` is
+    the exact rate over the motion, not a number unless asked for. Where the motion is not `periodic` that is no exact
+    rate, but a growth over the run. `measured` is what the first steps after the kick show.
     """
 
     method: Method
@@ -69,7 +75,6 @@ class Measurement:
     floquet_abs: float
     periodic: bool
     measured: complex | None
-    measured_rate: float
     measured_verdict: MeasuredVerdict
     reason: str
 
@@ -102,19 +107,19 @@ class Measurement:
 
     @property
     def verdicts_agree(self) -> bool | None:
-        """Whether the law's verdict is the measured one; None where either is not settled."""
-        if self.measured_verdict == "too close to call" or not self.moving.settled:
+        """Whether the verdict for the motion is the measured one; None where either is not settled."""
+        if self.measured_verdict == "too close to call" or self.moving.verdict == "not settled":
             return None
         return self.moving.verdict == self.measured_verdict
 
     @property
     def right(self) -> str:
-        """Which predictions have the measured verdict: those of the map, of the law, and the exact one; "" if none."""
+        """Which predictions have the measured verdict: those at rest, in motion, and the exact one; "" if none."""
         if self.measured_verdict == "too close to call":
             return ""
         diverges = {"at rest": self.predicted_verdict == "diverges"}
-        if self.moving.settled:
-            diverges["law"] = self.moving.z_abs_moving > 1
+        if self.moving.verdict != "not settled":
+            diverges["in motion"] = self.moving.verdict == "diverges"
         if math.isfinite(self.floquet_abs):
             diverges["exact" if self.periodic else "over the run"] = self.floquet_abs > 1
         seen = self.measured_verdict == "diverges"
@@ -123,11 +128,7 @@ class Measurement:
 
 @dataclass(frozen=True)
 class MeasurementSummary:
-    """Errors of |z|, and verdicts that contradict theory, of `measured` among all `points` of a method.
-
-    Of the points that were `followed` over a revolution also the median errors of the rate at rest, of the law's and of
-    the exact one, and of how many each is on the wrong side of one; None and "" where none was.
-    """
+    """Errors of |z|, and verdicts that contradict theory, of `measured` among all `points` of a method."""
 
     method: Method
     points: int
@@ -136,22 +137,12 @@ class MeasurementSummary:
     largest_error: float | None
     called: int
     wrong: int
-    followed: int
-    map_error: float | None
-    law_error: float | None
-    floquet_error: float | None
-    wrong_sides: str
 
 
 def measurement_summary(measurements: Sequence[Measurement]) -> MeasurementSummary:
     """Return how well the measured poles of one method agree; there is at least one measurement."""
     errors = [abs(each.difference_abs) for each in measurements if each.difference_abs is not None]
     agreements = [each.verdicts_agree for each in measurements]
-    followed = [each for each in measurements if math.isfinite(each.measured_rate)]
-    shown = np.array([[each.measured_rate] for each in followed])
-    rates = np.array([(abs(each.predicted), each.moving.z_abs_moving, each.floquet_abs) for each in followed])
-    off = np.median(np.abs(rates - shown), axis=0).tolist() if followed else [None] * 3
-    wrong_sides = ((rates > 1) != (shown > 1)).sum(axis=0).tolist() if followed else []
     return MeasurementSummary(
         method=measurements[0].method,
         points=len(measurements),
@@ -160,11 +151,6 @@ def measurement_summary(measurements: Sequence[Measurement]) -> MeasurementSumma
         largest_error=max(errors, default=None),
         called=sum(agree is not None for agree in agreements),
         wrong=sum(agree is False for agree in agreements),
-        followed=len(followed),
-        map_error=off[0],
-        law_error=off[1],
-        floquet_error=off[2],
-        wrong_sides=", ".join(map(str, wrong_sides)),
     )
 
 
@@ -193,24 +179,23 @@ def measure_poles(
     alpha_hat and beta_hat have shape (points,), h is in s. All points run as one batch. Where no pole can be measured
     the verdict still says whether the error grew or decayed. InputError for a scene that cannot start; NumericalError
     where a predicted pole leaves the range of float64. The prediction is the characteristic polynomial P(z) (paper Eq.
-    17, Table 2), the first-order law of the motion and, with `floquet`, exact; the measurement is linear prediction
+    17, Table 2), bounds for the motion and, with `floquet`, exact; the measurement is linear prediction
     (`fit_dominant_pole`).
     """
     difference, size = _kicked_responses(mechanism, method, h, alpha_hat, beta_hat)
     apart = thrown_apart(mechanism, method, h, size[:, -1])
     duration = RUN * h * float(method.step_multiple)
     turning = turning_normals(mechanism, duration)
-    moving = moving_poles(method, turning, h, alpha_hat, beta_hat)
-    exact_rates, shown_rates = np.full((2, alpha_hat.size), np.nan)
+    exact_rates = np.full(alpha_hat.size, np.nan)
     if floquet:
-        motions = find_own_motions(mechanism, method, h, alpha_hat, beta_hat, duration)
-        exact_rates, shown_rates = motions.rates, rates_of_kicked_revolutions(motions)
+        exact_rates = find_own_motions(mechanism, method, h, alpha_hat, beta_hat, duration).rates
     found = []
     for i, (a, b) in enumerate(zip(alpha_hat.tolist(), beta_hat.tolist(), strict=True)):
         responses = difference[:, :, i], size[:, :, i]
         predicted = complex(dominant_pole(method, a, b))
         measured, reason = _measured_pole(predicted, poles(method, a, b), *responses)
-        measured_verdict = _measured_verdict(measured, *responses, max(CLOSE, moving[i].shift(method, h)))
+        moving = moving_pole(method, turning.kappa, h, a, b)
+        measured_verdict = _measured_verdict(measured, *responses, max(CLOSE, moving.z_abs - moving.at_least))
         if apart[i] and measured_verdict == "too close to call":  # so fast that no growth shows while linear
             measured_verdict, reason = "diverges", f"the feedback throws the mechanism apart within {AT_ONCE} steps"
         found.append(
@@ -220,11 +205,10 @@ def measure_poles(
                 beta_hat=b,
                 predicted=predicted,
                 predicted_verdict=verdict(method, exact(a), exact(b)),
-                moving=moving[i],
+                moving=moving,
                 floquet_abs=float(exact_rates[i]),
                 periodic=turning.closed,
                 measured=measured,
-                measured_rate=float(shown_rates[i]),
                 measured_verdict=measured_verdict,
                 reason=reason,
             )

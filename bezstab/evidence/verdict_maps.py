@@ -9,11 +9,10 @@ from numpy.typing import NDArray
 
 from bezstab.errors import InputError, NumericalError
 from bezstab.evidence.kicks import fates, kicked_motions, thrown_apart
-from bezstab.evidence.mixing_poles import nearest_poles
 from bezstab.mechanism import Scene, compiled_mechanism, runs_compiled, turning_normals
 from bezstab.methods import Method
 from bezstab.read_only import ReadOnlyArrays
-from bezstab.stability import BoolArray, FloatArray, pole_map, region, useful_window
+from bezstab.stability import BoolArray, FloatArray, moving_modulus, pole_map, region, useful_window
 
 MAP_RUN = 2000
 """Steps after the kick."""
@@ -34,8 +33,7 @@ class VerdictMap(ReadOnlyArrays):
     """Predicted |z_p| and what `run` simulated steps of h (s) did; masks of shape (beta_hat.size, alpha_hat.size).
 
     `undecided` is where a run gave no verdict, as where the mechanism itself left the linear range. `moved` says
-    how much more than |z_p| the motion can make of any pole's modulus, to first order, |z| + |z chi| kappa h; same
-    shape.
+    how much more than |z_p| the motion can make of any pole's modulus; same shape.
     """
 
     scene: Scene
@@ -135,17 +133,15 @@ def simulated_verdicts(rows: MapRows) -> dict[str, NDArray[Any]]:
     """Return what `VerdictMap` has of these rows; shape (beta_hat.size, alpha_hat.size).
 
     A run diverges if the constraint error that the kick made grows, and converges if that error dies, whichever comes
-    first (`kicks`). Predicted is |z_p| at rest, of paper Eq. 17, and by how much the first-order law of the moving
-    mechanism moves it. InputError for a scene that cannot start, and where rows are to be compiled without numba;
-    NumericalError where a predicted pole leaves the range of float64.
+    first (`kicks`). Predicted is |z_p| at rest, of paper Eq. 17, and how far the motion moves it at most. InputError
+    for a scene that cannot start, and where rows are to be compiled without numba; NumericalError where a predicted
+    pole leaves the range of float64.
     """
     alpha_grid, beta_grid = np.meshgrid(rows.alpha_hat, rows.beta_hat)
     alpha_hat, beta_hat = alpha_grid.ravel(), beta_grid.ravel()
     diverges, undecided = _simulated(rows, alpha_hat, beta_hat)
     z_abs = np.abs(np.concatenate(list(pole_map(rows.method, rows.alpha_hat, rows.beta_hat))))
-    nearest = nearest_poles(rows.method, alpha_hat, beta_hat)
-    with np.errstate(invalid="ignore"):  # zero times infinite: nothing is known
-        furthest = (np.abs(nearest.z) + np.abs(nearest.shift) * _turning_of_a_step(rows)).max(axis=1)
+    furthest = moving_modulus(rows.method, _turning_of_a_step(rows))(alpha_hat, beta_hat)
     found = {"diverges": diverges, "undecided": undecided, "moved": furthest - z_abs.ravel(), "z_abs": z_abs}
     return {name: values.reshape(alpha_grid.shape) for name, values in found.items()}
 
@@ -183,9 +179,9 @@ def verdict_map(chunks: Sequence[MapRows], found: Sequence[Mapping[str, NDArray[
 
 
 def _turning_of_a_step(rows: MapRows) -> float:
-    """Return kappa h of the method's own step over a run; infinite where the scene's motion cannot be followed."""
-    step = rows.h * float(rows.method.step_multiple)
+    """Return kappa h over a run; infinite where the scene's motion cannot be followed."""
+    duration = MAP_RUN * rows.h * float(rows.method.step_multiple)
     try:
-        return turning_normals(compiled_mechanism(rows.scene), MAP_RUN * step).kappa * step
+        return turning_normals(compiled_mechanism(rows.scene), duration).kappa * rows.h
     except (InputError, NumericalError):
         return np.inf

@@ -33,8 +33,7 @@ from bezstab.mechanism.start import constraint_jacobian
 
 FloatArray = NDArray[np.float64]
 
-SAMPLES = 400  # over a run, or a turn of the fastest driver, an even number: K turns a few times in one, so its
-# integrals are good to 1e-8
+SAMPLES = 400  # over a run, or a turn of the fastest driver: K turns a few times in one, so kappa is good to 1e-4
 
 AT_REST = 1e-9
 """Of an acceleration (SI): below, it is what rounding leaves of a mechanism that does not move."""
@@ -72,31 +71,18 @@ def along_normals(mechanism: Mechanism, along: Motion, vectors: FloatArray) -> F
 
 @dataclass(frozen=True, eq=False, repr=False)
 class TurningNormals:
-    """K at equal steps along a motion that lasts `duration` (s): `rates` has shape (samples + 1, m, m), in 1/s.
+    """K at equal steps along a motion: `rates` has shape (samples + 1, m, m), in 1/s.
 
-    `closed`: the motion is a revolution that begins anew. `metric` has S = C_q M^-1 C_q^T at both ends, shape
-    (2, m, m): a constraint error w has the size w^T S^-1 w, that of the displacement it stands for.
+    `closed`: the motion is a revolution that begins anew.
     """
 
-    duration: float
     rates: FloatArray
-    metric: FloatArray
     closed: bool
 
-    @property
+    @cached_property
     def kappa(self) -> float:
         """The largest modulus of an eigenvalue of K along the motion (1/s)."""
         return float(np.abs(np.linalg.eigvals(self.rates)).max())
-
-    @cached_property
-    def largest_norm(self) -> float:
-        """A bound on every rate that Y' = chi K(t) Y can grow at, for |chi| = 1 (1/s).
-
-        The largest spectral norm of K, each constraint's error in units of its own size at the start.
-        """
-        size = np.sqrt(np.diag(self.metric[0]))
-        scaled = self.rates / size[:, np.newaxis] * size
-        return float(np.linalg.norm(scaled, ord=2, axis=(1, 2)).max())
 
 
 @cache
@@ -107,17 +93,11 @@ def turning_normals(mechanism: Mechanism, duration: float) -> TurningNormals:
     """
     along = motion(mechanism, duration)
     every = STEPS // SAMPLES
-    rates, metrics = [], []
+    rates = []
     for t, q, v in zip(along.t[::every], along.q[::every], along.v[::every], strict=True):
         jacobian, turning, by_forces = _directions(mechanism, float(t), q, v)
-        metrics.append(jacobian @ by_forces)
-        rates.append(np.linalg.solve(metrics[-1], (turning @ by_forces).T).T)  # S is symmetric
-    return TurningNormals(
-        duration=along.duration,
-        rates=np.stack(rates),
-        metric=np.stack([metrics[0], metrics[-1]]),
-        closed=along.closed,
-    )
+        rates.append(np.linalg.solve(jacobian @ by_forces, (turning @ by_forces).T).T)  # S is symmetric
+    return TurningNormals(np.stack(rates), along.closed)
 
 
 def _directions(

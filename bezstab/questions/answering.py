@@ -15,7 +15,6 @@ from fractions import Fraction
 from functools import cached_property
 from typing import Literal, cast
 
-from bezstab import evidence
 from bezstab.engines import DRIVE_METHODS, READ_BACK, Curve, Engine
 from bezstab.errors import InputError, NumericalError
 from bezstab.goals import UP_TO_LONGEST, Goal
@@ -24,15 +23,19 @@ from bezstab.questions.chains import ALONE, SweptAnswer
 from bezstab.questions.question import Question, usual_goal
 from bezstab.rationals import rational, typed_number
 from bezstab.stability import (
+    LAW_HOLDS,
     Choice,
     FeedbackCost,
     Modulus,
+    MovingPole,
     VaryingSteps,
     choose,
     describe_point,
     feedback_cost,
     gain_stretches,
     largest_stable_step,
+    moving_modulus,
+    moving_pole,
     stable_up_to,
     varying_steps,
 )
@@ -130,13 +133,11 @@ class Answer(Choice):
         return None if self.margins is None or self.h is None else self.margins.h * self.h
 
     @cached_property
-    def moving(self) -> "evidence.MovingPole | None":
-        """How the motion of the scene changes the poles."""
+    def moving(self) -> MovingPole | None:
+        """How far the motion of the scene moves the poles."""
         if self.question.turning is None or self.h is None:
             return None
-        turning = self.question.turning
-        (pole,) = evidence.moving_poles(self.method, turning, self.h, self.alpha_hat, self.beta_hat)
-        return pole
+        return moving_pole(self.method, self.question.turning.kappa, self.h, self.alpha_hat, self.beta_hat)
 
     @cached_property
     def varying(self) -> VaryingSteps | None:
@@ -371,7 +372,8 @@ def _chosen_alone(
     longest = question.h_max if question.goal else None
     modulus: Modulus | None = None
     if question.turning and question.h:
-        modulus = evidence.moving_modulus(method, question.turning, float(longest or question.h))
+        turned = question.turning.kappa * float(longest or question.h)
+        modulus = moving_modulus(method, turned) if turned <= LAW_HOLDS else None
     choice = choose(
         method,
         goal,

@@ -18,7 +18,7 @@ from bezstab.mechanism import (
     turning_normals,
 )
 from bezstab.rationals import exact, typed_number
-from bezstab.stability import OMEGA_H, check_omega_h
+from bezstab.stability import LAW_HOLDS, OMEGA_H, check_omega_h
 
 
 @dataclass(frozen=True)
@@ -137,15 +137,13 @@ def turning_of(scene: str | Scene | None, speed: Fraction, h: Fraction | None) -
 def turn_too_far(
     turnings: Mapping[Fraction, TurningNormals | None], scene: str | Scene | None, h: Fraction | None
 ) -> list[str]:
-    """Return a warning for each speed at which a scene turns too far in a step (h in s) for the first-order law."""
+    """Return a warning for each speed at which a scene turns too far in a step (h in s) for first order to say much."""
     if scene is None or h is None:
         return []
-    from bezstab.evidence import LAW_HOLDS
-
     turned = {speed: turning.kappa * float(h) for speed, turning in turnings.items() if turning}
     return [
         f"constraints of {scene_at_speed(scene, speed).name} turn by κh = {kappa_h:.2g} a step: beyond {LAW_HOLDS:g} "
-        "the law fails"
+        "nothing is settled"
         for speed, kappa_h in turned.items()
         if kappa_h > LAW_HOLDS
     ]

@@ -13,7 +13,6 @@ import numpy as np
 
 from bezstab.engines import Engine
 from bezstab.errors import InputError, NumericalError
-from bezstab.evidence import MovingRegion, moving_region
 from bezstab.mechanism import TurningNormals, load_scene
 from bezstab.methods import Method
 from bezstab.motion import motion_energy
@@ -39,6 +38,7 @@ from bezstab.stability import (
     pole_map,
     region,
     stable_for_all,
+    turn_limits,
     unconditional_damping_ratio,
     useful_window,
 )
@@ -54,6 +54,9 @@ SLOWER = 10
 
 DECADES = 100
 """... and this many times weaker, at least, than where the map ends."""
+
+MOVING_POINTS = 301
+"""Per axis of the grid on which regions of moving mechanisms are found: narrower ones are not seen."""
 
 
 @dataclass(frozen=True)
@@ -183,6 +186,12 @@ class MapQuestion:
         return {speed: turning for speed, turning in found.items() if turning}
 
     @property
+    def turned(self) -> dict[float, float]:
+        """By how many rad a step the constraints of the scene turn at most, by speed."""
+        h = float(self.h or 0)
+        return {float(speed): turning.kappa * h for speed, turning in self.turnings.items()}
+
+    @property
     def warnings(self) -> list[str]:
         """What is to be known before the answers."""
         return turn_too_far(self.turnings, self.scene, self.h)
@@ -223,6 +232,30 @@ def kick_response(poles: ComplexArray, steps: int) -> FloatArray:
     return c[: steps + 1]
 
 
+@dataclass(frozen=True, eq=False, repr=False)
+class MovingRegions:
+    """Up to how many rad a step constraints may turn while errors surely decay, on a grid that shows the region.
+
+    alpha_hat and beta_hat are its axes, `turn_limits` has the shape (beta_hat.size, alpha_hat.size); dimensionless. As
+    a mechanism turns by kappa h, its errors decay where that is below `turn_limits`.
+    """
+
+    alpha_hat: FloatArray
+    beta_hat: FloatArray
+    turn_limits: FloatArray
+
+    def area(self, turned: float) -> float:
+        """Return the area in which errors surely decay, by the points of the grid: to a thousandth of all."""
+        window = np.ptp(self.alpha_hat) * np.ptp(self.beta_hat)
+        return float(window * (self.turn_limits > turned).mean())
+
+
+def moving_regions(method: Method) -> MovingRegions:
+    """Return the regions of mechanisms that move; NumericalError as `region`, and if a pole leaves float64's range."""
+    alpha_hat, beta_hat = (np.linspace(*ends, MOVING_POINTS) for ends in useful_window(region(method)))
+    return MovingRegions(alpha_hat, beta_hat, turn_limits(method, alpha_hat, beta_hat[:, np.newaxis]))
+
+
 @dataclass(frozen=True)
 class MapAnswer:
     """One method's answer: its stable region and those of the levels below 1; the rest is found when asked for."""
@@ -242,10 +275,9 @@ class MapAnswer:
         return self.regions[0]
 
     @cached_property
-    def moving(self) -> dict[float, MovingRegion]:
-        """The region of the scene as it moves, by speed."""
-        h = float(self.question.h or 0)
-        return {float(speed): moving_region(self.method, each, h) for speed, each in self.question.turnings.items()}
+    def moving(self) -> MovingRegions:
+        """The regions of the scene as it moves, for every speed."""
+        return moving_regions(self.method)
 
     @cached_property
     def choice_or_reason(self) -> tuple[Choice | None, str | None]:

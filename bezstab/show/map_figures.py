@@ -12,7 +12,6 @@ from matplotlib.axes import Axes
 from matplotlib.colors import FuncNorm, ListedColormap, Normalize
 from matplotlib.contour import QuadContourSet
 from matplotlib.figure import Figure
-from matplotlib.patches import Rectangle
 from matplotlib.path import Path
 from matplotlib.patheffects import AbstractPathEffect, withStroke
 from matplotlib.ticker import FixedLocator, MaxNLocator
@@ -87,31 +86,29 @@ def map_figure(answer: MapAnswer, z: ComplexArray) -> Figure:
     z are the dominant poles over the axes of the answer, of shape (beta_hat.size, alpha_hat.size). With a step the axes
     are 2 alpha (1/s) and beta^2 (1/s^2), marked in alpha and beta if that is asked for; else alpha_hat and beta_hat.
     The label of an unbounded region says so, and arrows along the edges of the axes point to where it goes on. Of a
-    scene that moves its own boundaries are drawn as well, by times its own speed, and where the law behind the first of
-    them does not hold. Where a motion is asked about it is `_motion_map_figure`.
+    scene that moves its own boundaries are drawn as well, by times its own speed. Where a motion is asked about it is
+    `_motion_map_figure`.
     """
-    question, region, moving = answer.question, answer.stable.region, answer.moving
+    question, region, turned = answer.question, answer.stable.region, answer.question.turned
     h = question.seconds
     if question.motion:
         return _motion_map_figure(answer, z, float(question.motion.omega_h))
     with styled():
         name = region.method.name
-        title = title_lines(name, f"at rest and on the {question.scene_name}") if moving else name
+        title = title_lines(name, f"at rest and on the {question.scene_name}") if turned else name
         figure, axes = new_axes(*plane_words(title, h))
         figure.colorbar(plot.modulus_map(*answer.axes, np.abs(z), axes, h), label="$|z_p|$")
-        at_rest = " at rest" if moving else ""
+        at_rest = " at rest" if turned else ""
         unbounded = "" if region.bounded else " (unbounded)"
         plot.region(region, axes, h, color="black", linestyle="-", label=f"$|z_p| = 1${at_rest}{unbounded}")
         for number, inner in enumerate(answer.faster, start=1):
             label = rf"$|z_p| = {inner.level:g}${at_rest}"
             plot.region(inner, axes, h, color="white", linestyle=DASHES[number % 4], label=label)
-        for number, (speed, of_speed) in enumerate(moving.items()):
+        if turned:
+            x, y = plane_coordinates(answer.moving.alpha_hat, answer.moving.beta_hat, h)
+        for number, (speed, kappa_h) in enumerate(turned.items(), start=1):
             label = "its own speed" if speed == 1 else f"{speed:g} times its own speed"
-            x, y = plane_coordinates(of_speed.alpha_hat, of_speed.beta_hat, h)
-            if number == 0 and of_speed.outside_the_law.any():
-                axes.contourf(x, y, of_speed.outside_the_law, levels=[0.5, 1.5], colors="none", hatches=["....."])
-                axes.add_patch(Rectangle((0, 0), 0, 0, fill=False, hatch=".....", label="law does not hold"))  # a key
-            _level_line(axes, x, y, of_speed.growth, 0.0, label, DASHES[(number + 1) % 4])
+            _level_line(axes, x, y, answer.moving.turn_limits, kappa_h, label, DASHES[number % 4])
         _draw_points(answer, axes)
         _draw_open_edges(region, axes, h, color="white", markeredgecolor="black")
         if question.alpha_beta:

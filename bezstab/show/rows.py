@@ -145,8 +145,8 @@ def map_rows(answer: MapAnswer) -> list[Row]:
         return [{**row, **forced} for row in rows]
     turnings = answer.question.turnings.values()
     at_speeds: list[Row] = [
-        {**stable, "speed": speed, "kappa": turning.kappa, "area_moving": moving.area}
-        for (speed, moving), turning in zip(answer.moving.items(), turnings, strict=True)
+        {**stable, "speed": speed, "kappa": turning.kappa, "area_moving": answer.moving.area(turned)}
+        for (speed, turned), turning in zip(answer.question.turned.items(), turnings, strict=True)
     ]
     return [*(at_speeds or [stable]), *faster]
 

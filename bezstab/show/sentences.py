@@ -31,7 +31,7 @@ def point_sentence(row: Row) -> str:
     factor = row["h_factor"] if row["h"] is None else None
     step = growth_words(factor) if limit is None else f"to {seconds_words(limit)}"
     alpha, beta = growth_words(row["alpha_factor_max"]), growth_words(row["beta_factor_max"])
-    begin = "At rest the" if "z_abs_moving" in row else "The"
+    begin = "At rest the" if "moving_verdict" in row else "The"
     if {step, alpha, beta} == {growth_words(None)}:
         return f"{safety_words(row)} {begin} step, α and β may grow {step}."
     return f"{safety_words(row)} {begin} step may grow {step}, α {alpha}, β {beta}."

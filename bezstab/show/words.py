@@ -6,8 +6,6 @@ MOST_DIGITS = 17  # of float64: with so many every number other than one is show
 THOUSAND = 1000.0
 PLAIN = 1e7  # a factor from here on has so many zeros that nobody counts them
 GONE = 1e-6  # of |z|: after three steps an error is below rounding; at a double root that is zero |z| comes out as 1e-8
-SETTLED = ("converges", "diverges")
-"""What is known of a mechanism that moves; else what `moving_verdict` says is not."""
 
 UNITS = ((1.0, "s"), (1e-3, "ms"), (1e-6, "µs"))
 """Of times, the largest first: each with its seconds."""
@@ -32,13 +30,13 @@ def times_words(factor: float) -> str:
     return f"{float(digits):,.0f}" if 100 <= float(digits) < PLAIN else digits
 
 
-def change_words(z_abs: float, verdict: Value, what: str = "error") -> str:
+def change_words(z_abs: float, verdict: Value, what: str = "error", bound: str = "") -> str:
     """Return what a step does to an error by its proven verdict: each step multiplies the error by 0.65.
 
     The error, or `what` else: of a damper alone it is the velocity.
 
     Two digits of the modulus, and as many more as it takes to tell it from one. Where rounding has left it on the wrong
-    side of one, the verdict alone.
+    side of one, the verdict alone. `bound` says that it is at most, or at least, so much.
     """
     if verdict == "marginal":
         return f"the {what} neither shrinks nor grows"
@@ -48,7 +46,7 @@ def change_words(z_abs: float, verdict: Value, what: str = "error") -> str:
     if not (z_abs < 1 if converges else z_abs > 1):
         return f"the {what} {'shrinks' if converges else 'grows'}, by less at a step than rounding shows"
     digits = next(digits for digits in range(2, MOST_DIGITS + 1) if float(f"{z_abs:.{digits}g}") != 1)
-    return f"each step multiplies the {what} by {z_abs:.{digits}g}"
+    return f"each step multiplies the {what} by {bound}{z_abs:.{digits}g}"
 
 
 def safety_words(row: Row) -> str:
@@ -64,23 +62,23 @@ def safety_words(row: Row) -> str:
         safe = f"One constraint alone: {safe.lower()}"
     at_rest = change_words(row["z_abs"], row["verdict"])
     varying = f" when steps vary ({row['varying']})" if "varying" in row else ""
-    if "z_abs_moving" not in row:
+    if "moving_verdict" not in row:
         begin = f"With constant steps {at_rest}" if varying else at_rest[0].upper() + at_rest[1:]
         return f"{safe}{varying}. {begin}."
-    moves = f"{safe}{varying}. At rest {at_rest}. Over the motion {_over_the_motion(row)}"
-    if row["moving_verdict"] in SETTLED or not row["double_pole"]:
-        return f"{moves}."
-    return (
-        f"{moves}: two poles nearly meet there, and the motion moves them by as much as (κh)^½; a step multiplies the "
-        f"error by {row['z_abs_worst']:.3g} at worst."
-    )
+    return f"{safe}{varying}. At rest {at_rest}. {_in_motion(row)}."
 
 
-def _over_the_motion(row: Row) -> str:
-    """Return what a step does to an error over a motion, or that this is not settled."""
-    if row["moving_verdict"] in SETTLED:
-        return change_words(row["z_abs_moving"], row["moving_verdict"])
-    return f"it is {row['moving_verdict']}"
+def _in_motion(row: Row) -> str:
+    """Return what a step at most or at least does to an error as the mechanism moves, or why that is not settled."""
+    least, most = row["z_abs_at_least"], row["z_abs_at_most"]
+    if row["moving_verdict"] == "converges":
+        return f"In motion {change_words(most, 'converges', bound='at most ')}"
+    if row["moving_verdict"] == "diverges":
+        return f"In motion {change_words(least, 'diverges', bound='at least ')}"
+    if most is not None and most < 1:
+        return "In motion it is not settled: the constraints turn too far in a step, or faster than the feedback works"
+    how = "two poles nearly meet there" if most is None else f"a step may multiply the error by {most:.3g}"
+    return f"In motion this may diverge: {how}"
 
 
 def swept_words(row: Row) -> str:
@@ -98,7 +96,7 @@ def swept_words(row: Row) -> str:
     change = change_words(z_abs, "converges" if z_abs < 1 else "diverges")
     sentences = [f"{begin} {change} (one constraint alone: {alone:.2f})", enough]
     if "moving_verdict" in row:
-        sentences.append(f"Solved exactly, over the motion {_over_the_motion(row)}")
+        sentences.append(f"That is at rest. Solved exactly: {_in_motion(row)[0].lower()}{_in_motion(row)[1:]}")
     if "varying" in row:
         sentences.append(f"That is with constant steps. Solved exactly, when steps vary: {row['varying']}")
     return f"{'. '.join(sentences)}."

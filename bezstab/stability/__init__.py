@@ -32,13 +32,13 @@ from bezstab.stability.step_families import Limit, Member, bezier_limit, family_
 from bezstab.stability.step_sequences import Varying, VaryingSteps, varying_steps
 from bezstab.stability.sweeps import Growth, chain, fewest_sweeps, inverse_effective_masses, swept_growth
 from bezstab.stability.turning import (
+    LAW_HOLDS,
     MovingPole,
     MovingVerdict,
     moduli_and_shifts,
     most_moved,
     moving_modulus,
     moving_pole,
-    own_feedback_root,
     turn_limits,
     turning_shift,
 )

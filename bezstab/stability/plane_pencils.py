@@ -102,10 +102,6 @@ class PlanePencil:
         by_z, by_alpha, by_beta = (polyval3d(z, alpha_hat, beta_hat, slope) for slope in slopes)
         return np.asarray(z - (2 * by_alpha + alpha_hat * by_beta) / (float(self.method.step_multiple) * by_z))
 
-    def own_feedback_root(self, alpha_hat: FloatArray, beta_hat: FloatArray, z: ComplexArray) -> ComplexArray:
-        """Return zero for each pole z: it belongs to no mu."""
-        return np.zeros(z.shape, complex)
-
     def coefficients_at(self, alpha_hat: FloatArray, beta_hat: FloatArray) -> list[FloatArray]:
         """Return P's coefficients in z, ascending, each with the shape of a row of points."""
         values = (

@@ -83,21 +83,11 @@ def turning_shift(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike, z: 
     """Return z chi of poles z: where constraints turn at K (1/s), each pole moves by that times h eig K.
 
     Complex, shape of alpha_hat, beta_hat and z broadcast, dimensionless; h is the length of the method's own step.
-    Infinite at a double pole of one mu, where the change is like the root of h K. Theory: the first-order law of the
-    moving mechanism.
+    Infinite at a double pole of one mu, where the change is like the root of h K. Theory: the docstring of this file.
     """
     with np.errstate(all="ignore"):
         at = np.broadcast_arrays(alpha_hat, beta_hat, np.asarray(z, complex))
         return pencil_of(method).turning_shift(*at)
-
-
-def own_feedback_root(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike, z: ArrayLike) -> ComplexArray:
-    """Return the root mu of the feedback that each pole z belongs to; shape as `turning_shift`, dimensionless.
-
-    Of methods that step position and velocity differently poles belong to no mu: zero.
-    """
-    at = np.broadcast_arrays(alpha_hat, beta_hat, np.asarray(z, complex))
-    return pencil_of(method).own_feedback_root(*at)
 
 
 def moving_pole(method: Method, kappa: float, h: float, alpha_hat: float, beta_hat: float) -> MovingPole:
@@ -115,15 +105,17 @@ def moving_pole(method: Method, kappa: float, h: float, alpha_hat: float, beta_h
 
 
 def moving_modulus(method: Method, kappa_h: float) -> Modulus:
-    """Return the function that gives |z| at most as constraints turn by kappa_h rad a step, or HOPELESS if less.
+    """Return the function that gives |z| at most as constraints turn by kappa_h rad a step.
 
-    Of alpha_hat and beta_hat, shape of the two broadcast, dimensionless. NumericalError, when called, as `poles`.
+    Of alpha_hat and beta_hat, shape of the two broadcast, dimensionless. HOPELESS is the most, and what it is where
+    errors do not decay at rest. NumericalError, when called, as `poles`.
     """
 
     def modulus(alpha_hat: FloatArray, beta_hat: FloatArray) -> FloatArray:
         z_abs, shift = moduli_and_shifts(method, alpha_hat, beta_hat)
         moved = most_moved(alpha_hat, beta_hat, shift, kappa_h)
-        return np.asarray(np.minimum((z_abs + moved).max(axis=-1), HOPELESS))
+        furthest = np.minimum((z_abs + moved).max(axis=-1), HOPELESS)
+        return np.asarray(np.where(z_abs[..., 0] < 1, furthest, HOPELESS))
 
     return modulus
 
@@ -139,7 +131,8 @@ def turn_limits(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> Fl
     with np.errstate(divide="ignore", invalid="ignore"):
         turned = ((1 - z_abs) / shift).min(axis=-1)  # if the first order were all
         limits = np.fmax(turned / 2, 2 * turned / (1 + np.sqrt(1 + 4 * turned / half_gap)))
-    return np.where(turned > 0, np.minimum(limits, np.minimum(LAW_HOLDS, SLOWER * least_mu)), turned)
+    limits = np.minimum(limits, np.minimum(LAW_HOLDS, SLOWER * least_mu))
+    return np.asarray(np.where(turned > 0, limits, turned))
 
 
 def moduli_and_shifts(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> tuple[FloatArray, FloatArray]:
@@ -148,8 +141,8 @@ def moduli_and_shifts(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike)
     |z chi| is that of a rad by which constraints turn in a step of the user's; infinite where it has no bound.
     """
     z = poles(method, alpha_hat, beta_hat)
-    at = (np.asarray(each, float)[..., np.newaxis] for each in (alpha_hat, beta_hat))
-    shift = np.abs(turning_shift(method, *at, z)) * float(method.step_multiple)
+    alpha_hat, beta_hat = (np.asarray(each, float)[..., np.newaxis] for each in (alpha_hat, beta_hat))
+    shift = np.abs(turning_shift(method, alpha_hat, beta_hat, z)) * float(method.step_multiple)
     return np.abs(z), np.where(np.isfinite(shift), shift, np.inf)
 
 
@@ -158,7 +151,7 @@ def most_moved(alpha_hat: ArrayLike, beta_hat: ArrayLike, shift: FloatArray, tur
     if turned == 0:
         return np.zeros_like(shift)
     half_gap, _ = _feedback_roots(alpha_hat, beta_hat)
-    with np.errstate(divide="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore"):  # of gaps that are zero; of a turn without a bound
         return np.asarray(shift * turned * (1 + np.minimum(1, turned / half_gap))[..., np.newaxis])
 
 

@@ -99,7 +99,9 @@ def _turning(scene: str) -> float:
     along = motion(mechanism, LASTS)
     root = np.sqrt(mechanism.mass)
     jacobians = [constraint_jacobian(mechanism, t, q) / root for t, q in zip(along.t.tolist(), along.q, strict=True)]
-    rates = [turning_normals(mechanism, LASTS).largest_norm]
+    against_each_other = turning_normals(mechanism, LASTS).rates
+    size = np.linalg.norm(jacobians[0], axis=1)  # each constraint's error in units of its own size at the start
+    rates = [float(np.linalg.norm(against_each_other / size[:, np.newaxis] * size, ord=2, axis=(1, 2)).max())]
     for (before, after), passed in zip(pairwise(jacobians), np.diff(along.t), strict=True):
         own_units = np.linalg.inv(np.linalg.cholesky(before @ before.T))
         rates.append(float(np.linalg.norm(own_units @ (after - before) / passed, ord=2)))

@@ -81,7 +81,7 @@ def test_a_point_is_safe_up_to_the_speed_that_is_said(name: str, at: tuple[float
     slower, faster = (moving_pole(method, share * safe * kappa, h, *at) for share in (0.999, 1.001))
     assert (slower.verdict, faster.verdict) == ("converges", "not settled")
     assert slower.at_most < 1
-    assert moving_modulus(method, slower.turned)(*map(np.float64, at)) == slower.at_most
+    assert moving_modulus(method, slower.turned)(np.array(at[0]), np.array(at[1])) == slower.at_most
 
 
 def test_where_both_mu_are_one_the_motion_mixes_their_poles() -> None:
@@ -103,7 +103,7 @@ def test_at_rest_poles_stay_where_they_are_however_large_chi_is() -> None:
 def test_nothing_converges_beyond_first_order() -> None:
     """AB4 and RK4 at kappa h = 0.19: AB4's error grows, where |z_p| is 0.93 and hardly moves, chi being 1e-4."""
     step, at = 0.06, (0.15, 0.006)
-    (exact,) = floquet_rates(four_bar(), lookup("AB4"), step, *(np.array([each]) for each in at), 1.0)
+    (exact,) = floquet_rates(four_bar(), lookup("AB4"), step, np.array([0.15]), np.array([0.006]), 1.0)
     of_ab4, of_rk4 = (moving_pole(lookup(name), turning().kappa, step, *at) for name in ("AB4", "RK4"))
     assert of_ab4.z_abs - of_ab4.at_least < 1e-4
     assert exact > 1.05

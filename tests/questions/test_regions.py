@@ -7,8 +7,8 @@ import pytest
 from bezstab.engines import ENGINES
 from bezstab.methods import lookup
 from bezstab.questions import MapAnswer, MapQuestion, region_answer
-from bezstab.questions.regions import kick_response
-from bezstab.stability import combined_error, spectral_radius
+from bezstab.questions.regions import kick_response, moving_regions
+from bezstab.stability import combined_error, moving_pole, region, spectral_radius
 
 
 def answer_about(name: str, **asked: Any) -> MapAnswer:
@@ -25,6 +25,21 @@ def test_the_best_point_is_inside_only_where_z_is_that_small() -> None:
     assert faster.inside is None
     (level,) = answer_about("B4").drawn_levels
     assert stable.best.z_abs < level < 1
+
+
+@pytest.mark.parametrize("name", ["B4", "SYM", "verlet-old"])
+def test_the_region_of_a_moving_mechanism_shrinks_with_its_speed_from_that_at_rest(name: str) -> None:
+    method = lookup(name)
+    moving, at_rest = moving_regions(method), region(method).area
+    assert at_rest
+    assert moving.area(0.0) == pytest.approx(at_rest, rel=5e-3)  # by cells of a three hundredth
+    areas = [moving.area(turned) for turned in (0.0, 0.01, 0.05, 0.1)]
+    assert areas == sorted(areas, reverse=True)
+    assert areas[-1] == 0  # nothing is settled beyond
+    for row, column in ((100, 100), (150, 40), (20, 200)):
+        at = float(moving.alpha_hat[column]), float(moving.beta_hat[row])
+        pole = moving_pole(method, 0.03, 1.0, *at)
+        assert (pole.verdict == "converges") == (moving.turn_limits[row, column] > 0.03)
 
 
 @pytest.mark.parametrize("name", ["B4", "gauss4", "verlet-kdk"])
