@@ -55,8 +55,8 @@ SLOWER = 10
 DECADES = 100
 """... and this many times weaker, at least, than where the map ends."""
 
-MOVING_POINTS = 301
-"""Per axis of the grid on which regions of moving mechanisms are found: narrower ones are not seen."""
+CELLS = 300
+"""Along each axis of a map of moving mechanisms: what is narrower is not seen."""
 
 
 @dataclass(frozen=True)
@@ -234,26 +234,30 @@ def kick_response(poles: ComplexArray, steps: int) -> FloatArray:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class MovingRegions:
-    """Up to how many rad a step constraints may turn while errors surely decay, on a grid that shows the region.
+    """Up to how many rad a step constraints may turn while errors surely decay, in cells that show the region.
 
-    alpha_hat and beta_hat are its axes, `turn_limits` has the shape (beta_hat.size, alpha_hat.size); dimensionless. As
-    a mechanism turns by kappa h, its errors decay where that is below `turn_limits`.
+    alpha_hat and beta_hat are their centres, `turn_limits` has the shape (beta_hat.size, alpha_hat.size), `cell` is the
+    area of each; dimensionless. As a mechanism turns by kappa h, its errors decay where that is below `turn_limits`.
     """
 
     alpha_hat: FloatArray
     beta_hat: FloatArray
     turn_limits: FloatArray
+    cell: float
 
     def area(self, turned: float) -> float:
-        """Return the area in which errors surely decay, by the points of the grid: to a thousandth of all."""
-        window = np.ptp(self.alpha_hat) * np.ptp(self.beta_hat)
-        return float(window * (self.turn_limits > turned).mean())
+        """Return the area in which errors surely decay, to a few thousandths."""
+        return self.cell * int((self.turn_limits > turned).sum())
 
 
 def moving_regions(method: Method) -> MovingRegions:
     """Return the regions of mechanisms that move; NumericalError as `region`, and if a pole leaves float64's range."""
-    alpha_hat, beta_hat = (np.linspace(*ends, MOVING_POINTS) for ends in useful_window(region(method)))
-    return MovingRegions(alpha_hat, beta_hat, turn_limits(method, alpha_hat, beta_hat[:, np.newaxis]))
+    (left, right), (low, high) = useful_window(region(method))
+    width, height = (right - left) / CELLS, (high - low) / CELLS
+    centres = (np.arange(CELLS) + 0.5).astype(np.float64)
+    alpha_hat, beta_hat = left + width * centres, low + height * centres
+    limits = turn_limits(method, alpha_hat, beta_hat[:, np.newaxis])
+    return MovingRegions(alpha_hat, beta_hat, limits, width * height)
 
 
 @dataclass(frozen=True)

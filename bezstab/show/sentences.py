@@ -21,7 +21,7 @@ def answer_sentence(row: Row) -> str:
 
 def point_sentence(row: Row) -> str:
     """Return whether a point is safe, what a step does to the error, and how far step, α and β may grow, at rest."""
-    if "kp" in row and not {"z_abs_moving", "varying"} & row.keys():
+    if "kp" in row and not {"moving_verdict", "varying"} & row.keys():
         return drive_sentence(row)
     if not row["safe"] or "swept_z_abs" in row:
         return safety_words(row)
