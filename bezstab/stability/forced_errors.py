@@ -20,12 +20,14 @@ from functools import lru_cache
 from math import comb
 
 import numpy as np
+from numpy.polynomial import Polynomial
 from numpy.polynomial.polynomial import polyval, polyval2d
 from numpy.typing import ArrayLike
 
 from bezstab.errors import InputError
 from bezstab.methods import Method, forced_errors, leading_error
 from bezstab.stability.arrays import ComplexArray, FloatArray
+from bezstab.stability.root_finding import companion_roots
 
 OMEGA_H = Fraction(1, 100)
 """Where no motion is given: some 600 steps for each time it comes round, as engineers choose them."""
@@ -34,7 +36,10 @@ SLOWEST = Fraction(1, 10**6)
 """omega h: errors of high order are below 1e-50 there, and no run would show them."""
 
 BETWEEN = 24
-"""Frequencies at which |D| is looked at from 0 on, besides the feedback's own resonance: |D| is smooth."""
+"""Frequencies at which |D| is looked at up to pi, besides the feedback's own resonance: of what decays it is smooth."""
+
+POLISHED = 2
+"""Times: eigenvalues have half the digits of a place where |D| nearly vanishes, and each step doubles them."""
 
 DIGITS = 120
 """Of what is summed: with omega h = 1e-6 and order 12 all but theta^14 = 1e-84 cancels, and enough are left."""
@@ -63,7 +68,8 @@ def forced_error(
     """Return the steady errors that the method forces at points of the plane, for a motion of omega h radians a step.
 
     `any_frequency`: the total takes the frequency that answers the most among all that steps can tell apart, not only
-    those up to omega, so that it grows where the poles come near the circle anywhere: that is what `choose` weighs.
+    those up to omega, so that it grows where the poles come near the circle anywhere: that is what `choose` weighs,
+    for very many points, so it is sampled; else it is the largest there is.
     InputError unless 1e-6 <= omega_h < 1. Stability is not looked at. Source: methods/steady_errors.py.
     """
     check_omega_h(omega_h)
@@ -76,11 +82,15 @@ def forced_error(
         """Return |D| at a frequency, one for all points or one for each."""
         return np.abs(polyval(np.expm1(1j * np.asarray(frequency)), around_one, tensor=False))
 
-    highest = np.pi if any_frequency else theta
+    highest = np.pi if any_frequency else min(theta, np.pi)
     at_own = size(theta)
-    least = np.minimum(at_own, size(np.sqrt(np.clip(b - a**2 / 2, 0.0, highest**2))))  # where the feedback resounds
-    for frequency in np.linspace(0.0, highest, BETWEEN + 1):
-        least = np.minimum(least, size(frequency))
+    resounds = np.sqrt(np.clip(b - a**2 / 2, 0.0, highest**2))  # where poles next to z = 1 are
+    least = np.minimum(at_own, size(resounds))
+    if any_frequency:
+        for frequency in np.linspace(0.0, highest, BETWEEN + 1):
+            least = np.minimum(least, size(frequency))
+    else:
+        least = np.minimum(least, _least_on_arc(around_one, resounds, highest))
     position, velocity = (np.abs(polyval2d(a, b, table)) for table in _numerators(method, omega_h))
     with np.errstate(divide="ignore"):  # a pole that answers a frequency without bound
         return ForcedError(position=position / at_own, velocity=velocity / theta / at_own, total=position / least)
@@ -123,6 +133,55 @@ def forced_response(method: Method, alpha_hat: float, beta_hat: float, omega_h: 
     numerator = polyval(theta, [polyval2d(a, b, table) for table in _series(method, power)])
     denominator = polyval(np.expm1(theta), _denominator(method, a, b))
     return np.where(followed, numerator / denominator * multiple**power, 0.0)
+
+
+# The least |D| on an arc of the unit circle: at its ends, or where its square, a polynomial in x = |z - 1|^2, is
+# stationary. With w = z - 1 there, w^m + its conjugate is s_m(x): s_0 = 2, s_1 = -x, s_m = -x (s_(m-1) + s_(m-2)).
+
+
+def _least_on_arc(around_one: FloatArray, resounds: FloatArray, highest: float) -> FloatArray:
+    """Return the least |D| over frequencies from 0 to the highest, at most pi; shape of a point's coefficient."""
+    degree = len(around_one) - 1
+    d, shape = around_one.reshape(degree + 1, -1), around_one.shape[1:]
+    ends = np.broadcast_to(np.array([[0.0], [highest]]), (2, d.shape[1]))
+    places = np.concatenate([ends, resounds.reshape(1, -1), _stationary(d, highest)])
+    slope = d[1:] * np.arange(1, degree + 1)[:, np.newaxis]
+    least = np.full(d.shape[1], np.inf)
+    for _ in range(POLISHED + 1):
+        w = np.expm1(1j * places)
+        value, by_angle = polyval(w, d, tensor=False), 1j * (1 + w) * polyval(w, slope, tensor=False)
+        least = np.minimum(least, np.abs(value).min(axis=0))
+        with np.errstate(all="ignore"):  # Gauss-Newton
+            step = (value.conj() * by_angle).real / np.abs(by_angle) ** 2
+        places = np.clip(places - np.nan_to_num(step), 0.0, highest)
+    return np.asarray(least.reshape(shape))
+
+
+def _stationary(d: FloatArray, highest: float) -> FloatArray:
+    """Return frequencies from 0 to the highest that include all where |D| is stationary, shape (n - 1, points).
+
+    d has coefficients of D in powers of z - 1, shape (n + 1, points).
+    """
+    degree, end = len(d) - 1, 4 * np.sin(highest / 2) ** 2
+    powers = np.arange(degree + 1)
+    squared = np.einsum("jp,kp,jkm->mp", d, d, _products(degree))
+    by_x = companion_roots((squared * (powers * end**powers)[:, np.newaxis])[1:])  # of the share of x in its end
+    return np.asarray(2 * np.arcsin(np.sqrt(by_x.real.clip(0.0, 1.0) * end) / 2))
+
+
+@lru_cache(maxsize=64)
+def _products(degree: int) -> FloatArray:
+    """Return the polynomials in x that belong to d_j d_k in |D|^2, for j <= k: entry (j, k, m) is that of x^m."""
+    products = np.zeros((degree + 1, degree + 1, degree + 1))
+    x, sums = Polynomial([0.0, 1.0]), [Polynomial([2.0]), Polynomial([0.0, -1.0])]
+    for _ in range(2, degree + 1):
+        sums.append(-x * (sums[-1] + sums[-2]))
+    for j in range(degree + 1):
+        products[j, j, j] = 1
+        for k in range(j + 1, degree + 1):
+            of_both = (x**j * sums[k - j]).coef
+            products[j, k, : len(of_both)] = of_both
+    return products
 
 
 # Tables by powers of alpha_hat and beta_hat, for a method's own step
