@@ -20,7 +20,7 @@ from typing import Literal
 
 import numpy as np
 
-from bezstab.evidence.exact_rates import find_own_motions
+from bezstab.evidence.exact_rates import exact_rates
 from bezstab.evidence.kicks import AT_ONCE, GROWN, LINEAR, kicked_motions, thrown_apart
 from bezstab.evidence.linear_prediction import NEGLIGIBLE, SAMPLES, SPREAD, fit_dominant_pole
 from bezstab.mechanism import Mechanism, runs_compiled, turning_normals
@@ -186,9 +186,9 @@ def measure_poles(
     apart = thrown_apart(mechanism, method, h, size[:, -1])
     duration = RUN * h * float(method.step_multiple)
     turning = turning_normals(mechanism, duration)
-    exact_rates = np.full(alpha_hat.size, np.nan)
+    rates = np.full(alpha_hat.size, np.nan)
     if floquet:
-        exact_rates = find_own_motions(mechanism, method, h, alpha_hat, beta_hat, duration).rates
+        rates = exact_rates(mechanism, method, h, alpha_hat, beta_hat, duration)
     found = []
     for i, (a, b) in enumerate(zip(alpha_hat.tolist(), beta_hat.tolist(), strict=True)):
         responses = difference[:, :, i], size[:, :, i]
@@ -206,7 +206,7 @@ def measure_poles(
                 predicted=predicted,
                 predicted_verdict=verdict(method, exact(a), exact(b)),
                 moving=moving,
-                floquet_abs=float(exact_rates[i]),
+                floquet_abs=float(rates[i]),
                 periodic=turning.closed,
                 measured=measured,
                 measured_verdict=measured_verdict,

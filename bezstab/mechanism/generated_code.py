@@ -34,8 +34,11 @@ from sympy.printing.pycode import PythonCodePrinter
 
 from bezstab.mechanism.equations import Mechanism, T
 
-IMAGINARY_STEP = 1e-30
-"""By which a state is moved to find a slope: nothing is subtracted, so that the derivative is exact to rounding."""
+IMAGINARY_STEP = 1e-200
+"""By which a state is moved to find a slope: nothing is subtracted, so that the derivative is exact to rounding.
+
+Its square is zero in float64, and so is that of what a step makes of it with feedback beyond all use.
+"""
 
 SINGULAR = 1e-12  # of a row's own size: a pivot of S = C_q M^-1 C_q^T this small has lost all digits to cancellation
 

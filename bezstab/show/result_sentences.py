@@ -264,9 +264,7 @@ def exact_rate_words(measurement: Measurement) -> str:
     """Return along which motion the exact rates of a method are; why there are none, where the motion ends."""
     name = measurement.method.name
     if measurement.periodic:
-        return (
-            f"Exact rates of {name}: along the method's own motion, where there is none along the mechanism's motion."
-        )
+        return f"Exact rates of {name}: along the motion of the mechanism."
     shown = "What is shown is how errors grow over the run."
     return f"No rate of {name} is exact: the motion does not begin anew. {shown}"
 

@@ -25,7 +25,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from bezstab.evidence import map_rows, simulated_verdicts
-from bezstab.evidence.exact_rates import find_own_motions
+from bezstab.evidence.exact_rates import exact_rates
 from bezstab.evidence.mujoco_witness import model_xml
 from bezstab.evidence.verdict_maps import MapRows
 from bezstab.mechanism import (
@@ -225,11 +225,10 @@ def maps_of_other_kinds() -> Iterator[Line]:
 
 
 def moving_mechanisms() -> Iterator[Line]:
-    """Yield how much faster the rates on a method's own motions come in batch than by the runner.
+    """Yield how much faster exact rates come in batch than by the runner, which finds a motion of its own first.
 
-    Of points where errors decay: there is such a motion to be found at each. The runner takes all its shifted runs side
-    by side, and its motion is another way to the same rate: it must not be the faster one. Matrices of all rows are
-    multiplied, so that a method that carries much gains least: B8 and AB8, with 80 numbers on this mechanism.
+    The runner takes all its shifted runs side by side: it must not be the faster one. Changes of all that a method
+    carries are lanes, so that one that carries much gains least: B8 and AB8, with 80 numbers on this mechanism.
     """
     random = np.random.default_rng(1)
     mechanism = compiled_mechanism(load_scene("driven_slider_crank"))
@@ -241,7 +240,7 @@ def moving_mechanisms() -> Iterator[Line]:
         stable = points[:, spectral_radius(method, *points) < 1]
         one = float(stable[0, 0]), float(stable[1, 0])
         batches = [
-            partial(find_own_motions, mechanism, method, h, stable[0, :count], stable[1, :count], 1.0)
+            partial(exact_rates, mechanism, method, h, stable[0, :count], stable[1, :count], 1.0)
             for count in FLOQUET_POINTS
         ]
         (theirs, found), *times = interleaved(partial(runner_motion, mechanism, method, STEPS_A_TURN, *one), *batches)
@@ -249,7 +248,7 @@ def moving_mechanisms() -> Iterator[Line]:
         for count, (ours, _) in zip(FLOQUET_POINTS, times, strict=True):
             each = ours / count
             note = f"{1e3 * each:.2f} ms a point, {STEPS_A_TURN} steps a revolution"
-            yield Line("moving", f"{name}: {count} own motions by the runner", theirs / each, 1.0, note)
+            yield Line("moving", f"{name}: {count} exact rates by the runner", theirs / each, 1.0, note)
 
 
 def self_checks() -> Iterator[Line]:

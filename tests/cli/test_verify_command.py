@@ -17,7 +17,7 @@ def test_what_is_thrown_apart_at_once_diverges_and_seconds_are_understood() -> N
 @pytest.mark.parametrize(
     ("scene", "method", "said"),
     [
-        ("driven_four_bar", "bdf2", "Exact rates of bdf2: along the method's own motion"),  # implicit
+        ("driven_four_bar", "bdf2", "Exact rates of bdf2: along the motion of the mechanism."),  # implicit
         ("four_bar", "B4", "No rate of B4 is exact: the motion does not begin anew."),
     ],
 )

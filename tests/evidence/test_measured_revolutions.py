@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
+from bezstab.evidence.exact_rates import exact_rates
 from bezstab.methods import lookup
 from bezstab.stability import spectral_radius
 from tests.evidence.driven_four_bar import four_bar
-from tests.evidence.exact_rates import floquet_rates
 from tests.reference.perturbed_revolutions import runner_motion
 
 
@@ -27,6 +27,6 @@ def test_disturbed_runs_show_the_exact_rate(name: str, alpha_hat: float, beta_ha
     method = lookup(name)
     found = runner_motion(four_bar(), method, 203, alpha_hat, beta_hat)
     assert found is not None
-    (exact,) = floquet_rates(four_bar(), method, 1 / 203, np.array([alpha_hat]), np.array([beta_hat]), 1.0)
+    (exact,) = exact_rates(four_bar(), method, 1 / 203, np.array([alpha_hat]), np.array([beta_hat]), 1.0)
     assert found[1] == pytest.approx(exact, abs=apart)
     assert abs(found[1] - spectral_radius(method, alpha_hat, beta_hat)) > 10 * apart

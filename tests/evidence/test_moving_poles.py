@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
+from bezstab.evidence.exact_rates import exact_rates
 from bezstab.methods import lookup
 from bezstab.stability import FloatArray, moduli_and_shifts, moving_modulus, moving_pole, turn_limits
 from bezstab.stability.regions import region, useful_window
 from tests.evidence.driven_four_bar import four_bar, turning
-from tests.evidence.exact_rates import floquet_rates
 from tests.evidence.samples import of_campaign
 from tests.methods.kinds import sampled
 
@@ -49,7 +49,7 @@ def test_errors_decay_wherever_the_bound_says_so(name: str, count: int) -> None:
     hardly = safe[limits[safe] < 1.2 * turned]
     some = np.concatenate([random.permutation(each)[: of_campaign(200, 20)] for each in (safe, hardly)])
     assert some.size
-    assert (floquet_rates(four_bar(), method, h, alpha_hat[some], beta_hat[some], 1.0) < 1).all()
+    assert (exact_rates(four_bar(), method, h, alpha_hat[some], beta_hat[some], 1.0) < 1).all()
 
 
 @pytest.mark.slow
@@ -60,7 +60,7 @@ def test_most_of_what_decays_is_called_safe_and_nothing_that_grows() -> None:
         for count in (203, 60):
             method, h = lookup(name), 1 / count
             alpha_hat, beta_hat = anywhere(name, np.random.default_rng(11), of_campaign(200, 50))
-            rates = floquet_rates(four_bar(), method, h, alpha_hat, beta_hat, 1.0)
+            rates = exact_rates(four_bar(), method, h, alpha_hat, beta_hat, 1.0)
             found = [
                 moving_pole(method, turning().kappa, h, *at).verdict for at in zip(alpha_hat, beta_hat, strict=True)
             ]
@@ -88,7 +88,7 @@ def test_where_both_mu_are_one_the_motion_mixes_their_poles() -> None:
     """RK4 where alpha is beta: to first order errors decay, and they grow; twice the first order is enough."""
     method, h, alpha_hat, beta_hat = lookup("RK4"), 1 / 203, 5.5173, 5.5173**2 / 4
     z_abs, shift = moduli_and_shifts(method, alpha_hat, beta_hat)
-    (exact,) = floquet_rates(four_bar(), method, h, np.array([alpha_hat]), np.array([beta_hat]), 1.0)
+    (exact,) = exact_rates(four_bar(), method, h, np.array([alpha_hat]), np.array([beta_hat]), 1.0)
     pole = moving_pole(method, turning().kappa, h, alpha_hat, beta_hat)
     assert (z_abs + shift * pole.turned).max() < 1 < exact < pole.at_most
     assert pole.at_most == pytest.approx((z_abs + 2 * shift * pole.turned).max(), rel=1e-12)
@@ -103,7 +103,7 @@ def test_at_rest_poles_stay_where_they_are_however_large_chi_is() -> None:
 def test_nothing_converges_beyond_first_order() -> None:
     """AB4 and RK4 at kappa h = 0.19: AB4's error grows, where |z_p| is 0.93 and hardly moves, chi being 1e-4."""
     step, at = 0.06, (0.15, 0.006)
-    (exact,) = floquet_rates(four_bar(), lookup("AB4"), step, np.array([0.15]), np.array([0.006]), 1.0)
+    (exact,) = exact_rates(four_bar(), lookup("AB4"), step, np.array([0.15]), np.array([0.006]), 1.0)
     of_ab4, of_rk4 = (moving_pole(lookup(name), turning().kappa, step, *at) for name in ("AB4", "RK4"))
     assert of_ab4.z_abs - of_ab4.at_least < 1e-4
     assert exact > 1.05

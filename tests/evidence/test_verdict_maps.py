@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from bezstab.evidence import VerdictMap, map_rows, simulated_verdicts, verdict_map
+from bezstab.evidence.exact_rates import exact_rates
 from bezstab.mechanism import load_scene
 from bezstab.methods import lookup
 from bezstab.stability import region
 from tests.evidence.driven_four_bar import four_bar
-from tests.evidence.exact_rates import floquet_rates
 from tests.evidence.samples import of_campaign
 
 H = 1e-3  # s
@@ -58,9 +58,7 @@ def test_where_the_motion_turns_a_verdict_it_is_that_of_the_exact_rate(name: str
     h = 1e-2
     verdicts = whole_map("driven_four_bar", name, h, 12)
     alpha_hat, beta_hat = np.meshgrid(verdicts.alpha_hat, verdicts.beta_hat)
-    exact = floquet_rates(four_bar(), lookup(name), h, alpha_hat.ravel(), beta_hat.ravel(), 1.0).reshape(
-        alpha_hat.shape
-    )
+    exact = exact_rates(four_bar(), lookup(name), h, alpha_hat.ravel(), beta_hat.ravel(), 1.0).reshape(alpha_hat.shape)
     assert verdicts.judged > 0.9 * exact.size
     assert verdicts.disagrees.any()  # with the map, which is of a mechanism at rest
     assert not ((verdicts.diverges != (exact > 1)) & ~verdicts.undecided).any()
