@@ -48,7 +48,8 @@ def probe(**typed: Any) -> None:
     With --alpha and --beta it compares that pole with every method's and prints the nearest first: all methods that
     fit, and a few that do not (JSON and CSV have all). Without them it prints the α and β that the pole means under
     --method. In a noisy log it uses the pole that rises above the noise, if there is one. Exit status 3 if no pole
-    can be told, or if nothing fits any column; a message says why.
+    can be told, if nothing fits any column, or if a motion may move the poles of all that fits by more than methods
+    differ; a message says why.
 
     Example: bezstab probe log.csv --minus unkicked.csv --alpha 1 --beta 0.25
     """

@@ -26,7 +26,16 @@ if TYPE_CHECKING:
     from bezstab.evidence.extremes import Check, extreme_checks
     from bezstab.evidence.forced_runs import SHARES, HalvedStep, forced_sentence, halved_steps
     from bezstab.evidence.linear_prediction import Fit
-    from bezstab.evidence.logs import UNEVEN, Log, error_columns, log_from, read_log, row_step, time_column
+    from bezstab.evidence.logs import (
+        UNEVEN,
+        Log,
+        error_columns,
+        log_from,
+        looks_absolute,
+        read_log,
+        row_step,
+        time_column,
+    )
     from bezstab.evidence.measured_poles import (
         MeasuredVerdict,
         Measurement,

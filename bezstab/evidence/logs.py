@@ -25,14 +25,23 @@ LARGEST = 200_000_000
 COMMENTS = ("#", "%")
 """What lines begin with that are no data; the last of them above the data may hold the names, as numpy writes it."""
 
-TIMES = ("t", "time", "times", "zeit", "sec", "seconds", "timestamp")
-"""Names of a time column, without units."""
+TIMES = {"t", "time", "times", "zeit", "sec", "secs", "seconds", "timestamp", "stamp", "clock", "elapsed"}
+"""Words that name a time column."""
 
-UNITS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "μs": 1e-6}
-"""Of times, in s, as the name of a column has them in brackets: time [ms]."""
+WHICH_TIME = {"sim", "simulation", "simulated", "world", "wall", "real", "ros", "header", "physics", "game", "total"}
+"""Words that may stand beside them: sim_time, header.stamp."""
+
+UNITS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "μs": 1e-6, "ns": 1e-9}
+"""Of times, in s, as the name of a column has them: time [ms], t_ms."""
 
 COUNTERS = ("step", "steps", "index", "k", "i", "n", "frame", "row")
 """Names of columns that count rows: no error decays in them."""
+
+DIPS = 3
+"""Times that a column of absolute values comes down, at least: fewer may be chance."""
+
+DIPPED = 0.5
+"""Times the larger neighbour: so far down it comes in half of its dips, as |cos| does where it is sampled anywhere."""
 
 UNEVEN = 0.01
 """Of the step: by more than that, and the rounding of the times, no sample may be early or late."""
@@ -131,7 +140,7 @@ def time_column(log: Log, chosen: str | None = None) -> int | None:
     if chosen is not None:
         return log.number_of(chosen)
     for place, column in enumerate(log.columns):
-        if _plain(column) in TIMES:
+        if _names_time(column):
             return place
     unnamed = log.columns == tuple(str(k) for k in range(1, len(log.columns) + 1))
     if unnamed and len(log.columns) > 1 and len(log.values) > 2:
@@ -149,7 +158,9 @@ def error_columns(log: Log, chosen: Sequence[str], time: int | None) -> list[int
     if chosen:
         return [log.number_of(column) for column in chosen]
     left = [
-        place for place, column in enumerate(log.columns) if place != time and _plain(column) not in (*COUNTERS, *TIMES)
+        place
+        for place, column in enumerate(log.columns)
+        if not (place == time or _plain(column) in COUNTERS or _names_time(column))
     ]
     if not left:
         raise InputError(f"{log.name}: no column holds an error (columns: {', '.join(log.columns)})")
@@ -159,6 +170,17 @@ def error_columns(log: Log, chosen: Sequence[str], time: int | None) -> list[int
 def _plain(column: str) -> str:
     """Return a column's name without its unit: 'Time [s]' is time."""
     return re.split(r"[\s(\[/]", column.strip().casefold(), maxsplit=1)[0]
+
+
+def _words(column: str) -> list[str]:
+    """Return the words of a column's name: 'simTime_ms' is sim, time, ms."""
+    return [word.casefold() for word in re.findall(r"[^\W_]+", re.sub(r"(?<=[a-z])(?=[A-Z])", " ", column))]
+
+
+def _names_time(column: str) -> bool:
+    """Return whether a column is called a time: by its first word, or by all of them."""
+    words = set(_words(column))
+    return _plain(column) in TIMES or bool(words & TIMES and words <= TIMES | WHICH_TIME | UNITS.keys())
 
 
 def row_step(log: Log, time: int | None) -> float | None:
@@ -186,8 +208,20 @@ def row_step(log: Log, time: int | None) -> float | None:
             f"{log.name}: uneven times: row {row + 1} is {late[row]:.3g} off the mean step of {step:.6g}; "
             "a pole is per step, so log every step of one size"
         )
-    unit = re.search(r"[\[(/]\s*(\w+)", log.columns[time])
-    return step * UNITS.get(unit[1], 1.0) if unit else step
+    return step * next((UNITS[word] for word in _words(log.columns[time])[1:] if word in UNITS), 1.0)
+
+
+def looks_absolute(values: FloatArray) -> bool:
+    """Return whether a column may hold absolute values or norms: never negative, and it comes down to zero repeatedly.
+
+    A signed error that oscillates about zero does not stay above it, and one about another value does not come down.
+    """
+    c = values[np.isfinite(values)]
+    if len(c) < 3 or c.min() < 0:
+        return False
+    low = (c[1:-1] < c[:-2]) & (c[1:-1] < c[2:])
+    beside = np.maximum(c[:-2], c[2:])[low]
+    return bool(low.sum() >= DIPS and np.median(c[1:-1][low] / beside) < DIPPED)
 
 
 def decimal_place(values: FloatArray) -> float:

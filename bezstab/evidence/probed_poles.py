@@ -16,6 +16,7 @@ log is short, and where kappa is zero, as that of a pendulum, or chi is, the nex
 by about the square of that angle.
 """
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
@@ -59,6 +60,9 @@ BEYOND_THE_LAW = 1.5
 """Times what the first-order law says of a motion: in the end of a blow-up the errors turn the directions besides. Of
 2,237 random logs the true pole was off by 1.02 times at most."""
 
+MOST_MOVED = 0.5
+"""Of a pole's modulus: where a motion may move it by so much from row to row, poles of most methods are as near."""
+
 LEFT_OVER = 0.3
 """Relative, of a window that a sum of powers follows: in 1,310 random logs powers of the 180 poles that were told of
 one run left over 0.15 at most, those of what fast motions force 0.5 at least."""
@@ -99,8 +103,10 @@ class Likeness:
 
     `predicted` is the method's dominant pole, per row of the log; `distance` is that of the nearest of its poles, and
     `dominant` says whether that is the dominant one. It fits if the distance is at most `allowed`: the `error` of the
-    fit and what the motion of the mechanism may do. Methods with the same polynomial there but for factors of z, which
-    no log can tell from each other, have the same distance but for rounding.
+    fit and what the motion of the mechanism may do. `beyond_law` says that the motion may do more than a law of first
+    order tells, as where two poles nearly meet: that is more than methods differ by, and a fit is no answer. Methods
+    with the same polynomial there but for factors of z, which no log can tell from each other, have the same distance
+    but for rounding.
     """
 
     method: Method
@@ -109,15 +115,21 @@ class Likeness:
     error: float
     allowed: float
     dominant: bool
+    beyond_law: bool = False
 
     def __repr__(self) -> str:
-        fit = "fits" if self.fits else "does not fit"
+        fit = "fits" if self.told else "cannot be told" if self.fits else "does not fit"
         return f"Likeness({self.method.name} {fit}: {self.distance:.3g} of {self.allowed:.3g} allowed)"
 
     @property
     def fits(self) -> bool:
         """Whether the log may be this method's."""
         return self.distance <= self.allowed
+
+    @property
+    def told(self) -> bool:
+        """Whether it fits, and that is an answer: not only because so much is allowed."""
+        return self.fits and (not self.beyond_law or self.distance <= self.error)
 
 
 @dataclass(frozen=True, repr=False)
@@ -330,7 +342,8 @@ def likenesses(
     for method, between in own_steps.items():
         with suppress(NumericalError):
             found.append(_likeness(probed, method, between, (float(alpha_hat), float(beta_hat)), turned))
-    return sorted(found, key=lambda one: one.distance)
+    # of those that the fit does not tell apart, first what is seen: the dominant pole
+    return sorted(found, key=lambda one: (max(one.distance, one.error), not one.dominant, one.distance))
 
 
 def kicked_responses(
@@ -379,7 +392,8 @@ def _likeness(
     if probed.rows * np.log(max(np.abs(per_row[0]), 1.0)) > -np.log(EPS):
         distances[~leading] = np.inf
     nearest = int(np.argmin(distances))
-    moved = between * _motion_shift(method, point, z, nearest, turned) * float(np.abs(per_row[nearest]))
+    shift, beyond_law = _motion_shift(method, point, z, nearest, turned)
+    moved = between * shift * float(np.abs(per_row[nearest]))
     return Likeness(
         method=method,
         predicted=complex(per_row[0]),
@@ -387,22 +401,27 @@ def _likeness(
         error=probed.uncertainty,
         allowed=probed.uncertainty + moved,
         dominant=bool(leading[nearest]),
+        beyond_law=beyond_law or between * shift >= MOST_MOVED,
     )
 
 
 def _motion_shift(
     method: Method, point: tuple[float, float], z: ComplexArray, which: int, turned: float | None
-) -> float:
-    """Return by which share of itself, a step, the motion may shift one of a method's poles z; `turned` as above."""
+) -> tuple[float, bool]:
+    """Return by which share of itself, a step, the motion may shift one of a method's poles z; `turned` as above.
+
+    Also whether poles meet, where the first-order law does not hold.
+    """
     angle = (TURNED if turned is None else turned) * float(method.step_multiple)
-    chi = float(np.abs(turning_shift(method, *point, z[which]) / z[which]))
+    with np.errstate(divide="ignore", invalid="ignore"):  # a pole at zero, and a double one, where it is infinite
+        chi = float(np.abs(turning_shift(method, *point, z[which]) / z[which]))
     others = np.delete(z, which)
     apart = np.abs(others - z[which])[others != z[which].conj()]
     # The square of the angle is the size of the law's next order.
+    root = math.sqrt(angle)
     shift = BEYOND_THE_LAW * (chi if np.isfinite(chi) else 0.0) * angle + angle**2
-    if (apart < np.sqrt(angle) * np.abs(z[which])).any() or not np.isfinite(chi):
-        shift = min(shift, np.sqrt(angle)) + np.sqrt(angle)  # at a double pole the change is like a root
-    return float(shift)
+    meet = bool((apart < root * np.abs(z[which])).any()) or not np.isfinite(chi) or shift > root
+    return (min(shift, root) + root if meet else shift), meet  # at a double pole the change is like a root
 
 
 def points_like(probed: ProbedPole, method: Method, between: int = 1) -> tuple[list[LikePoint], str]:

@@ -4,7 +4,7 @@ log, columns, steps, a point or methods   →   PoleQuestion   →   log_answers
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 
@@ -18,12 +18,16 @@ from bezstab.evidence import (
     ProbedPole,
     error_columns,
     likenesses,
+    looks_absolute,
     points_like,
     probed_pole,
     row_step,
     time_column,
 )
 from bezstab.methods import REGISTRY, Method, lookup
+
+ABSOLUTE = "it is never negative, as an absolute value or a norm is: log the signed error of one constraint"
+"""Said of such a column, whose poles are not those of the error."""
 
 SAME_STEP = 1e-3
 """The times between rows of two runs may differ by this share, as times in logs are rounded."""
@@ -127,8 +131,8 @@ class Probe:
 
     @property
     def fitting(self) -> tuple[str, ...]:
-        """The names of the methods that fit, the nearest first."""
-        return tuple(one.method.name for one in self.likenesses if one.fits)
+        """The names of the methods that fit, the nearest first; without those of which that is no answer."""
+        return tuple(one.method.name for one in self.likenesses if one.told)
 
     @cached_property
     def likenesses(self) -> list[Likeness]:
@@ -173,7 +177,10 @@ def log_answers(question: PoleQuestion) -> Iterator[Probe]:
         if minus:
             same = minus.columns == log.columns
             other = minus.values[:, group if same else [minus.number_of(name) for name in names]]
-        yield Probe(question, ", ".join(names), probed_pole(log.values[:, group], other))
+        pole = probed_pole(log.values[:, group], other)
+        if any(looks_absolute(column) for column in log.values[:, group].T):
+            pole = replace(pole, reason="; ".join(filter(None, (pole.reason, ABSOLUTE))))
+        yield Probe(question, ", ".join(names), pole)
 
 
 def check_told(found: Sequence[Probe]) -> None:
@@ -181,7 +188,10 @@ def check_told(found: Sequence[Probe]) -> None:
     if any(answer.told and answer.fits for answer in found):
         return
     untold = [f"{answer.column}: {answer.found.reason}" for answer in found if not answer.told]
-    unfit = [answer.column for answer in found if answer.told]
+    likened = [answer for answer in found if answer.told]
+    alike = [answer.column for answer in likened if any(one.fits for one in answer.likenesses)]
+    unfit = [answer.column for answer in likened if answer.column not in alike]
     failures = [f"no pole can be told: {'; '.join(untold)}"] if untold else []
+    failures += [f"no method can be told by {', '.join(alike)}"] if alike else []
     failures += [f"nothing fits {', '.join(unfit)}"] if unfit else []
     raise NumericalError("; ".join(failures))

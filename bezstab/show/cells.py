@@ -74,6 +74,13 @@ def used_up_text(row: Row) -> str:
     return f"{gain} {100 * value / limit:.0f} %"
 
 
+def fits_text(row: Row) -> str:
+    """Return whether a method fits a log: yes, NO, or that this cannot be told."""
+    if not row["fits"]:
+        return MISSING if row["fits"] is None else "NO"
+    return "yes" if row["told"] else "not told"
+
+
 def order_text(row: Row) -> str:
     """Return the order of accuracy, with that for forces of position alone in parentheses if it is another."""
     order = row["order"]

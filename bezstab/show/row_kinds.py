@@ -12,6 +12,7 @@ from bezstab.show.cells import (
     any_or_missing,
     any_speed,
     constant_text,
+    fits_text,
     gain_limit_text,
     modulus_words,
     order_text,
@@ -511,7 +512,12 @@ LIKENESS = (
         "fits",
         "Whether the log may be the method's: it agrees with it within its uncertainty",
         "fits",
-        form="NO",
+        text=fits_text,
+    ),
+    truth(
+        "told",
+        "Whether it fits and that is an answer: it is none where a motion may move the pole by more than methods "
+        "differ, as where two poles nearly meet",
     ),
 )
 # what `probe` adds for each method whose point it finds

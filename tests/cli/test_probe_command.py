@@ -63,3 +63,44 @@ def test_what_tells_no_pole_or_fits_nothing_is_status_three_with_its_reason() ->
     assert (wrong.exit_code, wrong.stderr) == (3, "bezstab: nothing fits clean\n")
     assert "nothing fits at (0.3, 0.1)" in wrong.stdout
     assert run("probe log.csv --alpha 0.5", point).exit_code == 0
+
+
+def critically_damped(order: int, count: int = 60) -> FloatArray:
+    """Return an error that a Runge-Kutta method of its own order steps at alpha_hat = 2, beta_hat = 1: mu = -1 twice.
+
+    So that of the polynomial R it has R(-1)^k and k R'(-1) R(-1)^(k-1), where c = 1 and c' = 0 in the beginning.
+    """
+    series = np.array([1, 1, 1 / 2, 1 / 6, 1 / 24][: order + 1])
+    z, slope = (np.polynomial.polynomial.polyval(-1.0, each) for each in (series, series[1:] * np.arange(1, order + 1)))
+    k = np.arange(count)
+    return np.asarray(1e-3 * (z**k + k * slope * z ** (k - 1.0)))
+
+
+@pytest.mark.filterwarnings("error")
+def test_where_poles_meet_what_fits_only_for_that_is_no_answer() -> None:
+    """Two poles of AM6 nearly meet there: a motion may move them further than methods differ."""
+    write("rk4.csv", t=np.arange(60) / 100, c=critically_damped(4))
+    found = {row["method"]: row for row in rows("probe rk4.csv --alpha 2 --beta 1 --h 0.01") if row["method"]}
+    assert [name for name, row in found.items() if row["told"]] == ["RK4"]
+    assert found["am6"]["fits"]
+    assert (
+        "not told, as a motion may move their poles by more than methods differ"
+        in run("probe rk4.csv --alpha 2 --beta 1 --h 0.01").stdout
+    )
+    beside = run("probe rk4.csv --alpha 2.002 --beta 1 --h 0.01")
+    assert (beside.exit_code, beside.stderr) == (3, "bezstab: no method can be told by c\n")
+    assert "cannot be told: only" in beside.stdout
+    write("rk2.csv", t=np.arange(60) / 100, c=critically_damped(2))
+    said = run("probe rk2.csv --alpha 2 --beta 1 --h 0.01").stdout
+    assert "behaves like RK2 at (2, 1)" in said  # AB2 and B2 have this pole too, but not as their dominant one
+
+
+def test_an_absolute_value_is_to_be_logged_with_its_sign() -> None:
+    k = np.arange(100)
+    c = 1e-3 * 0.9**k * np.cos(0.7 * k)
+    write("abs.csv", c=np.abs(c))
+    result = run("probe abs.csv")
+    assert result.exit_code == 3
+    assert "log the signed error" in result.stderr
+    write("signed.csv", c=c)
+    assert "signed" not in run("probe signed.csv").output

@@ -5,10 +5,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
 from numpy.typing import ArrayLike
 
 from bezstab.errors import InputError
-from bezstab.evidence import Log, error_columns, log_from, read_log, row_step, time_column
+from bezstab.evidence import Log, error_columns, log_from, looks_absolute, read_log, row_step, time_column
 from bezstab.evidence.logs import parse_log
 
 ROWS = [[0.0, 1.0], [0.5, -0.25], [1.0, 0.0625]]
@@ -90,11 +92,39 @@ def test_columns_are_found_by_name_and_number() -> None:
         error_columns(log_of(t=0, k=0), (), 0)
 
 
+USUAL_NAMES = [
+    *("t", "T", "time", "Time [s]", "time in s", "seconds", "timestamp", "sim_time", "simTime", "sim.time", "t_sec"),
+    *("simulation time (s)", "elapsed", "elapsed_time", "world_time", "header.stamp", "clock", "wall time", "Zeit"),
+]
+
+
+@pytest.mark.parametrize("name", USUAL_NAMES)
+def test_a_time_by_any_usual_name_is_no_error(name: str) -> None:
+    log = log_of(**{"c": 0, name: 0})
+    assert (time_column(log), error_columns(log, (), None)) == (1, [0])
+
+
+@pytest.mark.parametrize("name", ["c_t", "time_error", "t1", "s", "contact", "settle_time", "x"])
+def test_a_name_with_more_in_it_is_no_time(name: str) -> None:
+    assert time_column(log_of(**{name: 0})) is None
+
+
+@given(angle=st.floats(0.3, 2.8), modulus=st.floats(0.8, 1.02), offset=st.floats(-3, 3))
+def test_absolute_values_are_told_from_what_has_a_sign(angle: float, modulus: float, offset: float) -> None:
+    assume(abs(angle - np.pi / 2) > 0.01)  # there every other sample may be zero
+    k = np.arange(150.0)
+    c = modulus**k * np.cos(angle * k + offset)
+    assert not looks_absolute(c)
+    assert not looks_absolute(3.0 * modulus**150 + 20 + c)  # about another value
+    assert not looks_absolute(modulus**k)
+    assert looks_absolute(np.abs(c))
+
+
 def test_the_step_is_that_of_the_times_but_for_their_rounding_in_the_unit_that_their_name_says() -> None:
     for decimals in (3, 4, 12):
         t = 7 + np.arange(240) / 240
         assert row_step(log_of(t=np.round(t, decimals)), 0) == pytest.approx(1 / 240, rel=10.0**-decimals)
-    units = {"Time [ms]": 1e-3, "time (us)": 1e-6, "t/s": 1.0, "t [\u00b5s]": 1e-6, "t [\u03bcs]": 1e-6}
+    units = {"Time [ms]": 1e-3, "time (us)": 1e-6, "t/s": 1.0, "t [\u00b5s]": 1e-6, "t [\u03bcs]": 1e-6, "t_ms": 1e-3}
     for name, seconds in units.items():
         log = log_of(**{name: np.arange(5) * 2.0})
         assert row_step(log, 0) == pytest.approx(2 * seconds)

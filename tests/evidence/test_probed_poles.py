@@ -60,6 +60,16 @@ def test_the_faster_the_mechanism_the_more_is_allowed() -> None:
     assert allowed == sorted(set(allowed))
 
 
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("alpha_hat", ["2", "2.000000000001", "1.999999999999", "1.9998", "2.0002"])
+def test_what_fits_only_because_so_much_is_allowed_is_not_told(alpha_hat: str) -> None:
+    """Near a double pole, and where a huge pole is followed over several steps, a motion may do anything."""
+    found = with_pole(complex(0.375))
+    far = [one for one in likenesses(found, dict.fromkeys(ALL, 10), Fraction(alpha_hat), Fraction(1)) if one.fits]
+    assert any(one.distance > 1e9 for one in far)
+    assert not any(one.told for one in far if one.distance > 0.375)
+
+
 def test_rows_several_steps_apart_have_powers_of_the_poles() -> None:
     found = of_method("SYM", 0.05, 0.01, every=3)
     assert found.pole == pytest.approx(complex(dominant_pole(lookup("SYM"), 0.05, 0.01)) ** 3, abs=1e-6)
