@@ -8,7 +8,9 @@ from bezstab import questions, show
 from bezstab.cli.asking import asked
 from bezstab.cli.options import NUMBER, SEQUENCE, changed, command, option
 from bezstab.cli.output import Files, say, show_rows, worked_out
+from bezstab.compiling import compiled_choice
 from bezstab.errors import NumericalError
+from bezstab.methods import implicit
 
 
 @command(
@@ -68,6 +70,8 @@ def simulate(files: Files, **typed: Any) -> None:
         lambda: show.history_arrays(run),
     )
     show_rows(show.SIMULATIONS, [show.SIMULATIONS.row(run)])
+    if compiled_choice() == "yes" and (implicit(run.method) or run.after.projecting):
+        say("bezstab: this run was not compiled: only runs of explicit methods without projection are")
     if len(run.singular_times):
         say(f"bezstab: {show.passages_words(run.singular_times.tolist())}")
     if run.failure:

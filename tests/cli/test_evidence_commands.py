@@ -32,6 +32,14 @@ def test_a_run_that_fails_is_status_three_with_its_time_and_keeps_the_history(tm
     assert sorted(path.suffix for path in tmp_path.iterdir()) == [".csv", ".png"]
 
 
+@pytest.mark.parametrize(
+    ("options", "compiled"), [("gauss4", False), ("SYM", True), ("SYM --stabilise projection", False)]
+)
+def test_a_run_that_is_not_compiled_though_that_was_asked_for_says_so(options: str, compiled: bool) -> None:
+    said = run(f"simulate --scene pendulum --time 0.01 --figure none --compiled yes --method {options}")
+    assert ("this run was not compiled: only runs of explicit methods" in said.stderr) is not compiled
+
+
 def test_simulate_says_where_it_goes_through_singular_configurations() -> None:
     result = run("simulate --scene slider_crank_equal", NOTHING, "--format json --time 4")
     assert (result.exit_code, json.loads(result.stdout)[0]["singular_passages"]) == (0, 2)
