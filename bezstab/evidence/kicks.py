@@ -31,6 +31,7 @@ not enough: where steps are coarse, feedback may turn truncation errors into mil
 """
 
 from collections.abc import Iterator, Sequence
+from itertools import chain
 
 import numpy as np
 
@@ -48,6 +49,10 @@ from bezstab.methods import Method, steps
 from bezstab.stability import BoolArray, FloatArray
 from bezstab.units import feedback_gains
 
+KICK = 1e-8
+"""SI units: a hundred thousandth of the linear range, so that even growth of thirtyfold a step is seen within it, and a
+thousandth of the kick is well above the rounding of a metre."""
+
 LINEAR = (1e-3, 1e-4, 1e-5)
 """Largest |c| of a window, SI units: up to here a mechanism of about a metre answers linearly."""
 
@@ -63,6 +68,9 @@ APART = 1.0
 CALM = NEGLIGIBLE * LINEAR[0]
 """Largest |c|, SI units, of a mechanism to which nothing happens in the steps in which feedback has thrown it apart."""
 
+TOO_CLOSE = 10.0
+"""Over the number of steps: with | |z_p| - 1 | below this growth or decay may not show in a run."""
+
 WINDOW = 10
 """Steps: an oscillation so slow that it is below NEGLIGIBLE in all of them passes no zero within thousands of steps."""
 
@@ -72,31 +80,6 @@ PARTS = 8
 OF_ALL = 0.1
 """What an error that grows accounts for, at least, of all that two runs differ by; two motions differ by a hundredth of
 that in their c."""
-
-
-def kicked_states(
-    mechanism: Mechanism,
-    method: Method,
-    step: float,
-    gains: tuple[FloatArray, FloatArray],
-    history: Sequence[FloatArray],
-    displaced: FloatArray,
-    count: int,
-    compiled: bool = False,
-) -> Iterator[FloatArray]:
-    """Yield the states of kicked runs, (2 n, 2 for up and down, kicks, points) each, in blocks; the first is the kick.
-
-    `history` holds the states up to the kick, `step` (s) apart, (2 n, points) each. By a kick up the last is
-    `displaced`, (2 n, kicks, points or 1). What a multistep method remembers of before is left alone, and so is what a
-    second-order scheme remembers of accelerations: its recursion is linear, and its poles are the same from any first
-    values. InputError where runs are to be `compiled` without numba.
-    """
-    undisturbed = history[-1]
-    kicked = undisturbed[:, np.newaxis, np.newaxis] + np.stack([displaced, -displaced], axis=1)
-    yield kicked[np.newaxis]
-    following = even_steps(step, count, gains, kicked.shape[1:], first=len(history) - 1)
-    for block in resume(mechanism, method, following, [*history[:-1], kicked], compiled, undisturbed):
-        yield block.states
 
 
 def kicked_motions(
@@ -113,7 +96,9 @@ def kicked_motions(
 
     They have the shape (steps, constraints or coordinates, 2 for up and down, kicks, points). The kick of the first
     constraint (SI units) comes after as many steps as the method has; the first block is the kick itself. h in s,
-    alpha_hat and beta_hat of shape (points,). InputError for a scene that cannot start, else as `kicked_states`.
+    alpha_hat and beta_hat of shape (points,). What a multistep method remembers of before the kick is left alone, and
+    so is what a second-order scheme remembers of accelerations: its recursion is linear, and its poles are the same
+    from any first values. InputError for a scene that cannot start, and where runs are to be `compiled` without numba.
     """
     step, gains = h * float(method.step_multiple), feedback_gains(alpha_hat, beta_hat, h)
     q, v = initial_state(mechanism)
@@ -123,13 +108,40 @@ def kicked_motions(
     history = [start, *(state for block in before for state in block.states)]
     by_a_unit = np.concatenate([perturbed_state(mechanism, 1.0)[0] - q, 0 * v])  # linear in the constraint error
     displaced = np.multiply.outer(by_a_unit, kicks)[:, :, np.newaxis]
-    k = len(history) - 1
-    for states in kicked_states(mechanism, method, step, gains, history, displaced, count, compiled):
+    *past, undisturbed = history
+    kicked = undisturbed[:, np.newaxis, np.newaxis] + np.stack([displaced, -displaced], axis=1)
+    following = even_steps(step, count, gains, kicked.shape[1:], first=len(past))
+    blocks = resume(mechanism, method, following, [*past, kicked], compiled, undisturbed)
+    k = len(past)
+    for states in chain([kicked[np.newaxis]], (block.states for block in blocks)):
         times = step * np.arange(k, k + len(states), dtype=np.float64)
         q = states[:, : mechanism.size]
         c = constraint_errors(mechanism, times.reshape(-1, 1, 1, 1), np.moveaxis(q, 1, 0))
         yield np.moveaxis(c, 0, 1), q
         k += len(states)
+
+
+def kicked_fates(
+    mechanism: Mechanism,
+    method: Method,
+    h: float,
+    alpha_hat: FloatArray,
+    beta_hat: FloatArray,
+    count: int,
+    compiled: bool = False,
+) -> tuple[BoolArray, BoolArray]:
+    """Return where a kick's error grows over so many steps, and where there is no verdict; shape (points,) each.
+
+    h in s, alpha_hat and beta_hat of shape (points,); errors as `kicked_motions`.
+    """
+    sizes, errors, distances = [], [], []
+    with np.errstate(all="ignore"):  # what diverges runs into infinity, and is cut off there
+        for c, q in kicked_motions(mechanism, method, h, alpha_hat, beta_hat, [KICK], count, compiled):
+            sizes.append(np.abs(c).max(axis=(1, 2, 3)))
+            errors.append(np.abs(c[:, :, 0, 0] - c[:, :, 1, 0]).max(axis=1) / (2 * KICK))
+            distances.append(np.sqrt(np.einsum("i,kip->kp", mechanism.mass, (q[:, :, 0, 0] - q[:, :, 1, 0]) ** 2)))
+        size, error, distance = (np.concatenate(each) for each in (sizes, errors, distances))
+        return fates(size, error, distance / distance[0], thrown_apart(mechanism, method, h, size))
 
 
 def thrown_apart(mechanism: Mechanism, method: Method, h: float, size: FloatArray) -> BoolArray:

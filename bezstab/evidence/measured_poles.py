@@ -21,8 +21,8 @@ from typing import Literal
 import numpy as np
 
 from bezstab.evidence.exact_rates import exact_rates
-from bezstab.evidence.kicks import AT_ONCE, GROWN, LINEAR, kicked_motions, thrown_apart
-from bezstab.evidence.linear_prediction import NEGLIGIBLE, SAMPLES, SPREAD, fit_dominant_pole
+from bezstab.evidence.kicks import LINEAR, TOO_CLOSE, kicked_fates, kicked_motions
+from bezstab.evidence.linear_prediction import SAMPLES, SPREAD, fit_dominant_pole
 from bezstab.mechanism import Mechanism, runs_compiled, turning_normals
 from bezstab.methods import Method, Verdict
 from bezstab.rationals import exact
@@ -183,7 +183,7 @@ def measure_poles(
     (`fit_dominant_pole`).
     """
     difference, size = _kicked_responses(mechanism, method, h, alpha_hat, beta_hat)
-    apart = thrown_apart(mechanism, method, h, size[:, -1])
+    grows, undecided = kicked_fates(mechanism, method, h, alpha_hat, beta_hat, RUN)
     duration = RUN * h * float(method.step_multiple)
     turning = turning_normals(mechanism, duration)
     rates = np.full(alpha_hat.size, np.nan)
@@ -195,9 +195,8 @@ def measure_poles(
         predicted = complex(dominant_pole(method, a, b))
         measured, reason = _measured_pole(predicted, poles(method, a, b), *responses)
         moving = moving_pole(method, turning.kappa, h, a, b)
-        measured_verdict = _measured_verdict(measured, *responses, max(CLOSE, moving.z_abs - moving.at_least))
-        if apart[i] and measured_verdict == "too close to call":  # so fast that no growth shows while linear
-            measured_verdict, reason = "diverges", f"the feedback throws the mechanism apart within {AT_ONCE} steps"
+        close = max(CLOSE, moving.z_abs - moving.at_least)
+        unclear = bool(undecided[i]) or abs(abs(predicted) - 1) < TOO_CLOSE / RUN
         found.append(
             Measurement(
                 method=method,
@@ -209,7 +208,7 @@ def measure_poles(
                 floquet_abs=float(rates[i]),
                 periodic=turning.closed,
                 measured=measured,
-                measured_verdict=measured_verdict,
+                measured_verdict=_measured_verdict(measured, bool(grows[i]), unclear, close),
                 reason=reason,
             )
         )
@@ -248,26 +247,11 @@ def _measured_pole(
     return fit.pole, ""
 
 
-def _measured_verdict(
-    measured: complex | None, difference: FloatArray, size: FloatArray, close: float = CLOSE
-) -> MeasuredVerdict:
-    """Return whether the error grew or decayed: by the pole, else by the responses, shape (steps, kicks).
+def _measured_verdict(measured: complex | None, grows: bool, undecided: bool, close: float) -> MeasuredVerdict:
+    """Return whether the error grew or decayed: by the pole, else by what became of the kick's error.
 
     `close`: so near to the circle the pole decides nothing.
     """
-    if measured is not None:
-        excess = abs(measured) - 1
-        if abs(excess) < close:
-            return "too close to call"
-        return "diverges" if excess > 0 else "converges"
-    outside = np.flatnonzero(~(size[:, -1] < LINEAR[0]))
-    if outside.size:
-        # c has left the linear range: by growth after the smallest kick, seen well before, or because the mechanism
-        # itself broke down, which is no verdict.
-        well_before = 1 + 3 * int(outside[0]) // 4
-        grown = np.abs(difference[:well_before, -1]).max() > GROWN * KICKS[-1]
-        return "diverges" if grown else "too close to call"
-    after_largest_kick = np.abs(difference[:, 0])
-    second_half = after_largest_kick[len(after_largest_kick) // 2 :]
-    settled = second_half.max() < NEGLIGIBLE * after_largest_kick.max()
-    return "converges" if settled else "too close to call"
+    if undecided if measured is None else abs(abs(measured) - 1) < close:
+        return "too close to call"
+    return "diverges" if (grows if measured is None else abs(measured) > 1) else "converges"

@@ -29,9 +29,10 @@ from numpy.polynomial.polynomial import polyder, polyval2d, polyval3d
 from numpy.typing import ArrayLike
 
 from bezstab.errors import InputError, NumericalError
+from bezstab.evidence.kicks import GROWN
 from bezstab.evidence.linear_prediction import NEGLIGIBLE, SAMPLES, SPREAD, Fit, fit_dominant_pole
 from bezstab.evidence.logs import decimal_place
-from bezstab.evidence.measured_poles import CLOSE, GROWN
+from bezstab.evidence.measured_poles import CLOSE
 from bezstab.evidence.noisy_prediction import ITERATIONS, RESOLVED, VISIBLE, NoisyFit, fit_in_noise
 from bezstab.methods import Method, closed_loop_table
 from bezstab.stability import EPS, ComplexArray, FloatArray, poles, region, spectral_radius, turning_shift, window

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bezstab.errors import InputError, NumericalError
-from bezstab.evidence.kicks import fates, kicked_motions, thrown_apart
+from bezstab.evidence.kicks import TOO_CLOSE, kicked_fates
 from bezstab.mechanism import Scene, compiled_mechanism, runs_compiled, turning_normals
 from bezstab.methods import Method
 from bezstab.read_only import ReadOnlyArrays
@@ -19,13 +19,6 @@ MAP_RUN = 2000
 
 BATCH = 2000
 """Cells at a time: more make no step cheaper."""
-
-MAP_KICK = 1e-8
-"""SI units: a hundred thousandth of the linear range, so that even growth of thirtyfold a step is seen within it, and a
-thousandth of the kick is well above the rounding of a metre."""
-
-TOO_CLOSE = 10.0
-"""Over the number of steps: with | |z_p| - 1 | below this growth or decay may not show in a run."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -139,26 +132,14 @@ def simulated_verdicts(rows: MapRows) -> dict[str, NDArray[Any]]:
     """
     alpha_grid, beta_grid = np.meshgrid(rows.alpha_hat, rows.beta_hat)
     alpha_hat, beta_hat = alpha_grid.ravel(), beta_grid.ravel()
-    diverges, undecided = _simulated(rows, alpha_hat, beta_hat)
+    mechanism = compiled_mechanism(rows.scene)
+    diverges, undecided = kicked_fates(
+        mechanism, rows.method, rows.h, alpha_hat, beta_hat, MAP_RUN, compiled=rows.compiled
+    )
     z_abs = np.abs(np.concatenate(list(pole_map(rows.method, rows.alpha_hat, rows.beta_hat))))
     furthest = moving_modulus(rows.method, _turning_of_a_step(rows))(alpha_hat, beta_hat)
     found = {"diverges": diverges, "undecided": undecided, "moved": furthest - z_abs.ravel(), "z_abs": z_abs}
     return {name: values.reshape(alpha_grid.shape) for name, values in found.items()}
-
-
-def _simulated(rows: MapRows, alpha_hat: FloatArray, beta_hat: FloatArray) -> tuple[BoolArray, BoolArray]:
-    """Return where runs diverge, and where they give no verdict; shape (points,) each."""
-    mechanism, method, h = compiled_mechanism(rows.scene), rows.method, rows.h
-    masses = mechanism.mass
-    sizes, errors, distances = [], [], []
-    with np.errstate(all="ignore"):  # what diverges runs into infinity, and is cut off there
-        for c, q in kicked_motions(mechanism, method, h, alpha_hat, beta_hat, [MAP_KICK], MAP_RUN, rows.compiled):
-            sizes.append(np.abs(c).max(axis=(1, 2, 3)))
-            errors.append(np.abs(c[:, :, 0, 0] - c[:, :, 1, 0]).max(axis=1) / (2 * MAP_KICK))
-            distances.append(np.sqrt(np.einsum("i,kip->kp", masses, (q[:, :, 0, 0] - q[:, :, 1, 0]) ** 2)))
-        size, error, distance = (np.concatenate(each) for each in (sizes, errors, distances))
-        apart = thrown_apart(mechanism, method, h, size)
-        return fates(size, error, distance / distance[0], apart)
 
 
 def verdict_map(chunks: Sequence[MapRows], found: Sequence[Mapping[str, NDArray[Any]]]) -> VerdictMap:

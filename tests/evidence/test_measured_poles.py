@@ -6,15 +6,13 @@ import numpy as np
 import pytest
 
 from bezstab.evidence import Measurement, measure_poles, measurement_summary, random_points
-from bezstab.evidence.kicks import LINEAR
 from bezstab.evidence.linear_prediction import SPREAD
-from bezstab.evidence.measured_poles import KICKS, _measured_verdict
+from bezstab.evidence.measured_poles import CLOSE, _measured_verdict
 from bezstab.mechanism import Mechanism, compiled_mechanism, load_scene
 from bezstab.methods import LinearMultistep, PredictorCorrector, SecondOrder, implicit, lookup
 from tests.evidence.samples import of_campaign
 from tests.mechanism.test_scenes import small
 from tests.methods.kinds import EXPLICIT, FEW, IMPLICIT, SECOND_ORDER
-from tests.reference import sampled_responses
 
 H = 1e-3  # s
 # The feedback that AB7 and AB8 bear is hardly faster than the falling pendulum: their poles move during the fit.
@@ -176,15 +174,19 @@ def test_cases_of_the_paper_are_seen(name: str, point: tuple[float, float], z_ab
 
 
 @pytest.mark.promise("Measured verdicts")
-def test_a_breakdown_of_the_mechanism_is_no_divergence() -> None:
-    assert sampled_responses.KICKS == KICKS
-    difference, size = sampled_responses.for_every_kick(sampled_responses.geometric(1001, 0.99))
-    size[500:] = np.inf  # whatever the kick
-    assert _measured_verdict(None, difference, size) == "too close to call"
-    difference, size = sampled_responses.for_every_kick(sampled_responses.geometric(1001, 1.05))
-    assert size[-1, -1] > LINEAR[0]
-    assert _measured_verdict(None, difference, size) == "diverges"
-    assert _measured_verdict(1 + 0.5j * SPREAD, difference, size) == "too close to call"
+@pytest.mark.parametrize(
+    ("measured", "grows", "undecided", "verdict"),
+    [
+        (0.99j, True, False, "converges"),  # the pole decides, whatever else is seen
+        (1 + 0.5j * SPREAD, True, False, "too close to call"),
+        (None, True, False, "diverges"),
+        (None, False, True, "too close to call"),  # as where the mechanism breaks down: test_kicks
+    ],
+)
+def test_a_verdict_is_that_of_the_pole_else_of_the_kicks_error(
+    measured: complex | None, grows: bool, undecided: bool, verdict: str
+) -> None:
+    assert _measured_verdict(measured, grows, undecided, CLOSE) == verdict
 
 
 def test_errors_and_verdicts_are_counted() -> None:
