@@ -57,7 +57,7 @@ APPOINTED = {
     "sympy": {
         *("methods/determinants.py", "methods/derivation.py", "methods/formulas.py", "methods/shared_factors.py"),
         *("methods/plane_edges.py", "methods/path_edges.py", "methods/root_isolation.py", "methods/step_matrices.py"),
-        *("methods/recipes.py", "methods/steady_errors.py", "methods/stage_torque.py"),
+        *("methods/recipes.py", "methods/steady_errors.py", "methods/rotation_torque.py"),
         *("stability/quadrant_proofs.py", "stability/held_drives.py"),
         *("mechanism/equations.py", "mechanism/generated_code.py", "mechanism/start.py", "mechanism/observation.py"),
     },

@@ -147,7 +147,7 @@ def multiplier_work(observation: Observation) -> FloatArray:
 
     It is -sum of lambda . (change of c), a step at a time, with the mean of lambda at its two ends. c is that of the
     positions: of symplectic Euler C_q v is half a step off. It is the part of the energy's drift that depends on the
-    feedback, but for the torque of stages (methods/stage_torque.py).
+    feedback, but for the torque of stages (methods/rotation_torque.py).
     """
     with np.errstate(all="ignore"):  # of a broken-down run's last multipliers
         means = (observation.multipliers[1:] + observation.multipliers[:-1]) / 2

@@ -70,6 +70,7 @@ if TYPE_CHECKING:
     )
     from bezstab.methods.recipes import recipe
     from bezstab.methods.root_isolation import real_roots
+    from bezstab.methods.rotation_torque import stage_torque
     from bezstab.methods.shared_factors import fixed_poles, reduced_table, without_shared_factor
     from bezstab.methods.steady_errors import ExponentialSum, ForcedErrors, forced_errors, leading_error, turning_error
     from bezstab.methods.step_matrices import ExactArray, StepMatrix, step_matrix

@@ -7,6 +7,7 @@ from math import lcm
 import sympy as sp
 
 from bezstab.methods.derivation import ALPHA_HAT, BETA_HAT, MU, PLANE, Z, closed_loop_polynomial, mapping_equation
+from bezstab.methods.rotation_torque import stage_torque
 from bezstab.methods.schemes import LinearMultistep, Method, PredictorCorrector, RungeKutta
 from bezstab.methods.second_order import SecondOrder
 from bezstab.methods.second_order_formulas import (
@@ -17,7 +18,6 @@ from bezstab.methods.second_order_formulas import (
     second_order_text,
     signed_sum,
 )
-from bezstab.methods.stage_torque import stage_torque
 from bezstab.methods.steady_errors import LeadingTerm, Part, PlanePolynomial, leading_error
 
 THETA = sp.Symbol(
@@ -100,7 +100,7 @@ def steady_error_text(method: Method, part: Part = "x", latex: bool = False) -> 
 def stage_torque_text(method: Method, latex: bool = False) -> str:
     """Return the leading term in theta = omega h of D: a step multiplies the rate of a uniform rotation by 1 + D.
 
-    Source: stage_torque.py. Where the coefficient is not found as a formula, or is too long to be read, the power is
+    Source: rotation_torque.py. Where the coefficient is not found as a formula, or is too long to be read, the power is
     said.
     """
     torque = stage_torque(method)

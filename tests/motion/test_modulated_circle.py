@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from bezstab.errors import InputError
 from bezstab.methods import REGISTRY, accuracy, lookup
-from bezstab.methods.stage_torque import stage_torque
+from bezstab.methods.rotation_torque import stage_torque
 from bezstab.motion import motion_energy
 
 FloatArray = NDArray[np.float64]

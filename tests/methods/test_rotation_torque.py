@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from bezstab.methods import Method, RungeKutta, lookup
-from bezstab.methods.stage_torque import stage_torque
+from bezstab.methods.rotation_torque import stage_torque
 
 A, B = sp.symbols("alpha_hat beta_hat")
 

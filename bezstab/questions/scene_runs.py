@@ -1,0 +1,115 @@
+"""A run of a scene that decides beside the prediction: do its constraints hold, and does it gain energy?
+
+A constraint whose errors decay may still be part of a motion that the feedback pumps: so before a scene is called safe
+it is run, for ten seconds or ten thousand steps, or as long as its file says.
+"""
+
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import partial
+from typing import Literal
+
+import numpy as np
+
+from bezstab.errors import InputError
+from bezstab.mechanism import DURATION, Mechanism, Simulation, simulated
+from bezstab.methods import Method, stage_torque
+
+USUAL_TIME = 10.0
+"""s, of a scene that says nothing."""
+
+MOST_STEPS = 10**4
+"""Of a run that nobody gave a time: a second or two in Python."""
+
+FURTHER = 4
+"""Times as long a run is looked for its end that a torque of stages drives."""
+
+MOST_GAINED = 0.1
+"""Of the largest kinetic energy: a run that gains more is another motion."""
+
+GROWN = 100.0
+"""Times |c| of the first half of a run: what it is in the last tenth of one whose constraints do not hold."""
+
+SEEN = 1e-9
+"""m or rad: |c| below is rounding of a run, whatever it was before."""
+
+Culprit = Literal["multipliers", "method"]
+
+
+@dataclass(frozen=True)
+class SceneRun:
+    """What a run of a scene showed, over `duration` (s).
+
+    c_max: the largest |c| (m or rad). gained: what the energy gained beside the work of drivers and forces, as a share
+    of the largest kinetic energy; negative where it lost. culprit: whether most of it is the multipliers' work, which
+    depends on the feedback, or the method's own. breakdown: when (s) the energy becomes infinite if it goes on so, None
+    where it does not. passages: singular configurations on the way. failure: why the run ended early.
+    """
+
+    duration: float
+    c_max: float
+    gained: float
+    culprit: Culprit
+    breakdown: float | None
+    grown: bool
+    passages: int
+    failure: str | None
+
+    @property
+    def decides(self) -> bool:
+        """Whether the run says anything: past a singular configuration a motion branches by rounding."""
+        return self.passages == 0
+
+    @property
+    def sound(self) -> bool:
+        """Whether it went through, with constraints that hold, and gained next to no energy."""
+        return not (self.failure or self.grown or self.gained > MOST_GAINED)
+
+
+def run_time(mechanism: Mechanism, method: Method, h: float) -> float:
+    """Return how long (s) a scene is run if nobody says: as its file says, else at most MOST_STEPS of the method."""
+    whole_step = h * float(method.step_multiple)
+    given = mechanism.scene.duration
+    return given if given != DURATION else max(min(USUAL_TIME, MOST_STEPS * whole_step), whole_step)
+
+
+def scene_run(
+    mechanism: Mechanism, method: Method, h: Fraction, point: tuple[float, float], time: float | None = None
+) -> SceneRun:
+    """Return what a run of `time` (s) shows, with steps of h (s) at a point (alpha_hat, beta_hat).
+
+    InputError for a time that is no number of steps, and for a scene in which nothing moves.
+    """
+    run_for = partial(simulated, mechanism, method, h=float(h), alpha_hat=float(point[0]), beta_hat=float(point[1]))
+    duration = run_time(mechanism, method, float(h)) if time is None else time
+    run = run_for(duration=duration)
+    with np.errstate(all="ignore"):  # of a run that broke down
+        kinetic = run.v**2 @ mechanism.mass / 2
+        own = float(np.nanmax(kinetic - np.maximum(run.energy_drift, 0.0)))  # without what it gained
+    if not own > 0:
+        raise InputError(f"--scene {mechanism.scene.name}: nothing moves within {duration:g} s")
+    sizes, half, tenth = run.largest_c, len(run.t) // 2, max(len(run.t) // 10, 1)
+    drift, by_multipliers = float(run.energy_drift[-1]), float(run.multiplier_work[-1])
+    culprit: Culprit = "multipliers" if abs(by_multipliers) >= abs(drift - by_multipliers) else "method"
+    breakdown = None
+    if culprit == "method" and drift > MOST_GAINED * own and stage_torque(method).power == 2 and not run.failure:
+        longer = run_for(duration=FURTHER * duration)
+        breakdown = float(longer.t[-1]) if longer.failure else _breakdown(run)
+    return SceneRun(
+        duration=float(run.t[-1]),
+        c_max=run.c_max,
+        gained=drift / own,
+        culprit=culprit,
+        breakdown=breakdown,
+        grown=bool(sizes[-tenth:].max() > max(GROWN * sizes[: half + 1].max(), SEEN)),
+        passages=len(run.singular_times),
+        failure=run.failure,
+    )
+
+
+def _breakdown(run: Simulation) -> float:
+    """Return about when (s) a torque ~ omega^3, of which E' = C E^2 in the mean, makes the kinetic energy infinite."""
+    kinetic = run.v**2 @ run.mechanism.mass / 2
+    rate = float(run.energy_drift[-1] / np.trapezoid(kinetic**2, run.t))
+    last = slice(-(len(run.t) // 3), None)
+    return float(run.t[last].mean() + 1 / (rate * kinetic[last].mean()))
