@@ -20,7 +20,8 @@ How fast constraints turn is kappa, the largest |eig K| along a motion. So no po
 
     |z chi| kappa h (1 + min(1, kappa h / r)),      r = |alpha_hat^2/4 - beta_hat|^(1/2), half the distance of both mu:
 
-twice as far as first order says where both mu are one, as the motion mixes their poles. Errors decay where that leaves
+twice as far as first order says where both mu are one, as the motion mixes their poles (not proven: exact rates come
+so far, and none further, tests/evidence/test_moving_poles.py). Errors decay where that leaves
 every |z| below one. Nothing is settled where chi has no bound, two poles of one mu meet; nor where first order says
 little, as constraints turn by more than LAW_HOLDS in a step, or faster than feedback works, kappa h > SLOWER |mu|.
 """
@@ -54,7 +55,7 @@ class MovingPole:
     """Bounds on |z| at one point of a mechanism whose constraints turn at `kappa` (1/s), by `turned` (rad) a step.
 
     `z_abs`: of the dominant pole at rest. `at_least`: of that pole as the mechanism moves. `at_most`: of every pole,
-    infinite where there is no bound. `turn_limit` (rad): `turned` below this is proven to first order to be safe.
+    infinite where there is no bound. `turn_limit` (rad): while `turned` is below this, errors decay.
     """
 
     z_abs: float
