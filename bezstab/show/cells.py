@@ -81,6 +81,12 @@ def fits_text(row: Row) -> str:
     return "yes" if row["told"] else "not told"
 
 
+def shortest_name_text(row: Row) -> str:
+    """Return the shortest of a method's other names; of more than one, the rest is left to `methods NAME`."""
+    names = row["other_names"].split(", ") if row["other_names"] else []
+    return min(names, key=len) + ", …" * (len(names) > 1) if names else ""
+
+
 def order_text(row: Row) -> str:
     """Return the order of accuracy, with that for forces of position alone in parentheses if it is another."""
     order = row["order"]
