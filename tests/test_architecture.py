@@ -23,7 +23,7 @@ other; only appointed files see a library.
     engines                what others call the feedback
       |
     errors, rationals, files, toml_tables, units, stopping, lazy, compiling, read_only, goals, stabilising,
-    linear_equations
+    linear_equations, words
 """
 
 import ast
@@ -37,7 +37,7 @@ from tests.pages import PACKAGE, ROOMS, imports, own_imports, tree_of
 
 FOUNDATIONS = (
     *("lazy", "stopping", "errors", "rationals", "files", "toml_tables", "units", "compiling", "read_only", "goals"),
-    *("stabilising", "linear_equations"),
+    *("stabilising", "linear_equations", "words"),
 )
 """Beside the rooms, each importing only from those before it."""
 

@@ -1,6 +1,7 @@
 """The question that was typed, and how answers are shown that several commands give."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence, Sized
+from fractions import Fraction
 from functools import partial
 from typing import Any, TypeVar
 
@@ -10,9 +11,11 @@ from bezstab import questions, show
 from bezstab.cli.command_group import NUMERICAL_TROUBLE
 from bezstab.cli.options import OF_A_CONTROLLER, TypedPoint, refuse_beside, typed_options
 from bezstab.cli.output import Files, for_reading, say, show_command, show_rows, show_text, worked_out
-from bezstab.engines import Drive, Engine
+from bezstab.engines import Drive, Engine, Point
 from bezstab.errors import NumericalError
 from bezstab.methods import Method, lookup
+from bezstab.rationals import typed_number
+from bezstab.words import point_words
 
 ABOUT_DRIVES = {
     *("--pd", "--h", "--every", "--late", "--filter", "--method", "--format"),
@@ -27,8 +30,7 @@ OfScene = TypeVar("OfScene", "questions.Question", "questions.MapQuestion")
 def asked(kind: Callable[..., Asked], **typed: Any) -> Asked:
     """Return the question that was typed; `kind` is its class in `bezstab.questions`. Options have its fields' names.
 
-    Without --method an engine or a drive has its own methods. If a point looks mistaken, a note says so. Errors as the
-    class raises them.
+    Without --method an engine or a drive has its own methods. Errors as the class raises them.
     """
     if isinstance(typed.get("engine"), tuple):
         typed["engine"], typed["values"] = typed["engine"]
@@ -37,10 +39,7 @@ def asked(kind: Callable[..., Asked], **typed: Any) -> Asked:
     point = typed.get("point")
     if point:
         typed["point"] = point.at(typed["h"] or (typed.get("h_max") if typed.get("h_min") else None))
-    question = kind(**typed)
-    if point and not typed.get("sequence"):  # which may be to let errors grow
-        say_if_units_were_mistaken(typed["methods"] if "methods" in typed else (typed["method"],), point)
-    return question
+    return kind(**typed)
 
 
 def asked_of_scene(kind: "type[OfScene]", **typed: Any) -> "OfScene":
@@ -73,6 +72,20 @@ def of_each(methods: Iterable[Method], rows_of: Callable[[Method], Iterable[show
         raise failed[0]
     say_each(map(str, failed))
     return rows, NUMERICAL_TROUBLE if failed else 0
+
+
+def show_point(typed: Mapping[str, Any], point: Point | None, answers: Sized = ()) -> None:
+    """Print which point (dimensionless) was judged, of all that was typed, unless the sentence of a single answer does.
+
+    A note on standard error says so if that may not be what was meant.
+    """
+    h = typed["h"]
+    if typed["point"] and not typed.get("sequence"):  # which may be to let errors grow
+        methods = typed["methods"] if "methods" in typed else (typed["method"],)
+        say_if_units_were_mistaken(methods, typed["point"], h if "--h" in typed_options() else None)
+    if point and len(answers) != 1:
+        alpha_hat, beta_hat = map(float, point)
+        show_text(f"{point_words(alpha_hat, beta_hat, h)}\n")
 
 
 def show_sentences(sentences: Iterable[str | None]) -> None:
@@ -116,15 +129,17 @@ def say_varying(answers: "Iterable[questions.Answer]") -> None:
                 show_command(line)
 
 
-def say_if_units_were_mistaken(methods: Sequence[Method], point: TypedPoint) -> None:
-    """Say on standard error if a point looks like alpha and beta in 1/s, and how to say that it is.
+def say_if_units_were_mistaken(methods: Sequence[Method], point: TypedPoint, h: Fraction | None) -> None:
+    """Say on standard error if a point may be alpha and beta in 1/s, and how to say that it is; h in s, if typed.
 
-    It does where none of the methods is stable; without any, where the method of most engines is not.
+    Without methods, of that of most engines.
     """
-    if not point.physical and questions.meant_in_seconds(methods or (lookup("SYM"),), point.numbers):
+    if point.numbers is None or point.physical:
+        return
+    if questions.meant_in_seconds(methods or (lookup("SYM"),), point.numbers, h):
+        alpha, beta = map(typed_number, point.numbers)
         needed = "" if "--h" in typed_options() else " and your --h"
-        note = "--alpha and --beta were taken as α̂ and β̂, without unit; if they are in 1/s, add --physical"
-        say(f"note: {note}{needed}")
+        say(f"note: if {alpha} and {beta} are in 1/s, add --physical{needed}")
 
 
 def held_asked(typed: dict[str, Any], asked: str, *, always: bool = False) -> "questions.HeldQuestion | None":

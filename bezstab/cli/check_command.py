@@ -12,6 +12,7 @@ from bezstab.cli.asking import (
     say_varying,
     show_below,
     show_held,
+    show_point,
     show_sentences,
 )
 from bezstab.cli.options import TypedPoint, changed, command, typed_options
@@ -77,6 +78,7 @@ def check(**typed: Any) -> bool:
     only_damps = question.drive and not question.drive.kp  # a choice would hold a position that is to move
     found = list(judged if only_damps else _with_instead(judged))
     given = [answer for answer in found if answer.role == "given"]
+    show_point(typed, question.point, given)
     if for_reading():
         without, rows = left_out(question), [answer_row(answer) for answer in given]
         if question.drive:

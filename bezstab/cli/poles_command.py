@@ -4,9 +4,9 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from bezstab import questions
-from bezstab.cli.asking import asked_of_scene, show_below
+from bezstab.cli.asking import asked_of_scene, show_below, show_point
 from bezstab.cli.options import USUAL_METHODS, Rule, changed, command, flag
-from bezstab.cli.output import show_rows, show_text
+from bezstab.cli.output import show_rows
 from bezstab.show import POLES, one_pole_sentence, pole_rows
 
 if TYPE_CHECKING:
@@ -39,9 +39,8 @@ def poles(all_poles: bool, **typed: Any) -> None:
     rows = [row for each in at_point for row in pole_rows(each, _all_poles(each) if all_poles else [each.pole])]
     costs_shown = not (all_poles or question.drive)
     kind = replace(POLES, sentence=one_pole_sentence) if all_poles else POLES
-    alpha_hat, beta_hat = map(float, question.given.point)
     without = () if costs_shown else ("total_error", "times_least")
-    show_text(f"α̂ = {alpha_hat:.10g}, β̂ = {beta_hat:.10g}\n")
+    show_point(typed, question.given.point, () if all_poles else rows)
     show_rows(kind, rows, without)
     show_below(question, at_point, motion=not all_poles)
 

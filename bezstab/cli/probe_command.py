@@ -8,7 +8,7 @@ from typing import Any
 import click
 
 from bezstab import evidence, questions
-from bezstab.cli.asking import asked, show_sentences
+from bezstab.cli.asking import asked, show_point, show_sentences
 from bezstab.cli.options import NUMBER, changed, command, flag, option
 from bezstab.cli.output import for_reading, show_rows
 from bezstab.errors import InputError
@@ -64,6 +64,7 @@ def probe(**typed: Any) -> None:
         for answer in found
         for one in answer.points
     ]
+    show_point(typed, found[0].question.point)
     if for_reading():
         show_rows(PROBED, fits)
         for rows in filter(None, (likenesses, points)):

@@ -5,7 +5,7 @@ from typing import Any
 import click
 
 from bezstab import questions, show
-from bezstab.cli.asking import asked
+from bezstab.cli.asking import asked, show_point
 from bezstab.cli.options import NUMBER, SEQUENCE, changed, command, option
 from bezstab.cli.output import Files, say, show_rows, worked_out
 from bezstab.compiling import compiled_choice
@@ -69,6 +69,7 @@ def simulate(files: Files, **typed: Any) -> None:
         lambda: show.history_figure(run),
         lambda: show.history_arrays(run),
     )
+    show_point(typed, question.point)
     show_rows(show.SIMULATIONS, [show.SIMULATIONS.row(run)])
     if compiled_choice() == "yes" and (implicit(run.method) or run.after.projecting):
         say("bezstab: this run was not compiled: only runs of explicit methods without projection are")

@@ -77,7 +77,7 @@ def tradeoff(predicted: bool, point: TypedPoint, tolerance: Fraction, work: Work
         _show_fronts(files, levels, **{name: typed[name] for name in ("methods", "omega", "speed", "steps")})
         return
     question = questions.TradeQuestion(numbers=point.numbers, physical=point.physical, **typed)
-    say_if_units_were_mistaken(question.methods, point)
+    say_if_units_were_mistaken(question.methods, point, None)
     path = files.path("tradeoff", typed["scene"])
     sweeps = worked_out(lambda: question.sweeps, typed["scene"])
     with results_of_chunks(evidence.measured_runs, sweeps, path, f"{question.methods} {question}", work) as results:

@@ -5,7 +5,7 @@ from typing import Any
 import click
 
 from bezstab import evidence, questions, show
-from bezstab.cli.asking import asked, of_each
+from bezstab.cli.asking import asked, of_each, show_point
 from bezstab.cli.command_group import NUMERICAL_TROUBLE
 from bezstab.cli.options import Rule, changed, command, flag, option
 from bezstab.cli.output import Files, Work, for_reading, progress, results_of_chunks, show_rows, show_text, worked_out
@@ -55,7 +55,7 @@ def verify(across: int | None, accuracy: bool, witness: str | None, work: Work, 
     question = asked(questions.VerifyQuestion, **typed)
     worked_out(lambda: question.mechanism, typed["scene"])
     if accuracy:
-        return _show_forced_errors(question)
+        return _show_forced_errors(question, typed)
     if witness:
         witnesses = evidence.mujoco_witnesses(question.mechanism, float(question.h))
         runs = progress(witnesses, "MuJoCo", evidence.witness_count())
@@ -65,28 +65,30 @@ def verify(across: int | None, accuracy: bool, witness: str | None, work: Work, 
         show_rows(show.VERDICT_MAPS, rows)
         return status
     else:
-        _show_measurements(question)
+        _show_measurements(question, typed)
     return 0
 
 
-def _show_forced_errors(question: "questions.VerifyQuestion") -> int:
+def _show_forced_errors(question: "questions.VerifyQuestion", typed: dict[str, Any]) -> int:
     """Print predicted and measured errors at shares of a point's gains; return whether all hold, or an exit status."""
     by_method = [
         list(progress(question.forced_errors(method), method.name, len(evidence.SHARES))) for method in question.methods
     ]
     every_pair = [pair for of_method in by_method for pair in of_method]
     scene = question.mechanism.scene.name
+    show_point(typed, question.point)
     show_rows(show.FORCED, (row for pair in every_pair for row in show.forced_rows(scene, pair)))
     show_text("\n" + "\n".join(map(evidence.forced_sentence, by_method)))
     outcomes = {pair.holds for pair in every_pair}
     return NUMERICAL_TROUBLE if None in outcomes else outcomes == {True}
 
 
-def _show_measurements(question: "questions.VerifyQuestion") -> None:
+def _show_measurements(question: "questions.VerifyQuestion", typed: dict[str, Any]) -> None:
     """Print the poles measured at one point, else at random ones, and where there are several how well they agree."""
     scene, floquet = question.mechanism.scene.name, question.floquet
     measured = [question.measurements(method) for method in progress(question.methods, "verify")]
     rows = [show.MEASUREMENTS.row(each, scene=scene) for of_method in measured for each in of_method]
+    show_point(typed, question.point)
     show_rows(show.MEASUREMENTS, rows, () if floquet else ("right",))
     if not for_reading():
         return

@@ -37,6 +37,7 @@ from bezstab.stability import (
     useful_window,
     verdict,
 )
+from bezstab.words import point_words
 
 MeasuredVerdict = Literal["converges", "diverges", "too close to call"]
 
@@ -79,9 +80,9 @@ class Measurement:
     reason: str
 
     def __repr__(self) -> str:
-        point = f"{self.method.name} at alpha_hat {self.alpha_hat:g}, beta_hat {self.beta_hat:g}"
+        point = point_words(self.alpha_hat, self.beta_hat, None)
         measured = "none measured" if self.measured is None else f"measured {abs(self.measured):.6g}"
-        return f"Measurement({point}: |z_p| = {abs(self.predicted):.6g}, {measured})"
+        return f"Measurement({point}, {self.method.name}: |z_p| = {abs(self.predicted):.6g}, {measured})"
 
     @property
     def measurable(self) -> bool:

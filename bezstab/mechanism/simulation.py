@@ -25,6 +25,7 @@ from bezstab.mechanism.start import perturbed_state
 from bezstab.methods import Method, check_one_step
 from bezstab.stabilising import NOTHING, AfterStep, Stabilise, held_by
 from bezstab.units import check_step, feedback_gains
+from bezstab.words import point_words
 
 LAST_STEP = 1e-9  # of the shortest step: a rest of the duration that is rounding
 MOST_STEPS = 10**8
@@ -60,10 +61,10 @@ class Simulation(Trajectory, Observation):
         return held_by(self.after, feedback=bool(self.alpha_hat or self.beta_hat))
 
     def __repr__(self) -> str:
-        point = f"alpha_hat {self.alpha_hat:g}, beta_hat {self.beta_hat:g}"
         run = f"{self.mechanism.scene.name}, {self.method.name}"
         ended = ", failed" if self.failure else ""
-        return f"Simulation({run}, {point}, {len(self.t)} times, to t = {self.t[-1]:.6g} s{ended})"
+        point = point_words(self.alpha_hat, self.beta_hat, self.h)
+        return f"Simulation({point}: {run}, {len(self.t)} times, to t = {self.t[-1]:.6g} s{ended})"
 
 
 def check_duration(duration: float, whole_step: float) -> None:

@@ -9,7 +9,7 @@ for, and then kept:
 """
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
@@ -37,9 +37,11 @@ from bezstab.stability import (
     moving_modulus,
     moving_pole,
     stable_up_to,
+    steps_to_settle,
     varying_steps,
 )
 from bezstab.units import alpha_and_beta
+from bezstab.words import change_words, counted, decay_words, gains_words, growth_words, point_words, seconds_words
 
 CheckedRole = Literal["given", "instead"]
 Role = Literal[CheckedRole, "chosen"]
@@ -87,11 +89,15 @@ class Answer(Choice):
     role: Role
 
     def __repr__(self) -> str:
-        place = f"alpha_hat = {self.alpha_hat:.6g}, beta_hat = {self.beta_hat:.6g}"
-        safe = "safe" if self.safe else "not safe"
-        if self.swept_over:
-            safe = f"{self.swept_over}: {safe}"
-        return f"Answer({self.method.name}, {self.goal}: {place}, |z_p| = {abs(self.pole):.6g}, {safe})"
+        return f"{self.sentence} [{self.method.name}, {self.goal}, |z_p| = {abs(self.pole):.6g}]"
+
+    def __bool__(self) -> bool:
+        return self.safe
+
+    @property
+    def sentence(self) -> str:
+        """The answer in words: what was judged, whether it is safe, how fast errors fall, what may grow."""
+        return answer_sentence(self)
 
     @property
     def safe(self) -> bool:
@@ -124,8 +130,13 @@ class Answer(Choice):
     @property
     def settle_seconds(self) -> float | None:
         """Time (s) in which the error falls a thousandfold; None without a step, and where it does not."""
-        steps, h = self.settle_steps, self.h
-        return None if steps is None or h is None else steps * h * float(self.method.step_multiple)
+        steps, step = self.settle_steps, self.method_step
+        return None if steps is None or step is None else steps * step
+
+    @property
+    def method_step(self) -> float | None:
+        """The step (s) of the method: some take several of h at once."""
+        return None if self.h is None else self.h * float(self.method.step_multiple)
 
     @property
     def h_limit(self) -> float | None:
@@ -266,17 +277,17 @@ class Answer(Choice):
     @cached_property
     def faster(self) -> "Answer | None":
         """The choice of robust, else of fastest, that decays faster than this one; None if neither does."""
-        if self._robust and abs(self._robust.pole) < abs(self.pole):
+        if self._robust is not None and abs(self._robust.pole) < abs(self.pole):
             return self._robust
         fastest = self._alternative("fastest")
-        return fastest if fastest and abs(fastest.pole) < abs(self.pole) else None
+        return fastest if fastest is not None and abs(fastest.pole) < abs(self.pole) else None
 
     @cached_property
     def safe_with(self) -> str | None:
         """The option with which a choice is safe that is not: --goal robust, else a shorter step; None if neither."""
         if self.safe or self.role == "given":
             return None
-        if self.goal != "robust" and self._robust and self._robust.safe:
+        if self.goal != "robust" and self._robust:
             return "--goal robust"
         question = self.question
         if question.scene is None or question.h is None or question.h_min or question.h_max or question.engine:
@@ -284,7 +295,7 @@ class Answer(Choice):
         for share in SHORTER:
             shorter = replace(question, h=question.h / share)
             found = self._alternative(cast(Goal, self.goal), question.settle, shorter)
-            if found and found.safe:
+            if found:
                 return f"--h {typed_number(question.h / share)}"
         return None
 
@@ -320,6 +331,144 @@ class Answer(Choice):
             return _chosen(question or self.question, "chosen", self.method, goal, settle, margins=False)
         except (InputError, NumericalError):
             return None
+
+
+def answer_sentence(answer: Answer) -> str:
+    """Return what was judged, whether it is safe, how fast an error falls, and how far each number alone may grow.
+
+    With a scene also what happens over the motion, with h_min what steps that vary do; of an engine that solves its
+    constraints one after another, for how many that is.
+    """
+    swept = answer.swept
+    safe = "safe" if answer.safe else "not safe"
+    if answer.swept_over:
+        safe += f" {'in' if swept else 'for'} {answer.swept_over}"
+    varying = f" when steps vary ({answer.varying.varying})" if answer.varying else ""
+    said = _swept(answer, swept) if swept else _errors(answer)
+    if answer.safe and not answer.swept_over:  # more of one constraint alone means nothing for a chain of them
+        said += _growth(answer)
+    if answer.gains and answer.verdict != "converges":
+        said += _remedies(answer.gains)
+    if answer.safe_with:
+        said.append(f"with {answer.safe_with} it is safe")
+    motion = answer.question.motion
+    if answer.goal == "accurate" and motion.assumed:
+        said.append(f"without --omega {_assumed(motion.omega_h, answer.h)} is assumed")
+    return " ".join([f"{_judged(answer)}: {safe}{varying}.", *(f"{each[0].upper()}{each[1:]}." for each in said)])
+
+
+def _assumed(omega_h: Fraction, h: float | None) -> str:
+    """Return the motion that a choice was made for, though nobody gave its rate."""
+    turn = f"ωh = {float(omega_h):g}"
+    return f"a motion with {turn}" if h is None else f"a motion of {float(omega_h) / h:.3g} rad/s ({turn})"
+
+
+def _judged(answer: Answer) -> str:
+    """Return the point that was judged, or the gains of a drive."""
+    gains, h = answer.gains, answer.question.h
+    if gains and h is not None:
+        return gains_words(gains.kp, gains.kd, gains.inertia, h, gains.applied)
+    return point_words(answer.alpha_hat, answer.beta_hat, h)
+
+
+def _change(answer: Answer, z_abs: float, verdict: str, bound: str = "") -> str:
+    """Return how long an error takes to fall to a thousandth, or what a step does to one that does not fall."""
+    steps = answer.settle_steps if z_abs == abs(answer.pole) else steps_to_settle(z_abs)
+    what = "velocity" if answer.gains and not answer.gains.kp else "error"
+    if verdict != "converges" or steps is None:
+        return change_words(z_abs, verdict, what, bound)
+    return decay_words(steps, answer.method_step, what, bound)
+
+
+def _errors(answer: Answer) -> list[str]:
+    """Return what becomes of an error at rest, over the motion of a scene, and with steps that are all equally long."""
+    at_rest = _change(answer, abs(answer.pole), answer.verdict)
+    if answer.moving:
+        return [f"at rest {at_rest}", _in_motion(answer, answer.moving)]
+    return [f"with constant steps {at_rest}" if answer.varying else at_rest]
+
+
+def _in_motion(answer: Answer, moving: MovingPole) -> str:
+    """Return what becomes of an error as the mechanism moves, at most or at least, or why that is not settled."""
+    if moving.verdict == "converges":
+        return f"in motion {_change(answer, moving.at_most, 'converges', 'at most ')}"
+    if moving.verdict == "diverges":
+        return f"in motion {_change(answer, moving.at_least, 'diverges', 'at least ')}"
+    if moving.at_most < 1:
+        return "in motion it is not settled: the constraints turn too far in a step, or faster than the feedback works"
+    bound = _finite(moving.at_most)
+    how = "two poles nearly meet there" if bound is None else f"a step may multiply the error by {bound:.3g}"
+    return f"in motion this may diverge: {how}"
+
+
+def _swept(answer: Answer, swept: SweptAnswer) -> list[str]:
+    """Return what becomes of an error of many constraints in an engine that sweeps, and how many sweeps are enough.
+
+    What else was asked, of a scene that moves and of steps that vary, is said of constraints that are solved exactly.
+    """
+    z_abs, stable = swept.growth.factor, swept.stable_iterations
+    change = _change(answer, z_abs, "converges" if z_abs < 1 else "diverges")
+    enough = "no number of sweeps that was tried is stable"
+    if stable is not None:
+        enough = f"stable from {counted(stable, 'sweep')}"
+    said = [f"{change}; of one constraint alone, each step multiplies it by {swept.alone:.2f}", enough]
+    if answer.moving:
+        said.append(f"that is at rest. Solved exactly: {_in_motion(answer, answer.moving)}")
+    if answer.varying:
+        said.append(f"that is with constant steps. Solved exactly, when steps vary: {answer.varying.varying}")
+    return said
+
+
+def _growth(answer: Answer) -> list[str]:
+    """Return how far the step, α and β may grow, or the gains of a drive: each alone, at rest; nothing if not asked."""
+    margins, gains = answer.margins, answer.gains
+    if answer.margins_reason:
+        names = "kp and kd" if gains else "α and β"
+        return [f"how far the step, {names} may grow is not known: {answer.margins_reason}"]
+    if margins is None:
+        return []
+    if gains:
+        others = {"kp": _up_to(gains.kp_max, _gain_text), "kd": _up_to(gains.kd_max, _gain_text)}
+    else:
+        others = {"α": growth_words(_finite(margins.alpha[1])), "β": growth_words(_finite(margins.beta[1]))}
+    of_engine = answer.question.engine is not None
+    step = growth_words(_finite(margins.h))
+    if answer.h is not None:
+        step = _up_to(answer.engine_h_limit if of_engine else answer.h_limit, seconds_words)
+    limits = {"the step": step, **others}
+    each = "at rest each" if answer.moving else "each"
+    if set(limits.values()) == {growth_words(None)}:
+        return [f"{each} alone may grow without limit"]
+    return [f"{each} alone may grow: {', '.join(f'{name} {limit}' for name, limit in limits.items())}"]
+
+
+def _remedies(gains: Gains) -> list[str]:
+    """Return which change of one gain alone makes an unstable drive stable."""
+    kd_min, kd_max, kp_max = gains.kd_min, _finite(gains.kd_max), _finite(gains.kp_max)
+    remedies = []
+    if kd_min is not None and gains.kd <= kd_min:
+        remedies.append(
+            f"raise kd above {_gain_text(kd_min)}{'' if kd_max is None else f', up to {_gain_text(kd_max)}'}"
+        )
+    if kd_max is not None and gains.kd >= kd_max:
+        remedies.append(f"lower kd to {_gain_text(kd_max)}")
+    if kp_max is not None and gains.kp >= kp_max:
+        remedies.append(f"lower kp to {_gain_text(kp_max)}")
+    return [" or ".join(remedies)] if remedies else []
+
+
+def _finite(number: float | None) -> float | None:
+    return None if number is None or math.isinf(number) else number
+
+
+def _up_to(limit: float | None, text: Callable[[float], str]) -> str:
+    """Return up to where something may grow."""
+    return growth_words(None) if limit is None or math.isinf(limit) else f"to {text(limit)}"
+
+
+def _gain_text(gain: float) -> str:
+    """Return a gain to four digits, 11000 without a power of ten."""
+    return f"{float(f'{gain:.4g}'):g}"
 
 
 def answers(question: Question, *, margins: bool = True) -> Iterator[Answer]:

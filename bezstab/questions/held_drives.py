@@ -26,8 +26,10 @@ from bezstab.stability import (
     held_map,
     held_spectral_radius,
     held_verdict,
+    steps_to_settle,
 )
 from bezstab.units import check_step
+from bezstab.words import change_words, counted, decay_words, gains_words
 
 UsedUp = Literal["gains", "rate", "delay", "rate and delay", "kp", "kd", "too little kd"]
 """Why a drive is unstable; for a stable one, which of its numbers is nearest to its limit."""
@@ -37,6 +39,24 @@ DIGITS = 3
 
 MARGIN = 1.25
 """Each recommended gain alone may grow by this factor: a quarter is left for what is not modelled."""
+
+CAUSES = {
+    "gains": "These gains are not stable even if each step computes and applies its torque.",
+    "rate": "The torque is held too long: the same gains are stable if each step computes it.",
+    "delay": "The torque comes too late: the same gains are stable without the delay.",
+    "rate and delay": "The torque is held too long and comes too late.",
+}
+"""Why a drive is unstable, by what is used up."""
+
+
+NEAREST = {
+    "kp": "kp is nearest to its limit",
+    "kd": "kd is nearest to its limit",
+    "too little kd": "kd is nearest to its limit, the lower one",
+    "rate": "the time between two torques is nearest to its limit",
+    "delay": "the delay is nearest to its limit",
+}
+"""Which number of a stable drive may change least, by what is used up."""
 
 OMEGA_H = np.geomspace(1, 3e-6, 260)
 """Radians a step at which the largest bandwidth is looked for: from 1 downwards, 5 % apart."""
@@ -94,11 +114,16 @@ class HeldAnswer:
     fresh_z_abs: float
 
     def __repr__(self) -> str:
-        drive, timing = self.question.drive, self.question.timing
-        applied = f"{self.applied}, every {timing.every}, late {float(timing.late):g}"
-        gains = f"kp = {float(drive.kp):g}, kd = {float(drive.kd):g}"
-        safe = "safe" if self.safe else "not safe"
-        return f"HeldAnswer({applied}: {gains}, |z_p| = {self.z_abs:.6g}, {safe})"
+        timing = self.question.timing
+        return f"{self.sentence} [every {timing.every}, late {float(timing.late):g}, |z_p| = {self.z_abs:.6g}]"
+
+    def __bool__(self) -> bool:
+        return self.safe
+
+    @property
+    def sentence(self) -> str:
+        """The answer in words: what was judged, whether it is safe, how fast errors fall, what may change."""
+        return held_sentence(self)
 
     @property
     def applied(self) -> str:
@@ -157,6 +182,47 @@ class HeldAnswer:
             ratios["delay"] = (limits.late + 1) / float(timing.late)
         nearest = min(ratios, key=lambda name: ratios[name])
         return nearest if math.isfinite(ratios[nearest]) else None
+
+
+def held_sentence(answer: HeldAnswer) -> str:
+    """Return whether a held or late drive is safe, how fast an error falls, why, and what may change.
+
+    kp = 98.7, kd = 6.28 (explicit, inertia 0.1, h = 0.002 s): safe. An error falls to a thousandth in 0.29 s (145
+    steps). It stays stable with one of these alone: kp up to 849, kd from 1.03 to 48.4, a torque every 19 steps, at
+    most 6 steps late; kp is nearest to its limit.
+    """
+    drive, h = answer.question.drive, float(answer.question.h)
+    judged = gains_words(drive.kp, drive.kd, drive.inertia, h, answer.applied)
+    steps = steps_to_settle(answer.z_abs)
+    what = "error" if drive.kp else "velocity"
+    change = change_words(answer.z_abs, answer.verdict, what)
+    if answer.safe and steps:
+        change = decay_words(steps, h, what)
+    sentence = f"{judged}: {'safe' if answer.safe else 'not safe'}. {change[0].upper()}{change[1:]}."
+    changes = ", ".join(_changes(answer))
+    if not answer.safe:
+        remedy = f"It is stable with one of these alone: {changes}." if changes else "No single change makes it stable."
+        return f"{sentence} {CAUSES[answer.used_up or 'gains']} {remedy}"
+    nearest = f"; {NEAREST[answer.used_up]}" if answer.used_up else ""
+    return f"{sentence} It stays stable with one of these alone: {changes}{nearest}."
+
+
+def _changes(answer: HeldAnswer) -> list[str]:
+    """Return how far each number alone may go with which a drive is stable."""
+    limits, drive = answer.limits, answer.question.drive
+    changes = []
+    if limits.kp and math.isfinite(limits.kp[1]):
+        changes.append(f"kp {'lowered' if drive.kp > limits.kp[1] else 'up'} to {limits.kp[1]:.3g}")
+    if limits.kd and drive.kd > limits.kd[1]:
+        changes.append(f"kd lowered to {limits.kd[1]:.3g}")
+    elif limits.kd:
+        least, most = limits.kd
+        changes.append(f"kd from {least:.3g} {'on' if math.isinf(most) else f'to {most:.3g}'}")
+    if limits.every is not None:
+        changes.append("a torque every step" if limits.every == 1 else f"a torque every {limits.every} steps")
+    if limits.late is not None:
+        changes.append(f"at most {counted(limits.late, 'step')} late")
+    return changes
 
 
 def _times(unit: float, stretch: tuple[float, float] | None) -> tuple[float, float] | None:

@@ -25,6 +25,7 @@ from bezstab.evidence import (
     time_column,
 )
 from bezstab.methods import REGISTRY, Method, lookup
+from bezstab.words import point_words
 
 ABSOLUTE = "it is never negative, as an absolute value or a norm is: log the signed error of one constraint"
 """Said of such a column, whose poles are not those of the error."""
@@ -122,7 +123,11 @@ class Probe:
     found: ProbedPole
 
     def __repr__(self) -> str:
-        return f"Probe({self.column}: {self.found!r}, {len(self.likenesses)} likenesses, {len(self.points)} points)"
+        point, h = self.question.point, self.question.h
+        place = f"{point_words(float(point[0]), float(point[1]), h)}: " if point else ""
+        return (
+            f"Probe({place}{self.column}: {self.found!r}, {len(self.likenesses)} likenesses, {len(self.points)} points)"
+        )
 
     @property
     def pole(self) -> complex | None:

@@ -16,11 +16,12 @@ from bezstab.mechanism import Scene, TurningNormals
 from bezstab.methods import Method, check_one_step, lookup
 from bezstab.questions.chains import USUAL_CHAIN, SweptConstraints, check_sweeps, constraints_of, constraints_of_chain
 from bezstab.questions.motions import ReferenceMotion, check_speed, motion_of, turn_too_far, turning_of
-from bezstab.stability import OMEGA_H, choose, follows_motion, verdict
-from bezstab.units import check_step, feedback_gains, from_dimensionless
+from bezstab.stability import OMEGA_H, choose, describe_point, follows_motion, verdict
+from bezstab.units import check_step, feedback_gains, from_dimensionless, to_dimensionless
+from bezstab.words import SLOWLY
 
 LARGE = 10
-"""From this alpha_hat or beta_hat on, 1/s was probably meant: as alpha_hat it leaves e^-5 of an error after a step."""
+"""Above this alpha_hat or beta_hat 1/s was probably meant: as alpha_hat it leaves e^-5 of an error after a step."""
 
 SAME_GAINS = 1e-9
 """Of gains in 1/s and 1/s^2: roots and powers that engines take are rounded to float64."""
@@ -252,14 +253,21 @@ def engine_holds(
     )
 
 
-def meant_in_seconds(methods: Sequence[Method], point: Point | None) -> bool:
-    """Return whether numbers that were given as alpha_hat and beta_hat look like alpha and beta in 1/s.
+def meant_in_seconds(methods: Sequence[Method], point: Point, h: Fraction | None) -> bool:
+    """Return whether numbers that were given as alpha_hat and beta_hat may be alpha and beta in 1/s.
 
-    They do if no method is stable there and one of the numbers is LARGE.
+    They may if no method is stable there and one of the numbers is above LARGE; and with a step (s) if errors then fall
+    with some method, and not SLOWLY.
     """
-    if point is None or max(point) <= LARGE:
-        return False
-    return not any(verdict(method, *point) == "converges" for method in methods)
+    if max(point) > LARGE and not any(verdict(method, *point) == "converges" for method in methods):
+        return True
+    return h is not None and any(_settles(method, to_dimensionless(*point, h), h) for method in methods)
+
+
+def _settles(method: Method, point: Point, h: Fraction) -> bool:
+    """Return whether errors fall to a thousandth in less than SLOWLY, with steps of h (s)."""
+    at_point = describe_point(method, "as given", *point, margins=False)
+    return at_point.settle_steps is not None and at_point.settle_steps * h * method.step_multiple < SLOWLY
 
 
 def methods_for(methods: tuple[Method, ...], engine: Engine | None, drive: Drive | None) -> tuple[Method, ...]:

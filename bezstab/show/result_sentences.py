@@ -6,8 +6,8 @@ from itertools import groupby
 from typing import TYPE_CHECKING
 
 from bezstab.rationals import typed_number
-from bezstab.show.words import counted, seconds_words, times_words
 from bezstab.units import from_dimensionless
+from bezstab.words import counted, seconds_words, times_words
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -86,7 +86,7 @@ def trade_words(answer: Answer) -> list[str]:
         lines.append(
             f"Faster decay: --goal {faster.goal} takes |z_p| {moduli}, and the feedback forces {_errors_words(times)}."
         )
-    if slower and settle and (times := answer.times_the_errors(slower)):
+    if slower is not None and settle and (times := answer.times_the_errors(slower)):
         gain = "Slower decay:" if min(times) < GAIN else "Slower decay gains nothing:"
         goal = "" if answer.goal == "accurate" else "--goal accurate "
         lines.append(f"{gain} with {goal}--settle {typed_number(settle)} the feedback forces {_errors_words(times)}.")

@@ -7,6 +7,7 @@ documentation of keys (`bezstab schema`) take it from there.
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
+from operator import itemgetter
 
 from bezstab.show.cells import (
     any_or_missing,
@@ -25,10 +26,7 @@ from bezstab.show.cells import (
 )
 from bezstab.show.fields import Field, RowKind, column, integer, number, text, truth
 from bezstab.show.sentences import (
-    answer_sentence,
     chain_sentence,
-    chosen_step_sentence,
-    held_sentence,
     measurement_sentence,
     method_sentence,
     region_sentence,
@@ -38,7 +36,7 @@ from bezstab.show.sentences import (
     whole_method_sentence,
     witness_sentence,
 )
-from bezstab.show.words import safety_words, times_words
+from bezstab.words import times_words
 
 UNKNOWN_STEP = "where no step is given"
 UNSTABLE = "where the point is not stable"
@@ -73,6 +71,8 @@ BETA = number(
     null="where no step is given, and for a negative beta_hat",
 )
 H = number("h", "Step size", "h (s)", unit="s", null=UNKNOWN_STEP)
+SENTENCE = text("sentence", "What was judged, and the answer in words")
+IN_WORDS = itemgetter("sentence")  # above a block, the sentence of the answer itself
 Z_REAL = number("z_real", "Real part of the pole", path="pole.real")
 Z_IMAG = number("z_imag", "Imaginary part of the pole, that of the upper one of a pair", path="pole.imag")
 Z_ABS = number(
@@ -569,6 +569,7 @@ POLES = RowKind(
         ORDER_LEFT.hidden,
         TIMES_LEAST,
         TIMES_LEAST_VELOCITY.hidden,
+        SENTENCE,
     ),
     added=(
         *MOVING,
@@ -578,7 +579,7 @@ POLES = RowKind(
         *SWEPT_OVER,
         *DRIVE,
     ),
-    sentence=safety_words,
+    sentence=IN_WORDS,
 )
 # printed by `region`, and by `methods NAME` below what else is known of the method
 REGIONS = RowKind(
@@ -842,9 +843,10 @@ CHOICES = RowKind(
         ORDER_LEFT,
         TIMES_LEAST,
         TIMES_LEAST_VELOCITY,
+        SENTENCE,
     ),
     added=(*MOVING, *VARYING, SWEEPS, *SWEPT_OVER, *DRIVE, ENGINE_H_LIMIT, SETTING),
-    sentence=answer_sentence,
+    sentence=IN_WORDS,
 )
 # printed by `check`: a choice with its role
 CHECKED = RowKind(
@@ -852,7 +854,7 @@ CHECKED = RowKind(
     fields=(ROLE, *CHOICES.fields),
     added=(*CHOICES.added, APPLIED, EXCLUDES.hidden),
     sometimes=("excludes",),
-    sentence=answer_sentence,
+    sentence=IN_WORDS,
 )
 # printed by `choose --omega` without --h
 STEPS_OF_CHOICES = RowKind(
@@ -864,7 +866,7 @@ STEPS_OF_CHOICES = RowKind(
         SAFE,
         H_LIMIT.shown("stable for constant h (s) to", text=safe_step_text),
     ),
-    sentence=chosen_step_sentence,
+    sentence=step_sentence,
 )
 # printed by `check --physical` without --h
 LARGEST_STEPS = RowKind(
@@ -1342,8 +1344,9 @@ HELD = RowKind(
             values_of="questions.UsedUp",
             path="used_up",
         ),
+        SENTENCE,
     ),
-    sentence=held_sentence,
+    sentence=IN_WORDS,
 )
 
 ROW_KINDS: Mapping[str, Sequence[RowKind]] = {

@@ -2,39 +2,9 @@
 
 import math
 
-from bezstab.show.cells import order_text, safe_step_text, step_limit
+from bezstab.show.cells import order_text, safe_step_text
 from bezstab.show.fields import Row, formatted
-from bezstab.show.words import change_words, counted, growth_words, safety_words, seconds_words
-
-
-def answer_sentence(row: Row) -> str:
-    """Return what there is to say of a point, and which motion was assumed if it was chosen for one."""
-    sentence = point_sentence(row)
-    if row["safe_with"]:
-        sentence += f" With {row['safe_with']} it is safe."
-    if row["goal"] != "accurate" or not row["omega_assumed"]:
-        return sentence
-    turn = f"ωh = {row['omega_h']:g}"
-    motion = f"with {turn}" if row["h"] is None else f"of {row['omega_h'] / row['h']:.3g} rad/s ({turn})"
-    return f"{sentence} Without --omega a motion {motion} is assumed."
-
-
-def point_sentence(row: Row) -> str:
-    """Return whether a point is safe, what a step does to the error, and how far step, α and β may grow, at rest."""
-    if "kp" in row and not {"moving_verdict", "varying"} & row.keys():
-        return drive_sentence(row)
-    if not row["safe"] or "swept_z_abs" in row:
-        return safety_words(row)
-    if row["margins_reason"]:
-        return f"{safety_words(row)} How far the step, α and β may grow is not known: {row['margins_reason']}."
-    limit = step_limit(row)
-    factor = row["h_factor"] if row["h"] is None else None
-    step = growth_words(factor) if limit is None else f"to {seconds_words(limit)}"
-    alpha, beta = growth_words(row["alpha_factor_max"]), growth_words(row["beta_factor_max"])
-    begin = "At rest the" if "moving_verdict" in row else "The"
-    if {step, alpha, beta} == {growth_words(None)}:
-        return f"{safety_words(row)} {begin} step, α and β may grow {step}."
-    return f"{safety_words(row)} {begin} step may grow {step}, α {alpha}, β {beta}."
+from bezstab.words import change_words, counted, seconds_words
 
 
 def drive_sentence(row: Row) -> str:
@@ -75,68 +45,10 @@ def _plain(gain: float) -> str:
 
 def step_sentence(row: Row) -> str:
     """Return up to which step alpha and beta are safe."""
-    limit = safe_step_text(row)
+    limit, judged = safe_step_text(row), f"α = {row['alpha']:.6g} 1/s, β = {row['beta']:.6g} 1/s"
     if limit == "none":
-        return "Not safe at small steps."
-    return "Safe at any h." if limit == "unlimited" else f"Safe up to h = {limit} s."
-
-
-def chosen_step_sentence(row: Row) -> str:
-    """Return alpha and beta of a choice that does not depend on the step, and up to which step they are safe."""
-    return f"α = {row['alpha']:.3g} 1/s, β = {row['beta']:.3g} 1/s at any step. {step_sentence(row)}"
-
-
-CAUSES = {
-    "gains": "These gains are not stable even if each step computes and applies its torque.",
-    "rate": "The torque is held too long: the same gains are stable if each step computes it.",
-    "delay": "The torque comes too late: the same gains are stable without the delay.",
-    "rate and delay": "The torque is held too long and comes too late.",
-}
-"""Why a drive is unstable, by what is used up."""
-
-
-NEAREST = {
-    "kp": "kp is nearest to its limit",
-    "kd": "kd is nearest to its limit",
-    "too little kd": "kd is nearest to its limit, the lower one",
-    "rate": "the time between two torques is nearest to its limit",
-    "delay": "the delay is nearest to its limit",
-}
-"""Which number of a stable drive may change least, by what is used up."""
-
-
-def held_sentence(row: Row) -> str:
-    """Return whether a held or late drive is safe, what a step of the physics does to the error, why, what may change.
-
-    Safe (explicit). Each step multiplies the error by 0.95. It stays stable with one of these alone: kp up to 849, kd
-    from 1.03 to 48.4, a torque every 19 steps, at most 6 steps late; kp is nearest to its limit.
-    """
-    change = change_words(row["z_abs"], row["verdict"], "error" if row["kp"] else "velocity")
-    sentence = f"{'Safe' if row['safe'] else 'Not safe'} ({row['drive']}). {change[0].upper()}{change[1:]}."
-    changes = ", ".join(_changes(row))
-    if not row["safe"]:
-        remedy = f"It is stable with one of these alone: {changes}." if changes else "No single change makes it stable."
-        return f"{sentence} {CAUSES[row['held_by']]} {remedy}"
-    nearest = f"; {NEAREST[row['held_by']]}" if row["held_by"] else ""
-    return f"{sentence} It stays stable with one of these alone: {changes}{nearest}."
-
-
-def _changes(row: Row) -> list[str]:
-    """Return how far each number alone may go with which a drive is stable."""
-    kp_max, kd_min, kd_max = row["kp_max"], row["kd_min"], row["kd_max"]
-    changes = []
-    if kp_max is not None:
-        changes.append(f"kp {'lowered' if row['kp'] > kp_max else 'up'} to {kp_max:.3g}")
-    if kd_max is not None and row["kd"] > kd_max:
-        changes.append(f"kd lowered to {kd_max:.3g}")
-    elif kd_min is not None:
-        end = "on" if kd_max is None else f"to {kd_max:.3g}"
-        changes.append(f"kd from {kd_min:.3g} {end}")
-    if row["every_max"] is not None:
-        changes.append("a torque every step" if row["every_max"] == 1 else f"a torque every {row['every_max']} steps")
-    if row["late_max"] is not None:
-        changes.append(f"at most {counted(row['late_max'], 'step')} late")
-    return changes
+        return f"{judged}: not safe at small steps."
+    return f"{judged}: safe {'at any h' if limit == 'unlimited' else f'up to h = {limit} s'}."
 
 
 def one_pole_sentence(row: Row) -> str:

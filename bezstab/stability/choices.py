@@ -92,11 +92,14 @@ class Choice:
     def _steps_to_settle(self, z_abs: float) -> int | None:
         if self.verdict != "converges":
             return None
-        if z_abs < DOUBLE:
-            return 2 * steps(self.method)
-        if 1 - z_abs < SLOW:
-            return None
-        return math.ceil(math.log(THOUSANDFOLD) / math.log(z_abs))
+        return 2 * steps(self.method) if z_abs < DOUBLE else steps_to_settle(z_abs)
+
+
+def steps_to_settle(z_abs: float) -> int | None:
+    """Return after how many steps z_abs^k is a thousandth; None unless errors decay as far as rounding can tell."""
+    if 1 - z_abs < SLOW:
+        return None
+    return math.ceil(math.log(THOUSANDFOLD) / math.log(z_abs)) if z_abs > 0 else 1
 
 
 def choose(

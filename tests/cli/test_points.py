@@ -73,14 +73,14 @@ def test_a_drive_is_shown_in_all_ways_of_applying_it() -> None:
 
 def test_numbers_that_look_like_one_over_seconds_are_said_to() -> None:
     typed = "check --method SYM --alpha 50 --beta 50.5 --h 0.002"
-    assert run(typed).stderr.splitlines()[0].endswith("if they are in 1/s, add --physical")
+    assert run(typed).stderr.splitlines()[0].endswith("if 50 and 50.5 are in 1/s, add --physical")
     assert run(typed, "--physical").stderr == ""
     assert (
         run("check --method SYM --alpha 14217 --beta 16544 --h 0.002 --physical").stderr == ""
     )  # meant so, and unsafe
     for command in ("poles", "check --method SYM", f"probe {DATA}/pendulum.csv"):  # and no step to read them at
         said = run(command, "--alpha 14217 --beta 16544").stderr
-        assert "taken as α̂ and β̂, without unit; if they are in 1/s, add --physical and your --h\n" in said
+        assert "note: if 14217 and 16544 are in 1/s, add --physical and your --h\n" in said
     with_step = "tradeoff --method SYM --h 0.002 --time 0.01 --alpha 14217 --beta 16544 --figure none --table none"
     assert run(with_step).stderr.endswith("add --physical\n")
 

@@ -1,8 +1,9 @@
 """Answers: what is asked of them is found then, and agrees with the function that finds it."""
 
+from dataclasses import replace
 from fractions import Fraction
 from functools import partial
-from math import inf
+from math import inf, log, sqrt
 from typing import Any
 
 import pytest
@@ -15,7 +16,8 @@ from bezstab.rationals import exact
 from bezstab.stability import choose, describe_point, feedback_cost
 
 SYM = (lookup("SYM"),)
-POINT = (Fraction(1), Fraction(1, 2))
+ONE = Fraction(1)
+POINT = (ONE, Fraction(1, 2))
 
 
 def first(question: Question) -> Answer:
@@ -37,6 +39,48 @@ def test_what_to_take_instead_is_not_looked_for_unless_asked(monkeypatch: pytest
 
     monkeypatch.setattr("bezstab.questions.answering.choose", refuse)
     assert [answer.role for answer in answers(Question(methods=SYM, point=POINT))] == ["given"]
+
+
+def test_an_answer_begins_with_its_sentence_and_is_true_where_it_is_safe() -> None:
+    """RK2 at α̂ = β̂ = 1 has |z| = 1/2: 2^-10 is below a thousandth; β alone may grow by √(1 + √3)."""
+    judged = Question(methods=(lookup("RK2"),), point=(ONE, ONE), h=Fraction(1, 100))
+    place = "α̂ = 1, β̂ = 1 (α = 50 1/s, β = 100 1/s at h = 0.01 s)"
+    assert f"{sqrt(1 + sqrt(3)):.3g}" == "1.65"
+    safe = first(judged)
+    assert repr(safe).startswith(
+        f"{place}: safe. An error falls to a thousandth in 0.1 s (10 steps). "
+        "Each alone may grow: the step to 20 ms, α 2.5 times, β 1.65 times."
+    )
+    without_step = first(replace(judged, h=None))
+    assert without_step.sentence == (
+        "α̂ = 1, β̂ = 1: safe. An error falls to a thousandth in 10 steps. "
+        "Each alone may grow: the step 2 times, α 2.5 times, β 1.65 times."
+    )
+    unsafe = first(replace(judged, point=(Fraction(5), Fraction(5))))
+    assert repr(unsafe).startswith("α̂ = 5, β̂ = 5 (α = 250 1/s, β = 223.607 1/s at h = 0.01 s): not safe. Each step")
+    assert bool(safe)
+    assert not bool(unsafe)
+
+
+def test_of_one_constraint_alone_nothing_is_said_to_grow_without_limit() -> None:
+    """A chain of them has other limits."""
+    brax = ENGINES["brax-positional"]
+    answer = first(Question(methods=SYM, engine=brax, values=(Fraction(1, 2),), h=Fraction(1, 100)))
+    assert ": safe for one constraint alone. An error falls to a thousandth in 0.2 s (20 steps)." in answer.sentence
+    assert "grow" not in answer.sentence
+
+
+@pytest.mark.slow
+def test_a_chain_that_settles_slowly_is_said_to() -> None:
+    """A hundred times the mass at the end of six bodies in Jolt: minutes."""
+    values = (Fraction(1, 5),)
+    chain = Question(engine=ENGINES["jolt"], values=values, h=Fraction(1, 60), chain=6, mass_ratio=Fraction(100))
+    answer = first(chain)
+    assert answer.safe
+    assert answer.swept
+    seconds = log(1e-3) / log(answer.swept.growth.factor) / 60
+    assert f"An error falls slowly: to a thousandth in {seconds:.3g} s (" in answer.sentence
+    assert seconds > 200
 
 
 def test_instead_is_what_choose_gives() -> None:

@@ -52,6 +52,14 @@ def test_of_an_unstable_drive_what_it_would_be_stable_without_is_used_up(
     assert answer.used_up == used_up
 
 
+def test_a_drive_begins_with_its_sentence_and_is_true_where_it_is_safe() -> None:
+    safe, unsafe = explicit("200", "5", Timing()), explicit("200", "120", Timing())
+    assert bool(safe)
+    assert not bool(unsafe)
+    assert repr(safe).startswith("kp = 200, kd = 5 (explicit, inertia 0.1, h = 0.002 s): safe. An error falls to a")
+    assert repr(unsafe).startswith("kp = 200, kd = 120 (explicit, inertia 0.1, h = 0.002 s): not safe. Each step")
+
+
 def test_of_a_stable_drive_the_number_nearest_to_its_end_is_used_up() -> None:
     """Held for two steps it is stable for 2 A + B / 2 < 4 and A > B / 4, with A = 2 a and B = 4 b."""
     assert explicit("200", "45", Timing(2)).used_up == "kd"  # a = 0.9, where it may be 0.996

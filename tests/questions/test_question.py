@@ -66,5 +66,19 @@ def test_an_engine_holds_alpha_hat_and_beta_hat_or_alpha_and_beta_or_is_refused(
     [("50", "50.5", True), ("1.5", "0.9", False), ("4", "3", False)],  # 4, 3: unstable, but no numbers of 1/s
 )
 def test_large_numbers_that_are_not_stable_are_meant_in_one_over_seconds(alpha: str, beta: str, meant: bool) -> None:
-    assert meant_in_seconds([lookup("SYM")], (Fraction(alpha), Fraction(beta))) == meant
-    assert not meant_in_seconds([lookup("implicit-euler")], (Fraction(alpha), Fraction(beta)))  # stable as typed
+    point = Fraction(alpha), Fraction(beta)
+    assert meant_in_seconds([lookup("SYM")], point, None) == meant
+    assert not meant_in_seconds([lookup("implicit-euler")], point, None)  # stable as typed
+
+
+@pytest.mark.parametrize(
+    ("alpha", "beta", "h", "meant"),
+    [
+        ("5", "5", "1/100", True),  # a thousandth in 1.4 s
+        ("1", "1", "1/100", True),  # stable as typed, and in 6.9 s
+        ("1/2", "1/10", "1/100", False),  # in 700 s: a feedback that nobody has
+        ("5", "5", "1", False),  # unstable in 1/s, too
+    ],
+)
+def test_with_a_step_what_would_settle_is_asked_about(alpha: str, beta: str, h: str, meant: bool) -> None:
+    assert meant_in_seconds([lookup("RK4")], (Fraction(alpha), Fraction(beta)), Fraction(h)) == meant

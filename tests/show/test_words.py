@@ -9,15 +9,29 @@ from hypothesis import strategies as st
 
 from bezstab.methods import lookup
 from bezstab.show.result_sentences import best_point_words, falling_words, varying_words
-from bezstab.show.words import change_words, seconds_words, times_words
 from bezstab.stability import FarLimit, VaryingSteps, best_point
+from bezstab.words import change_words, decay_words, point_words, seconds_words, times_words
 
 
 @given(st.floats(1e-7, 1e4))  # with the least and the largest that a unit suits
 def test_a_time_in_words_is_the_time_to_three_digits(seconds: float) -> None:
     number, unit = seconds_words(seconds).split()
-    assert float(number) * {"s": 1, "ms": 1e-3, "µs": 1e-6}[unit] == pytest.approx(seconds, rel=0.005)
+    assert float(number.replace(",", "")) * {"s": 1, "ms": 1e-3, "µs": 1e-6}[unit] == pytest.approx(seconds, rel=0.005)
     assert unit == "s" or 1 <= float(number) <= 1000
+
+
+def test_an_error_falls_slowly_from_ten_seconds_on() -> None:
+    assert decay_words(10, 0.01) == "an error falls to a thousandth in 0.1 s (10 steps)"
+    assert decay_words(10, None) == "an error falls to a thousandth in 10 steps"
+    assert decay_words(999, 0.01) == "an error falls to a thousandth in 9.99 s (999 steps)"
+    assert decay_words(1000, 0.01) == "an error falls slowly: to a thousandth in 10 s (1,000 steps)"
+    assert decay_words(10**9, 0.01) == "an error falls slowly: to a thousandth in 1e+07 s (1e+09 steps)"
+
+
+def test_a_point_is_said_with_its_rates_where_there_is_a_step() -> None:
+    assert point_words(1.0, 1.0, Fraction(1, 100)) == "α̂ = 1, β̂ = 1 (α = 50 1/s, β = 100 1/s at h = 0.01 s)"
+    assert point_words(1.0, 1.0, None) == "α̂ = 1, β̂ = 1"
+    assert point_words(1.0, -1.0, 0.01) == "α̂ = 1, β̂ = -1 (α = 50 1/s at h = 0.01 s)"  # the square of no β
 
 
 @given(st.floats(1e-3, 1e8))
