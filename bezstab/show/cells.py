@@ -8,6 +8,9 @@ MOST_FIXED = 1e6  # a modulus from here on is shown with an exponent
 LIMITS = ("alpha_hat_min", "alpha_hat_max", "beta_hat_min", "beta_hat_max")
 """The ends of a region's ranges, as rows name them."""
 
+NAMES_ROOM = 22
+"""Letters of the longest name in the list of methods."""
+
 
 def pole_text(row: Row) -> str:
     """Return a complex pole, from z_real and z_imag: 0.762694 ± 0.142074i; a dash where there is none."""
@@ -81,10 +84,11 @@ def fits_text(row: Row) -> str:
     return "yes" if row["told"] else "not told"
 
 
-def shortest_name_text(row: Row) -> str:
-    """Return the shortest of a method's other names; of more than one, the rest is left to `methods NAME`."""
-    names = row["other_names"].split(", ") if row["other_names"] else []
-    return min(names, key=len) + ", …" * (len(names) > 1) if names else ""
+def method_and_alias_text(row: Row) -> str:
+    """Return a method's name, and in parentheses the shortest that it is called elsewhere, if there is room for it."""
+    names = row["other_names"].split(", ") if row["other_names"] else [""]
+    with_alias = f"{row['method']} ({min(names, key=len)})"
+    return with_alias if any(names) and len(with_alias) <= NAMES_ROOM else str(row["method"])
 
 
 def order_text(row: Row) -> str:

@@ -15,11 +15,11 @@ from bezstab.show.cells import (
     constant_text,
     fits_text,
     gain_limit_text,
+    method_and_alias_text,
     modulus_words,
     order_text,
     pole_text,
     safe_step_text,
-    shortest_name_text,
     step_text,
     unbounded,
     used_up_text,
@@ -660,7 +660,7 @@ REGIONS = RowKind(
 LISTED_METHODS = RowKind(
     "a method in the list",
     fields=(
-        METHOD,
+        replace(METHOD, text=method_and_alias_text),
         STEPS,
         integer(
             "evaluations",
@@ -680,13 +680,7 @@ LISTED_METHODS = RowKind(
             text=lambda row: "yes" if row["implicit"] else "",
         ),
         integer("digits", "Digits to which rationals stand for irrational coefficients", null="where none do"),
-        text(
-            "other_names",
-            "What else it is called",
-            "also called",
-            null="where nothing else is known",
-            text=shortest_name_text,
-        ),
+        text("other_names", "What else it is called", null="where nothing else is known"),
         GROUP.hidden,
     ),
     sentence=method_sentence,
