@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from bezstab.errors import InputError
 from bezstab.mechanism.compiled_stepping import compiled_steps, runs_compiled
 from bezstab.mechanism.equations import Mechanism
-from bezstab.mechanism.generated_code import SINGULAR, accelerations, lane_function
+from bezstab.mechanism.generated_code import IMAGINARY_STEP, SINGULAR, accelerations, lane_function
 from bezstab.mechanism.programs import (
     EVALUATIONS,
     ITERATIONS,
@@ -22,7 +22,7 @@ from bezstab.mechanism.programs import (
     steps_at_once,
 )
 from bezstab.mechanism.second_order_memory import memory
-from bezstab.mechanism.start import CLOSED, constraint_errors, initial_state
+from bezstab.mechanism.start import CLOSED, equation_function, initial_state
 from bezstab.mechanism.stepper import BLOWN_UP, Stepper
 from bezstab.methods import (
     Method,
@@ -177,7 +177,7 @@ def march(
     """
     history = [np.asarray(state)]
     of_start = steps
-    if start == "rk4" and _keeps_constraints(mechanism, float(steps.times[0]), history[0][: mechanism.size]):
+    if start == "rk4" and _keeps_constraints(mechanism, float(steps.times[0]), history[0]):
         of_start = steps._replace(gains=np.zeros_like(steps.gains))
     for starter, count in _starters(method, start):
         taken = len(history) - 1
@@ -190,9 +190,12 @@ def march(
     yield from resume(mechanism, method, left, history, compiled, after=after)
 
 
-def _keeps_constraints(mechanism: Mechanism, t: float, q: FloatArray) -> bool:
-    """Return whether positions (n, *batch) keep the constraints as well as a scene's initial state does."""
-    return bool(np.abs(constraint_errors(mechanism, t, q)).max(initial=0.0) <= CLOSED)
+def _keeps_constraints(mechanism: Mechanism, t: float, state: FloatArray) -> bool:
+    """Return whether states (2n, *batch) keep c = 0 and cdot = 0 as well as a scene's initial state does."""
+    q, v = np.split(state, 2)
+    ahead = equation_function(mechanism, "constraints")(q + 1j * IMAGINARY_STEP * v, t + 1j * IMAGINARY_STEP)
+    error, rate = np.abs(ahead.real).max(initial=0.0), np.abs(ahead.imag).max(initial=0.0) / IMAGINARY_STEP
+    return bool(error <= CLOSED and rate <= CLOSED * max(1.0, float(np.abs(v).max())))
 
 
 def resume(
