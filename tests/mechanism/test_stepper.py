@@ -22,7 +22,7 @@ from tests.mechanism.test_varying_runs import ONE_STEP
 
 Array = NDArray[Any]
 SCHEMES = ("B4", "RK4", "SYM", "ABM3", "verlet-half", "trapezoid", "bdf3", "hht", "radau5")
-STEP_AT_ONCE = 1e-30
+TINY = 1e-30  # of a change along the imaginary axis: any that is small enough will do
 
 
 @pytest.mark.parametrize(
@@ -81,11 +81,11 @@ def test_a_step_answers_changes_of_the_gains(name: str) -> None:
     start = np.random.default_rng(1).standard_normal((len(program.powers), mechanism.size, 1))
     start[program.powers > 0] *= h
     gains, by, ends = np.array([[30.0], [1e3]]), 1e-3, []
-    for change in (by, -by, STEP_AT_ONCE * 1j):
+    for change in (by, -by, TINY * 1j):
         kind = type(change)
         stepper = Stepper(program, start.astype(kind), h, accelerations)
         ends.append(stepper.step(0.0, h, gains + np.array([[0.0], [change]])))
     up, down, imaginary = ends
-    slope = imaginary.imag / STEP_AT_ONCE
+    slope = imaginary.imag / TINY
     assert np.abs(slope).max() > 0
     assert slope == pytest.approx((up - down) / (2 * by), rel=1e-6, abs=1e-6 * np.abs(slope).max())
