@@ -331,8 +331,9 @@ def check(
         `swept_over` says so.
 
     Returns an Answer, dimensionless. If there are several, as of the ways of applying a drive, it is
-    the first that is not safe. `verdict` is proven. `pole` is the dominant one. `safe` is whether
-    errors shrink: with a scene also as it moves, with h_min for every sequence of such steps. `margins`
+    the first that is not safe. `sentence` says it in words, and begins the repr. `verdict` is proven.
+    `pole` is the dominant one. `safe`, and bool() of the answer, is whether errors shrink: with a
+    scene also as it moves, with h_min for every sequence of such steps. `margins`
     has the factors by which h, alpha and beta may each be scaled alone; None unless the point is
     stable. These are computed when you first ask for them: `cost` (of accuracy), `instead` (what
     `choose` gives), `moving`, `varying`, `swept` (many constraints), `setting` (the engine's line) and

@@ -47,12 +47,12 @@ def seconds_words(seconds: float) -> str:
     for least, size, unit in UNITS:
         if least <= seconds < THOUSAND * size:
             return f"{seconds / size:.3g} {unit}"
-    return f"{_counted_digits(seconds) if seconds >= THOUSAND else format(seconds, '.3g')} s"
+    return f"{_three_digits(seconds)} s"
 
 
 def growth_words(factor: float | None) -> str:
     """Return how far something may grow: 1.32 times, or without limit where there is no factor."""
-    return "without limit" if factor is None else f"{factor:.3g} times"
+    return "without limit" if factor is None else f"{_three_digits(factor)} times"
 
 
 def times_words(factor: float) -> str:
@@ -61,10 +61,10 @@ def times_words(factor: float) -> str:
     return f"{float(digits):,.0f}" if 100 <= float(digits) < PLAIN else digits
 
 
-def _counted_digits(number: float) -> str:
-    """Return a large number to three digits: 17,300, or a power of ten where nobody counts its zeros."""
+def _three_digits(number: float) -> str:
+    """Return a number to three digits: 0.25, 17,300, or a power of ten where nobody counts its zeros."""
     digits = f"{number:.3g}"
-    return f"{float(digits):,.0f}" if number < PLAIN else digits
+    return f"{float(digits):,.0f}" if THOUSAND <= float(digits) < PLAIN else digits
 
 
 def decay_words(steps: int, step: float | None, what: str = "error", bound: str = "") -> str:
@@ -72,7 +72,7 @@ def decay_words(steps: int, step: float | None, what: str = "error", bound: str 
 
     An error falls to a thousandth in 0.1 s (10 steps); or slowly: in 288 s. `bound` as for `change_words`.
     """
-    many = counted(steps, "step") if steps < THOUSAND else f"{_counted_digits(steps)} steps"
+    many = counted(steps, "step") if steps < THOUSAND else f"{_three_digits(steps)} steps"
     falls = f"{'an error' if what == 'error' else f'the {what}'} falls"
     if step is None:
         return f"{falls} to a thousandth in {bound}{many}"

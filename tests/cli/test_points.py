@@ -85,6 +85,25 @@ def test_numbers_that_look_like_one_over_seconds_are_said_to() -> None:
     assert run(with_step).stderr.endswith("add --physical\n")
 
 
+@pytest.mark.parametrize("number", ["1", "5"])
+def test_numbers_that_would_settle_in_seconds_are_asked_about_where_a_step_was_typed(number: str) -> None:
+    typed = f"check --method RK2 --alpha {number} --beta {number}"
+    note = f"note: if {number} and {number} are in 1/s, add --physical"
+    assert note in run(typed, "--h 0.01").stderr.splitlines()
+    assert note not in run(typed).stderr
+    assert run(typed, "--h 0.01 --physical").stderr == ""
+    for simulated in ("verify --scene pendulum", "simulate --time 0.02 --figure none --table none"):
+        result = run(simulated, f"--method SYM --h 0.01 --alpha {number} --beta {number}")
+        assert note in result.stderr.splitlines()
+        assert result.stdout.startswith(f"α̂ = {number}, β̂ = {number} (α = ")
+
+
+def test_alpha_hat_and_beta_hat_are_taken_as_typed_without_a_step() -> None:
+    result = run("poles --alpha 0.5 --beta 0.1")
+    assert result.stdout.startswith("α̂ = 0.5, β̂ = 0.1\n")
+    assert result.stderr == ""
+
+
 def test_what_was_typed_is_shown_as_typed() -> None:
     for asked, keys, typed in (
         ("--method SYM --h 1/240 --alpha 60 --beta 60.1 --physical", ("alpha", "beta"), (60, 60.1)),

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from bezstab.methods import lookup
 from bezstab.show.result_sentences import best_point_words, falling_words, varying_words
 from bezstab.stability import FarLimit, VaryingSteps, best_point
-from bezstab.words import change_words, decay_words, point_words, seconds_words, times_words
+from bezstab.words import change_words, decay_words, growth_words, point_words, seconds_words, times_words
 
 
 @given(st.floats(1e-7, 1e4))  # with the least and the largest that a unit suits
@@ -26,6 +26,12 @@ def test_an_error_falls_slowly_from_ten_seconds_on() -> None:
     assert decay_words(999, 0.01) == "an error falls to a thousandth in 9.99 s (999 steps)"
     assert decay_words(1000, 0.01) == "an error falls slowly: to a thousandth in 10 s (1,000 steps)"
     assert decay_words(10**9, 0.01) == "an error falls slowly: to a thousandth in 1e+07 s (1e+09 steps)"
+
+
+def test_a_factor_up_to_which_something_may_grow_is_plain() -> None:
+    assert [growth_words(factor) for factor in (1.6529, 2000.0, 3e8, None)] == [
+        *("1.65 times", "2,000 times", "3e+08 times", "without limit")
+    ]
 
 
 def test_a_point_is_said_with_its_rates_where_there_is_a_step() -> None:
