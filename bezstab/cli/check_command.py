@@ -32,7 +32,9 @@ OF_EVERY_STEP = {"--alpha", "--beta", "--physical", "--method", "--format", "--s
     "timing",
     *("omega", "h_min", "h_max", "hold"),
     changed("scene", help="Is it safe for this mechanism as it moves? Needs --h."),
-    *("speed", "form"),
+    "speed",
+    changed("duration", help="With --scene: how long it is run, in s [10 s, or 10,000 steps if that is less]."),
+    "form",
 )
 def check(**typed: Any) -> bool:
     """Tell whether a choice is safe: exit status 0 if so, 1 if not.
@@ -43,6 +45,10 @@ def check(**typed: Any) -> bool:
 
     Without --h-min all steps are equally long. Steps that are each stable alone may still let errors grow when they
     alternate. With --h-min and --h-max, safe means proven for every sequence of steps in that range.
+
+    With --scene the mechanism is also run, for --time. It is safe if errors shrink as it moves and the run goes well:
+    constraints hold, and the energy gains at most a tenth of the largest kinetic energy. Where the prediction settles
+    nothing the run decides, and a sentence says so.
 
     What is safe may still be inaccurate. On a mechanism that moves, feedback makes errors of its own if it is strong,
     or if it is weak. A sentence says so if they are at least ten times the least.

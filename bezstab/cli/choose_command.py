@@ -49,7 +49,9 @@ from bezstab.show import CHOICES, STEPS_OF_CHOICES, answer_row, left_out, spare_
     option("--bandwidth", NUMBER, "With --pd: choose critically damped gains with this natural frequency in Hz."),
     "timing",
     changed("scene", help="Choose for this mechanism as it moves."),
-    *("speed", "form"),
+    "speed",
+    changed("duration", help="With --scene: how long it is run, in s [10 s, or 10,000 steps if that is less]."),
+    "form",
 )
 def choose(goal: Goal | None, equal: str | None, bandwidth: Fraction | None, **typed: Any) -> bool:
     """Recommend α and β for an integrator and its step size.

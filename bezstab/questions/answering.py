@@ -21,6 +21,7 @@ from bezstab.goals import UP_TO_LONGEST, Goal
 from bezstab.methods import Method
 from bezstab.questions.chains import ALONE, SweptAnswer
 from bezstab.questions.question import Question, usual_goal
+from bezstab.questions.scene_runs import MOST_GAINED, SceneRun, scene_run
 from bezstab.rationals import rational, typed_number
 from bezstab.stability import (
     LAW_HOLDS,
@@ -41,7 +42,16 @@ from bezstab.stability import (
     varying_steps,
 )
 from bezstab.units import alpha_and_beta
-from bezstab.words import change_words, counted, decay_words, gains_words, growth_words, point_words, seconds_words
+from bezstab.words import (
+    change_words,
+    counted,
+    decay_words,
+    gains_words,
+    growth_words,
+    point_words,
+    seconds_words,
+    times_words,
+)
 
 CheckedRole = Literal["given", "instead"]
 Role = Literal[CheckedRole, "chosen"]
@@ -49,6 +59,9 @@ Role = Literal[CheckedRole, "chosen"]
 
 SHORTER = (2, 4)
 """A step may be so many times as short for a choice that is not safe: a mechanism then turns less in a step."""
+
+KEPT = 5e-5
+"""Of the largest kinetic energy: less is no change that anybody sees."""
 
 SLOWER = 2
 """Slower decay takes this many times as long to settle."""
@@ -101,16 +114,37 @@ class Answer(Choice):
 
     @property
     def safe(self) -> bool:
-        """Whether every error is proven to shrink: also while the scene moves and while steps vary, if that is asked.
+        """Whether every error is proven to shrink, also while steps vary, if that is asked.
+
+        Of a scene a run must go through as well, with constraints that hold and no energy gained. Where the bound on a
+        moving mechanism settles nothing, the run decides.
 
         For constraints that an engine sweeps over this is computed and not proven: |z| is below one by more than its
         accuracy. Without a chain or a scene, safe means: safe for one constraint alone.
         """
         if self.swept and not self.swept.growth.decays:
             return False
-        as_it_moves = self.moving is None or self.moving.verdict == "converges"
         as_steps_vary = self.varying is None or self.varying.varying == "proven"
-        return self.verdict == "converges" and as_it_moves and as_steps_vary
+        return self.verdict == "converges" and self._safe_in_motion and as_steps_vary
+
+    @property
+    def _safe_in_motion(self) -> bool:
+        """Whether the motion of the scene leaves it safe: its run decides, unless the bound says that errors grow."""
+        if self.moving is None or self.moving.verdict == "diverges":
+            return self.moving is None
+        return self.run.sound if self.run and self.run.decides else self.moving.verdict == "converges"
+
+    @cached_property
+    def run(self) -> SceneRun | None:
+        """What a run of the scene shows; None without a scene, in an engine that sweeps, and where errors grow anyway.
+
+        Steps are all h long.
+        """
+        mechanism, h, duration = self.question.mechanism, self.question.h, self.question.duration
+        grows = self.verdict != "converges" or (self.moving is not None and self.moving.verdict == "diverges")
+        if mechanism is None or h is None or self.swept or grows:
+            return None
+        return scene_run(mechanism, self.method, h, self.point, None if duration is None else float(duration))
 
     @property
     def h(self) -> float | None:
@@ -384,7 +418,7 @@ def _errors(answer: Answer) -> list[str]:
     """Return what becomes of an error at rest, over the motion of a scene, and with steps that are all equally long."""
     at_rest = _change(answer, abs(answer.pole), answer.verdict)
     if answer.moving:
-        return [f"at rest {at_rest}", _in_motion(answer, answer.moving)]
+        return [f"at rest {at_rest}", _in_motion(answer, answer.moving), *_as_it_ran(answer)]
     return [f"with constant steps {at_rest}" if answer.varying else at_rest]
 
 
@@ -399,6 +433,40 @@ def _in_motion(answer: Answer, moving: MovingPole) -> str:
     bound = _finite(moving.at_most)
     how = "two poles nearly meet there" if bound is None else f"a step may multiply the error by {bound:.3g}"
     return f"in motion this may diverge: {how}"
+
+
+def _as_it_ran(answer: Answer) -> list[str]:
+    """Return what a run of the scene showed, and what helps if it is not safe; nothing if it was not run."""
+    run = answer.run
+    if run is None:
+        return []
+    time = seconds_words(run.duration)
+    if run.failure:
+        return [f"a run breaks down {run.failure}"]
+    said = [f"in a run of {time}: |c| at most {run.c_max:.1e}, {_energy_text(run.gained)}"]
+    if not run.decides:
+        return [*said, "it passes a singular configuration, and decides nothing"]
+    if run.grown:
+        said.append("there the constraint error grows")
+    if run.gained > MOST_GAINED and run.culprit == "multipliers":
+        said.append("the feedback pumps the motion: take --goal accurate, or a shorter step")
+    elif run.gained > MOST_GAINED:
+        end = f", and breaks down after about {seconds_words(run.breakdown)}" if run.breakdown else ""
+        said.append(f"the method speeds the motion up{end}: take heun or RK4, or gentler feedback")
+    elif run.gained < -MOST_GAINED:
+        said.append(
+            "the method takes that, whatever the feedback" if run.culprit == "method" else "the feedback brakes"
+        )
+    if run.sound and answer.moving and answer.moving.verdict != "converges":
+        said.append("the prediction settles nothing, but the run went through")
+    return said
+
+
+def _energy_text(gained: float) -> str:
+    """Return what became of the energy of a run, from the share that it gained."""
+    if abs(gained) < KEPT:
+        return "energy kept"
+    return f"energy {100 * gained:+.2g} %" if gained < 1 else f"energy grown by {times_words(gained)} times its largest"
 
 
 def _swept(answer: Answer, swept: SweptAnswer) -> list[str]:

@@ -12,10 +12,17 @@ from functools import cached_property
 from bezstab.engines import DRIVE_METHODS, Applied, Drive, Engine, Point
 from bezstab.errors import InputError
 from bezstab.goals import SETTLING, UP_TO_LONGEST, Goal
-from bezstab.mechanism import Scene, TurningNormals
+from bezstab.mechanism import Mechanism, Scene, TurningNormals, compiled_mechanism
 from bezstab.methods import Method, check_one_step, lookup
 from bezstab.questions.chains import USUAL_CHAIN, SweptConstraints, check_sweeps, constraints_of, constraints_of_chain
-from bezstab.questions.motions import ReferenceMotion, check_speed, motion_of, turn_too_far, turning_of
+from bezstab.questions.motions import (
+    ReferenceMotion,
+    check_speed,
+    motion_of,
+    scene_at_speed,
+    turn_too_far,
+    turning_of,
+)
 from bezstab.stability import OMEGA_H, choose, describe_point, follows_motion, verdict
 from bezstab.units import check_step, feedback_gains, from_dimensionless, to_dimensionless
 from bezstab.words import SLOWLY
@@ -76,6 +83,7 @@ class Question:
     omega_h: Fraction | None = None
     scene: str | Scene | None = None
     speed: Fraction = Fraction(1)
+    duration: Fraction | None = None
     spread: float = 0.1
     settle: Fraction | None = None
     equal: bool = False
@@ -95,6 +103,7 @@ class Question:
             if self.h is None and self.omega and all(map(follows_motion, self.methods)):
                 object.__setattr__(self, "h", OMEGA_H / self.omega)
         check_speed(self.scene, self.speed)
+        self._check_duration()
         check_sweeps(self.chain, self.mass_ratio, self.iterations, self.engine, self.scene, self.speed)
         object.__setattr__(self, "methods", methods_for(self.methods, self.engine, self.drive))
         if self.steps:
@@ -102,6 +111,15 @@ class Question:
                 check_one_step(method)
         if self.goal == "accurate" and self.settle is None:
             self.check_motion()
+
+    def _check_duration(self) -> None:
+        """Raise InputError for a time without a scene to run, or less than a step."""
+        if self.duration is None:
+            return
+        if self.scene is None:
+            raise InputError("--time needs --scene: it is how long that is run")
+        if self.h and self.duration < self.h:
+            raise InputError(f"--time {float(self.duration):g} s: expected at least one step of {float(self.h):g} s")
 
     def _check_given(self) -> None:
         """Raise InputError unless a point is given in one way, with the step that this way needs."""
@@ -224,6 +242,11 @@ class Question:
         found = turn_too_far({self.speed: self.turning}, self.scene, self.h)
         _ = self.motion
         return found
+
+    @cached_property
+    def mechanism(self) -> Mechanism | None:
+        """The mechanism of the scene, as fast as it is asked about; None without a scene."""
+        return None if self.scene is None else compiled_mechanism(scene_at_speed(self.scene, self.speed))
 
     @cached_property
     def turning(self) -> TurningNormals | None:

@@ -11,6 +11,7 @@ from typing import Literal
 
 import numpy as np
 
+from bezstab.engines import Point
 from bezstab.errors import InputError
 from bezstab.mechanism import DURATION, Mechanism, Simulation, simulated
 from bezstab.methods import Method, stage_torque
@@ -73,9 +74,7 @@ def run_time(mechanism: Mechanism, method: Method, h: float) -> float:
     return given if given != DURATION else max(min(USUAL_TIME, MOST_STEPS * whole_step), whole_step)
 
 
-def scene_run(
-    mechanism: Mechanism, method: Method, h: Fraction, point: tuple[float, float], time: float | None = None
-) -> SceneRun:
+def scene_run(mechanism: Mechanism, method: Method, h: Fraction, point: Point, time: float | None = None) -> SceneRun:
     """Return what a run of `time` (s) shows, with steps of h (s) at a point (alpha_hat, beta_hat).
 
     InputError for a time that is no number of steps, and for a scene in which nothing moves.

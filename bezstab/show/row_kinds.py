@@ -338,6 +338,28 @@ MOVING = (
         null="where it diverges at rest, or where nothing turns",
     ),
 )
+# what --scene adds: a run of it
+SCENE_RUN = (
+    number("run_seconds", "How long the scene was run", "run (s)", unit="s", path="duration"),
+    number("run_c_max", "Largest |c| of that run", "|c| in the run", ".1e", unit="m or rad", path="c_max"),
+    number(
+        "run_gained",
+        "What its energy gained beside the work of drivers and forces, as a share of the largest kinetic energy",
+        "energy gained",
+        ".2e",
+        path="gained",
+    ),
+    number(
+        "run_breakdown",
+        "When it breaks down if the energy goes on growing",
+        "breaks down (s)",
+        ".3g",
+        unit="s",
+        null="where that is not foretold",
+        path="breakdown",
+    ),
+    text("run_failure", "Why the run of the scene ended early", null="if it did not", path="failure").hidden,
+)
 # what `region --accuracy` adds: the two points that its figure marks
 ACCURACY = (
     OMEGA_H,
@@ -573,6 +595,7 @@ POLES = RowKind(
     ),
     added=(
         *MOVING,
+        *SCENE_RUN,
         APPLIED,
         EXCLUDES.hidden,
         SWEEPS,
@@ -839,7 +862,7 @@ CHOICES = RowKind(
         TIMES_LEAST_VELOCITY,
         SENTENCE,
     ),
-    added=(*MOVING, *VARYING, SWEEPS, *SWEPT_OVER, *DRIVE, ENGINE_H_LIMIT, SETTING),
+    added=(*MOVING, *SCENE_RUN, *VARYING, SWEEPS, *SWEPT_OVER, *DRIVE, ENGINE_H_LIMIT, SETTING),
     sentence=IN_WORDS,
 )
 # printed by `check`: a choice with its role

@@ -32,6 +32,7 @@ from bezstab.show.row_kinds import (
     POLE,
     POLES,
     REGIONS,
+    SCENE_RUN,
     SETTING,
     SWEEPS,
     SWEPT_OVER,
@@ -250,7 +251,8 @@ def _added_cells(answer: Answer, *of_engine: Field) -> dict[str, Value]:
             added |= cells((APPLIED, EXCLUDES), answer if given else None)
         swept_over = SWEPT_OVER if answer.swept else SWEPT_OVER[:1]
         added |= cells((SWEEPS, *swept_over, *of_engine), answer)
-    for fields, found in ((DRIVE, answer.gains), (MOVING, answer.moving), (VARYING, answer.varying)):
+    parts = ((DRIVE, answer.gains), (MOVING, answer.moving), (SCENE_RUN, answer.run), (VARYING, answer.varying))
+    for fields, found in parts:
         if found:
             added |= cells(fields, found, {"shown_by": growing_run(answer)})
     return added

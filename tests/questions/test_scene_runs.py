@@ -14,7 +14,7 @@ from tests.mechanism.test_scenes import pendulum
 
 def run_of(scene: str, name: str, h: str, alpha: float, beta: float, time: float | None = None) -> SceneRun:
     step = Fraction(h)
-    point = (2 * alpha * float(step), (beta * float(step)) ** 2)
+    point = (2 * Fraction(alpha) * step, (Fraction(beta) * step) ** 2)
     return scene_run(compiled_mechanism(load_scene(scene)), lookup(name), step, point, time)
 
 
@@ -68,7 +68,7 @@ def test_a_scene_in_which_nothing_moves_is_refused() -> None:
     still = {"position": {"bob.x": 1.0, "bob.y": 0.0}, "velocity": {"bob.y": 0.0}}
     at_rest = parse_scene(pendulum(gravity=[0, 0], initial=still))
     with pytest.raises(InputError, match="nothing moves within"):
-        scene_run(compiled_mechanism(at_rest), lookup("RK4"), Fraction(1, 100), (0.2, 0.01), 0.1)
+        scene_run(compiled_mechanism(at_rest), lookup("RK4"), Fraction(1, 100), (Fraction(1, 5), Fraction(1, 100)), 0.1)
 
 
 def test_the_gain_is_that_of_simulate() -> None:
