@@ -29,7 +29,7 @@ def _forget_what_failed() -> Iterator[None]:
 
 def test_without_an_alternative_check_still_answers(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(stability.choices, "region", failing)
-    for alpha, status, said in (("1/2", 0, "Safe."), ("5", 1, "Not safe.")):
+    for alpha, status, said in (("1/2", 0, "α̂ = 0.5, β̂ = 0.1: safe."), ("5", 1, "α̂ = 5, β̂ = 0.1: not safe.")):
         result = run(f"check --method B4 --alpha {alpha} --beta 1/10")
         assert (result.exit_code, result.stdout.startswith(said)) == (status, True)
         assert f"nothing instead: {REASON}" in result.stderr
@@ -39,7 +39,7 @@ def test_without_margins_check_still_answers_and_claims_no_limit(monkeypatch: py
     monkeypatch.setattr(choices, "stability_margins", failing)
     result = run("check", POINT, "--h 0.001")
     assert result.exit_code == 0
-    assert result.stdout.startswith("Safe. Each step multiplies the error by")
+    assert "h = 0.001 s): safe. An error falls to a thousandth in 28 ms" in result.stdout
     assert f"not known: {REASON}" in " ".join(result.stdout.split())
     assert not {"unlimited", "without limit"} & set(result.stdout.split("  "))
     given = rows("check", POINT)[0]
