@@ -99,13 +99,15 @@ def _condition(table: Sequence[Sequence[mp.mpf]], mu: mp.mpc, z: mp.mpc) -> mp.m
 def different_roots(polynomial: Sequence[mp.mpf], starts: Sequence[mp.mpc], count: int) -> list[mp.mpc]:
     """Return the different roots to which Newton's method leads from the starts; NumericalError if fewer than `count`.
 
-    The polynomial's coefficients stand in descending powers. A start that is too far away leads nowhere.
+    The polynomial's coefficients stand in descending powers. A start that is too far away leads nowhere. Roots that are
+    found already are divided out (Maehly 1954): of two that nearly meet both starts may lead to one.
     """
     roots: list[mp.mpc] = []
     for start in starts:
         z = start
         for _ in range(DIGITS * 4):  # quadratic, but linear on the way out of a cluster
             value, slope = mp.polyval(polynomial, z, derivative=True)
+            slope -= value * sum(1 / (z - other) for other in roots if z != other)
             step = value / (slope or mp.mpc(1, 1))  # a start on a saddle is moved off it
             z -= step
             if abs(step) <= mp.mpf(10) ** (10 - DIGITS) * abs(z):
