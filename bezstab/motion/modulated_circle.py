@@ -41,6 +41,9 @@ from bezstab.read_only import ReadOnlyArrays
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
+MODULATION = 0.3
+"""Of a motion's rate: by so much a crank's varies that drives rods, to either side of its mean."""
+
 IMAGINARY_STEP = 1e-30
 """Of complex steps: its square is far below rounding, so that slopes lose no digits."""
 
@@ -73,7 +76,7 @@ class MotionEnergy(ReadOnlyArrays):
     offset: FloatArray
     ripple: ComplexArray
 
-    def growth(self, modulation: float = 1.0) -> FloatArray:
+    def growth(self, modulation: float = MODULATION) -> FloatArray:
         """Return the growth of energy per radian, as a share of it, of a motion whose rate varies by that share."""
         return self.rotation + self.modulation * modulation**2
 

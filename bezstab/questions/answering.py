@@ -18,7 +18,8 @@ from typing import Literal, cast
 from bezstab.engines import DRIVE_METHODS, READ_BACK, Curve, Engine
 from bezstab.errors import InputError, NumericalError
 from bezstab.goals import UP_TO_LONGEST, Goal
-from bezstab.methods import Method
+from bezstab.methods import Method, stage_torque
+from bezstab.motion import motion_energy
 from bezstab.questions.chains import ALONE, SweptAnswer
 from bezstab.questions.question import Question, usual_goal
 from bezstab.questions.scene_runs import MOST_GAINED, SceneRun, scene_run
@@ -62,6 +63,9 @@ SHORTER = (2, 4)
 
 KEPT = 5e-5
 """Of the largest kinetic energy: less is no change that anybody sees."""
+
+MOVED = 0.01
+"""Of the energy, in a second: what a motion may gain or lose without a word."""
 
 SLOWER = 2
 """Slower decay takes this many times as long to settle."""
@@ -183,6 +187,19 @@ class Answer(Choice):
         if self.question.turning is None or self.h is None:
             return None
         return moving_pole(self.method, self.question.turning.kappa, self.h, self.alpha_hat, self.beta_hat)
+
+    @cached_property
+    def energy_rate(self) -> tuple[float, float] | None:
+        """What a second adds to the energy of a motion of rate --omega, and its part by rotation alone: shares of it.
+
+        Of a mass on a circle whose rate varies by MODULATION; None without that rate, and where it is not known.
+        """
+        omega, h = self.question.omega, self.h
+        if omega is None or h is None or self.question.scene or self.verdict != "converges" or self.swept_over:
+            return None
+        found = motion_energy(self.method, self.alpha_hat, self.beta_hat, float(omega) * h)
+        growth, rotation = float(found.growth()), float(found.rotation)
+        return (float(omega) * growth, float(omega) * rotation) if math.isfinite(growth) else None
 
     @cached_property
     def varying(self) -> VaryingSteps | None:
@@ -419,7 +436,7 @@ def _errors(answer: Answer) -> list[str]:
     at_rest = _change(answer, abs(answer.pole), answer.verdict)
     if answer.moving:
         return [f"at rest {at_rest}", _in_motion(answer, answer.moving), *_as_it_ran(answer)]
-    return [f"with constant steps {at_rest}" if answer.varying else at_rest]
+    return [f"with constant steps {at_rest}" if answer.varying else at_rest, *_on_a_motion(answer)]
 
 
 def _in_motion(answer: Answer, moving: MovingPole) -> str:
@@ -433,6 +450,19 @@ def _in_motion(answer: Answer, moving: MovingPole) -> str:
     bound = _finite(moving.at_most)
     how = "two poles nearly meet there" if bound is None else f"a step may multiply the error by {bound:.3g}"
     return f"in motion this may diverge: {how}"
+
+
+def _on_a_motion(answer: Answer) -> list[str]:
+    """Return what a second does to the energy of a motion whose rate was given; nothing if that is a hundredth."""
+    if answer.energy_rate is None or abs(answer.energy_rate[0]) < MOVED:
+        return []
+    rate, by_rotation = answer.energy_rate
+    omega = float(answer.question.omega or 0)
+    what = "gains" if rate > 0 else "loses"
+    said = f"a motion of {omega:.3g} rad/s {what} {100 * abs(rate):.2g} % of its energy a second"
+    if by_rotation > MOVED and stage_torque(answer.method).power == 2:  # the torque grows as the cube of the rate
+        said += f" and breaks down after about {seconds_words(1 / by_rotation)}: take heun or RK4, or gentler feedback"
+    return [said]
 
 
 def _as_it_ran(answer: Answer) -> list[str]:

@@ -108,9 +108,6 @@ def _holding(shown: Extent, point: BestPoint | Choice | None) -> Extent:
     return (left, max(right, BEYOND * point.alpha_hat)), (low, max(high, BEYOND * point.beta_hat))
 
 
-MODULATION = 0.3
-"""Of a motion's rate: by so much a crank's varies that drives rods, to either side of its mean."""
-
 Window = tuple[Fraction, Fraction]
 
 
@@ -334,7 +331,7 @@ class MapAnswer:
         """Return the growth of energy in a revolution, a share of it, of a motion whose rate varies by MODULATION."""
         assert self.question.motion
         found = motion_energy(self.method, alpha_hat, beta_hat, float(self.question.motion.omega_h))
-        return 2 * np.pi * found.growth(MODULATION)
+        return 2 * np.pi * found.growth()
 
     @property
     def drawn_levels(self) -> list[float]:

@@ -338,6 +338,15 @@ MOVING = (
         null="where it diverges at rest, or where nothing turns",
     ),
 )
+# what --omega adds without a scene
+ENERGY_RATE = number(
+    "energy_rate",
+    "What a second adds to the energy of a motion of that rate, which varies by 30 %, as a share of it",
+    "energy gained a second",
+    ".2e",
+    null="without --omega, or where an error grows",
+    path="energy_rate.0",
+)
 # what --scene adds: a run of it
 SCENE_RUN = (
     number("run_seconds", "How long the scene was run", "run (s)", unit="s", path="duration"),
@@ -860,6 +869,7 @@ CHOICES = RowKind(
         ORDER_LEFT,
         TIMES_LEAST,
         TIMES_LEAST_VELOCITY,
+        ENERGY_RATE.hidden,
         SENTENCE,
     ),
     added=(*MOVING, *SCENE_RUN, *VARYING, SWEEPS, *SWEPT_OVER, *DRIVE, ENGINE_H_LIMIT, SETTING),

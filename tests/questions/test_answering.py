@@ -8,10 +8,13 @@ from typing import Any
 
 import pytest
 
-from bezstab.engines import ENGINES, Drive
+from bezstab.api import check
+from bezstab.engines import ENGINES, Drive, Point
 from bezstab.errors import InputError
-from bezstab.methods import lookup
-from bezstab.questions import Answer, LargestStep, Question, answers
+from bezstab.mechanism import Mechanism
+from bezstab.methods import Method, lookup
+from bezstab.questions import Answer, LargestStep, Question, answering, answers
+from bezstab.questions.scene_runs import SceneRun
 from bezstab.rationals import exact
 from bezstab.stability import choose, describe_point, feedback_cost
 
@@ -189,26 +192,31 @@ def test_the_rate_of_a_motion_alone_gives_alpha_and_beta_and_how_large_the_step_
         Question(methods=SYM, goal="accurate", omega=Fraction(10))
 
 
-UNSAFE_CHOICES: dict[str, tuple[dict[str, Any], str]] = {
-    "the step": ({"methods": SYM, "goal": "accurate", "h": Fraction("0.01"), "scene": "four_bar"}, "--h 0.005"),
-    "the goal": (
-        {"methods": (lookup("AB4"),), "goal": "fastest", "h": Fraction("0.01"), "scene": "driven_four_bar"},
-        "--goal robust",
-    ),
-}
-
-
 @pytest.mark.slow
-@pytest.mark.parametrize("what", UNSAFE_CHOICES)
-def test_a_choice_that_is_not_safe_says_with_what_it_is(what: str) -> None:
-    asked, option = UNSAFE_CHOICES[what]
-    chosen = first(Question(**asked))
-    assert (chosen.safe, chosen.safe_with) == (False, option)
-    name, value = option.removeprefix("--").split()
-    taken = first(Question(**{**asked, name: Fraction(value) if name == "h" else value}))
+def test_a_choice_that_is_not_safe_says_with_which_step_it_is() -> None:
+    asked: dict[str, Any] = {"methods": SYM, "goal": "accurate", "scene": "four_bar"}
+    chosen = first(Question(**asked, h=Fraction("0.01")))
+    assert not chosen.safe
+    assert chosen.safe_with
+    option, value = chosen.safe_with.split()
+    assert option == "--h"
+    taken = first(Question(**asked, h=Fraction(value)))
     assert (taken.safe, taken.safe_with) == (True, None)
-    robust = first(Question(**{**asked, "goal": "robust"}))
-    assert robust.safe is (name == "goal")
+
+
+def test_a_choice_whose_run_fails_says_that_the_goal_robust_is_safe(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The run of the fastest point is made to gain energy; that of robust is as it is."""
+    question = Question(methods=SYM, goal="fastest", h=Fraction("0.002"), scene="driven_four_bar")
+    fastest, run = choose(lookup("SYM"), "fastest", margins=False), answering.scene_run
+
+    def gains_there(mechanism: Mechanism, method: Method, h: Fraction, point: Point, time: float | None) -> SceneRun:
+        found = run(mechanism, method, h, point, time)
+        there = abs(float(point[0]) - fastest.alpha_hat) < 0.1
+        return replace(found, gained=1.0) if there else found
+
+    monkeypatch.setattr(answering, "scene_run", gains_there)
+    chosen = first(question)
+    assert (chosen.safe, chosen.safe_with) == (False, "--goal robust")
 
 
 def test_faster_decay_costs_and_slower_decay_gains() -> None:
@@ -228,3 +236,23 @@ def test_the_largest_step_of_alpha_and_beta_ends_where_they_do() -> None:
     h = Fraction(found.h_limit)
     assert 4 * 60 * h + 55**2 * h**2 == pytest.approx(4)  # 2 alpha_hat + beta_hat = 4
     assert not LargestStep(SYM[0], Fraction(0), Fraction(1)).safe
+
+
+def test_what_a_motion_gains_is_said_where_its_rate_is_given() -> None:
+    """RK2 at (2, 1) makes a rotation break down after 1 / (2 g h omega^2), g = 1/4: 2 s; runs did after 2.08 s."""
+    pumped = check("RK2", alpha=100, beta=100, h=Fraction(1, 100), omega=10)
+    assert pumped.energy_rate is not None
+    assert 1 / pumped.energy_rate[1] == pytest.approx(2.0, rel=0.02)
+    assert "breaks down after about 2.0" in pumped.sentence
+    assert check("RK2", alpha=100, beta=100, h=Fraction(1, 100)).energy_rate is None
+    gentle = check("heun", alpha=20, beta=20, h=Fraction(1, 1000), omega=10)
+    assert "gains" not in gentle.sentence
+
+
+@pytest.mark.parametrize(("name", "h", "alpha", "safe"), [("RK2", "0.01", 100, False), ("heun", "0.01", 100, True)])
+def test_a_scene_that_the_feedback_pumps_is_not_safe(name: str, h: str, alpha: float, safe: bool) -> None:
+    answer = check(name, alpha=alpha, beta=alpha, h=Fraction(h), scene="pendulum")
+    assert answer.verdict == "converges"
+    assert answer.safe is safe
+    assert "in a run of 10 s: |c| at most" in answer.sentence.lower()
+    assert ("breaks down after about 27.8 s" in answer.sentence) is not safe

@@ -11,7 +11,6 @@ from matplotlib.contour import QuadContourSet
 from bezstab.methods import lookup
 from bezstab.motion import motion_energy
 from bezstab.questions import MapAnswer, MapQuestion
-from bezstab.questions.regions import MODULATION
 from bezstab.show.map_figures import error_front_figure, map_figure
 from bezstab.stability import FrontPoint, combined_error, spectral_radius
 from tests.show.drawn import lines_of
@@ -70,7 +69,7 @@ def test_energy_is_kept_on_the_line_that_says_so_and_symplectic_euler_brakes_ins
     (path,) = kept.get_paths()
     alpha_hat, beta_hat = np.asarray(path.vertices).T
     assert beta_hat[alpha_hat < 0.009] == pytest.approx((1e-4 - alpha_hat**2)[alpha_hat < 0.009], rel=0.1)
-    inside, outside = (motion_energy(lookup("SYM"), 0.005, b, 0.01).growth(MODULATION) for b in (4e-5, 3e-4))
+    inside, outside = (motion_energy(lookup("SYM"), 0.005, b, 0.01).growth() for b in (4e-5, 3e-4))
     assert inside < 0 < outside
 
 
