@@ -21,6 +21,9 @@ WORDS = {
 }
 """What is said of each signal that ends a run."""
 
+FROM_TERMINALS = WORDS.keys() - {signal.SIGTERM}
+"""The signals that a terminal sends to every process of a command."""
+
 STANDARD_ERROR = 2  # the descriptor: the stream may be in the middle of a write that the signal has interrupted
 
 _actions: list[Callable[[], object]] = []
@@ -60,14 +63,14 @@ def if_stopped(action: Callable[[], object]) -> Iterator[None]:
 def signals_deferred() -> Iterator[None]:
     """Let no signal end the run inside this context: it is taken up at the end.
 
-    A process that is started inside has the signals of WORDS blocked: Ctrl-C, which a terminal sends to every process
-    of a command, does not reach it.
+    A process that is started inside has the signals of FROM_TERMINALS blocked: what a terminal sends to every process
+    of a command does not reach it.
     """
     came: list[int] = []
     _deferred.append(came)
     can_block = hasattr(signal, "pthread_sigmask")  # not on Windows
     if can_block:
-        mask_before = signal.pthread_sigmask(signal.SIG_BLOCK, set(WORDS))
+        mask_before = signal.pthread_sigmask(signal.SIG_BLOCK, FROM_TERMINALS)
     try:
         yield
     finally:

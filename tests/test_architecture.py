@@ -68,7 +68,8 @@ APPOINTED = {
     },
     "click": {path.relative_to(PACKAGE).as_posix() for path in (PACKAGE / "cli").glob("*.py")} | {"paper/command.py"},
     "mujoco": {"evidence/mujoco_models.py"},
-    "distributed": {"evidence/chunks.py"},
+    "distributed": {"evidence/chunks.py", "evidence/parallel.py"},
+    "joblib": {"evidence/parallel.py"},
     "numba": {"compiling.py"},
     "mpmath": {
         *("evidence/extremes.py", "evidence/root_digits.py"),
@@ -136,7 +137,9 @@ def test_every_library_that_is_imported_is_declared() -> None:
     extras = project["optional-dependencies"]
     declared = {
         re.split(r"\W", requirement)[0]
-        for requirement in [*project["dependencies"], *extras["mujoco"], *extras["dask"], *extras["fast"]]
+        for requirement in sum(
+            (extras[name] for name in ("mujoco", "parallel", "dask", "fast")), project["dependencies"]
+        )
     }
     imported = {module.split(".")[0] for path in FILES for module, _ in imports(path, with_types=False)}
     assert imported - set(sys.stdlib_module_names) - {"bezstab", "__future__"} <= declared
