@@ -338,7 +338,7 @@ GROUPS: Mapping[str, tuple[str | Option | Rule, ...]] = {
     "files": ("picture", "table"),
     "shared_out": (  # runs that take long, and the table that comes of them
         "compiled",
-        option("--workers", click.IntRange(1, 1000), "Number of processes [one for each core]."),
+        option("--workers", click.IntRange(1, 1000), "Number of processes [one for each core; 1 without joblib]."),
         option("--scheduler", str, "Address of a Dask scheduler, tcp://host:port, in place of --workers."),
         flag("--resume", "Continue a run with the same options that was stopped."),
         "picture",

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO, TypeVar
 
 import click
 
+from bezstab.errors import InputError
 from bezstab.files import output_directory, write_whole
 from bezstab.show import (
     Format,
@@ -193,17 +194,23 @@ def results_of_chunks(
     """Give the results of independent chunks, in their order; processes or a cluster's workers compute them.
 
     Finished chunks are kept in `path` + .chunks, so that a run of the same `job` can resume; once the results are used
-    they are deleted. A damaged chunk is computed again, and a message says so. InputError while another run uses them.
+    they are deleted. Without joblib this process computes them, and none are kept.
     """
-    from bezstab.evidence import chunk_store, completed_chunks, worker_pool
+    from bezstab.evidence import KeptResults, completed_chunks, joblib_is_installed
 
-    kept_in = path.with_name(f"{path.name}.chunks")
-    kept = f"bezstab: what is finished lies in {kept_in}: --resume goes on from there"
-    with worker_pool(work.workers, work.scheduler) as pool, chunk_store(kept_in, job, work.resume) as store:
-        with if_stopped(partial(say, kept)):
-            arriving = completed_chunks(
-                compute, chunks, pool, store, lambda file: say(f"bezstab: {file} is damaged: computed again")
+    if not joblib_is_installed():
+        if work.resume or work.scheduler or (work.workers or 1) > 1:
+            raise InputError(
+                "--workers, --scheduler and --resume need an optional package: pip install 'bezstab[parallel]'"
             )
-            results = dict(progress(arriving, path.name, len(chunks)))
-            yield [results[number] for number in range(len(chunks))]
-        store.discard()
+        yield [compute(chunk) for chunk in progress(chunks, path.name)]
+        return
+    kept = KeptResults(path.with_name(f"{path.name}.chunks"), job)
+    if not work.resume:
+        kept.discard()
+    output_directory(kept.folder)
+    with if_stopped(partial(say, f"bezstab: what is finished lies in {kept.folder}: --resume goes on from there")):
+        arriving = completed_chunks(compute, chunks, kept, work.workers, work.scheduler)
+        results = dict(progress(arriving, path.name, len(chunks)))
+        yield [results[number] for number in range(len(chunks))]
+    kept.discard()

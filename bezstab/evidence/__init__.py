@@ -22,7 +22,6 @@ if TYPE_CHECKING:
         reference_run,
         swept_runs,
     )
-    from bezstab.evidence.chunks import Arrays, chunk_store, completed_chunks, worker_pool
     from bezstab.evidence.extremes import Check, extreme_checks
     from bezstab.evidence.forced_runs import SHARES, HalvedStep, forced_sentence, halved_steps
     from bezstab.evidence.linear_prediction import Fit
@@ -47,6 +46,7 @@ if TYPE_CHECKING:
     from bezstab.evidence.mujoco_lint import linted_model
     from bezstab.evidence.mujoco_models import model_data, read_mujoco_model
     from bezstab.evidence.mujoco_witness import TIMES, Outcome, mujoco_witnesses, witness_count
+    from bezstab.evidence.parallel import Arrays, KeptResults, completed_chunks, joblib_is_installed
     from bezstab.evidence.probed_poles import (
         Likeness,
         LikePoint,

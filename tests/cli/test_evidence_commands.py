@@ -62,6 +62,29 @@ def test_tradeoff_writes_a_table_without_times_and_two_figures_and_the_same_agai
     assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == written
 
 
+MAP = "verify --scene pendulum --method SYM --map 3 --figure none"
+
+
+def test_without_joblib_one_process_draws_a_map(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    assert run(MAP, "--workers 1").exit_code == 0
+    (table,) = tmp_path.iterdir()
+    written = table.read_bytes()
+    table.unlink()
+    monkeypatch.setitem(sys.modules, "joblib", None)
+    assert run(MAP).exit_code == 0
+    assert [path.read_bytes() for path in tmp_path.iterdir()] == [written]
+
+
+@pytest.mark.parametrize("more", ["--workers 2", "--scheduler tcp://127.0.0.1:1", "--resume"])
+def test_without_joblib_what_needs_it_is_refused_in_a_line(more: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "joblib", None)
+    refused = run(MAP, more)
+    assert refused.exit_code == 2
+    assert refused.stderr == (
+        "bezstab: --workers, --scheduler and --resume need an optional package: pip install 'bezstab[parallel]'\n"
+    )
+
+
 @pytest.mark.parametrize("command", ["simulate", "paper"])
 def test_without_numba_compiled_runs_are_refused_in_a_line(command: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "numba", None)
