@@ -30,10 +30,3 @@ def compiler() -> Any:
     except ImportError:
         raise InputError("compiled runs need an optional package: pip install 'bezstab[fast]'") from None
     return numba
-
-
-def cores() -> int:
-    """Return the number of cores that this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0)) or 1
-    return os.cpu_count() or 1

@@ -68,7 +68,7 @@ APPOINTED = {
     },
     "click": {path.relative_to(PACKAGE).as_posix() for path in (PACKAGE / "cli").glob("*.py")} | {"paper/command.py"},
     "mujoco": {"evidence/mujoco_models.py"},
-    "distributed": {"evidence/chunks.py", "evidence/parallel.py"},
+    "distributed": {"evidence/parallel.py"},
     "joblib": {"evidence/parallel.py"},
     "numba": {"compiling.py"},
     "mpmath": {
