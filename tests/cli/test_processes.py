@@ -63,6 +63,16 @@ def test_a_killed_run_leaves_no_workers(tmp_path: Path) -> None:
         wait_until(lambda: not group_members(running.pid))
 
 
+@pytest.mark.slow
+def test_two_runs_at_once_in_the_same_place_both_write_the_whole(whole: bytes, tmp_path: Path) -> None:
+    with started(*SMALL, cwd=tmp_path) as first, started(*SMALL, cwd=tmp_path) as second:
+        for running in (first, second):
+            _, errors = running.communicate(timeout=120)
+            assert (running.returncode, only_line(errors)) == (0, f"wrote {NAME}.csv")
+    assert files_below(tmp_path) == [f"{NAME}.csv"]
+    assert (tmp_path / f"{NAME}.csv").read_bytes() == whole
+
+
 # a process whose files are limited must not keep compiled modules: Python leaves them cut short, for all others to read
 COMPILES_FOR_ITSELF = {"PYTHONDONTWRITEBYTECODE": "1"}
 
