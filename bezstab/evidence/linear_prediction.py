@@ -198,11 +198,23 @@ def _formal_error(before: FloatArray, left_over: FloatArray, coefficients: Float
 
 def _poles_with_amplitude(samples: FloatArray, z: ComplexArray) -> tuple[complex, ...]:
     """Return those of the roots z that carry an amplitude in the samples, largest first, of the upper half plane."""
-    k = np.arange(len(samples))
-    growth = np.abs(z).max()
-    # Powers and samples are both divided by growth^k, so that neither overflows; amplitudes are the same.
-    powers = (z / growth) ** k[:, np.newaxis]
-    scaled = samples * np.exp(-k * np.log(growth))
-    amplitudes = np.abs(np.linalg.lstsq(powers, scaled, rcond=None)[0])
+    amplitudes = np.abs(fitted_powers(samples, z, np.log(np.abs(z).max()) * np.arange(len(samples)))[0])
     carrying = z[(amplitudes > NEGLIGIBLE * amplitudes.max()) & (z.imag >= 0)]
     return tuple(sorted(carrying.tolist(), key=abs, reverse=True))
+
+
+def fitted_powers(samples: FloatArray, z: ComplexArray, log_sizes: FloatArray) -> tuple[ComplexArray, float]:
+    """Return the amplitudes with which powers of z leave least of the samples over, and how much, relative.
+
+    `samples` have the shape (samples, *responses), amplitudes (poles, *responses). Each sample, and the powers beside
+    it, count in units of a size, whose logarithm is given, (samples,): so that neither overflows and none is hidden by
+    others. Not a number where powers leave float64 even so.
+    """
+    k, largest = np.arange(len(samples))[:, np.newaxis], np.abs(z).max()
+    with np.errstate(all="ignore"):
+        powers = (z / largest) ** k * np.exp(k * np.log(largest) - log_sizes[:, np.newaxis])
+        scaled = (samples.T * np.exp(-log_sizes)).T
+    if not (np.isfinite(powers).all() and np.isfinite(scaled).all()):
+        return np.full((len(z), *samples.shape[1:]), np.nan), np.nan
+    amplitudes = np.linalg.lstsq(powers, scaled, rcond=None)[0]
+    return amplitudes, float(np.linalg.norm(powers @ amplitudes - scaled) / np.linalg.norm(scaled))

@@ -30,7 +30,7 @@ from numpy.typing import ArrayLike
 
 from bezstab.errors import InputError, NumericalError
 from bezstab.evidence.kicks import GROWN
-from bezstab.evidence.linear_prediction import NEGLIGIBLE, SAMPLES, SPREAD, Fit, fit_dominant_pole
+from bezstab.evidence.linear_prediction import NEGLIGIBLE, SAMPLES, SPREAD, Fit, fit_dominant_pole, fitted_powers
 from bezstab.evidence.logs import decimal_place
 from bezstab.evidence.measured_poles import CLOSE
 from bezstab.evidence.noisy_prediction import ITERATIONS, RESOLVED, VISIBLE, NoisyFit, fit_in_noise
@@ -305,14 +305,10 @@ def _follows(fit: Fit, samples: FloatArray) -> bool:
     window = samples[fit.start : fit.start + fit.samples]
     window = window[:, np.isfinite(window).all(axis=0)]
     around = np.pad(np.abs(window).max(axis=1), ORDER)
-    near = sliding_window_view(around, 2 * ORDER + 1).max(axis=1)[:, np.newaxis]
-    z = np.array([*fit.poles, *np.conjugate(fit.poles)])
-    with np.errstate(all="ignore"):
-        powers, scaled = z ** np.arange(fit.samples)[:, np.newaxis] / near, window / near
-    if not np.isfinite(powers).all():
-        return False  # they leave float64, which the samples do not, or the samples are zero for a while
-    amplitudes = np.linalg.lstsq(powers, scaled, rcond=None)[0]
-    return bool(np.linalg.norm(powers @ amplitudes - scaled) < LEFT_OVER * np.linalg.norm(scaled))
+    near = sliding_window_view(around, 2 * ORDER + 1).max(axis=1)
+    with np.errstate(divide="ignore"):  # the samples may be zero for a while
+        _, left_over = fitted_powers(window, np.array([*fit.poles, *np.conjugate(fit.poles)]), np.log(near))
+    return left_over < LEFT_OVER
 
 
 def _linear_limits(samples: FloatArray) -> Sequence[float]:
