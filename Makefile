@@ -32,6 +32,7 @@ figures: .venv/installed  ## draw what the README shows, into figures/
 	$(BIN)/bezstab paper -o figures
 	$(BIN)/bezstab chains --engine chipmunk=0.0017970103 --h 1/60 -o figures --format json > /dev/null
 	$(BIN)/bezstab region --method RK4 --accuracy --table none -o figures
+	$(BIN)/bezstab region --method SYM --motion --table none -o figures
 	$(BIN)/bezstab tradeoff --predicted $(BOTH_KINDS) --table none -o figures
 	$(BIN)/bezstab tradeoff --table none -o figures
 	$(BIN)/bezstab $(HELD) $(OF_MILLISECONDS) -o figures
