@@ -280,10 +280,11 @@ def choose(
     named = None if engine is None else engine_named(engine)
     if method is None and pd is not None:
         raise InputError("pd: name one method, such as 'SYM' where the drive is applied explicitly")
+    given = () if method is None else READ["methods"](method, "methods")
     question = _asked(
         questions.Question,
         methods=method,
-        goal=goal or questions.usual_goal(named, pd is not None),
+        goal=goal or questions.usual_goal(named, pd is not None, given),
         settle=settle,
         equal=equal,
         engine=named,

@@ -64,8 +64,9 @@ def choose(goal: Goal | None, equal: str | None, bandwidth: Fraction | None, **t
     can. It allows only points that settle within --settle, or while the motion turns by 14 rad. --omega or --scene say
     how fast the motion is. With most Runge-Kutta methods α and β are multiples of that rate, so it is asked for; then
     --omega needs no --h, and you are told up to which h they are stable. Other methods take ωh = 0.01 unless you say
-    more. Two lines below the answer say what faster decay would cost and what slower decay would
-    gain.
+    more: their α is near that rate, and β as large as leaves --spread to the edge. What the start and each disturbance
+    leave dies with α: for short runs, and where bodies collide, give a shorter --settle or --goal robust, which is the
+    default with --engine. Two lines below the answer say what faster decay would cost and what slower decay would gain.
 
     "within the spread" is the largest |z_p| if α and β are off by --spread. At the goal fastest |z_p| rises steeply as
     soon as α grows; the goal robust keeps away from such points. Some methods are stable however strong the feedback
@@ -88,7 +89,7 @@ def choose(goal: Goal | None, equal: str | None, bandwidth: Fraction | None, **t
     asked_by = "--bandwidth, --settle, --every, --late and --filter"
     if held := held_asked(typed, asked_by, always=settling):
         return _choose_held(held, bandwidth, settle)
-    goal = goal or questions.usual_goal(typed["engine"], drive is not None)
+    goal = goal or questions.usual_goal(typed["engine"], drive is not None, typed["methods"])
     question = asked_of_scene(questions.Question, goal=goal, equal=equal is not None, **typed)
     if question.h is None:
         raise click.MissingParameter(param_hint="'--h'", param_type="option")
@@ -107,7 +108,7 @@ def choose(goal: Goal | None, equal: str | None, bandwidth: Fraction | None, **t
 
 
 def _trades(chosen: "Sequence[questions.Answer]") -> "Iterator[str]":
-    """Yield for each choice what faster decay would cost, and what slower decay would gain."""
+    """Yield for each choice how long disturbances are seen, what faster decay would cost, and slower gain."""
     for answer in chosen:
         name = f"{answer.method.name}: " if len(chosen) > 1 else ""
         yield "\n".join(f"{name}{line}" for line in trade_words(answer))

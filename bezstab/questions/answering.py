@@ -317,7 +317,7 @@ class Answer(Choice):
 
         InputError where nothing is stable or the engine cannot express it, NumericalError where it cannot be found.
         """
-        goal = usual_goal(self.question.engine, self.question.drive is not None)
+        goal = usual_goal(self.question.engine, self.question.drive is not None, (self.method,))
         question = replace(self.question, chain=self.question.chain_to_choose_for)
         if goal == "accurate":
             replace(question, methods=(self.method,)).check_motion()

@@ -312,10 +312,14 @@ def methods_for(methods: tuple[Method, ...], engine: Engine | None, drive: Drive
     return methods
 
 
-def usual_goal(engine: Engine | None, with_drive: bool) -> Goal:
-    """Return the goal for a question that names none: robust with a drive or an engine's curve, else accurate.
+def usual_goal(engine: Engine | None, with_drive: bool, methods: tuple[Method, ...] = ()) -> Goal:
+    """Return the goal for a question that names none: robust with a drive or in an engine, else accurate.
 
-    On an engine's curve alpha and beta depend on each other, so that no gentle feedback can be found there. Nothing
-    feeds the acceleration of a drive's target forward, so that the error of a weak drive is not forced by the method.
+    In an engine bodies collide, and the feedback that forces least lets what a collision leaves die slowly; but where
+    that feedback follows the motion, strong feedback forces far too much. On an engine's curve alpha and beta depend on
+    each other, so that no gentle feedback can be found there. Nothing feeds the acceleration of a drive's target
+    forward, so that the error of a weak drive is not forced by the method. InputError as `methods_for`.
     """
-    return "robust" if with_drive or (engine and engine.curve) else "accurate"
+    if with_drive or (engine and engine.curve):
+        return "robust"
+    return "robust" if engine and not all(map(follows_motion, methods_for(methods, engine, None))) else "accurate"

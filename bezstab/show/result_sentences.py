@@ -74,10 +74,15 @@ def _point_words(point: tuple[float, float], h: Fraction | None) -> str:
 
 
 def trade_words(answer: Answer) -> list[str]:
-    """Return what faster decay than a choice's costs, and what slower decay gains, where that is known."""
+    """Return how long what disturbs a choice is seen, what faster decay costs and what slower gains, where known."""
     if answer.cost is None or answer.cost.total_error is None:
         return []
     lines = []
+    if answer.goal == "accurate":
+        lines.append(
+            "The start's own error, and what each disturbance leaves, takes as long to die: if a run is short or often "
+            "disturbed, give a shorter --settle."
+        )
     faster, slower, settle = answer.faster, answer.slower, answer.slower_settle
     if faster is None:
         lines.append("Faster decay: there is none.")

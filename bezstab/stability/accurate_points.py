@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from fractions import Fraction
+from itertools import product
 
 import numpy as np
 
@@ -18,14 +19,14 @@ Within = Callable[[FloatArray, FloatArray, FloatArray | float], BoolArray]
 DECAY = 0.5
 """Of the motion's own rate: in 14 rad of the motion, some two turns, what was there has fallen a thousandfold."""
 
-RATIOS = (0.5, 4.0)
-"""alpha / beta: feedback that is damped less rings, for little that it gains; damped more, beta hardly acts."""
-
 FIRST_GRID = 49
 """Points per axis of the first grid, over two to seven decades: errors change some twofold from one to the next."""
 
 ZOOMS = 17
 """Grids after the first, each half as wide: to 4e-6 of those decades."""
+
+STARTS = 2
+"""Of the first grid's minima: of ABM4 one of strong and one of weak damping force nearly the same."""
 
 SAMPLES = 64
 """Per axis of another grid, which no point may have a lesser error on: by more than BETTER."""
@@ -34,29 +35,36 @@ BETTER = 1e-3
 """Relative: edges of what decays fast enough are met so closely."""
 
 
-def accurate_point(method: Method, extent: Extent, error: Modulus, *, omega_h: Fraction) -> tuple[float, float]:
+def accurate_point(
+    method: Method, extent: Extent, error: Modulus, *, omega_h: Fraction, rate: float
+) -> tuple[float, float]:
     """Return alpha_hat and beta_hat where an error is least: that of `worst_error`, infinite where decay is too slow.
 
-    Looked at is feedback within the extent. Any point of it where all is infinite; NumericalError if another grid has a
-    better point. The test equation is that of methods/steady_errors.py; the goal is this package's.
+    Looked at is feedback within the extent that decays as fast as DECAY or `rate` ask for with small steps, too: no
+    error decays faster than alpha and beta let it. Any point of it where all is infinite; NumericalError if another
+    grid has a better point. The test equation is that of methods/steady_errors.py; the goal is this package's.
     """
     largest = np.array([extent[0][1] / 2, np.sqrt(extent[1][1])])  # alpha h and beta h
-    weakest = min(float(omega_h) * DECAY / RATIOS[1], float(largest.min()))
+    weakest = min(float(omega_h) * DECAY, -np.log(rate) / float(method.step_multiple), float(largest.min()) / 2)
     low = np.log([weakest, weakest])
     high = np.log(largest)
 
     def errors(points: FloatArray) -> FloatArray:
         """Return the error at each of some points, given by the logarithms of alpha h and beta h."""
         alpha_h, beta_h = np.moveaxis(np.exp(points), -1, 0)
-        values = np.full(alpha_h.shape, np.inf)
-        usable = (alpha_h >= RATIOS[0] * beta_h) & (alpha_h <= RATIOS[1] * beta_h)
-        values[usable] = error(2 * alpha_h[usable], beta_h[usable] ** 2)
-        return values
+        return error(2 * alpha_h.ravel(), beta_h.ravel() ** 2).reshape(alpha_h.shape)
 
     axes = list(np.linspace(low, high, FIRST_GRID, axis=1))
-    (best, *_), (least, *_) = lowest_minima(
-        errors, axes, 1, (high - low) / 4, rounds=ZOOMS, patient=False, fold=lambda points: np.clip(points, low, high)
+    places, values = lowest_minima(
+        errors,
+        axes,
+        STARTS,
+        np.broadcast_to((high - low) / 4, (STARTS, 2)),
+        rounds=ZOOMS,
+        patient=False,
+        fold=lambda points: np.clip(points, low, high),
     )
+    best, least = places[np.argmin(values)], values.min()
     sampled = errors(grid_of(list(np.linspace(low, high, SAMPLES, axis=1)))).min()
     if sampled < least * (1 - BETTER):
         raise NumericalError(f"{method.name}: the point chosen forces {float(least):.9g}, another {sampled:.9g}")
@@ -79,10 +87,13 @@ def worst_error(
     spread: float,
 ) -> FloatArray:
     """Return the largest combined error with alpha and beta off by the spread; infinite where |z_p| is above rate."""
-    a, b = off_by(spread, alpha_hat, beta_hat)
     worst = np.full(alpha_hat.shape, np.inf)
-    left = np.flatnonzero(within(a, b, rate).all(axis=0))
-    worst[left] = combined_error(method, a[:, left], b[:, left], omega_h).max(axis=0)
+    left = np.arange(alpha_hat.size)
+    for by_beta, by_alpha in product((1, -1, 0), repeat=2):  # the region's edge may bend inwards
+        off_alpha, off_beta = 1 + spread * by_alpha, 1 + spread * by_beta
+        left = left[within(off_alpha * alpha_hat[left], off_beta**2 * beta_hat[left], rate)]
+    a, b = off_by(spread, alpha_hat[left], beta_hat[left])
+    worst[left] = combined_error(method, a, b, omega_h).max(axis=0)
     return worst
 
 

@@ -118,7 +118,7 @@ def choose(
 ) -> Choice:
     """Return the point that a goal asks for, dimensionless and proven stable; without `margins` in less time.
 
-    accurate: the least error forced on a motion of omega_h rad a step (methods/steady_errors.py), at worst with alpha
+    accurate: the least combined error on a motion of omega_h rad a step (forced_errors.py), at worst with alpha
     and beta off by the spread (a share), among what settles in time; by default errors fall by e^(-1/2) for each rad of
     the motion, or half as fast as with robust where nothing is so fast. fastest: the smallest |z_p|. critical: the
     fastest dominant pole that is double, real and positive, on the way from small parameters on, before another pole
@@ -198,7 +198,7 @@ def _accurate(
 ) -> tuple[float, float] | None:
     """Return the point of the goal accurate among those with |z_p| <= rate within the spread; None if there is none."""
     error = partial(worst_error, method, within, rate, omega_h=omega_h, spread=spread)
-    point = least_along(curve, error) if curve else accurate_point(method, box, error, omega_h=omega_h)
+    point = least_along(curve, error) if curve else accurate_point(method, box, error, omega_h=omega_h, rate=rate)
     return None if np.isinf(error(*np.reshape(point, (2, 1)))).any() else point
 
 

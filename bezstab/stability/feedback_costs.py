@@ -20,6 +20,9 @@ LEAST_DAMPING = DECAY / (1 - USUAL_SPREAD)
 HARDLY_MORE = 1.1
 """Times that: at OMEGA_H the built-in methods that take the least have 1.001, the next (AB8) has 2.7."""
 
+HARDLY_STIFFER = 2.0
+"""beta over omega: at OMEGA_H those that follow the motion have 1.8 at most (rkn4), others more, by the step."""
+
 
 @dataclass(frozen=True, repr=False)
 class FeedbackCost:
@@ -80,12 +83,15 @@ def feedback_cost(
 
 
 def follows_motion(method: Method) -> bool:
-    """Return whether the goal accurate takes the least damping that settles: so alpha and beta are multiples of omega.
+    """Return whether the goal accurate takes the least damping that settles, and beta near omega: multiples of omega.
 
-    Stronger feedback would force larger errors, at any step. Of other methods alpha and beta follow the step.
+    Stronger feedback would force larger errors, at any step. Of other methods beta follows the step.
     """
     least_at = _least_at(method, OMEGA_H)
-    return least_at is not None and least_at[0] / 2 <= HARDLY_MORE * LEAST_DAMPING * OMEGA_H
+    if least_at is None:
+        return False
+    alpha_h, beta_h = least_at[0] / 2, least_at[1] ** 0.5
+    return alpha_h <= HARDLY_MORE * LEAST_DAMPING * OMEGA_H and beta_h <= HARDLY_STIFFER * OMEGA_H
 
 
 def order_left(method: Method) -> int:

@@ -63,13 +63,12 @@ def forced_error(
     alpha_hat: ArrayLike,
     beta_hat: ArrayLike,
     omega_h: Fraction = OMEGA_H,
-    any_frequency: bool = False,
+    sampled: bool = False,
 ) -> ForcedError:
     """Return the steady errors that the method forces at points of the plane, for a motion of omega h radians a step.
 
-    `any_frequency`: the total takes the frequency that answers the most among all that steps can tell apart, not only
-    those up to omega, so that it grows where the poles come near the circle anywhere: that is what `choose` weighs,
-    for very many points, so it is sampled; else it is the largest there is.
+    `sampled`: the frequency that answers the most is looked for among some, as `choose` does, which weighs very many
+    points; else it is the largest there is.
     InputError unless 1e-6 <= omega_h < 1. Stability is not looked at. Source: methods/steady_errors.py.
     """
     check_omega_h(omega_h)
@@ -82,29 +81,32 @@ def forced_error(
         """Return |D| at a frequency, one for all points or one for each."""
         return np.abs(polyval(np.expm1(1j * np.asarray(frequency)), around_one, tensor=False))
 
-    highest = np.pi if any_frequency else min(theta, np.pi)
+    highest = min(theta, np.pi)
     at_own = size(theta)
     resounds = np.sqrt(np.clip(b - a**2 / 2, 0.0, highest**2))  # where poles next to z = 1 are
     least = np.minimum(at_own, size(resounds))
-    if any_frequency:
+    if sampled:
         for frequency in np.linspace(0.0, highest, BETWEEN + 1):
             least = np.minimum(least, size(frequency))
     else:
         least = np.minimum(least, _least_on_arc(around_one, resounds, highest))
     position, velocity = (np.abs(polyval2d(a, b, table)) for table in _numerators(method, omega_h))
-    with np.errstate(divide="ignore"):  # a pole that answers a frequency without bound
+    with np.errstate(divide="ignore", invalid="ignore"):  # a pole that answers a frequency without bound
         return ForcedError(position=position / at_own, velocity=velocity / theta / at_own, total=position / least)
 
 
 def combined_error(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike, omega_h: Fraction) -> FloatArray:
-    """Return the total error of q at any frequency and that of the velocity, added up: shares of the motion.
+    """Return the total error of q and what the feedback adds to that of the velocity, added up: shares of the motion.
 
-    It is what the goal accurate makes least: constraints see the one, trajectories both. Alone the total would ask for
-    too weak a feedback of methods of order four, and for undamped feedback of methods of order two. Errors and shape as
+    It is what the goal accurate makes least, among what decays fast enough: constraints see the one, trajectories both.
+    Alone the total would ask for strong feedback of some methods of order four, whose velocities it spoils; what
+    velocities have without feedback, as half a step of symplectic Euler, no feedback can mend. The work that
+    multipliers do on the steady error, which speeds a motion up, grows with the total. Errors and shape as
     `forced_error`.
     """
-    errors = forced_error(method, alpha_hat, beta_hat, omega_h, any_frequency=True)
-    return errors.total + errors.velocity
+    errors = forced_error(method, alpha_hat, beta_hat, omega_h, sampled=True)
+    without = forced_error(method, 0.0, 0.0, omega_h, sampled=True)
+    return errors.total + np.maximum(0.0, errors.velocity - without.velocity)
 
 
 def check_omega_h(omega_h: Fraction) -> None:

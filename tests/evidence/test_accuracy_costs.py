@@ -51,15 +51,18 @@ def test_its_own_choice_at_each_step_costs_no_order(name: str) -> None:
 @pytest.mark.promise(
     "Constraint errors of `tradeoff`, predicted with nothing fitted",
     measured=(
-        "in the later half of runs, at 0.8 and 1.6 ms on the light slider-crank: 1 % for B4, AB4 and SYM, 35 % "
+        "in the later half of runs, at 0.8 and 1.6 ms on the light slider-crank: 1 % for B4, AB4 and damped SYM, 35 % "
         "for RK4, whose feedback is gentle. At coarse steps they may be twenty times as large, and each row shows"
         " both"
     ),
 )
 @pytest.mark.parametrize(("name", "within"), [("B4", 0.01), ("AB4", 0.01), ("SYM", 0.01), ("RK4", 0.35)])
 def test_in_the_later_half_of_a_run_the_constraint_error_is_the_predicted_one(name: str, within: float) -> None:
-    """Of RK4 at its gentle choice, whose errors curved constraints change the most, within a third."""
-    for run in swept(name, (8e-4, 1.6e-3)):
+    """Of RK4 at its gentle choice, whose errors curved constraints change the most, within a third.
+
+    Symplectic Euler has another point than its choice, which damps so little that there the start is still seen.
+    """
+    for run in swept(name, (8e-4, 1.6e-3), (0.96, 0.93) if name == "SYM" else None):
         assert run.predicted_error
         assert run.measured_error
         assert run.measured_error == pytest.approx(run.predicted_error, rel=within)

@@ -42,12 +42,15 @@ def test_an_engine_says_itself_what_it_holds_while_steps_vary() -> None:
     assert (steps.h_min, steps.h_max, steps.hold) == (H / 2, H, True)
 
 
-def test_the_usual_goal_is_accurate_and_along_a_curve_or_of_a_drive_robust() -> None:
-    assert [usual_goal(None, False), usual_goal(ENGINES["box2d"], False), usual_goal(None, True)] == [
-        "accurate",
-        "robust",
-        "robust",
+def test_the_usual_goal_is_accurate_and_of_a_drive_or_in_an_engine_robust_unless_feedback_follows_the_motion() -> None:
+    assert [usual_goal(None, False), usual_goal(None, True)] == ["accurate", "robust"]
+    mujoco = ENGINES["mujoco"]
+    goals = [
+        usual_goal(ENGINES["box2d"], False),
+        usual_goal(mujoco, False),
+        usual_goal(mujoco, False, (lookup("RK4"),)),
     ]
+    assert goals == ["robust", "robust", "accurate"]
 
 
 H_OF_2_MS = Fraction(1, 500)

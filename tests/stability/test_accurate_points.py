@@ -21,6 +21,7 @@ def test_it_decays_as_asked_within_the_spread_and_no_sampled_point_forces_less(n
     method = lookup(name)
     chosen = choose(method, "accurate", omega_h=OMEGA_H, margins=False)
     assert chosen.worst <= default_rate(method, OMEGA_H) * (1 + 1e-9)
+    without = forced_error(method, 0.0, 0.0, OMEGA_H, sampled=True).velocity
 
     def error(alpha_hat: float, beta_hat: float) -> float:
         """Return the largest error over the spread, infinite where it does not decay as asked."""
@@ -28,12 +29,13 @@ def test_it_decays_as_asked_within_the_spread_and_no_sampled_point_forces_less(n
         a, b = np.meshgrid(alpha_hat * (1 + off), beta_hat * (1 + off) ** 2)
         if spectral_radius(method, a, b).max() > default_rate(method, OMEGA_H):
             return float("inf")
-        found = forced_error(method, a, b, OMEGA_H, any_frequency=True)
-        return float((found.total + found.velocity).max())
+        found = forced_error(method, a, b, OMEGA_H, sampled=True)
+        return float((found.total + np.maximum(0, found.velocity - without)).max())
 
     here = error(chosen.alpha_hat, chosen.beta_hat * (1 - 1e-9))
     random = np.random.default_rng(0)
-    for beta_h, ratio in zip(np.exp(random.uniform(-5, 1.3, 300)), random.uniform(0.5, 4, 300), strict=True):
+    ratios = np.exp(random.uniform(np.log(0.004), np.log(4), 1000))
+    for beta_h, ratio in zip(np.exp(random.uniform(-5, 1.3, 1000)), ratios, strict=True):
         assert error(2 * ratio * beta_h, beta_h**2) > here * (1 - 1e-2)
 
 
@@ -58,7 +60,7 @@ WITH_STAGES = ("RK3", "bs3", "ssprk3", "dirk3", "RK4", "rkn4", "gauss4", "dopri5
 
 @pytest.mark.promise(
     "Gains of least error, methods with stages of order three and more",
-    computed="β a fixed multiple of the motion's own rate, 0.78 to 1.0: to 5 % for ωh from 0.001 to 0.1",
+    computed="β a fixed multiple of the motion's own rate, 0.78 to 0.92, of rkn4 1.8: to 5 % for ωh from 0.001 to 0.1",
 )
 @pytest.mark.promise(
     "Explicit Runge–Kutta methods, order three and more",
@@ -77,10 +79,10 @@ def test_of_methods_with_stages_it_is_a_multiple_of_the_motions_own_rate_whateve
     for omega_h in (Fraction(1, 10), Fraction(1, 20), Fraction(1, 1000)):
         chosen = choose(lookup(name), "accurate", omega_h=omega_h, margins=False)
         beta[omega_h] = chosen.beta_hat**0.5 / float(omega_h)
-        assert 0.75 < beta[omega_h] < 1.1
+        assert 0.75 < beta[omega_h] < (1.9 if name == "rkn4" else 1.1)
         if omega_h < Fraction(1, 10) and name != "rkn4":
             assert chosen.alpha_hat / 2 / float(omega_h) == pytest.approx(0.556, rel=0.01)
             assert 0.77 < beta[omega_h] < 0.92
             assert chosen.worst ** (1 / float(omega_h)) == pytest.approx(np.exp(-0.5), rel=1e-3)
-    if name != "tsit5":  # whose next term is thirty times its leading one
+    if name not in ("rkn4", "tsit5"):  # whose next terms are many times their leading ones
         assert beta[Fraction(1, 10)] == pytest.approx(beta[Fraction(1, 1000)], rel=0.05)
