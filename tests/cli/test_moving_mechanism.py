@@ -31,8 +31,8 @@ def test_a_scenes_own_motion_is_taken_and_omega_instead_of_it() -> None:
 
 
 @pytest.mark.slow
-def test_beyond_first_order_choose_calls_nothing_safe() -> None:
+def test_beyond_first_order_the_run_decides() -> None:
     result = run("choose --method AB4 --goal robust --h 0.02 --speed 1.8", FOUR_BAR)
     assert "turn by κh = 0.12 a step: beyond 0.1 nothing is settled" in result.stderr
-    assert ": not safe. At rest" in result.stdout
-    assert result.exit_code == 1
+    assert "The prediction settles nothing, but the run went through." in result.stdout
+    assert result.exit_code == 0
