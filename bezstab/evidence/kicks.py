@@ -28,6 +28,9 @@ down.
 One thing is faster than any window: feedback that throws the parts of the mechanism metres apart at once. That is
 growth, too, if without feedback nothing happens to the mechanism in these steps. (Leaving the linear range at once is
 not enough: where steps are coarse, feedback may turn truncation errors into millimetres though errors decay.)
+
+This is the rule for whatever is kicked and run twice. Where there is one run, as of a scene, in MuJoCo or in most logs,
+an error and what is forced are one c: there it is asked how large that becomes.
 """
 
 from collections.abc import Iterator, Sequence
