@@ -35,6 +35,7 @@ if TYPE_CHECKING:
         time_column,
     )
     from bezstab.evidence.measured_poles import (
+        MeasuredVerdict,
         Measurement,
         measure_poles,
         measurement_summary,
@@ -43,7 +44,7 @@ if TYPE_CHECKING:
     from bezstab.evidence.mujoco_controllers import MotorGains
     from bezstab.evidence.mujoco_lint import linted_model
     from bezstab.evidence.mujoco_models import model_data, read_mujoco_model
-    from bezstab.evidence.mujoco_witness import TIMES, mujoco_witnesses, witness_count
+    from bezstab.evidence.mujoco_witness import TIMES, Outcome, mujoco_witnesses, witness_count
     from bezstab.evidence.parallel import Arrays, KeptResults, completed_chunks, joblib_is_installed
     from bezstab.evidence.probed_poles import (
         Likeness,
