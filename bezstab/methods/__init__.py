@@ -55,6 +55,7 @@ if TYPE_CHECKING:
     from bezstab.methods.formulas import (
         characteristic_text,
         mapping_text,
+        multiplier_law_text,
         recursion_text,
         stage_torque_text,
         steady_error_text,

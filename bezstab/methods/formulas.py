@@ -7,6 +7,8 @@ from math import lcm
 import sympy as sp
 
 from bezstab.methods.derivation import ALPHA_HAT, BETA_HAT, MU, PLANE, Z, closed_loop_polynomial, mapping_equation
+from bezstab.methods.orders import accuracy
+from bezstab.methods.registry import lookup
 from bezstab.methods.rotation_torque import stage_torque
 from bezstab.methods.schemes import LinearMultistep, Method, PredictorCorrector, RungeKutta
 from bezstab.methods.second_order import SecondOrder
@@ -111,6 +113,27 @@ def stage_torque_text(method: Method, latex: bool = False) -> str:
         return f"{power} times a function of the feedback"
     text = _written(THETA**torque.power * torque.coefficient, latex)
     return text if latex or len(text) <= LONGEST else f"{power} times a quotient too long to be read"
+
+
+def multiplier_law_text(method: Method, latex: bool = False) -> str:
+    """Return the equation of the constraint error that a motion forces, on which the multipliers work: -lambda dc/dt.
+
+    Of a multistep method of order p with error constant C: c'' + 2 alpha c' + beta^2 c = -2 C h^p (G' + alpha G), G =
+    C_q q^(p+1); of symplectic Euler, and of what has its polynomial, by kappa = q'^T C_qq q'. To leading order of h,
+    alpha and beta held; bezstab/motion/README.md. Of others no closed form is known.
+    """
+    left = r"\ddot{c} + 2\alpha\dot{c} + \beta^2 c = " if latex else "c'' + 2α c' + β² c = "
+    if isinstance(method.scheme, LinearMultistep):
+        order, constant = accuracy(method)
+        factor = _written(-2 * sp.Rational(constant.numerator, constant.denominator), latex)
+        if latex:
+            return rf"{left}{factor} h^{order} (\dot{{G}} + \alpha G), G = C_q q^{{({order + 1})}}"
+        return f"{left}{factor} h^{order} (G' + α G), G = C_q q^({order + 1})"
+    if closed_loop_polynomial(method) != closed_loop_polynomial(lookup("SYM")):
+        return "no closed form is known: region --motion draws it"
+    if latex:
+        return rf"{left}-\alpha h \kappa + \frac{{h}}{{2}} \dot{{\kappa}}_v, \kappa = \dot{{q}}^T C_{{qq}} \dot{{q}}"
+    return f"{left}-α h κ + h/2 κ'ᵥ, κ = q'ᵀ C_qq q'"
 
 
 def _quotient(error: LeadingTerm, exact: bool) -> sp.Expr:

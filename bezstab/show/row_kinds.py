@@ -742,6 +742,10 @@ NAMED_METHODS = RowKind(
                 "stage_torque",
                 "D, where a step multiplies the rate of a uniform rotation by 1 + D: the first term in theta = omega h",
             ),
+            text(
+                "multiplier_law",
+                "The constraint error c that a motion forces, on which the multipliers do the work -lambda dc/dt",
+            ),
             ORDER_LEFT,
             *REGIONS.fields[1:],
         )

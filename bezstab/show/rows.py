@@ -105,6 +105,7 @@ def whole_row(answer: RegionAnswer, *, latex: bool) -> Row:
     from bezstab.methods import (  # loads sympy
         characteristic_text,
         mapping_text,
+        multiplier_law_text,
         recursion_text,
         stage_torque_text,
         steady_error_text,
@@ -120,6 +121,7 @@ def whole_row(answer: RegionAnswer, *, latex: bool) -> Row:
         "steady_error": steady_error_text(method, "x", latex),
         "steady_velocity_error": steady_error_text(method, "v", latex),
         "stage_torque": stage_torque_text(method, latex),
+        "multiplier_law": multiplier_law_text(method, latex),
         "order_left": order_left(method),
         **region_row(answer),
     }

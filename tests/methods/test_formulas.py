@@ -19,6 +19,7 @@ from bezstab.methods import (
     leading_error,
     lookup,
     mapping_text,
+    multiplier_law_text,
     recursion_text,
     stage_torque_text,
     steady_error_text,
@@ -144,6 +145,13 @@ def test_a_written_steady_error_is_that_of_the_method(name: str, part: Part) -> 
 )
 def test_the_torque_of_stages_is_written_where_it_can_be_read(name: str, written: str) -> None:
     assert stage_torque_text(lookup(name)) == written
+
+
+def test_the_law_of_the_multipliers_work_is_written_where_it_is_known() -> None:
+    assert multiplier_law_text(lookup("AB2")) == "c'' + 2α c' + β² c = -5/6 h^2 (G' + α G), G = C_q q^(3)"
+    by_kappa = "c'' + 2α c' + β² c = -α h κ + h/2 κ'ᵥ, κ = q'ᵀ C_qq q'"
+    assert multiplier_law_text(lookup("SYM")) == multiplier_law_text(lookup("verlet-half")) == by_kappa
+    assert multiplier_law_text(lookup("RK4")).startswith("no closed form is known")
 
 
 @pytest.mark.parametrize("name", PRINTED)

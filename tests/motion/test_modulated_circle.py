@@ -114,6 +114,26 @@ def test_the_multipliers_work_of_symplectic_euler(name: str) -> None:
         assert (power > 0) == (beta**2 > OMEGA**2 - 4 * alpha**2)
 
 
+@pytest.mark.parametrize("name", ["AB2", "bdf2", "trapezoid", "B4", "AB3", "bdf3", "am3"])
+def test_the_ripple_of_multistep_methods_follows_their_law(name: str) -> None:
+    """c'' + 2 alpha c' + beta^2 c = -2 C h^p (G' + alpha G) with G = C_q q^(p+1); the rate is 1 + small sin(t)."""
+    h, (order, constant) = 0.002, accuracy(lookup(name))
+    g = {2: -3j * OMEGA, 3: 4 + 4 * OMEGA**2}[order]  # the part along q of the derivatives of e^(i phi), to first order
+    resonance = BETA**2 - OMEGA**2 + 2j * ALPHA * OMEGA
+    expected = -2 * float(constant) * h**order * (1j * OMEGA + ALPHA) * g / resonance
+    found = motion_energy(lookup(name), 2 * ALPHA * h, BETA**2 * h**2, OMEGA * h).ripple
+    assert complex(found) == pytest.approx(-1j * expected, rel=0.03)  # the next term is of theta
+
+
+@pytest.mark.parametrize("name", ["SYM", "verlet-half"])
+def test_the_ripple_of_symplectic_euler_follows_its_law(name: str) -> None:
+    """c'' + 2 alpha c' + beta^2 c = -alpha h kappa + h/2 kappa', kappa = 2 sin(t)."""
+    h, resonance = 0.0005, BETA**2 - OMEGA**2 + 2j * ALPHA * OMEGA
+    expected = (-ALPHA * h * 2 + h / 2 * 1j * OMEGA * 2) / resonance
+    found = motion_energy(lookup(name), 2 * ALPHA * h, BETA**2 * h**2, OMEGA * h).ripple
+    assert complex(found) == pytest.approx(-1j * expected, rel=0.01)
+
+
 def test_truncation_of_a_method_without_stages_does_not_depend_on_the_feedback() -> None:
     found = motion_energy(lookup("AB2"), [0.01, 0.2, 0.6], [0.001, 0.05, 0.2], 0.01)
     truncation = found.modulation - found.multiplier
