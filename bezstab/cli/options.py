@@ -100,12 +100,17 @@ def _sequence(text: str) -> list[Fraction]:
     return sequence
 
 
+NOTES = "bezstab.notes"
+"""Where the running command keeps what is to be said beside its answer, but not beside a mistake."""
+
+
 def _engine_values(text: str) -> EngineValues:
-    """Return an engine and its values; say on standard error which they are if its defaults are taken."""
+    """Return an engine and its values; note which they are, to be said beside an answer, if its defaults are taken."""
     engine, values = engine_and_values(text)
     if engine.defaults and not text.partition("=")[2]:
         listed = ", ".join(f"{name} = {float(value):g}" for name, value in zip(engine.units, values, strict=False))
-        say(f"{engine.name}: without values, its defaults are taken: {listed}")
+        note = f"{engine.name}: without values, its defaults are taken: {listed}"
+        click.get_current_context().meta.setdefault(NOTES, []).append(note)
     return engine, values
 
 
@@ -398,7 +403,10 @@ def command(*options: str | Option | Rule) -> Callable[[Function], click.Command
             for parameter, kind in GATHERED.items():
                 if own := {field.name: typed.pop(field.name) for field in fields(kind) if field.name in typed}:
                     typed[parameter] = kind(**own)
-            return function(**typed)
+            result = function(**typed)
+            for note in click.get_current_context().meta.get(NOTES, []):
+                say(note)
+            return result
 
         return click.command(params=[each() for each in every if not isinstance(each, Rule)])(checked)
 

@@ -70,6 +70,13 @@ TOLERANCES = (
         "where an error is least it is flat: rounding decides which of the last points of a search is taken",
     ),
     Tolerance("tradeoff", "observed_order", 1e-6, 1e-5, "the logarithm of a ratio of simulated errors"),
+    Tolerance(
+        "choose --method (RK4|B4 --method SYM)",
+        "alpha.*|beta.*|worst|h_.*|.*error|z_(real|imag|abs)",
+        1e-5,
+        1e-7,
+        "the goal accurate: where an error is least it is flat, so that its place is known to the root of rounding",
+    ),
     Tolerance("choose|check", "z_angle_deg", 1e-9, 1e-4, "as below: 1e-6 rad in degrees"),
     Tolerance(
         "choose|check", "z_.*", 1e-9, 1e-7, "many choices are double poles, which split by the root of rounding, 1e-8"
