@@ -43,7 +43,6 @@ FOUNDATIONS = (
 
 STRANGERS = {
     "methods": {"engines"},
-    "motion": {"engines"},
     "mechanism": {"engines", "motion", "stability"},
     "paper": {"engines"},
     "api": {"show", "cli", "paper"},

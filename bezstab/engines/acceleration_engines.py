@@ -67,6 +67,7 @@ def _write_solref(alpha_hat: float, beta_hat: float, h: float) -> tuple[float, .
 
 MUJOCO = Engine(
     name="mujoco",
+    energy_class="acceleration",
     level="acceleration",
     parameters={"solref[0]": "s or -1/s^2", "solref[1]": "- or -1/s"},
     optional={"solimp[0]": "-", "solimp[1]": "-"},
@@ -117,6 +118,7 @@ def _write_genesis(alpha_hat: float, beta_hat: float, h: float) -> tuple[float]:
 
 GENESIS = Engine(
     name="genesis",
+    energy_class="acceleration",
     level="acceleration",
     parameters={"constraint_timeconst": "s"},
     above_zero=("constraint_timeconst",),

@@ -12,6 +12,9 @@ from bezstab.units import feedback_gains, from_feedback_gains
 
 Level = Literal["acceleration", "velocity", "position"]
 
+EnergyClass = Literal["acceleration", "bias", "beside", "projected"]
+"""How an engine takes errors back, which decides what it does to the energy of a motion: motion/spinning_bodies.py."""
+
 Point = tuple[Fraction, Fraction]
 """alpha_hat and beta_hat."""
 
@@ -63,7 +66,7 @@ class Engine:
     label, the values as they are typed, or 2h for two steps. `excludes` is what the conversion leaves out. `curve` are
     the points to choose among, None for all of the plane. `jointly` is whether it solves all constraints together below
     acceleration level, too. `sweeping` is how it goes through a step in which it solves one after another, None where
-    that is not written down here.
+    that is not written down here. `energy_class` is how it takes errors back, None likewise.
     """
 
     name: str
@@ -86,6 +89,7 @@ class Engine:
     digits: int = 9
     jointly: bool = False
     sweeping: Sweeping | None = None
+    energy_class: EnergyClass | None = None
 
     @property
     def units(self) -> Mapping[str, str]:

@@ -36,6 +36,7 @@ def _write_share(alpha_hat: float, beta_hat: float, h: float) -> tuple[float]:
 BOX2D_V2 = engine_without_parameters(
     (ONE, ONE),
     name="box2d-v2",
+    energy_class="beside",
     level="position",
     source="Box2D 2.4 source, b2_revolute_joint.cpp (SolvePositionConstraints), b2_island.cpp",
     excludes="joints; contacts take back a fifth; errors within the slop of 5 mm, which end the sweeps; joint springs",
@@ -65,6 +66,7 @@ def _jolt_step(iterations: int, h: Fraction, baumgarte: Fraction, position_steps
 
 JOLT = Engine(
     name="jolt",
+    energy_class="beside",
     level="position",
     parameters={"mBaumgarte": "-"},
     optional={"mNumPositionSteps": "-"},
@@ -95,6 +97,7 @@ def _read_pbd(h: Fraction, share: Fraction, iterations: Fraction = ONE) -> Point
 
 PBD = Engine(
     name="pbd",
+    energy_class="projected",
     level="position",
     parameters={"stiffness": "-"},
     optional={"iterations": "-"},
@@ -148,6 +151,7 @@ XPBD = Engine(
 
 BRAX_POSITIONAL = Engine(
     name="brax-positional",
+    energy_class="projected",
     level="position",
     parameters={"joint_scale_pos": "-"},
     defaults="0.5",

@@ -68,6 +68,7 @@ def _cold_step(iterations: int, h: Fraction, share: Fraction) -> SweptStep:
 BULLET = _engine_with_erp(
     "bullet",
     "0.2",
+    energy_class="bias",
     source="Bullet source, btContactSolverInfo.h",
     excludes=f"CFM = 0; {IMPULSES}",
     sweeping=Sweeping(
@@ -99,6 +100,7 @@ def _ode_step(iterations: int, h: Fraction, erp: Fraction, cfm: Fraction = ZERO,
 
 ODE = Engine(
     name="ode",
+    energy_class="bias",
     level="velocity",
     parameters={"ERP": "-"},
     optional={"CFM": "s/kg", "mass": "kg"},
@@ -123,7 +125,14 @@ ODE = Engine(
 )
 
 
-DART = _engine_with_erp("dart", "0.01", source="DART issue 317", excludes=f"CFM = 0; {IMPULSES}", jointly=True)
+DART = _engine_with_erp(
+    "dart",
+    "0.01",
+    energy_class="bias",
+    source="DART issue 317",
+    excludes=f"CFM = 0; {IMPULSES}",
+    jointly=True,
+)
 
 
 # Soft constraints by frequency and damping ratio. With the turn t = 2 pi hertz h and x = t (2 zeta + t), the velocity
@@ -179,6 +188,7 @@ def _box2d_step(iterations: int, h: Fraction, hertz: Fraction, damping_ratio: Fr
 
 BOX2D = Engine(
     name="box2d",
+    energy_class="beside",
     level="velocity",
     parameters={"hertz": "Hz", "dampingRatio": "-"},
     defaults="60,2",
@@ -226,6 +236,7 @@ def _rapier_step(iterations: int, h: Fraction, natural_frequency: Fraction, damp
 
 RAPIER = Engine(
     name="rapier",
+    energy_class="beside",
     level="velocity",
     parameters={"natural_frequency": "Hz", "damping_ratio": "-"},
     defaults="1e6,1",
@@ -263,6 +274,7 @@ def _write_chipmunk(alpha_hat: float, beta_hat: float, h: float) -> tuple[float]
 
 CHIPMUNK = Engine(
     name="chipmunk",
+    energy_class="bias",
     level="velocity",
     parameters={"errorBias": "- (per second)"},
     defaults=str(Fraction("0.9") ** 60),
@@ -343,6 +355,7 @@ def _write_sap(alpha_hat: float, beta_hat: float, h: float) -> tuple[float, ...]
 
 DRAKE_SAP = Engine(
     name="drake-sap",
+    energy_class="bias",
     level="velocity",
     parameters={},
     optional={"k": "N/m", "tau": "s", "w": "1/kg"},
@@ -365,6 +378,7 @@ DRAKE_SAP = Engine(
 BRAX_CONTACT = _engine_with_erp(
     "brax-contact",
     "0.1",
+    energy_class="bias",
     source="Brax source, spring/collisions.py (baumgarte_erp), io/mjcf.py (default)",
     excludes="contacts of its spring pipeline only, as long as they touch; its joints are brax-spring",
 )
@@ -373,6 +387,7 @@ BRAX_CONTACT = _engine_with_erp(
 GODOT = _engine_with_erp(
     "godot",
     "0.3",
+    energy_class="bias",
     word="bias",
     source="Godot source, godot_pin_joint_3d.cpp",
     excludes="Jolt, which is jolt, and which new projects use in 3D; PinJoint3D's damping other than 1; other joints "
@@ -391,6 +406,7 @@ GODOT = _engine_with_erp(
 GODOT_2D = _engine_with_erp(
     "godot-2d",
     "0.2",
+    energy_class="beside",
     word="bias",
     source="Godot source, godot_joints_2d.cpp (PinJoint2D without softness: a bias impulse for positions alone)",
     excludes=f"softness; angular limits; grooves and springs; {IMPULSES}",

@@ -19,7 +19,7 @@ from bezstab.engines import DRIVE_METHODS, READ_BACK, Curve, Engine
 from bezstab.errors import InputError, NumericalError
 from bezstab.goals import UP_TO_LONGEST, Goal
 from bezstab.methods import Method, stage_torque
-from bezstab.motion import motion_energy
+from bezstab.motion import motion_energy, spin_change
 from bezstab.questions.chains import ALONE, SweptAnswer
 from bezstab.questions.question import Question, usual_goal
 from bezstab.questions.scene_runs import MOST_GAINED, SceneRun, scene_run
@@ -192,10 +192,16 @@ class Answer(Choice):
     def energy_rate(self) -> tuple[float, float] | None:
         """What a second adds to the energy of a motion of rate --omega, and its part by rotation alone: shares of it.
 
-        Of a mass on a circle whose rate varies by MODULATION; None without that rate, and where it is not known.
+        Of a mass on a circle whose rate varies by MODULATION; in an engine, of a body that spins about a pin. None
+        without that rate, and where it is not known.
         """
-        omega, h = self.question.omega, self.h
-        if omega is None or h is None or self.question.scene or self.verdict != "converges" or self.swept_over:
+        omega, h, engine = self.question.omega, self.h, self.question.engine
+        if omega is None or h is None or self.question.scene or self.verdict != "converges":
+            return None
+        if engine and engine.energy_class and self.method.name == engine.method:
+            rate = 2 * spin_change(engine.energy_class, self.alpha_hat, self.beta_hat, float(omega) * h) / h
+            return rate, rate
+        if engine and engine.level != "acceleration":
             return None
         found = motion_energy(self.method, self.alpha_hat, self.beta_hat, float(omega) * h)
         growth, rotation = float(found.growth()), float(found.rotation)
@@ -458,9 +464,12 @@ def _on_a_motion(answer: Answer) -> list[str]:
         return []
     rate, by_rotation = answer.energy_rate
     omega = float(answer.question.omega or 0)
-    what = "gains" if rate > 0 else "loses"
-    said = f"a motion of {omega:.3g} rad/s {what} {100 * abs(rate):.2g} % of its energy a second"
-    if by_rotation > MOVED and stage_torque(answer.method).power == 2:  # the torque grows as the cube of the rate
+    engine, what = answer.question.engine, "gains" if rate > 0 else "loses"
+    spins = engine is not None and engine.energy_class is not None
+    motion = f"a body that spins about a pin at {omega:.3g} rad/s" if spins else f"a motion of {omega:.3g} rad/s"
+    said = f"{motion} {what} {100 * abs(rate):.2g} % of its energy a second"
+    # stages' torque grows as the cube of the rate
+    if not spins and by_rotation > MOVED and stage_torque(answer.method).power == 2:
         said += f" and breaks down after about {seconds_words(1 / by_rotation)}: take heun or RK4, or gentler feedback"
     return [said]
 

@@ -6,6 +6,7 @@ from functools import partial
 from math import inf, log, sqrt
 from typing import Any
 
+import numpy as np
 import pytest
 
 from bezstab.api import check
@@ -256,3 +257,15 @@ def test_a_scene_that_the_feedback_pumps_is_not_safe(name: str, h: str, alpha: f
     assert answer.safe is safe
     assert "in a run of 10 s: |c| at most" in answer.sentence.lower()
     assert ("breaks down after about 27.8 s" in answer.sentence) is not safe
+
+
+@pytest.mark.parametrize(
+    ("engine", "sign"), [("chipmunk", -1), ("box2d-v2", -1), ("pbd=1", -1), ("mujoco=-720,-60", 1)]
+)
+def test_an_engine_says_what_its_step_does_to_a_spinning_body(engine: str, sign: int) -> None:
+    answer = check(engine=engine, h=Fraction(1, 60), omega=6)
+    assert answer.energy_rate is not None
+    assert np.sign(answer.energy_rate[0]) == sign
+    assert f"{'gains' if sign > 0 else 'loses'}" in answer.sentence
+    if engine == "box2d-v2":  # minus h omega^2
+        assert answer.energy_rate[0] == pytest.approx(-0.6, rel=1e-3)
