@@ -118,7 +118,7 @@ def _write_genesis(alpha_hat: float, beta_hat: float, h: float) -> tuple[float]:
 
 GENESIS = Engine(
     name="genesis",
-    energy_class="acceleration",
+    energy_class="bias",
     level="acceleration",
     parameters={"constraint_timeconst": "s"},
     above_zero=("constraint_timeconst",),

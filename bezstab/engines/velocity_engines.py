@@ -188,7 +188,7 @@ def _box2d_step(iterations: int, h: Fraction, hertz: Fraction, damping_ratio: Fr
 
 BOX2D = Engine(
     name="box2d",
-    energy_class="beside",
+    energy_class="bias",
     level="velocity",
     parameters={"hertz": "Hz", "dampingRatio": "-"},
     defaults="60,2",
@@ -305,6 +305,7 @@ CHIPMUNK = Engine(
 CHRONO_LINEARIZED = engine_without_parameters(
     (ONE, ONE),
     name="chrono-linearized",
+    energy_class="bias",
     level="velocity",
     paste="EULER_IMPLICIT_LINEARIZED",
     source="Chrono source, ChTimestepperImplicit.cpp (EulerImplicitLinearized: Qc = C / dt)",
@@ -427,6 +428,7 @@ GODOT_2D = _engine_with_erp(
 KAMINO = _engine_with_erp(
     "kamino",
     "0.01",
+    energy_class="bias",
     word="alpha",
     source="Newton source, solvers/kamino: config.py, dynamics/dual.py, integrators/euler.py and moreau.py",
     excludes="joint limits (beta) and contacts (gamma); armature and implicit drives; what its solver leaves over",
@@ -491,6 +493,7 @@ PHYSX_JOINTS = "limits, drives and springs of joints; contacts; articulations; m
 PHYSX = engine_without_parameters(
     (ONE, ONE),
     name="physx",
+    energy_class="beside",
     level="velocity",
     source="PhysX source, DyConstraintSetup.cpp (erp = 1), DySolverControl.cpp, DyCpuGpu1dConstraint.h",
     excludes=f"TGS, which is physx-tgs; {PHYSX_JOINTS}",
@@ -505,6 +508,7 @@ PHYSX = engine_without_parameters(
 PHYSX_TGS = engine_without_parameters(
     (ONE, 1 - (1 - Fraction(1, 2)) ** TGS_ITERATIONS),
     name="physx-tgs",
+    energy_class="beside",
     level="velocity",
     source="PhysX source, DyTGSDynamics.cpp (mBiasCoefficient), DyTGSContactPrep.cpp (erp = mBiasCoefficient / 2)",
     excludes=f"minPositionIters other than {TGS_ITERATIONS}, but for --chain; {PHYSX_JOINTS}",
