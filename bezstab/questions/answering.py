@@ -467,6 +467,8 @@ def _on_a_motion(answer: Answer) -> list[str]:
     engine, what = answer.question.engine, "gains" if rate > 0 else "loses"
     spins = engine is not None and engine.energy_class is not None
     motion = f"a body that spins about a pin at {omega:.3g} rad/s" if spins else f"a motion of {omega:.3g} rad/s"
+    if engine and engine.energy_class == "acceleration":  # an impedance below one brakes, which this leaves out
+        motion += ", with hard constraints,"
     said = f"{motion} {what} {100 * abs(rate):.2g} % of its energy a second"
     # stages' torque grows as the cube of the rate
     if not spins and by_rotation > MOVED and stage_torque(answer.method).power == 2:
