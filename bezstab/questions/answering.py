@@ -188,6 +188,12 @@ class Answer(Choice):
             return None
         return moving_pole(self.method, self.question.turning.kappa, self.h, self.alpha_hat, self.beta_hat)
 
+    @property
+    def spins(self) -> bool:
+        """Whether `energy_rate` is that of a body on a pin: in an engine of a known class, by its own steps."""
+        engine = self.question.engine
+        return engine is not None and engine.energy_class is not None and self.method.name == engine.method
+
     @cached_property
     def energy_rate(self) -> tuple[float, float] | None:
         """What a second adds to the energy of a motion of rate --omega, and its part by rotation alone: shares of it.
@@ -198,7 +204,7 @@ class Answer(Choice):
         omega, h, engine = self.question.omega, self.h, self.question.engine
         if omega is None or h is None or self.question.scene or self.verdict != "converges":
             return None
-        if engine and engine.energy_class and self.method.name == engine.method:
+        if engine and engine.energy_class and self.spins:
             rate = 2 * spin_change(engine.energy_class, self.alpha_hat, self.beta_hat, float(omega) * h) / h
             return rate, rate
         if engine and engine.level != "acceleration":
@@ -465,13 +471,12 @@ def _on_a_motion(answer: Answer) -> list[str]:
     rate, by_rotation = answer.energy_rate
     omega = float(answer.question.omega or 0)
     engine, what = answer.question.engine, "gains" if rate > 0 else "loses"
-    spins = engine is not None and engine.energy_class is not None
-    motion = f"a body that spins about a pin at {omega:.3g} rad/s" if spins else f"a motion of {omega:.3g} rad/s"
-    if engine and engine.energy_class == "acceleration":  # an impedance below one brakes, which this leaves out
+    motion = f"a body that spins about a pin at {omega:.3g} rad/s" if answer.spins else f"a motion of {omega:.3g} rad/s"
+    if answer.spins and engine and engine.energy_class == "acceleration":  # an impedance below one, left out, brakes
         motion += ", with hard constraints,"
     said = f"{motion} {what} {100 * abs(rate):.2g} % of its energy a second"
     # stages' torque grows as the cube of the rate
-    if not spins and by_rotation > MOVED and stage_torque(answer.method).power == 2:
+    if not answer.spins and by_rotation > MOVED and stage_torque(answer.method).power == 2:
         said += f" and breaks down after about {seconds_words(1 / by_rotation)}: take heun or RK4, or gentler feedback"
     return [said]
 

@@ -7,42 +7,6 @@ from bezstab.show.fields import Row, formatted
 from bezstab.words import change_words, counted, seconds_words
 
 
-def drive_sentence(row: Row) -> str:
-    """Return whether a drive is safe, what a step does to the error, and how far the step and each gain may go.
-
-    Without kp it is the velocity that is judged. Not safe. Each step multiplies the velocity by 3. Lower kd to 0.5.
-    """
-    change = change_words(row["z_abs"], row["verdict"], "error" if row["kp"] else "velocity")
-    begin = f"{'Safe' if row['safe'] else 'Not safe'}. {change[0].upper()}{change[1:]}."
-    if not row["safe"]:
-        remedies = " or ".join(_gain_remedies(row))
-        return f"{begin} {remedies[0].upper()}{remedies[1:]}." if remedies else begin
-    if row["margins_reason"]:
-        return f"{begin} How far the step, kp and kd may grow is not known: {row['margins_reason']}."
-    limits = {"the step": row["h_limit"] and seconds_words(row["h_limit"])}
-    limits |= {gain: row[f"{gain}_max"] and _plain(row[f"{gain}_max"]) for gain in ("kp", "kd")}
-    ends = ", ".join(f"{name} {f'to {limit}' if limit else 'without limit'}" for name, limit in limits.items())
-    return f"{begin} Each alone may grow: {ends}."
-
-
-def _gain_remedies(row: Row) -> list[str]:
-    """Return which change of one gain alone makes a drive stable."""
-    kp, kp_max, kd, kd_min, kd_max = (row[key] for key in ("kp", "kp_max", "kd", "kd_min", "kd_max"))
-    remedies = []
-    if kd_min is not None and kd <= kd_min:
-        remedies.append(f"raise kd above {_plain(kd_min)}{'' if kd_max is None else f', up to {_plain(kd_max)}'}")
-    if kd_max is not None and kd >= kd_max:
-        remedies.append(f"lower kd to {_plain(kd_max)}")
-    if kp_max is not None and kp >= kp_max:
-        remedies.append(f"lower kp to {_plain(kp_max)}")
-    return remedies
-
-
-def _plain(gain: float) -> str:
-    """Return a gain to four digits, 11000 without a power of ten."""
-    return f"{float(f'{gain:.4g}'):g}"
-
-
 def step_sentence(row: Row) -> str:
     """Return up to which step alpha and beta are safe."""
     limit, judged = safe_step_text(row), f"α = {row['alpha']:.6g} 1/s, β = {row['beta']:.6g} 1/s"

@@ -269,3 +269,10 @@ def test_an_engine_says_what_its_step_does_to_a_spinning_body(engine: str, sign:
     assert f"{'gains' if sign > 0 else 'loses'}" in answer.sentence
     if engine == "box2d-v2":  # minus h omega^2
         assert answer.energy_rate[0] == pytest.approx(-0.6, rel=1e-3)
+
+
+def test_an_engine_with_another_integrator_is_judged_by_that_integrator() -> None:
+    """The classes of engines are those of their own steps."""
+    answer = check("RK2", engine="mujoco=-10000,-200", h=Fraction(1, 100), omega=10)
+    assert not answer.spins
+    assert "a motion of 10 rad/s gains" in answer.sentence.lower()
