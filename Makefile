@@ -15,9 +15,7 @@ OF_MILLISECONDS := --h 0.0008 --h 0.0016 --h 0.0032 --h 0.005 --h 0.008 --h 0.01
 BOTH_KINDS := --method B4 --method AB4 --method ABM4 --method SYM --method verlet-half --method bdf2 --method RK4 \
     --method dopri5
 
-MUTANTS := $(or $(TMPDIR),/tmp)/bezstab-mutants
-
-.PHONY: region figures pages times test quick test-slow test-oldest witnesses mutants campaign extremes lint bench clean
+.PHONY: region figures times test quick test-slow test-oldest witnesses campaign extremes lint bench clean
 
 region: .venv/installed  ## draw where B4 is stable, into this directory
 	$(BIN)/bezstab region --method B4
@@ -38,10 +36,6 @@ figures: .venv/installed  ## draw what the README shows, into figures/
 	$(BIN)/bezstab $(HELD) $(OF_MILLISECONDS) -o figures
 	$(BIN)/bezstab $(HELD) --scene driven_four_bar $(OF_MILLISECONDS) -o figures
 	$(BIN)/bezstab $(HELD) --scene andrews --time 0.01 --h 8e-6 --h 16e-6 --h 32e-6 --h 64e-6 --h 128e-6 -o figures
-
-pages: .venv/installed  ## write anew what pages say that the code says already: tables of files, numbers, promises
-	$(BIN)/python -m tests.pages
-	$(BIN)/python -m tests.promises
 
 times: .venv/installed  ## measure anew the processor times that figures and tables show: no two runs share them
 	$(BIN)/bezstab tradeoff $(ANDREWS) --against time --repeats 9 --workers 1 -o figures
@@ -69,19 +63,6 @@ test-oldest:  ## the same tests with the oldest versions that pyproject.toml all
 witnesses: .venv/tested  ## engines that are not ours, run: PyBullet, pymunk, Box2D, Exudyn, MuJoCo
 	$(BIN)/pip install --quiet --editable '.[witnesses]'
 	$(BIN)/python -m pytest tests/witnesses tests/evidence/test_mujoco_witness.py
-
-# the tree is copied, so that what is interrupted leaves no wrong version behind
-mutants: export PATH := $(CURDIR)/$(BIN):$(PATH)
-mutants: export PYTHONPATH := .
-mutants: .venv/tested  ## are the tests able to fail? wrong versions of a file, in hours: make mutants OF=bezstab/units.py
-	$(BIN)/pip install --quiet --editable '.[mutants]'
-	rm -rf $(MUTANTS) && mkdir -p $(MUTANTS)
-	cp -r bezstab configs tests figures pyproject.toml README.md Makefile $(MUTANTS)
-	sed 's,"OF","$(OF)",' tests/mutants.toml > $(MUTANTS)/mutants.toml
-	cd $(MUTANTS) && python -m pytest -q -m "not slow" --testmon --hypothesis-seed 1
-	cd $(MUTANTS) && cosmic-ray init mutants.toml session.sqlite && cr-filter-operators session.sqlite mutants.toml
-	cd $(MUTANTS) && cosmic-ray exec mutants.toml session.sqlite
-	cd $(MUTANTS) && cr-report --surviving-only --show-diff session.sqlite
 
 extremes: .venv/installed  ## what holds at the extremes; the tests run the short form
 	$(BIN)/bezstab extremes

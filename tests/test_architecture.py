@@ -31,9 +31,10 @@ import re
 import subprocess
 import sys
 import tomllib
+from graphlib import TopologicalSorter
 from pathlib import Path
 
-from tests.pages import PACKAGE, ROOMS, imports, own_imports, tree_of
+from tests.imports import PACKAGE, ROOMS, imports, own_imports, tree_of
 
 FOUNDATIONS = (
     *("lazy", "stopping", "errors", "rationals", "files", "toml_tables", "units", "compiling", "read_only", "goals"),
@@ -92,6 +93,22 @@ def test_a_room_imports_only_from_rooms_below() -> None:
         room = path.parts[0].removesuffix(".py")
         others = {module.split(".")[0] for module, _ in own_imports(path)} - {room, "__version__"}
         assert others <= set(order[: order.index(room)]) - STRANGERS.get(room, set()), path
+
+
+def test_files_of_a_room_import_each_other_in_no_circle() -> None:
+    for room in ROOMS:
+        imported = {path.stem: _siblings(path, room) for path in IN_ROOMS if path.parts[0] == room}
+        TopologicalSorter(imported).prepare()  # CycleError
+
+
+def _siblings(path: Path, room: str) -> set[str]:
+    """Return the names of the files of its room that a file imports, for types too."""
+    return {
+        name
+        for module, names in own_imports(path)
+        if module.split(".")[0] == room
+        for name in ([module.rpartition(".")[2]] if "." in module else names)
+    }
 
 
 def test_the_foundations_stand_on_one_another_in_order() -> None:

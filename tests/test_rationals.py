@@ -11,7 +11,6 @@ from bezstab.errors import InputError
 from bezstab.rationals import bisected_integers, exact, rational, typed_number, within_float64
 
 
-@pytest.mark.promise("A typed number")
 @given(st.floats(allow_nan=False, allow_infinity=False))
 def test_a_float_is_exactly_the_decimal_it_shows(x: float) -> None:
     assert exact(x) == Fraction(Decimal(repr(x)))
@@ -25,7 +24,6 @@ def test_what_float64_cannot_hold_is_refused_by_name(size: str) -> None:
             within_float64(value, "h")
 
 
-@pytest.mark.promise("A typed number", proven="is the decimal it shows, not its nearest float64")
 @pytest.mark.parametrize(
     ("text", "value"),
     [

@@ -48,7 +48,6 @@ def arrays_in(value: object) -> Iterator[np.ndarray[Any, Any]]:
             yield from arrays_in(each)
 
 
-@pytest.mark.promise("Arrays of results", computed="cannot be written, so that no answer changes a later one")
 @pytest.mark.parametrize("name", RESULTS)
 @pytest.mark.slow_except("region")
 def test_every_array_of_a_result_is_read_only(name: str) -> None:

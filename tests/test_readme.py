@@ -10,7 +10,6 @@ from click.testing import CliRunner
 from bezstab.cli import main
 from bezstab.methods import lookup
 from bezstab.stability import poles
-from tests import pages
 from tests.evidence.samples import of_campaign
 from tests.reference.sampled_responses import of_poles
 
@@ -115,9 +114,7 @@ def test_every_picture_and_link_is_there(page: str) -> None:
             assert ((ROOT / page).parent / target).exists(), target
 
 
-@pytest.mark.slow
-def test_the_generated_pages_are_fresh() -> None:
-    """Else `make pages` writes them."""
-    for path, fresh in pages.PAGES.items():
-        page = path.read_text(encoding="utf-8")
-        assert fresh(page) == page, path
+def test_every_promise_names_a_test_that_is_there() -> None:
+    promises = (ROOT / "tests/README.md").read_text("utf-8").partition("## What is promised")[2]
+    for file, name in re.findall(r"`([a-z_/]+\.py)(?:::(\w+))?`", promises):
+        assert f"def {name}" in (ROOT / "tests" / file).read_text("utf-8"), f"{file}::{name}"

@@ -12,7 +12,6 @@ ON_THE_EDGE = 1e-9  # of |z_p|: a whole row where it is one, up to rounding, lie
 HALVINGS = 40  # of the interval between two points of a row: to 1e-12 of it
 
 
-@pytest.mark.promise("What `--quality` costs and buys", measured="B4's boundary off the grid to 1e-4, 5e-6, 2e-7")
 @pytest.mark.slow
 def test_more_points_read_the_boundary_better_and_cost_more() -> None:
     method, exact = lookup("B4"), region(lookup("B4"))

@@ -87,14 +87,6 @@ def test_every_command_that_prints_rows_has_a_schema_and_an_example() -> None:
         Draft202012Validator.check_schema(schema)
 
 
-@pytest.mark.promise(
-    "Keys of JSON and CSV",
-    computed=(
-        "one vocabulary for all commands; every example is valid under its schema, by a validator that is not "
-        "ours, every row with the same keys"
-    ),
-)
-@pytest.mark.promise("Text on a terminal", computed="no line is wider, at 80 and 120 columns, for every command")
 @pytest.mark.usefixtures("_few_extremes")
 @pytest.mark.parametrize("example", EXAMPLES)
 @pytest.mark.slow_except(*QUICK)

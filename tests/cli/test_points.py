@@ -58,7 +58,6 @@ def test_what_is_meant_in_seconds_has_a_largest_step_and_what_is_meant_per_step_
     assert of_the_engine == pytest.approx(of_alpha_and_beta, rel=1e-9)
 
 
-@pytest.mark.promise("What a drive's gains mean")
 def test_a_drive_is_shown_in_all_ways_of_applying_it() -> None:
     given = {str(row["method"]): row for row in rows("poles --pd 1000,80,0.1 --h 1/240")}
     assert {name: row["drive"] for name, row in given.items()} == DRIVE_METHODS
@@ -114,7 +113,6 @@ def test_what_was_typed_is_shown_as_typed() -> None:
         assert tuple(given[key] for key in keys) == typed
 
 
-@pytest.mark.promise("Poles that no feedback moves, where ρ and σ share a factor")
 def test_a_root_on_the_circle_that_no_feedback_moves_leaves_nothing() -> None:
     (row,) = rows(f"region --method {DATA}/shared_i.toml --figure none --table none")
     assert (row["area"], row["best_z_abs"]) == (0, None)

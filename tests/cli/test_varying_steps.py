@@ -27,13 +27,6 @@ def test_steps_that_are_refuted_together_may_be_typed_or_stand_in_a_file() -> No
     assert rows(at, longer_than_the_name_of_a_file)[0]["c_max"] == typed
 
 
-@pytest.mark.promise(
-    "Steps that vary, refuted",
-    proven=(
-        "what is said to be refuted comes with steps of the range whose product does not decay, exactly: spectral"
-        " radius at least one, by sympy; the line of `simulate` that is printed runs as typed, and errors grow"
-    ),
-)
 @pytest.mark.parametrize(
     "arguments",
     [
@@ -72,7 +65,6 @@ def test_no_line_is_given_that_would_show_nothing(arguments: str) -> None:
     assert (given["varying"], given["shown_by"]) == ("refuted", None)
 
 
-@pytest.mark.promise("Steps that vary, proven (`check --h-min --h-max`)")
 def test_anyone_can_verify_the_certificate_that_is_printed() -> None:
     point = "--alpha 1 --beta 1/4 --h 0.001"
     given = rows("check --method SYM", point, "--h-min 0.0001")[0]

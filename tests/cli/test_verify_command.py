@@ -13,7 +13,6 @@ def test_what_is_thrown_apart_at_once_diverges_and_seconds_are_understood() -> N
     assert in_seconds["floquet_z_abs"] is None  # nothing exact is computed unless it is asked for
 
 
-@pytest.mark.promise("Rates where drivers turn and oscillate")
 @pytest.mark.parametrize(
     ("scene", "method", "said"),
     [

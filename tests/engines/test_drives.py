@@ -40,10 +40,6 @@ def test_each_way_of_applying_a_drive_has_its_proven_limit(method: str, alpha_ha
     assert verdict(lookup(method), a, limit + sliver) == "diverges"
 
 
-@pytest.mark.promise(
-    "What a drive's gains mean",
-    computed=("the step of each way of applying them, to 1e-6; which gain is used up, with its limit in closed form"),
-)
 @pytest.mark.parametrize("method", DRIVE_METHODS)
 @settings(max_examples=20, deadline=None)
 @given(kp=st.floats(1, 5e4), kd=st.floats(0.1, 100))

@@ -62,13 +62,6 @@ def integrator(engine: Engine) -> str:
     return engine.method if engine.method and engine.level != "acceleration" else "SYM"
 
 
-@pytest.mark.promise(
-    "What an engine's parameters mean",
-    computed=(
-        "the step of one constraint, in the engine's own words, has the polynomial of its method at that point, "
-        "to 1e-7; points written are read back to 1e-6"
-    ),
-)
 @pytest.mark.parametrize("name", ENGINES)
 @settings(max_examples=12, deadline=None)
 @given(st.data())
@@ -81,7 +74,6 @@ def test_an_engines_step_has_the_poles_of_its_point(name: str, data: st.DataObje
     assert ours == pytest.approx(theirs, rel=1e-7, abs=1e-7 * max(1, np.abs(theirs).max()))  # a double pole: half
 
 
-@pytest.mark.promise("What an engine's parameters mean")
 @pytest.mark.parametrize("name", ENGINES)
 @settings(max_examples=12, deadline=None)
 @given(st.data())
@@ -183,10 +175,6 @@ def test_an_engine_says_where_its_formula_is_from_and_what_it_leaves_out(name: s
     assert engine.method is not None or engine.level == "acceleration"
 
 
-@pytest.mark.promise(
-    "Engines that no run witnessed",
-    unknown="Engines that no run witnessed rest on their source alone; `bezstab engines` says which",
-)
 def test_who_is_said_to_be_witnessed_has_a_test_that_exists() -> None:
     root = Path(__file__).parents[2]
     assert set(WITNESSES) <= set(ENGINES)

@@ -21,10 +21,6 @@ QUICK = ("B4", "ABM4", "RK4", "SYM")
 """One of each kind."""
 
 
-@pytest.mark.promise(
-    "Costs of runs",
-    measured="evaluations counted exactly; processor time with its least and largest of the repeats",
-)
 @pytest.mark.parametrize("name", [*of_campaign(METHODS, ("B2", *QUICK)), "trapezoid", "verlet-predicted"])
 @pytest.mark.slow_except(*QUICK, "verlet-predicted")
 def test_a_run_knows_its_error_its_cost_and_its_order(name: str) -> None:
@@ -48,14 +44,6 @@ def test_its_own_choice_at_each_step_costs_no_order(name: str) -> None:
     assert (fine.alpha_hat, fine.beta_hat) == (chosen.alpha_hat, chosen.beta_hat)
 
 
-@pytest.mark.promise(
-    "Constraint errors of `tradeoff`, predicted with nothing fitted",
-    measured=(
-        "in the later half of runs, at 0.8 and 1.6 ms on the light slider-crank: 1 % for B4, AB4 and damped SYM, 35 % "
-        "for RK4, whose feedback is gentle. At coarse steps they may be twenty times as large, and each row shows"
-        " both"
-    ),
-)
 @pytest.mark.parametrize(("name", "within"), [("B4", 0.01), ("AB4", 0.01), ("SYM", 0.01), ("RK4", 0.35)])
 def test_in_the_later_half_of_a_run_the_constraint_error_is_the_predicted_one(name: str, within: float) -> None:
     """Of RK4 at its gentle choice, whose errors curved constraints change the most, within a third.
@@ -69,7 +57,6 @@ def test_in_the_later_half_of_a_run_the_constraint_error_is_the_predicted_one(na
         assert run.measured_error <= run.c_max
 
 
-@pytest.mark.promise("Numbers of the front page on accuracy", measured="5 %")
 def test_strong_feedback_costs_rk4_what_the_front_page_says() -> None:
     robust = choose(lookup("RK4"), "robust", margins=False)
     (strong,), (own,) = swept("RK4", (0.005,), (robust.alpha_hat, robust.beta_hat)), swept("RK4", (0.005,))
@@ -77,7 +64,6 @@ def test_strong_feedback_costs_rk4_what_the_front_page_says() -> None:
     assert (strong.trajectory_error or 0) / (own.trajectory_error or 1) == pytest.approx(700, rel=0.05)
 
 
-@pytest.mark.promise("Numbers of the front page on accuracy")
 @pytest.mark.slow
 def test_b4_costs_against_ab4_what_the_front_page_says_and_rk4_as_much_as_ab4() -> None:
     b4, ab4 = known_costs(swept("B4", (1e-4, 2e-4))), known_costs(swept("AB4", (0.0004, 0.0008, 0.0016, 0.0032)))
@@ -123,10 +109,6 @@ def test_the_front_is_what_no_pair_excludes_by_ascending_cost(points: list[Point
     assert front == sorted(set(front))
 
 
-@pytest.mark.promise(
-    "The reference of `tradeoff`",
-    computed="its own error estimate, against quadrature in thirty digits",
-)
 def test_the_reference_has_the_digits_it_claims() -> None:
     # one coordinate, by quadrature with 30 digits: see tests/mechanism/test_runner.py
     true = reference_run(load_scene("slider_crank"), 1e-3, 2.3456)

@@ -14,13 +14,6 @@ ON_THE_PAGE_ONLY = {("bdf2", "andrews"), ("hht", "andrews")}
 CASES = of_campaign({*product(METHODS, SCENES)} - ON_THE_PAGE_ONLY, FEW)
 
 
-@pytest.mark.promise(
-    "`choose` by default",
-    measured=(
-        "on those three mechanisms no stable point of 24 is better threefold in constraint and trajectory error "
-        "at once, after the start"
-    ),
-)
 @pytest.mark.parametrize(("name", "scene"), sorted(CASES))
 @pytest.mark.slow
 def test_no_stable_point_is_three_times_better_in_both_errors_at_once(name: str, scene: str) -> None:

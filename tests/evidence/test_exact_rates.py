@@ -17,7 +17,6 @@ def rate(name: str, h: float, alpha_hat: float, beta_hat: float, mechanism: Mech
     return float(exact_rates(*at)[0])
 
 
-@pytest.mark.promise("Rates where drivers turn and oscillate")
 def test_drivers_that_turn_and_oscillate_have_a_rate_over_their_common_period() -> None:
     """Beside the motion that a run makes, found by the runner alone; truncation errors leave the rest."""
     mechanism, at = swinging_four_bar(2 * np.pi, 4 * np.pi), (0.3, 0.115)
@@ -27,7 +26,6 @@ def test_drivers_that_turn_and_oscillate_have_a_rate_over_their_common_period() 
     assert abs(spectral_radius(lookup("AB4"), *at) - expected[1]) > 1e-3
 
 
-@pytest.mark.promise("Exact rates of a mechanism that moves")
 @pytest.mark.parametrize(("name", "apart"), [("trapezoid", 2e-5), ("sdirk2", 1e-5), ("gauss4", 3e-8)])
 @pytest.mark.slow
 def test_methods_that_solve_equations_have_the_rate_of_the_motion_to_which_they_settle(name: str, apart: float) -> None:

@@ -27,18 +27,6 @@ def name(check: Callable[[], Check]) -> str:
     return f"{check.func.__name__}-{'-'.join(str(getattr(value, 'name', value)) for value in values)}"
 
 
-@pytest.mark.promise(
-    "Near-double poles",
-    unknown=(
-        "Near-double poles keep half of the digits, triple ones a third, ABM4's quadruple one at z = 1 a quarter,"
-        " whatever the root finder"
-    ),
-)
-@pytest.mark.promise("Poles on α̂² = 4β̂, where both μ are one", computed="12 digits; μ itself to four roundings")
-@pytest.mark.promise(
-    "Poles for α̂, β̂ from 1e-300 to 1e300",
-    computed="15 digits less those of each pole's condition number, or overflow reported",
-)
 @pytest.mark.parametrize("check", [pytest.param(check, id=name(check)) for check in SHORT])
 @pytest.mark.slow_except("_speed-10", "_step", "_root_check", "_double_root-B4")
 def test_what_was_stated_beforehand_holds(check: Callable[[], Check]) -> None:

@@ -34,14 +34,6 @@ def robust_point(name: str, share: float = 1.0) -> tuple[float, float]:
     return share * chosen.alpha_hat, share**2 * chosen.beta_hat
 
 
-@pytest.mark.promise(
-    "Constraint errors of runs, predicted in metres with nothing fitted (`verify --accuracy`)",
-    measured=(
-        "after the start has died away, measured over predicted is one, to 5 % on the driven four-bar and to 25 %"
-        " on the light slider-crank and Andrews' mechanism: twelve methods, gains from 0.2 to 1 times the robust "
-        "ones. What is left vanishes with the step"
-    ),
-)
 @pytest.mark.parametrize(
     ("name", "scene"),
     sorted(of_campaign({*product(METHODS, SCENES)}, FEW)),
@@ -56,7 +48,6 @@ def test_measured_over_predicted_is_one_whatever_the_gains(name: str, scene: str
         assert found.quotient == pytest.approx(1, abs=allowed)
 
 
-@pytest.mark.promise("Constraint errors of runs, predicted in metres with nothing fitted (`verify --accuracy`)")
 @pytest.mark.slow
 @pytest.mark.parametrize("name", of_campaign(["bs3", "hht", "SYM", "ABM4"], ["bs3", "SYM"]))
 def test_what_is_left_of_the_quotient_vanishes_with_the_step(name: str) -> None:
@@ -78,10 +69,6 @@ def satisfies_d1(name: str) -> bool:
     return bool(np.abs(b @ a - b * (1 - a.sum(axis=1))).max() < 1e-9)
 
 
-@pytest.mark.promise(
-    "Trajectories of free mechanisms with α̂ and β̂ fixed",
-    measured="of Runge–Kutta methods order one without Butcher's D(1), two or more with it",
-)
 @pytest.mark.parametrize(
     "name",
     of_campaign(

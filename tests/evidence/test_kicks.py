@@ -56,12 +56,6 @@ def test_an_error_that_dies_has_converged_and_one_that_grows_tenfold_diverged(
     assert fate(error, drift) == verdict
 
 
-@pytest.mark.promise(
-    "Runs that break down",
-    unknown=(
-        "Runs that break down for another reason (too coarse a step, a singular configuration) say nothing of stability"
-    ),
-)
 def test_a_mechanism_that_breaks_down_gives_no_verdict_unless_feedback_throws_it_apart() -> None:
     """An error of 2 m at once is the feedback's doing if without feedback nothing happens; 2 mm may be forced."""
     assert fate(geometric(0.999), STILL, size=2e-3) == "none"

@@ -23,12 +23,6 @@ def test_a_recursion_gives_back_its_dominant_pole(dominant: tuple[float, float],
     assert abs(fit.pole) == pytest.approx(modulus, abs=2e-3)
 
 
-@pytest.mark.promise(
-    "A response's pole",
-    measured=(
-        "claimed only if the better half of the windows agree to 1e-3; else it is said that it cannot be measured"
-    ),
-)
 @pytest.mark.parametrize(("modulus", "angle"), [(0.97, 0.4), (0.99, 3.0), (1.02, 0.2)])
 def test_one_response_alone_gives_its_pole_and_how_well_it_is_known(modulus: float, angle: float) -> None:
     response = two_poles(300, modulus, angle, 1.0, 0.5)[:, np.newaxis]
@@ -39,7 +33,6 @@ def test_one_response_alone_gives_its_pole_and_how_well_it_is_known(modulus: flo
     assert fit.uncertainty < SPREAD
 
 
-@pytest.mark.promise("A response's pole")
 def test_what_cannot_be_measured_is_said() -> None:
     k = np.arange(1001)
     noise = np.random.default_rng(1).normal(0, 1, k.size)

@@ -46,20 +46,6 @@ def contradictions(found: list[Measurement]) -> list[Measurement]:
     return [one for one in called if (one.predicted_verdict == "diverges") != (one.measured_verdict == "diverges")]
 
 
-@pytest.mark.promise(
-    "Measured poles, slider-crank and pendulum, 1 ms",
-    measured=(
-        "median error of |z_p| below 1e-5 for multistep methods, 3e-5 for the others; none above 1e-3 but AB7's "
-        "and AB8's on the pendulum, 1e-2; angles to 0.01 rad"
-    ),
-)
-@pytest.mark.promise(
-    "Poles of implicit and second-order methods, measured",
-    measured=(
-        "median below 1e-5 for multistep methods, 3e-5 for the others: all on the pendulum, one of each kind on "
-        "the slider-crank as well"
-    ),
-)
 @pytest.mark.parametrize(
     ("name", "scene", "count"),
     [
@@ -93,13 +79,6 @@ def slider_crank(rpm: float) -> Mechanism:
     return compiled_mechanism(replace(load_scene("slider_crank"), velocity={"crank.theta": rpm * np.pi / 30}))
 
 
-@pytest.mark.promise(
-    "What is left of that error",
-    measured=(
-        "the motion's doing: at rest the median is below 1e-6 for every kind, and it halves with the speed and "
-        "with the step"
-    ),
-)
 @pytest.mark.parametrize("name", of_campaign(AT_REST, AT_REST_EACH_TIME))
 @pytest.mark.slow
 def test_at_rest_nothing_is_left_between_the_measured_pole_and_the_predicted_one(name: str) -> None:
@@ -111,7 +90,6 @@ def test_at_rest_nothing_is_left_between_the_measured_pole_and_the_predicted_one
     assert not contradictions(found)
 
 
-@pytest.mark.promise("What is left of that error")
 @pytest.mark.parametrize("name", ["SYM", "verlet-half"])
 @pytest.mark.slow
 def test_what_is_left_on_a_moving_mechanism_shrinks_with_its_speed_times_the_step(name: str) -> None:
@@ -138,13 +116,6 @@ def test_feedback_that_throws_the_mechanism_apart_diverges_unless_it_breaks_down
     assert [one.measured_verdict for one in found] == ["too close to call"] * 2
 
 
-@pytest.mark.promise(
-    "Measured verdicts",
-    measured=(
-        "none wrong of 50 points on each of four moving mechanisms, with B4, RK4, SYM and ABM4; none is given "
-        "within 1e-4 of the circle, nor where the motion can turn it"
-    ),
-)
 @pytest.mark.slow
 @pytest.mark.parametrize(
     "scene",
@@ -173,7 +144,6 @@ def test_cases_of_the_paper_are_seen(name: str, point: tuple[float, float], z_ab
     assert found.measured == pytest.approx(found.predicted, abs=1e-3)
 
 
-@pytest.mark.promise("Measured verdicts")
 @pytest.mark.parametrize(
     ("measured", "grows", "undecided", "verdict"),
     [

@@ -10,10 +10,6 @@ from tests.evidence.driven_four_bar import four_bar
 from tests.reference.perturbed_revolutions import runner_motion
 
 
-@pytest.mark.promise(
-    "Exact rates of a mechanism that moves",
-    measured="those of disturbed runs: to 3e-8 for AB4 at ωh = 0.031, ten times less than the poles at rest",
-)
 @pytest.mark.parametrize(
     ("name", "alpha_hat", "beta_hat", "apart"),
     [

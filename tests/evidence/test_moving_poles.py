@@ -31,13 +31,6 @@ def weak(name: str, random: np.random.Generator, count: int) -> FloatArray:
     return np.array([alpha_hat, (alpha_hat / 2 / damping_ratio) ** 2])
 
 
-@pytest.mark.promise(
-    "Bounds on the poles of a mechanism that moves",
-    measured=(
-        "of 1,600 random points of the driven four-bar, and of ten thousand that just are called safe, at critical "
-        "damping and with weak feedback too, none has an exact rate above one"
-    ),
-)
 @pytest.mark.parametrize("count", [203, 60, 34])
 @pytest.mark.parametrize("name", sampled(["B4", "AB2", "AB4", "RK2", "RK4", "SYM", "bdf2"], quick=["SYM"]))
 def test_errors_decay_wherever_the_bound_says_so(name: str, count: int) -> None:

@@ -60,10 +60,6 @@ def modulus(model: Any, kp: list[float], kd: list[float], timing: Timing) -> flo
     return float(np.abs(z[np.abs(z - 1) > 1e-4]).max() ** (1 / every))
 
 
-@pytest.mark.promise(
-    "Motors with a controller outside the model (`lint --pd`)",
-    computed="|z| of MuJoCo's own steps with the controller to 1e-6, held and late, under three integrators",
-)
 @pytest.mark.parametrize("integrator", ["Euler", "RK4", "implicitfast"])
 @pytest.mark.parametrize("timing", [Timing(), Timing(4), Timing(1, Fraction(1)), Timing(4, Fraction(2))], ids=str)
 @pytest.mark.slow

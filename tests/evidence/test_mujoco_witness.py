@@ -23,12 +23,6 @@ SCENES = of_campaign(["slider_crank", "slider_crank_light", "four_bar", "n_four_
 mujoco: Any = pytest.importorskip("mujoco")
 
 
-@pytest.mark.promise(
-    "MuJoCo, which is not ours",
-    measured=(
-        "all of its runs at 0.9 of the boundary settle, all at 1.1 diverge: five rays, two integrators, four mechanisms"
-    ),
-)
 @pytest.mark.parametrize("scene", SCENES)
 @pytest.mark.slow
 def test_mujoco_settles_and_diverges_where_the_map_says(

@@ -53,13 +53,6 @@ def logs_in_noise(count: int, seed: int) -> list[float]:
     return off
 
 
-@pytest.mark.promise(
-    "`probe`: 600 random logs of all methods in white noise, from a millionth to a third of the kick",
-    measured=(
-        "the pole is within the stated error in at least 97 of 100; two poles that are closer together than noise"
-        " resolves look like one. Nothing but noise is told as noise"
-    ),
-)
 @pytest.mark.parametrize("count", [20, pytest.param(of_campaign(600, 40), marks=pytest.mark.slow)])
 def test_the_stated_error_covers_the_pole_of_random_logs_in_noise(count: int) -> None:
     """In 97 of 100 at least. The others have two poles closer together than the noise resolves: they look like one."""
@@ -69,7 +62,6 @@ def test_the_stated_error_covers_the_pole_of_random_logs_in_noise(count: int) ->
     assert np.median(off) > 0.1  # nor is so much allowed that it covers anything
 
 
-@pytest.mark.promise("`probe`: 600 random logs of all methods in white noise, from a millionth to a third of the kick")
 @pytest.mark.slow
 def test_where_there_is_nothing_but_noise_that_is_said() -> None:
     random = np.random.default_rng(2)

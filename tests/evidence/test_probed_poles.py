@@ -265,13 +265,6 @@ def outcome(log: RandomLog, found: ProbedPole, turned: float | None) -> str:
     return "first" if true.distance < like[0].distance + ROUNDING else "among"
 
 
-@pytest.mark.promise(
-    "`probe`: logs of 600 random runs, all methods, nine digits",
-    measured=(
-        "where a pole is told (four in five) the true method is the first (nine in ten) or among those that fit, "
-        "whether or not it is said how fast the mechanism turns; else it is said why none is"
-    ),
-)
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", of_campaign([1, 2, 7], [1]))
 def test_the_true_method_is_named_whatever_made_the_log(seed: int) -> None:

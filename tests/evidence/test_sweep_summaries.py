@@ -57,7 +57,6 @@ def test_an_order_lost_by_the_start_is_not_put_down_to_a_multistep_method() -> N
         assert any(f"{name} would keep the order; the start by RK4" in sentence for sentence in sentences) == told
 
 
-@pytest.mark.promise("What methods cost against each other (`tradeoff`)")
 def test_evaluations_for_an_error_follow_the_power_law_within_the_runs_and_are_unknown_beyond() -> None:
     costs = known_costs(made_up("B4", [(1000, 1e-3), (10000, 1e-6)]))
     for error in (1e-3, 3e-5, 1e-6):
@@ -89,10 +88,6 @@ def test_what_is_better_is_won_and_what_is_worse_is_lost() -> None:
     assert compared("trapezoid") == "B4 against trapezoid loses: stable up to some α = β, the other at every."
 
 
-@pytest.mark.promise(
-    "What methods cost against each other (`tradeoff`)",
-    measured="interpolated between runs, at the least error that runs of both have reached; never beyond",
-)
 def test_methods_are_compared_where_both_have_runs_and_nowhere_else() -> None:
     """At 1e-5 AB4 is a quarter of the way from 50 to 500; then its coarsest run is nearer than B4's finest."""
     words = compared("AB4", [(50, 1e-4), (500, 1e-8)])
@@ -158,14 +153,6 @@ def test_what_diverged_or_has_nothing_to_compare_with_is_left_out() -> None:
     assert found.factorizations == pytest.approx(2)
 
 
-@pytest.mark.promise(
-    "Feedback against projection (`tradeoff --against projection`)",
-    measured=(
-        "free trajectories (light slider-crank, Andrews' mechanism): for the same error projection takes 1.1 to 1.2 "
-        "times the factorizations with RK4, 2.1 to 2.3 with AB4, 2.7 to 3.1 with B4, 3.6 to 4.4 with SYM; a sweep of "
-        "SYM and RK4 in CI"
-    ),
-)
 def test_on_a_free_mechanism_feedback_is_cheaper_and_projection_nearer_to_the_constraints() -> None:
     runs = []
     for name in ("SYM", "RK4"):

@@ -21,18 +21,6 @@ def whole_map(scene: str, name: str, h: float, count: int) -> VerdictMap:
     return verdict_map(chunks, [simulated_verdicts(rows) for rows in chunks])
 
 
-@pytest.mark.promise(
-    "Runs too short to tell",
-    unknown="Runs too short to tell: growth or decay nearer to one than 10 over their steps does not show",
-)
-@pytest.mark.promise(
-    "Maps of simulated verdicts",
-    measured=(
-        "all that are given agree where |z_p| is farther from one than 10 over the number of steps (0.005), and "
-        "than the motion moves any pole, |χ|κh; on free mechanisms, whose motions drift apart, and at coarse "
-        "steps too"
-    ),
-)
 @pytest.mark.parametrize(
     ("name", "scene", "count"),
     [
@@ -51,7 +39,6 @@ def test_simulated_verdicts_agree_outside_the_band(name: str, scene: str, count:
     assert cell * (~verdicts.diverges).sum() == pytest.approx(region(lookup(name)).area, abs=crossed)
 
 
-@pytest.mark.promise("Maps of simulated verdicts")
 @pytest.mark.parametrize("name", of_campaign(["AB4", "B4"], ["AB4"]))
 @pytest.mark.slow
 def test_where_the_motion_turns_a_verdict_it_is_that_of_the_exact_rate(name: str) -> None:
@@ -64,7 +51,6 @@ def test_where_the_motion_turns_a_verdict_it_is_that_of_the_exact_rate(name: str
     assert not ((verdicts.diverges != (exact > 1)) & ~verdicts.undecided).any()
 
 
-@pytest.mark.promise("Maps of simulated verdicts")
 @pytest.mark.parametrize(
     ("scene", "name", "h", "judged"),
     [

@@ -34,7 +34,6 @@ def test_polynomials_are_integrated_exactly_up_to_the_number_of_nodes(count: int
     assert running_integral(polynomial(t), h) == pytest.approx(antiderivative(t) - antiderivative(0), rel=1e-12)
 
 
-@pytest.mark.promise("Energy drift")
 def test_a_drivers_work_is_the_energy_that_the_motion_has_in_closed_form() -> None:
     run = run_of("driven_slider_crank", h=2e-3, duration=6.0)  # a revolution
     rate = 2 * np.pi / 6
@@ -45,13 +44,6 @@ def test_a_drivers_work_is_the_energy_that_the_motion_has_in_closed_form() -> No
     assert np.array_equal(run.force_work, np.zeros(len(run.t)))
 
 
-@pytest.mark.promise(
-    "Energy drift",
-    measured=(
-        "an error: with a driver, too, it shrinks with the method's order, to 0.1; the driver's work is that of "
-        "closed forms"
-    ),
-)
 @pytest.mark.parametrize("name", ["SIE", "B2", "AB3", "AB4", "RK4", "RK3"])
 def test_of_a_driven_mechanism_only_the_drift_shrinks_with_the_step(name: str) -> None:
     """Its own energy changes by 0.2 J whatever the step is."""

@@ -22,10 +22,6 @@ from tests.evidence.driven_four_bar import swinging_four_bar
 MECHANISM = compiled_mechanism(load_scene("driven_four_bar"))
 
 
-@pytest.mark.promise(
-    "Rates where drivers turn and oscillate",
-    measured="over their common period the runner's, to 1e-5 for AB4 at ωh = 0.1; without one none is exact",
-)
 @pytest.mark.parametrize(
     ("rate", "frequency", "period"),
     [
@@ -91,13 +87,6 @@ def test_a_motion_that_misses_its_start_is_refused_with_the_coordinate() -> None
         motion(compiled_mechanism(drifting), 1.0)
 
 
-@pytest.mark.promise(
-    "Motions through a singular configuration",
-    unknown=(
-        "A motion that goes through a singular configuration has no bound and no exact rate: `--scene` and "
-        "`--floquet` refuse it, with its time"
-    ),
-)
 @pytest.mark.parametrize("offset", [np.pi / 2, 1.5])
 def test_a_motion_through_a_singular_configuration_is_refused(offset: float) -> None:
     """A parallelogram's rods lie along the ground twice a turn: a step meets that, or two steps lie around it."""

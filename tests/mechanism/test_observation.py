@@ -17,13 +17,6 @@ from tests.reference.literal_equation_9 import literal_equation_9
 from tests.reference.one_coordinate_motion import slider_crank_joint_forces
 
 
-@pytest.mark.promise(
-    "Accelerations and multipliers",
-    computed=(
-        "those of the paper's Eq. 9 solved as it stands, to rounding times its condition; of Newton and Euler to 1e-9 N"
-    ),
-)
-@pytest.mark.promise("A step of a run")
 @pytest.mark.parametrize("name", shipped_scenes())
 def test_the_generated_code_solves_the_literal_equation_9(name: str) -> None:
     mechanism, random = compiled_mechanism(small(name)), np.random.default_rng(2)
@@ -42,7 +35,6 @@ def test_the_generated_code_solves_the_literal_equation_9(name: str) -> None:
         assert found == pytest.approx(expected.accelerations.tolist(), abs=rounding)
 
 
-@pytest.mark.promise("Accelerations and multipliers")
 @pytest.mark.slow
 def test_multipliers_are_the_joint_forces_of_newton_and_euler() -> None:
     mechanism, gains = compiled_mechanism(load_scene("slider_crank_light")), (20.0, 100.0)
@@ -56,10 +48,6 @@ def test_multipliers_are_the_joint_forces_of_newton_and_euler() -> None:
     assert seen.multipliers == pytest.approx(expected, abs=1e-9)
 
 
-@pytest.mark.promise(
-    "Singular configurations gone through",
-    measured="each is counted, whatever the step, and none on mechanisms that have none",
-)
 @pytest.mark.parametrize("h", [1e-3, 7e-3, 2e-2])
 def test_every_passage_through_a_singular_configuration_is_seen_whatever_the_step(h: float) -> None:
     """The rods lie along the ground whenever their angle is a multiple of pi; found by the angles alone."""
@@ -72,7 +60,6 @@ def test_every_passage_through_a_singular_configuration_is_seen_whatever_the_ste
     assert found == pytest.approx(expected, abs=h)
 
 
-@pytest.mark.promise("Singular configurations gone through")
 @pytest.mark.parametrize("name", ["slider_crank", "slider_crank_300rpm", "four_bar", "driven_four_bar", "pendulum"])
 def test_where_nothing_is_singular_no_passage_is_seen(name: str) -> None:
     mechanism, gains = compiled_mechanism(load_scene(name)), (20.0, 100.0)

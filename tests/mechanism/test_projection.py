@@ -43,7 +43,6 @@ def projected(
     return simulated(mechanism, method, h=h, duration=duration, alpha_hat=0.0, beta_hat=0.0, after=after)
 
 
-@pytest.mark.promise("Projection (`--stabilise projection`)")
 @pytest.mark.parametrize("name", ["slider_crank", "driven_four_bar", "andrews"])
 @pytest.mark.parametrize("method", KINDS)
 @pytest.mark.slow_except("ABM2-slider_crank")
@@ -55,13 +54,6 @@ def test_after_each_step_the_constraints_hold(name: str, method: str) -> None:
     assert abs(run.cdot).max() <= WITHIN * max(1, abs(run.v).max())
 
 
-@pytest.mark.promise(
-    "Projection (`--stabilise projection`)",
-    measured=(
-        "|c| and the rate of c at most 4e-12 after each step, and the orders of ten methods against a motion by "
-        "quadrature within 0.1; corrections are those of the saddle-point equations"
-    ),
-)
 @pytest.mark.parametrize(
     ("name", "order"),
     [
@@ -89,7 +81,6 @@ def test_what_is_carried_of_a_velocity_is_projected_with_it() -> None:
     assert shown_order(errors) == pytest.approx(2, abs=0.1)
 
 
-@pytest.mark.promise("Projection (`--stabilise projection`)")
 @pytest.mark.parametrize("name", ["slider_crank", "driven_four_bar", "andrews", "driven_slider_crank"])
 def test_corrections_are_the_least_ones_in_the_metric_of_the_masses(name: str) -> None:
     mechanism, t, generator = scene(name), 0.3, np.random.default_rng(1)
@@ -145,7 +136,6 @@ def test_steps_of_different_lengths_are_projected_too() -> None:
     assert max(abs(run.c).max(), abs(run.cdot).max() / 10) <= WITHIN
 
 
-@pytest.mark.promise("Projection (`--stabilise projection`)")
 def test_a_singular_configuration_ends_a_run_and_says_when() -> None:
     """The first step of explicit Euler ends where crank and rod of one length stand upright: S has no inverse there."""
     shipped, before, rate = load_scene("slider_crank_equal"), 1e-4, 2.0

@@ -60,14 +60,6 @@ def measured_order(
     return shown_order(errors)
 
 
-@pytest.mark.promise(
-    "Motion of pendulum, slider-crank, four-bars",
-    measured="converges to quadrature of the one coordinate, with the method's order",
-)
-@pytest.mark.promise(
-    "Orders of runs with α and β fixed",
-    measured="0.1, methods of order up to four, that of the start; the steps of all are those of the plain formulas",
-)
 @pytest.mark.parametrize("name", of_campaign([name for name in REGISTRY if order(name) <= 4], [*FEW, *SOLVED]))
 @pytest.mark.slow_except("B4", "AB4", "verlet-half", "rkn4", "hht")
 def test_a_run_keeps_its_methods_order_up_to_that_of_its_start(name: str) -> None:
@@ -92,7 +84,6 @@ SHOWN_ORDERS = {
 """With alpha_hat and beta_hat fixed. Slow to fall to 1: sdirk2, imex-euler, ralston: 1.19, 1.13, 1.05 at 3200 steps."""
 
 
-@pytest.mark.promise("Orders kept and lost with α̂ and β̂ fixed", measured="0.1, one method of each kind and more")
 @pytest.mark.parametrize("name", SHOWN_ORDERS)
 @pytest.mark.slow_except("B4", "AB4", "RK4", "verlet-half")
 def test_with_alpha_hat_and_beta_hat_fixed_methods_with_stages_lose_order(name: str) -> None:
@@ -102,7 +93,6 @@ def test_with_alpha_hat_and_beta_hat_fixed_methods_with_stages_lose_order(name: 
     assert shown == pytest.approx(SHOWN_ORDERS[name], abs=0.1)
 
 
-@pytest.mark.promise("Runs that break down")
 @pytest.mark.parametrize(
     ("scene", "method", "h", "gains", "cause"),
     [
@@ -122,7 +112,6 @@ def test_a_run_that_ends_says_when_and_why(
     assert len(run.t) == len(run.q) == len(run.v)
 
 
-@pytest.mark.promise("Costs of runs")
 @pytest.mark.parametrize("start", STARTS)
 def test_the_start_provides_the_first_values(start: Start) -> None:
     method = lookup("B4")
@@ -196,10 +185,6 @@ def andrews_angles(name: str, h: float) -> FloatArray:
     return np.array([k1, k2 - k1, k3, k4 - k5, k5, k6 - k7, k7])
 
 
-@pytest.mark.promise(
-    "Andrews' squeezing mechanism",
-    measured="its seven angles at 0.03 s are the published ones to 1e-9 (relative), with ABM4 at 2 µs",
-)
 @pytest.mark.parametrize(("name", "h"), of_campaign([("ABM4", 2e-6), ("AB4", 5e-7)], [("ABM4", 2e-6)]))
 @pytest.mark.slow
 def test_andrews_squeezing_mechanism_ends_where_the_test_set_says(name: str, h: float) -> None:
@@ -268,15 +253,6 @@ def test_the_exact_pendulum_is_that_of_the_benchmark() -> None:
     assert exact_pendulum(10.0) == pytest.approx(A01_AT_10_S, abs=1e-12)  # as printed
 
 
-@pytest.mark.promise("Motion of pendulum, slider-crank, four-bars")
-@pytest.mark.promise(
-    "IFToMM's A01 and A02",
-    measured=(
-        "pendulum: after 2000 s its place to 1e-3 m, its energy to 1e-5 J; 40 four-bars: over 20 s and 20 "
-        "singular positions, all counted, their angle to 1e-6 rad, their energy to 1e-6 J (the benchmark asks for"
-        " 1e-3)"
-    ),
-)
 @pytest.mark.parametrize(
     ("duration", "error", "energy"),
     [(10.0, 1e-8, 1e-8), pytest.param(2000.0, 1e-3, 1e-5, marks=pytest.mark.slow)],
@@ -299,8 +275,6 @@ energy is off by 2e-4 J on one processor and by half a joule on another. At 9e-4
 """
 
 
-@pytest.mark.promise("Motion of pendulum, slider-crank, four-bars")
-@pytest.mark.promise("IFToMM's A01 and A02")
 @pytest.mark.parametrize(("count", "duration", "passages"), of_campaign([(5, 1.5, 2), (40, 20.0, 20)], [(5, 1.5, 2)]))
 @pytest.mark.slow
 def test_a02_the_four_bars_go_through_their_singular_positions(count: int, duration: float, passages: int) -> None:

@@ -12,7 +12,6 @@ from bezstab.mechanism.scene_files import parse_scene
 from tests.mechanism.test_scenes import SHIPPED, pendulum
 
 
-@pytest.mark.promise("Initial states", computed="|c| below 1e-12 (m or rad)")
 @pytest.mark.parametrize("name", SHIPPED)
 def test_initial_states_satisfy_the_constraints(name: str) -> None:
     mechanism = compiled_mechanism(load_scene(name))
@@ -53,10 +52,6 @@ def test_states_that_do_not_fit_are_refused(initial: dict[str, dict[str, float]]
 STRING = {"type": "distance", "bodies": ["ground", "bob"], "points": [[0, 0], [0, 0]], "length": 1.0}
 
 
-@pytest.mark.promise(
-    "Constraints that follow from others",
-    computed="refused, with the names of the joints that depend on each other",
-)
 @pytest.mark.parametrize("position", [{"bob.x": 1.0, "bob.y": 0.0}, {"bob.x": 0.6}, {"bob.y": 0.8}])
 def test_a_joint_given_twice_is_refused_by_name_however_much_of_the_position_is_given(
     position: dict[str, float],
@@ -102,7 +97,6 @@ def parallel_rods(count: int, angle: float) -> dict[str, Any]:
     }
 
 
-@pytest.mark.promise("Constraints that follow from others")
 def test_the_third_of_three_parallel_rods_is_redundant_and_named() -> None:
     """Along x, its tip goes where the coupler is taken by the other two; along y likewise, but for its own angle."""
     named = "".join(rf".*joint {number} \(revolute, rod{number - 1} and coupler\)" for number in (3, 1, 2))

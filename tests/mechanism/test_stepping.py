@@ -71,8 +71,6 @@ def both(mechanism: Mechanism, name: str, count: int, gains: tuple[float, float]
     return compiled
 
 
-@pytest.mark.promise("A step of a run", computed="the method's formula applied to Eq. 9, to 1e-12 (SI)")
-@pytest.mark.promise("Compiled runs (`--compiled`)")
 @pytest.mark.parametrize("name", of_campaign(sorted({*KINDS, *EXPLICIT} - UNSTABLE), KINDS))
 @pytest.mark.slow_except("SYM")
 def test_many_steps_are_the_plain_ones(name: str) -> None:
@@ -90,14 +88,6 @@ def test_many_steps_are_the_plain_ones(name: str) -> None:
     assert states[first:, n:] == pytest.approx(expected[:, n:], abs=tolerance * abs(states).max())
 
 
-@pytest.mark.promise(
-    "Compiled runs (`--compiled`)",
-    measured=(
-        "those of numpy to 1e-12 of the coordinates' size after 200 steps, with the same count of evaluations and, "
-        "where they end, the same end: every explicit method in every shipped scene but the chain of 40 four-bars, for "
-        "which one of four stands; both those of the plain formulas after 2000 steps. Kicked batches: 1e-9"
-    ),
-)
 @pytest.mark.slow
 @pytest.mark.parametrize("scene", of_campaign(SCENES, ["driven_slider_crank"]))
 def test_every_method_is_the_same_compiled_in_every_scene(scene: str) -> None:
@@ -139,7 +129,6 @@ def test_newtons_method_ends_runs_and_keeps_its_jacobian_across_blocks(monkeypat
     assert f"Newton's method did not converge in {MOST_ITERATIONS} iterations (last correction " in str(ended.failure)
 
 
-@pytest.mark.promise("Compiled runs (`--compiled`)")
 def test_a_blow_up_comes_at_the_same_step_in_the_same_words() -> None:
     run = both(compiled_mechanism(load_scene("pendulum")), "AB3", 3000, feedback_gains(3.0, 3.0, H))
     assert "blow-up" in str(run.failure)
@@ -154,7 +143,6 @@ def test_a_singular_configuration_ends_a_run(compiled: bool) -> None:
     assert run.failure
 
 
-@pytest.mark.promise("Compiled runs (`--compiled`)")
 @pytest.mark.parametrize("name", ["SYM", "gauss4"])
 @pytest.mark.slow_except("SYM")
 def test_kicked_runs_are_the_same_in_a_batch_compiled_and_alone(name: str) -> None:

@@ -53,14 +53,6 @@ def run_with(
     )
 
 
-@pytest.mark.promise(
-    "Runs with steps that vary (`simulate --steps`), of every kind of one-step method",
-    measured=(
-        "equal steps are the run of constant steps, its coordinates to 1e-9 (m or rad), its evaluations the same "
-        "in number; at rest errors follow the product of the exact step matrices to 1e-7 of themselves; steps that are "
-        "each stable, and refuted together, grow"
-    ),
-)
 @pytest.mark.parametrize("name", ONE_STEP)
 @pytest.mark.slow_except("rkn4")
 def test_equal_steps_are_the_run_of_constant_steps(name: str) -> None:
@@ -109,7 +101,6 @@ class Round:
         return run.c[:: len(self.steps), 0]
 
 
-@pytest.mark.promise("Runs with steps that vary (`simulate --steps`), of every kind of one-step method")
 @pytest.mark.parametrize("name", ONE_STEP)
 @pytest.mark.parametrize("hold", [False, True])
 def test_errors_follow_the_product_of_the_step_matrices(name: str, hold: bool) -> None:
@@ -123,7 +114,6 @@ def test_errors_follow_the_product_of_the_step_matrices(name: str, hold: bool) -
     assert abs(left_over).max() < 1e-7 * abs(errors).max()
 
 
-@pytest.mark.promise("Runs with steps that vary (`simulate --steps`), of every kind of one-step method")
 def test_steps_that_are_each_stable_grow_in_turn() -> None:
     # theory: 1e-6 grows to about 30 in 60 steps, until the linear range is left
     steps = [H, 9.17e-3]
@@ -152,7 +142,6 @@ def compiled_and_not(name: str, monkeypatch: pytest.MonkeyPatch, **point: Any) -
     return runs[1]
 
 
-@pytest.mark.promise("Compiled runs (`--compiled`)")
 @pytest.mark.slow
 def test_compiled_runs_are_those_of_python(monkeypatch: pytest.MonkeyPatch) -> None:
     """Those that last, their gains held and not, and those that end."""

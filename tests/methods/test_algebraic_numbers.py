@@ -8,10 +8,6 @@ from bezstab.methods.algebraic_numbers import DIGITS, decimal_root
 F = Fraction
 
 
-@pytest.mark.promise(
-    "Rationals in place of irrational coefficients",
-    proven="are within 1e-40 of them; proofs are about the rationals",
-)
 @pytest.mark.parametrize("sign", [1, -1])
 def test_root_two_is_good_to_forty_digits_and_rounded_up(sign: int) -> None:
     root = decimal_root(lambda x: sign * (x**2 - 2), F(4, 3), F(3, 2))  # ends that are no decimals

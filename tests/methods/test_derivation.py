@@ -67,10 +67,6 @@ def test_the_mapping_is_the_characteristic_polynomial_solved(name: str) -> None:
     assert numerator * pi.LC() == pi * numerator.LC()
 
 
-@pytest.mark.promise(
-    "P(z; α̂, β̂)",
-    proven="annihilates every exact trajectory of the stabilised constraint; nothing of lower degree does",
-)
 @pytest.mark.parametrize("name", sampled(NAMES, quick=[*SAMPLE, "RK4@5", "ABM3@2"]))
 def test_closed_loop_is_the_minimal_recursion_of_the_stabilised_constraint(name: str) -> None:
     """P annihilates every exact trajectory of c' = v, v' = -alpha_hat v - beta_hat c; nothing of lower degree does."""

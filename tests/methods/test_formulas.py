@@ -110,14 +110,12 @@ PRINTED = {  # theory.md, section 14, and by hand; a share of the motion, of the
 }
 
 
-@pytest.mark.promise("The error that a method forces on a constraint that moves (`methods`, `choose --goal accurate`)")
 @pytest.mark.parametrize("name", PRINTED)
 def test_a_steady_error_is_written_as_by_hand(name: str) -> None:
     for part, expected in zip(get_args(Part), PRINTED[name], strict=True):
         assert expected in (None, steady_error_text(lookup(name), part))
 
 
-@pytest.mark.promise("The error that a method forces on a constraint that moves (`methods`, `choose --goal accurate`)")
 @pytest.mark.parametrize(
     "name", sampled([name for name in NAMES if name != "tsit5"], quick=[*SAMPLE, *SOLVED, "gauss4"])
 )

@@ -159,7 +159,6 @@ b = ["(16 - sqrt(6))/36", "(16 + sqrt(6))/36", "1/9"]
 """Hairer & Wanner II, Table IV.5.6."""
 
 
-@pytest.mark.promise("Coefficients of the built-in methods")
 @pytest.mark.parametrize(("content", "name"), [(SDIRK2, "sdirk2"), (RADAU, "radau5")])
 def test_coefficients_with_roots_are_those_of_the_book(content: str, name: str, tmp_path: Path) -> None:
     """Weights that add up to one by way of the roots do so exactly, or the file would be refused."""

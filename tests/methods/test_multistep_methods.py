@@ -14,10 +14,6 @@ def multistep(name: str) -> LinearMultistep:
     return scheme
 
 
-@pytest.mark.promise(
-    "Coefficients of the built-in methods",
-    proven="are exact; each family has a second route to its weights",
-)
 @pytest.mark.parametrize("n", range(2, 13))
 def test_bezier_step_integrates_the_curve_of_de_casteljau(n: int) -> None:
     scheme = multistep(f"B{n}")
@@ -28,7 +24,6 @@ def test_bezier_step_integrates_the_curve_of_de_casteljau(n: int) -> None:
 FAMILIES = [*(("AB", n) for n in range(1, 9)), *(("am", n) for n in range(2, 7)), *(("bdf", n) for n in range(1, 7))]
 
 
-@pytest.mark.promise("Coefficients of the built-in methods")
 @pytest.mark.parametrize(("family", "n"), FAMILIES)
 def test_a_family_is_exact_for_every_polynomial_that_its_points_determine_and_no_other(family: str, n: int) -> None:
     """Which determines its weights. AB and am integrate t^p, bdf differentiates it; t = 1, 0, -1, ... in steps."""

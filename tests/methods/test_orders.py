@@ -48,19 +48,11 @@ CONSTANTS = {
 }
 
 
-@pytest.mark.promise("Orders of accuracy and error constants")
 @pytest.mark.parametrize("name", CONSTANTS)
 def test_orders_and_error_constants_are_those_of_the_literature(name: str) -> None:
     assert accuracy(lookup(name)) == CONSTANTS[name]
 
 
-@pytest.mark.promise(
-    "Orders of accuracy and error constants",
-    proven=(
-        "are exact, from order conditions; measured runs show the same order, of second-order and implicit "
-        "methods too, for forces of position and of velocity"
-    ),
-)
 @pytest.mark.parametrize(
     ("method", "order"),
     [
@@ -82,7 +74,6 @@ def nonlinear(y: State) -> State:
     return np.array([y[1], -2 * y[0] * y[1]])
 
 
-@pytest.mark.promise("Orders of accuracy and error constants")
 @pytest.mark.parametrize("method", [*SAMPLED, pytest.param(JAMESON, id="Jameson")])
 def test_measured_order_of_convergence_is_the_order_of_accuracy(method: Method) -> None:
     """Error at t = 1 of a nonlinear system from exact starting values, in 50 digits so that no round-off shows."""
@@ -131,7 +122,6 @@ def measured_order(scheme: SecondOrder, kind: str, count: int) -> float:
     return math.log2(errors[0] / errors[1])
 
 
-@pytest.mark.promise("Orders of accuracy and error constants")
 @pytest.mark.parametrize("name", [*kinds.SECOND_ORDER, *kinds.IMPLICIT])
 @pytest.mark.slow_except("SYM")
 def test_measured_orders_of_second_order_and_implicit_methods(name: str) -> None:

@@ -42,7 +42,6 @@ def test_dormand_prince_is_the_formula_of_dopri5() -> None:
     assert lookup("dopri5").scheme == DORMAND_PRINCE.scheme
 
 
-@pytest.mark.promise("Coefficients of the built-in methods")
 @pytest.mark.parametrize(
     ("name", "order", "calls", "expected"),
     [

@@ -78,7 +78,6 @@ def test_a_runge_kutta_method_is_square_and_consistent(tableau: list[str], b: st
 # The same step as equations for x, v and a
 
 
-@pytest.mark.promise("Schemes written as second-order ones", proven="have the same P")
 @pytest.mark.parametrize("name", kinds.MU_METHODS)
 def test_p_of_the_form_is_the_product_of_pi_over_both_mu_of_the_feedback(name: str) -> None:
     """The resultant of pi and mu^2 + alpha_hat mu + beta_hat, whose roots are mu_1 and mu_2."""

@@ -24,10 +24,6 @@ from tests.reference.known_roots import (
 TINY = Fraction(1, 10**20)
 
 
-@pytest.mark.promise(
-    "The Schur–Cohn test",
-    proven="gives the verdict of polynomials whose roots are known, repeated ones on the circle included",
-)
 @settings(deadline=None, max_examples=100)  # exact arithmetic has no bounded time per example
 @given(several(inside | on_circle | outside), small_rationals.filter(bool), st.integers(0, 3), st.integers(0, 3))
 def test_verdict_is_that_of_the_known_roots(factors: list[Factor], c: Fraction, leading: int, at_zero: int) -> None:
@@ -37,7 +33,6 @@ def test_verdict_is_that_of_the_known_roots(factors: list[Factor], c: Fraction, 
     assert is_schur(p) == (verdict_by_roots(factors) == "converges")
 
 
-@pytest.mark.promise("A verdict")
 @pytest.mark.slow
 @settings(deadline=None, max_examples=30)  # numbers of 20 digits to the power of the degree take their time
 @given(several(inside), st.lists(on_circle, unique=True, min_size=1, max_size=4))

@@ -31,13 +31,6 @@ def is_shifted(longer: list[Fraction], shorter: list[Fraction]) -> bool:
     return longer == [F(0)] * (len(longer) - len(monic)) + monic
 
 
-@pytest.mark.promise(
-    "P of a second-order scheme",
-    proven=(
-        "is the characteristic polynomial of the matrix of its own step, of built-in schemes and of random "
-        "recipes; the polynomials of the literature come out"
-    ),
-)
 @pytest.mark.parametrize("name", [*kinds.SECOND_ORDER, *(n for n in kinds.MU_METHODS if not n.startswith("B"))])
 @pytest.mark.parametrize(("alpha_hat", "beta_hat"), POINTS[:2])
 def test_p_is_the_characteristic_polynomial_of_the_step(name: str, alpha_hat: Fraction, beta_hat: Fraction) -> None:
@@ -58,7 +51,6 @@ def has_a_circle(scheme: SecondOrder) -> bool:
     return False
 
 
-@pytest.mark.promise("P of a second-order scheme")
 @settings(deadline=None, max_examples=60)  # the determinant's time is not bounded by its input's length
 @given(RECIPES, st.sampled_from(POINTS))
 @pytest.mark.slow

@@ -27,7 +27,6 @@ def same_up_to_a_number(name: str, coefficients: list[sp.Expr]) -> bool:
     return bool(ratio.free_symbols <= {z} and sp.Poly(sp.numer(ratio) * sp.denom(ratio), z).is_monomial)
 
 
-@pytest.mark.promise("P of a second-order scheme")
 @pytest.mark.parametrize(
     ("name", "coefficients"),
     [
@@ -74,7 +73,6 @@ def of_generalized_alpha(radius: str) -> tuple[str, list[sp.Expr]]:
     return f"generalized-alpha({radius})", alpha_determinant(*shares)
 
 
-@pytest.mark.promise("P of a second-order scheme")
 @pytest.mark.parametrize(
     ("name", "coefficients"),
     [

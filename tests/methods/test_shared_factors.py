@@ -34,10 +34,6 @@ def test_no_method_of_the_registry_has_a_fixed_pole(name: str) -> None:
     assert reduced_table(lookup(name)) == closed_loop_table(lookup(name))
 
 
-@pytest.mark.promise(
-    "Poles that no feedback moves, where ρ and σ share a factor",
-    computed="named, cancelled in exact arithmetic",
-)
 @pytest.mark.parametrize(
     ("factor", "poles"),
     [((F(1), F(-9, 10)), [0.9]), ((F(1), F(0), F(1)), [1j, -1j]), ((F(1), F(1), F(1, 4)), [-0.5]), ((F(1), F(0)), [])],

@@ -53,14 +53,6 @@ DECAYED = 1e-48
 """What is left of the start."""
 
 
-@pytest.mark.promise(
-    "The error that a method forces on a constraint that moves (`methods`, `choose --goal accurate`)",
-    computed=(
-        "exact in rationals: closed forms by hand, forty digits of the own recursions of methods of each kind; over "
-        "the plane ten digits, for ωh from 1e-6 to 0.9. What is written is that, to ten digits where coefficients are "
-        "irrational"
-    ),
-)
 @pytest.mark.parametrize("name", ["B2", "B6", "AB4", "ABM3", "RK3", "SIE", "dirk3", "yoshida4", *SOLVED])
 @pytest.mark.slow_except("SYM", "B2")
 def test_it_is_what_the_methods_own_recursion_ends_on_to_forty_digits(name: str) -> None:
@@ -99,10 +91,6 @@ SMALLEST = Fraction(1, 10**12)
 """What rationals that stand for irrational coefficients leave over, and more."""
 
 
-@pytest.mark.promise(
-    "What normals that turn add to it",
-    computed="to gauss4 −β̂/5184, as by hand; to no other built-in method anything of the leading order",
-)
 @pytest.mark.parametrize("name", sampled(list(REGISTRY), ("B4", "AB4", "RK4", "dopri5", "SYM", "hht", "gauss4")))
 def test_errors_begin_where_evaluations_begin_to_be_off_but_for_those_that_gauss_cancels(name: str) -> None:
     """So normals that turn add nothing of the leading order to any built-in method but gauss4."""

@@ -20,10 +20,6 @@ def without_zero_roots(polynomial: list[Fraction]) -> list[Fraction]:
     return monic
 
 
-@pytest.mark.promise(
-    "The matrix of a step",
-    proven="has the P of constant steps for its characteristic polynomial, whatever its length",
-)
 @pytest.mark.parametrize("name", ONE_STEP)
 @pytest.mark.parametrize("hold", [False, True])
 def test_its_characteristic_polynomial_is_the_closed_loop_of_that_step(name: str, hold: bool) -> None:
@@ -49,7 +45,6 @@ def test_a_stored_acceleration_belongs_to_the_state_only_where_it_says_something
     assert step_matrix(predicted, Fraction(1), Fraction(1)).size == 3
 
 
-@pytest.mark.promise("Steps that vary, of methods of several steps")
 @pytest.mark.parametrize("name", ["B4", "AB2", "ABM2", "bdf2"])
 def test_methods_of_several_steps_are_refused(name: str) -> None:
     with pytest.raises(InputError, match=f"{name} uses values of several steps, and its coefficients assume"):

@@ -29,10 +29,6 @@ def drawn_map(name: str) -> Axes:
     return map_figure(answer, np.array(list(answer.dominant_poles()))).axes[0]
 
 
-@pytest.mark.promise(
-    "The map of forced errors (`region --accuracy`)",
-    computed=("each contour is where the error is its power of ten; the boundary exact on its logarithmic axes, too"),
-)
 def test_each_contour_is_where_the_error_is_its_power_of_ten() -> None:
     method = lookup("RK4")
     errors, level = (each for each in drawn_map("RK4").collections if isinstance(each, QuadContourSet))
@@ -49,7 +45,6 @@ def test_each_contour_is_where_the_error_is_its_power_of_ten() -> None:
     assert np.median(abs(spectral_radius(method, alpha_hat, beta_hat) - 0.99)) < 1e-3
 
 
-@pytest.mark.promise("The map of forced errors (`region --accuracy`)")
 @pytest.mark.parametrize("name", ["SYM", "B4"])
 def test_the_boundary_is_exact_down_to_the_last_decade(name: str) -> None:
     """Chords of a few points would be straight on other axes: what lies between two points is on the boundary, too."""

@@ -36,7 +36,6 @@ from bezstab.show.schemas import _row_schema
 KINDS = [kind for kinds in ROW_KINDS.values() for kind in kinds]
 
 
-@pytest.mark.promise("Keys of JSON and CSV")
 def test_a_key_is_the_same_in_every_kind_of_row_and_means_one_thing() -> None:
     for kind in KINDS:
         fields = (*kind.fields, *kind.added)

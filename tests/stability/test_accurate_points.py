@@ -58,17 +58,6 @@ WITH_STAGES = ("RK3", "bs3", "ssprk3", "dirk3", "RK4", "rkn4", "gauss4", "dopri5
 """Of order three and more. Of the others of such an order, radau3's best beta is 5 omega, as that of order two is."""
 
 
-@pytest.mark.promise(
-    "Gains of least error, methods with stages of order three and more",
-    computed="β a fixed multiple of the motion's own rate, 0.78 to 0.92, of rkn4 1.8: to 5 % for ωh from 0.001 to 0.1",
-)
-@pytest.mark.promise(
-    "Explicit Runge–Kutta methods, order three and more",
-    computed=(
-        "the goal accurate takes α = 0.556 ω to 1 % and β of 0.77 to 0.92 ω, at ωh of 0.001 and 0.05; so do "
-        "dirk3, gauss4, radau5"
-    ),
-)
 @pytest.mark.parametrize("name", sampled(WITH_STAGES, quick=["RK4"]))
 def test_of_methods_with_stages_it_is_a_multiple_of_the_motions_own_rate_whatever_the_step(name: str) -> None:
     """All terms of the error have the same power of omega h where alpha and beta are of the size of omega.

@@ -53,7 +53,6 @@ def beside_the_least(chart: Chart) -> tuple[float, list[Least]]:
     return z_abs, [replace(least, place=place, z_abs=z_abs)]
 
 
-@pytest.mark.promise("Every region, best point, choice and margin")
 @pytest.mark.parametrize("name", ["B2", "B4", "AB4", "ABM2", "ABM3"])
 @pytest.mark.parametrize(("factor", "moved"), [(1.01, 1.0), (0.99, 1.0), (1.0, 1.02)])
 @pytest.mark.slow_except("1.01-1.0-B", "1.0-1.02-B")
@@ -103,7 +102,6 @@ BESIDE: list[tuple[str, str, Goal, float, str]] = [
 ]
 
 
-@pytest.mark.promise("Every region, best point, choice and margin")
 @pytest.mark.parametrize(("search", "name", "goal", "off", "said"), BESIDE)
 @pytest.mark.slow_except("least_between-RK4", "_critical_point-RK4", "first_where")
 def test_a_choice_beside_its_place_is_no_answer(
@@ -124,7 +122,6 @@ def zoom_beside(objective: Callable[..., FloatArray], *arguments: Any, **options
     return 0.99 * place, objective(0.99 * place)
 
 
-@pytest.mark.promise("Every region, best point, choice and margin")
 @pytest.mark.parametrize("name", ["RK4", "B4"])
 @pytest.mark.slow_except("RK4")
 def test_a_robust_choice_beside_its_place_is_no_answer(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -163,7 +160,6 @@ def test_margins_of_a_fourfold_pole_are_where_the_verdict_turns(rate: float) -> 
 PATHS = [(1, 2), (1, 0), (0, 2)]
 
 
-@pytest.mark.promise("Every region, best point, choice and margin")
 @pytest.mark.parametrize("name", ["B4", "RK4", "SYM", "verlet-kdk"])
 @pytest.mark.parametrize("off", [1 - 1e-8, 1 + 1e-8])
 def test_a_margin_beside_its_place_is_no_answer(name: str, off: float) -> None:

@@ -38,10 +38,6 @@ def places(found: BestPoint) -> list[tuple[float, float]]:
     return [(found.alpha_hat, found.beta_hat), *found.elsewhere]
 
 
-@pytest.mark.promise(
-    "Least |z_p|",
-    computed="1e-12, its place 1e-10, against thirty digits; no sampled point of the plane is lower",
-)
 @pytest.mark.parametrize("name", sampled(KINKS))
 def test_the_kink_where_two_opposite_real_roots_meet(name: str) -> None:
     scheme, found = lookup(name).scheme, best(lookup(name))
@@ -60,7 +56,6 @@ def test_the_kink_where_two_opposite_real_roots_meet(name: str) -> None:
     assert not found.arc
 
 
-@pytest.mark.promise("Least |z_p|")
 @pytest.mark.parametrize("name", sampled([*EXPLICIT, "B4@2"]))
 @pytest.mark.slow_except("RK4", "B1", "AB2", "B2", "AB4")
 def test_nothing_in_the_plane_is_faster(name: str) -> None:

@@ -7,12 +7,6 @@ from tests.reference.companion_poles import radius
 from tests.reference.made_methods import multistep, runge_kutta
 
 
-@pytest.mark.promise(
-    "Edges that several roots share",
-    unknown=(
-        "An edge that several roots share, or one shorter than its samples, may not be found: then no area is given"
-    ),
-)
 def test_an_edge_that_several_roots_reach_together_is_reported() -> None:
     """With mu = rho/sigma of equal modulus in three places of the circle, every arc has other roots on it."""
     method = multistep("together", "1 -1 1 -1", "0 1 -2 3")

@@ -15,27 +15,6 @@ from tests.stability import campaign
 from tests.stability.campaign import LEVELS, cases_of, compared
 
 
-@pytest.mark.promise(
-    "Regions of other methods than the built-in ones",
-    unknown=(
-        "Regions of methods other than the built-in ones. `make campaign`, whole, on the code of commit f7ab532: "
-        "of 40,000 regions (10,000 random methods, explicit and implicit multistep, Runge-Kutta, PECE, "
-        "second-order recipes, at levels 1, 0.93, 0.75, 0.5) 38,488 areas agree with an independent integral to "
-        "1e-6, mostly far better, 1,486 are unbounded, 24 are refused in a line (20 since the check slices each "
-        "part of a region; then all 2,664 regions of the campaign's Runge-Kutta methods of five and six stages "
-        "agree); none differs silently. Of two slivers (areas of 1e-14 and 5e-10) the integral says itself that "
-        "it is not as exact; four million proven verdicts counted in each have their areas right to 2e-6 and "
-        "2e-4, the counting's own error. A sliver that no line of the self-check meets would not show. That run "
-        "compared areas alone; since then the campaign compares extents, of regions without end too, and best "
-        "points as well, and asks in rationals where float64 is blind, as at the tip of a sliver. So it ran on the "
-        "code of commit f20d8d1 over five sixths of its methods, 33,416 regions, extents and best points of every "
-        "tenth method: 32,107 areas agree, 1,264 are unbounded, three slivers are undecided, 42 were refused, none "
-        "differs silently. Those 42 were asked again of commit 12e9392: 28 are answered, of which 26 agree, one is an "
-        "undecided sliver and one took too long to integrate; 14 are refused. The last sixth, 6,584 regions, ran on "
-        "commits e79283e and 644897e: 6,323 areas agree, 224 are unbounded, three slivers are undecided, one region is "
-        "refused, none differs silently; 33 were not integrated to the end. So 15 regions in all are refused"
-    ),
-)
 @pytest.mark.slow
 @pytest.mark.parametrize("number", [0, 1, 2, 18, *range(4, 15)])  # of 3 a sliver takes minutes to integrate
 def test_the_first_of_each_of_fifteen_kinds_agree(number: int) -> None:

@@ -23,7 +23,6 @@ METHODS = ["B2", "B4", "AB4", "ABM3", "RK1", "RK4", "SIE", "SYM"]
 QUICK = {"RK1", "SYM"}
 
 
-@pytest.mark.promise("`choose --goal robust`", computed="no point found by another search is better by 2e-6")
 @pytest.mark.parametrize(
     "name", [pytest.param(name, marks=[] if name in QUICK else [pytest.mark.slow]) for name in METHODS]
 )
@@ -83,7 +82,6 @@ def test_alpha_and_beta_can_be_kept_equal(goal: Goal) -> None:
         assert abs(chosen.pole) <= spectral_radius(lookup("RK4"), 2 * t, t**2).min() + 1e-9
 
 
-@pytest.mark.promise("What `choose` returns", proven="converges")
 @pytest.mark.slow
 def test_a_choice_is_proven_and_described() -> None:
     for name in METHODS:

@@ -55,10 +55,6 @@ def test_each_point_decays_as_fast_as_is_said_and_forces_what_is_said(name: str)
     hold_what_they_say(error_front(lookup(name)), OMEGA_H)
 
 
-@pytest.mark.promise(
-    "The least error at each |z_p| (`tradeoff --predicted`)",
-    computed=("1e-3: no point of a grid over five decades is better, twelve methods at two ωh; |z_p| at most as said"),
-)
 @pytest.mark.parametrize("name", TRADED)
 @pytest.mark.parametrize("omega_h", [OMEGA_H, Fraction(1, 3)], ids=str)
 @pytest.mark.slow
@@ -83,10 +79,6 @@ def test_it_ends_at_the_least_modulus_and_at_no_rate_that_is_not_reached() -> No
     assert [point.z_abs_below for point in error_front(lookup("B4"), [0.5])] == [best.z_abs]
 
 
-@pytest.mark.promise(
-    "What strong feedback forces, by kind of method",
-    computed="the table of `bezstab/stability/README.md`, twenty methods at ωh = 0.01",
-)
 @pytest.mark.parametrize(
     ("names", "falls", "constraint", "velocity"),
     [

@@ -7,7 +7,6 @@ from hypothesis import strategies as st
 from bezstab.stability.exact_sums import feedback_roots
 
 
-@pytest.mark.promise("Poles on α̂² = 4β̂, where both μ are one")
 @given(st.floats(1e-6, 1e6), st.floats(-1e-12, 1e-12))
 @settings(deadline=None)
 def test_next_to_the_parabola_both_mu_keep_their_digits(alpha_hat: float, off: float) -> None:

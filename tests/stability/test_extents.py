@@ -21,15 +21,6 @@ QUICK = [
 ]
 
 
-@pytest.mark.promise(
-    "Extent of a region without end",
-    computed=(
-        "of a second-order scheme where each edge goes as β̂ grows is found in exact arithmetic, and proven "
-        "verdicts on lines near and far out agree; all 135 schemes of a family with one evaluation a step have "
-        "the extents of their polygons, cut in rationals. An end that the region only comes near, far out, is "
-        "called approached"
-    ),
-)
 @pytest.mark.parametrize("level", ["1", "1/2"])
 @pytest.mark.parametrize("name", sampled(list(SCHEMES), quick=QUICK))
 def test_a_scheme_with_one_evaluation_has_the_extent_of_its_polygons(name: str, level: str) -> None:
@@ -40,7 +31,6 @@ def test_a_scheme_with_one_evaluation_has_the_extent_of_its_polygons(name: str, 
         assert not np.array(found.approached).any()  # polygons have their corners
 
 
-@pytest.mark.promise("Extent of a region without end")
 @pytest.mark.parametrize("name", sampled(["hht", "generalized-alpha", "verlet-kdk", "stable-pd"], quick=["stable-pd"]))
 @pytest.mark.parametrize("level", [1.0, 0.9])
 def test_proven_verdicts_near_and_far_out_agree(name: str, level: float) -> None:
@@ -49,7 +39,6 @@ def test_proven_verdicts_near_and_far_out_agree(name: str, level: float) -> None
     assert contradictions(found.method, level, found.extent) == []
 
 
-@pytest.mark.promise("Extent of a region without end")
 def test_beta_hat_may_come_near_its_limit_as_alpha_hat_grows() -> None:
     equations = {
         "x1": "x0 + v0 + 1/2 first",

@@ -17,7 +17,6 @@ OMEGAS = (Fraction(1, 10**6), Fraction(1, 100), Fraction(3, 10), Fraction(9, 10)
 POINTS = ((1e-5, 1e-10), (0.02, 1e-4), (0.02, 3e-4))
 
 
-@pytest.mark.promise("The error that a method forces on a constraint that moves (`methods`, `choose --goal accurate`)")
 @pytest.mark.parametrize("omega", OMEGAS, ids=str)
 @pytest.mark.parametrize("name", METHODS)
 @pytest.mark.slow_except("SYM", "verlet-half", "hht", "AB4", "RK4")
@@ -35,7 +34,6 @@ def test_it_has_ten_digits_of_the_exact_functions(name: str, omega: Fraction) ->
         assert found.total >= found.position * (1 - 1e-12)
 
 
-@pytest.mark.promise("The error that a method forces on a constraint that moves (`methods`, `choose --goal accurate`)")
 @pytest.mark.parametrize("name", ["RK4", "AB4", "ABM2", "B4", "hht", "verlet-old", "gauss4"])
 def test_the_worst_lower_harmonic_is_that_of_a_search_that_zooms_in(name: str) -> None:
     """Of random feedback, poles within 1e-5 of the unit circle too, to 1e-6; D from all digits of its own terms."""
@@ -75,7 +73,6 @@ def test_a_motion_that_no_step_follows_or_that_is_none_is_refused(omega: Fractio
         forced_error(lookup("RK4"), 0.5, 0.1, omega)
 
 
-@pytest.mark.promise("What normals that turn add to it")
 @pytest.mark.parametrize("multiple", [1, 5])
 def test_normals_that_turn_add_to_gauss_alone(multiple: int) -> None:
     """-b/5184 of the turning normal, b of the method's own step, where methods/test_steady_errors has it as a run."""

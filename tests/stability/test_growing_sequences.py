@@ -1,14 +1,11 @@
 from fractions import Fraction
 
-import pytest
-
 from bezstab.methods import lookup, step_matrix
 from bezstab.stability.growing_sequences import grows
 
 ONE, HALF = Fraction(1), Fraction(1, 2)
 
 
-@pytest.mark.promise("Steps that vary, refuted")
 def test_a_product_on_the_unit_circle_does_not_decay() -> None:
     # average acceleration without damping keeps the energy, whatever the step
     matrix = step_matrix(lookup("average-acceleration"), Fraction(0), ONE)

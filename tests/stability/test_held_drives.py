@@ -39,13 +39,6 @@ def converges_by_law(way: str, a: Fraction, b: Fraction, timing: Timing) -> bool
     return b > 0 and all(b < bound for bound in bounds)
 
 
-@pytest.mark.promise(
-    "Drives that are held or late (`check --pd --every --late`)",
-    proven=(
-        "the verdict is that of the exact polynomial from one computation of the torque to the next; the two laws "
-        "in closed form agree with it"
-    ),
-)
 @given(a=POSITIVE, b=POSITIVE, every=st.integers(1, 12))
 @settings(deadline=None, max_examples=60)
 def test_a_held_drive_converges_where_its_law_says(a: Fraction, b: Fraction, every: int) -> None:
@@ -54,7 +47,6 @@ def test_a_held_drive_converges_where_its_law_says(a: Fraction, b: Fraction, eve
     assert converges_by_law("SYM", a, b, Timing(every)) == expected
 
 
-@pytest.mark.promise("Drives that are held or late (`check --pd --every --late`)")
 @given(
     a=st.fractions(Fraction(1, 100), 2, max_denominator=100), b=st.fractions(Fraction(1, 100), 1, max_denominator=100)
 )
@@ -228,7 +220,6 @@ MAPPED = [
 ]
 
 
-@pytest.mark.promise("Drives that are held or late (`check --pd --every --late`)")
 @pytest.mark.parametrize(("way", "timing"), MAPPED, ids=str)
 def test_a_map_shows_all_that_is_stable_and_its_cells_are_where_the_verdict_is_proven(way: str, timing: Timing) -> None:
     found = held_map(way, timing, 40, (0.0, 0.0))

@@ -10,7 +10,6 @@ ONE, HALF, NONE, FOUR = Fraction(1), Fraction(1, 2), Fraction(0), Fraction(4)
 SQUARE = np.array([(ONE, NONE), (NONE, ONE)])
 
 
-@pytest.mark.promise("Steps that vary, proven (`check --h-min --h-max`)")
 def test_a_polygon_is_proven_exactly_as_far_as_it_holds() -> None:
     # implicit Euler without damping turns by arctan s and shrinks by (1 + s^2)^(-1/2): (1, 0) goes to
     # (1, -s) / (1 + s^2), inside the square |x| + |v| < 1 if and only if 1 + s < 1 + s^2, that is s > 1

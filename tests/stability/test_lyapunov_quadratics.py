@@ -1,7 +1,6 @@
 from fractions import Fraction
 
 import numpy as np
-import pytest
 
 from bezstab.methods import lookup, step_matrix
 from bezstab.stability.lyapunov_quadratics import proves_decay
@@ -10,7 +9,6 @@ HALF, ONE = Fraction(1, 2), Fraction(1)
 IDENTITY = np.array([[ONE, Fraction(0)], [Fraction(0), ONE]])
 
 
-@pytest.mark.promise("Steps that vary, proven (`check --h-min --h-max`)")
 def test_a_form_is_proven_exactly_as_far_as_it_holds() -> None:
     # the length |x| under one step of implicit Euler without damping: M^T M = 1 / (1 + b s^2) where b = 1
     matrix = step_matrix(lookup("implicit-euler"), Fraction(0), ONE)

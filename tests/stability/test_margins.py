@@ -44,7 +44,6 @@ def assert_each_end_is_proven(name: str, alpha_hat: Fraction, beta_hat: Fraction
             assert (inside, outside) == ("converges", "diverges")
 
 
-@pytest.mark.promise("Margins")
 @given(st.floats(0.05, 1.9), st.floats(0.05, 0.95))
 @settings(deadline=None, max_examples=20)
 def test_margins_of_symplectic_euler_are_those_of_its_triangle(a: float, share: float) -> None:
@@ -57,13 +56,6 @@ def test_margins_of_symplectic_euler_are_those_of_its_triangle(a: float, share: 
     assert (found.alpha[0], found.beta[0]) == (0, 0)
 
 
-@pytest.mark.promise(
-    "Margins",
-    computed=(
-        "each finite end is where the exact boundary is crossed, and lies between two proven verdicts 1e-9 to "
-        "either side, however far it is"
-    ),
-)
 @pytest.mark.parametrize(
     "name",
     sampled(
@@ -80,7 +72,6 @@ def test_each_end_of_a_margin_lies_between_two_proven_verdicts(name: str) -> Non
     assert_each_end_is_proven(name, alpha_hat, beta_hat)
 
 
-@pytest.mark.promise("Margins")
 @pytest.mark.parametrize(("name", "exponent"), [("B4", 7), ("RK4", 3), ("RK4", 5), ("bdf3", 7)])
 def test_margins_of_weak_feedback_are_right_however_far(name: str, exponent: int) -> None:
     """Rounding cannot tell such a mu from the imaginary axis; factors reach from 1e-20 to 1e8."""

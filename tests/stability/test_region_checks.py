@@ -74,13 +74,6 @@ def with_a_bulge(bounds: Bounds) -> Bounds:
     return replace(bounds, arcs=(Arc(first.pencil, first.level * 1.001, first.theta, first.mu * 1.001), *others))
 
 
-@pytest.mark.promise(
-    "Every region, best point, choice and margin",
-    computed=(
-        "held against a second route before it is given; what contradicts it ends with exit status 3, never with "
-        "a number: shown on answers made wrong on purpose"
-    ),
-)
 @pytest.mark.parametrize("wrong", [without_arc, without_interval, with_a_bulge])
 @pytest.mark.parametrize(("method", "level"), REGIONS, ids=identify)
 @pytest.mark.slow_except("B4", "RK4")
@@ -140,7 +133,6 @@ WRONG_SIZES: list[tuple[str, Callable[[Shape], Shape]]] = [
 ]
 
 
-@pytest.mark.promise("Every region, best point, choice and margin")
 @pytest.mark.parametrize(("name", "level"), SHAPES[:-2])
 @pytest.mark.slow_except("verlet-half")
 def test_a_right_shape_passes_and_a_wrong_one_does_not(name: str, level: float) -> None:

@@ -33,7 +33,6 @@ def test_euler_and_its_shear_have_area_4_r_cubed(name: str, level: float) -> Non
     assert region(lookup(name), level).area == pytest.approx(4 * level**3, rel=1e-12)  # rounding of 1 - level
 
 
-@pytest.mark.promise("Area of a region")
 @pytest.mark.parametrize("level", [1.0, 0.9, 0.6, 0.5, 0.3])
 def test_midpoint_has_the_area_of_a_disc_in_a_wedge(level: float) -> None:
     # z = (w^2 + 1) / 2, w = mu + 1: z1 z2 < r^2 is the disc s^2 + (p - 1)^2 < 4 r^2; z = r, with k = 2r - 1, the wedge
@@ -43,7 +42,6 @@ def test_midpoint_has_the_area_of_a_disc_in_a_wedge(level: float) -> None:
     assert region(lookup("RK2"), level).area == pytest.approx(exact, rel=1e-12)  # sqrt(eps)^2 at the double points
 
 
-@pytest.mark.promise("Area of a region")
 def test_a_locus_that_touches_itself_has_the_area_of_a_lemniscate_in_the_plane() -> None:
     # z = (w^2 - c) / 7, w = mu + 7/2, c = 21/4: at |z| = 3/4 = c/7 the locus |w^2 - c| = c is Bernoulli's lemniscate.
     # Pairs of real w add 8 sqrt(2)/3 c^(3/2), conjugate ones (asinh(2 sqrt(2)) - 2 sqrt(2)/3) c^(3/2).
@@ -51,7 +49,6 @@ def test_a_locus_that_touches_itself_has_the_area_of_a_lemniscate_in_the_plane()
     assert region(runge_kutta("touching itself", "2/7", "1/2 1/2"), 0.75).area == pytest.approx(exact, rel=1e-12)
 
 
-@pytest.mark.promise("Area of a region")
 @pytest.mark.parametrize(
     ("name", "level"),
     [
@@ -70,7 +67,6 @@ def test_slices_of_constant_alpha_hat_give_the_same_area(name: str, level: float
     assert sliced_area(lookup(name), level) == pytest.approx(shape.area, rel=1e-10)
 
 
-@pytest.mark.promise("Boundary", computed="|z_p| is the level to 1e-10, away from corners, in fifty digits")
 @pytest.mark.parametrize(
     ("name", "level"),
     [
@@ -102,11 +98,6 @@ def test_a_region_is_empty_exactly_below_the_least_modulus(name: str) -> None:
     assert radius(method, np.array([(a_low + a_high) / 2]), np.array([(b_low + b_high) / 2])) < least + 1e-5
 
 
-@pytest.mark.promise(
-    "Boundary, drawn",
-    computed=("400 chords an arc: area by its corners to 1e-4, no point further than 1e-3 in |z| on the wrong side"),
-)
-@pytest.mark.promise("Extent of a region")
 @pytest.mark.parametrize("name", sampled([*NAMES, "verlet-predicted"], quick=[*SAMPLE, "verlet-predicted"]))
 @pytest.mark.parametrize("level", [1.0, 0.9])
 @pytest.mark.slow_except("1.0-RK1", "0.9-RK4", "1.0-B4", "0.9-AB4", "0.9-verlet-predicted")
@@ -134,10 +125,6 @@ def test_the_curves_are_closed_touch_the_extent_and_enclose_the_area_and_what_is
     assert (enclosed(shape.boundary, points) == (modulus < level))[clear].all()
 
 
-@pytest.mark.promise(
-    "Extent of a region",
-    computed="1e-11 where a closed form exists; attained, and nowhere exceeded",
-)
 @pytest.mark.parametrize(
     ("name", "extent"),
     [
@@ -187,7 +174,6 @@ SHORT_OF_IT = multistep("short of it", "1 -1 0 -3/8 3/8 1/4 -1/4", "0 1/4 5/3 -1
 """An arc of it ends 4e-9 of |mu| from the real axis."""
 
 
-@pytest.mark.promise("Area of a user's method", computed="1e-9 against slices")
 @pytest.mark.parametrize(
     ("method", "level"),
     [
@@ -211,10 +197,6 @@ def test_user_made_and_adams_moulton_methods_have_the_sliced_area(method: Method
     assert sliced_area(method, level, panels=128) == pytest.approx(shape.area, rel=1e-9)  # small lobes in a large box
 
 
-@pytest.mark.promise(
-    "Points next to the edge of a region",
-    unknown="A point nearer to the edge than about 1e-12 falls to either side in a map; only the verdict knows",
-)
 @pytest.mark.parametrize("name", ["B4", "RK4", "SYM"])
 def test_what_a_region_contains_converges(name: str) -> None:
     shape = region(lookup(name))
@@ -257,14 +239,6 @@ def test_a_theta_method_has_the_area_of_two_disc_halves(theta: str, level: float
 NEXT_TO_ONE = [0.999, 0.99995, 0.999999]
 
 
-@pytest.mark.promise(
-    "Area of a region",
-    computed=(
-        "1e-12 where a closed form exists; 1e-10 against slices, which share neither arcs nor intervals with it: "
-        "twelve methods, all of them at three levels in `make test-slow`. Next to level 1, where a region grows "
-        "without limit, 1e-15 / (1 - level)"
-    ),
-)
 @pytest.mark.parametrize(
     ("name", "level"),
     [

@@ -17,10 +17,6 @@ def test_members_are_the_registered_methods_with_their_known_areas() -> None:
     assert all(f"{prefixes[name]}{family.largest}" in REGISTRY for name, family in STEP_FAMILIES.items())
 
 
-@pytest.mark.promise(
-    "Limit of the Bézier family",
-    computed="area 1e-12, least |z_p| and largest α̂ 1e-14, against thirty digits",
-)
 @pytest.mark.slow
 def test_the_limits_numbers_to_thirty_digits() -> None:
     limit = bezier_limit()

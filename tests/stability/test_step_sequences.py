@@ -28,14 +28,6 @@ def shortest_step(found: VaryingSteps) -> Fraction:
     return found.h_min / found.h_max
 
 
-@pytest.mark.promise(
-    "Steps that vary, proven (`check --h-min --h-max`)",
-    proven=(
-        "what is said to be proven decays for every sequence of steps of the range. Its certificate (a quadratic "
-        "form, or a polygon) is confirmed by sympy, which shares no code with what found it; where steps commute "
-        "none is needed"
-    ),
-)
 @pytest.mark.parametrize(
     ("ratio", "share", "shortest", "hold"),
     [("1/2", "0.94", TINY, False), ("2", "0.999", TINY, False), ("1", "0.9", Fraction(1, 2), True)],
@@ -48,7 +40,6 @@ def test_sympy_confirms_a_quadratic_certificate(ratio: str, share: str, shortest
     assert form_decreases(form, symplectic_euler(*point, hold), shortest_step(found), Fraction(1))
 
 
-@pytest.mark.promise("Steps that vary, proven (`check --h-min --h-max`)")
 @pytest.mark.slow
 def test_sympy_confirms_a_polygon() -> None:
     found, point = symplectic("1/5", "3/4", Fraction(1, 2))
@@ -58,7 +49,6 @@ def test_sympy_confirms_a_polygon() -> None:
     assert polygon_is_entered(corners, symplectic_euler(*point), shortest_step(found), Fraction(1))
 
 
-@pytest.mark.promise("Steps that vary, refuted")
 @pytest.mark.parametrize(("ratio", "share"), [("1/10", "2/5"), ("1/5", "7/10"), ("1/2", "0.99")])
 def test_sympy_confirms_a_growing_sequence(ratio: str, share: str) -> None:
     found, point = symplectic(ratio, share, TINY)
@@ -71,7 +61,6 @@ def test_sympy_confirms_a_growing_sequence(ratio: str, share: str) -> None:
     assert found.growth == pytest.approx(float(radius), rel=1e-9)  # float64, of a product of few steps
 
 
-@pytest.mark.promise("Steps that vary, refuted")
 def test_alternating_steps_that_are_each_stable() -> None:
     # theory: alpha = 2, beta = 100, steps of 1/60 s and 9.17 ms, while each alone decays up to 0.0196 s
     h, other = Fraction(1, 60), Fraction("0.00917")
@@ -84,15 +73,6 @@ def test_alternating_steps_that_are_each_stable() -> None:
     assert set(both.sequence) == {h, other}
 
 
-@pytest.mark.promise(
-    "Steps that vary, neither proven nor refuted",
-    unknown=(
-        "of a range between the longest one proven and the shortest one refuted nothing is known ('not known'). "
-        "For symplectic Euler with α/β from 0.1 to 0.5 that is at most 5 % of the longest stable step, from 0.7 "
-        "on 1 %, and with α̂ and β̂ held at most 5 % for steps that differ twofold, fourfold and tenfold; for "
-        "other methods the gap has not been measured"
-    ),
-)
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("ratio", "proven", "refuted"),
@@ -111,7 +91,6 @@ def test_the_gap_is_at_most_five_percent_of_the_longest_stable_step(ratio: str, 
     assert symplectic(ratio, refuted, TINY)[0].varying == "refuted"
 
 
-@pytest.mark.promise("Steps that vary, neither proven nor refuted")
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("ratio", "shortest", "refuted", "proven"),
@@ -126,7 +105,6 @@ def test_nor_is_it_more_where_alpha_hat_and_beta_hat_are_held(
     assert symplectic(ratio, proven, Fraction(shortest), hold=True)[0].varying == "proven"
 
 
-@pytest.mark.promise("Steps that vary, neither proven nor refuted")
 @pytest.mark.parametrize("ratio", ["7/10", "1", "3/2", "2"])
 def test_with_enough_damping_the_limit_is_that_of_constant_steps(ratio: str) -> None:
     assert symplectic(ratio, "0.995", TINY)[0].varying == "proven"
@@ -136,7 +114,6 @@ def test_with_enough_damping_the_limit_is_that_of_constant_steps(ratio: str) -> 
     assert len(beyond.sequence) == 1
 
 
-@pytest.mark.promise("Steps that vary, proven (`check --h-min --h-max`)")
 @pytest.mark.parametrize("name", ["RK4", "RK4@2", "implicit-euler", "gauss4"])
 def test_steps_that_commute_need_only_be_stable_alone(name: str) -> None:
     found = varying_steps(lookup(name), Fraction("0.1"), Fraction(1, 4), h=Fraction(1), h_min=TINY, h_max=Fraction(1))
@@ -152,13 +129,6 @@ def test_a_state_of_three_is_proven_by_a_form(name: str) -> None:
     assert len(found.certificate) == 3
 
 
-@pytest.mark.promise(
-    "Steps that vary, of methods of several steps",
-    unknown=(
-        "refused, for their coefficients assume equal steps. All other statements here (regions, choices, "
-        "margins, poles) are for one constant step"
-    ),
-)
 def test_what_is_refused() -> None:
     one = Fraction(1)
     with pytest.raises(InputError, match="assume that these are of equal length"):

@@ -56,7 +56,6 @@ def test_soft_sweeps_and_moves_of_positions_are_what_loops_do(bodies: int) -> No
     assert swept_growth(chain(bodies, 3), jolt).factor == pytest.approx(of_loops, abs=1e-9)
 
 
-@pytest.mark.promise("Chains of bodies in engines that sweep (`check --chain`)")
 @pytest.mark.parametrize("ratio", [1, 7, 40])
 @pytest.mark.parametrize("sweeps", [1, 2, 5])
 @pytest.mark.parametrize("share", ["1/5", "9/10", "13/10"])
@@ -130,13 +129,6 @@ def test_what_rounding_leaves_open_is_refused() -> None:
     assert not Growth(1.01, 1e-3).decays
 
 
-@pytest.mark.promise(
-    "Chains of bodies in engines that sweep (`check --chain`)",
-    computed=(
-        "growth a step to the accuracy that is stated with it, against fifty digits; a verdict inside that accuracy is "
-        "refused. The matrices are those of loops over the links"
-    ),
-)
 @pytest.mark.parametrize(("bodies", "ratio", "sweeps", "kept"), [(4, 30, 2, 1), (6, 1000, 7, 1)])
 @pytest.mark.slow_except("4")
 def test_the_stated_accuracy_holds_against_fifty_digits(bodies: int, ratio: int, sweeps: int, kept: int) -> None:

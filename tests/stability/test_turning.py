@@ -11,10 +11,6 @@ from bezstab.stability import poles, turning_shift
 POINTS = [(0.31, 0.13), (0.9, 0.05), (0.2, 0.3)]
 
 
-@pytest.mark.promise(
-    "What the motion does to a pole, for every integrator",
-    measured="χ: theory's polynomial for symplectic Euler, the same by P and by μ, small for accurate methods",
-)
 @pytest.mark.parametrize(("alpha_hat", "beta_hat"), POINTS)
 def test_symplectic_euler_follows_its_own_shifted_polynomial(alpha_hat: float, beta_hat: float) -> None:
     z = poles(lookup("SYM"), alpha_hat, beta_hat)
@@ -29,7 +25,6 @@ def test_symplectic_euler_follows_its_own_shifted_polynomial(alpha_hat: float, b
         assert shift == pytest.approx((moved[0] - moved[1]) / (2 * eps), rel=1e-5)
 
 
-@pytest.mark.promise("What the motion does to a pole, for every integrator")
 @pytest.mark.parametrize("name", ["B4", "AB3", "RK4", "ABM3", "trapezoid", "AB2@1/2"])
 @pytest.mark.parametrize(("alpha_hat", "beta_hat"), POINTS)
 def test_a_method_and_its_second_order_form_have_the_same_sensitivity(
@@ -45,7 +40,6 @@ def test_a_method_and_its_second_order_form_have_the_same_sensitivity(
     )
 
 
-@pytest.mark.promise("What the motion does to a pole, for every integrator")
 @given(rate=st.floats(0.2, 2.0), damping=st.floats(0.1, 0.9))
 def test_the_better_the_method_the_less_it_is_turned(rate: float, damping: float) -> None:
     """An exact method has chi = 0; one of order p has chi of order h^p on principal poles."""

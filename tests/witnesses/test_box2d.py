@@ -57,7 +57,6 @@ def test_three_position_sweeps_are_the_engines_row() -> None:
     assert of_row == predicted(10, 10, 8, 3)
 
 
-@pytest.mark.promise("PyBullet, pymunk, Box2D and Exudyn, which are not ours")
 @pytest.mark.parametrize(
     ("bodies", "ratio", "sweeps"), [(5, 1, 4), (10, 1, 4), (10, 1, 8), (10, 10, 8), (10, 100, 8), (20, 1, 8), (5, 1, 1)]
 )
@@ -75,7 +74,6 @@ def test_errors_of_a_chain_shrink_as_predicted(bodies: int, ratio: float, sweeps
     assert growth(errors, 10) == pytest.approx(predicted(bodies, ratio, sweeps, 1).factor, abs=2e-3)
 
 
-@pytest.mark.promise("PyBullet, pymunk, Box2D and Exudyn, which are not ours")
 @pytest.mark.parametrize(("bodies", "ratio"), [(20, 10), (20, 30), (10, 100)])
 def test_so_they_do_with_three_position_sweeps_while_they_are_above_the_slop(bodies: int, ratio: float) -> None:
     """Links are too long and too short in turn, as if a straight chain was stretched: the slowest error of all."""

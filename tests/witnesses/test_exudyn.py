@@ -52,7 +52,6 @@ def positions(alpha_hat: float, beta_hat: float, solver: str, rho_inf: float, ne
     return found
 
 
-@pytest.mark.promise("PyBullet, pymunk, Box2D and Exudyn, which are not ours")
 @pytest.mark.parametrize(
     ("solver", "rho_inf", "newmark", "method"),
     [
@@ -75,7 +74,6 @@ def test_an_implicit_integrator_has_the_pole_of_its_map(
     assert abs(expected) < 1
 
 
-@pytest.mark.promise("PyBullet, pymunk, Box2D and Exudyn, which are not ours")
 @pytest.mark.parametrize(
     ("solver", "method"),
     [

@@ -52,10 +52,6 @@ def errors(world: int, kind: int, erp: float) -> NDArray[np.float64]:
     return np.array(positions)
 
 
-@pytest.mark.promise(
-    "PyBullet, pymunk, Box2D and Exudyn, which are not ours",
-    measured="poles to 1e-9, pymunk's to 1e-6; at 0.9 and 1.1 of a limit errors fall and grow",
-)
 @pytest.mark.parametrize("kind", ["JOINT_POINT2POINT", "JOINT_FIXED"])
 @pytest.mark.parametrize("erp", ["1/5", "1/2", "9/5", "11/5"])
 def test_bullets_pole_is_that_of_its_erp(world: int, kind: str, erp: str) -> None:
@@ -99,7 +95,6 @@ def motor_positions(world: int, position_gain: float, velocity_gain: float) -> N
     return np.array(positions)
 
 
-@pytest.mark.promise("PyBullet, pymunk, Box2D and Exudyn, which are not ours")
 @pytest.mark.parametrize("velocity_gain", ["1", "1/2", "6/5"])
 @pytest.mark.parametrize("of_limit", ["1/10", "9/10", "11/10"])
 def test_a_position_motor_is_symplectic_euler(world: int, velocity_gain: str, of_limit: str) -> None:
@@ -153,7 +148,6 @@ def predicted(bodies: int, ratio: float, sweeps: int, erp: float) -> Growth:
     return swept_growth(chain(bodies, ratio), sweeping.step(sweeps, Fraction(1, 240), Fraction(erp)))
 
 
-@pytest.mark.promise("PyBullet, pymunk, Box2D and Exudyn, which are not ours")
 @pytest.mark.parametrize(
     ("bodies", "ratio", "sweeps", "erp"),
     [

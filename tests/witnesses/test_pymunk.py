@@ -45,7 +45,6 @@ def ratios(joint: str, error_bias: float) -> Any:
     return np.array(errors[1:]) / np.array(errors[:-1])
 
 
-@pytest.mark.promise("PyBullet, pymunk, Box2D and Exudyn, which are not ours")
 @pytest.mark.parametrize("joint", ["pivot", "pin"])
 @pytest.mark.parametrize("error_bias", [0.9, 1.1, 0.9**60, 0.1, 1e-20, 1.1**60])
 def test_chipmunks_pole_is_that_of_its_error_bias(joint: str, error_bias: float) -> None:

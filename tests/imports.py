@@ -1,0 +1,49 @@
+"""What each file of the package imports, read from its syntax tree."""
+
+import ast
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+
+ROOT = Path(__file__).parent.parent
+PACKAGE = ROOT / "bezstab"
+ROOMS = ("engines", "methods", "motion", "stability", "mechanism", "evidence", "questions", "show", "cli", "paper")
+"""From data upwards: a room imports only from rooms before it."""
+
+
+@cache
+def tree_of(path: Path) -> ast.Module:
+    """Return the syntax tree of a file of the package, given by its path in it."""
+    return ast.parse((PACKAGE / path).read_text(encoding="utf-8"))
+
+
+@cache
+def imports(path: Path, with_types: bool = True) -> list[tuple[str, tuple[str, ...]]]:
+    """Return each module that a file imports, inside functions too, with the names taken from it."""
+    return list(_imports(path, with_types))
+
+
+def _imports(path: Path, with_types: bool) -> Iterator[tuple[str, tuple[str, ...]]]:
+    for node in _nodes(tree_of(path), with_types):
+        if isinstance(node, ast.ImportFrom) and node.module:
+            yield node.module, tuple(alias.name for alias in node.names)
+        elif isinstance(node, ast.Import):
+            for alias in node.names:
+                yield alias.name, ()
+
+
+def _nodes(node: ast.AST, with_types: bool) -> Iterator[ast.AST]:
+    for child in ast.iter_child_nodes(node):
+        for_types = isinstance(child, ast.If) and getattr(child.test, "id", "") == "TYPE_CHECKING"
+        if with_types or not for_types:
+            yield child
+            yield from _nodes(child, with_types)
+
+
+def own_imports(path: Path) -> Iterator[tuple[str, tuple[str, ...]]]:
+    """Yield what a file imports of the package, its first name left out: ("methods.schur", ("verdict",))."""
+    for module, names in imports(path):
+        if module == "bezstab":
+            yield from ((name, ()) for name in names)
+        elif module.startswith("bezstab."):
+            yield module.removeprefix("bezstab."), names
