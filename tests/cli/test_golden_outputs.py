@@ -1,4 +1,4 @@
-"""Every command prints the numbers that it once printed, each under its key.
+"""The commands of the README print the numbers that they once printed, each under its key.
 
 golden/outputs.json holds exit status, rows and written files of each command, without processor times, which no two
 runs share. Keys are those of today; what rows have got since is not there. Which keys a row has, its schema says.
@@ -29,7 +29,6 @@ class Tolerance:
 
 
 TOLERANCES = (
-    Tolerance("verify --witness", "remaining", 0.5, 0.0, "what MuJoCo leaves differs between its versions"),
     Tolerance("verify", "measured_z_angle_deg|difference_z_angle_deg", 1e-6, 1e-3, "as below: 1e-5 of |z|, in degrees"),
     Tolerance(
         "verify",
@@ -54,20 +53,6 @@ TOLERANCES = (
     ),
     Tolerance(
         "simulate|tradeoff", "energy_drift", 1e-6, 1e-10, "the difference of two energies of some 10 J, each rounded"
-    ),
-    Tolerance(
-        "tradeoff --predicted",
-        "alpha_hat|beta_hat|total_error|velocity_error",
-        2e-2,
-        0.0,
-        "along an edge where combined_error changes by a millionth: rounding decides how far along",
-    ),
-    Tolerance(
-        "tradeoff --predicted|region .*--accuracy",
-        "alpha_hat|beta_hat|z_abs|accurate_.*|.*_error",
-        1e-3,
-        0.0,
-        "where an error is least it is flat: rounding decides which of the last points of a search is taken",
     ),
     Tolerance("tradeoff", "observed_order", 1e-6, 1e-5, "the logarithm of a ratio of simulated errors"),
     Tolerance(
@@ -97,19 +82,11 @@ def assert_agrees(command: str, key: str, printed: Any, expected: Any) -> None:
         allowed = tolerance(command, key)
         close = pytest.approx(expected, rel=allowed.relative, abs=allowed.absolute)
         assert printed == close, f"{key} ({allowed.reason})"
-    elif command.startswith("extremes") and key == "seen":  # digits and rounding errors differ between machines
-        assert _without_numbers(str(printed)) == _without_numbers(str(expected))
     else:
         assert printed == expected, key
 
 
-def _without_numbers(text: str) -> str:
-    return re.sub(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?", "#", text)
-
-
-@pytest.mark.usefixtures("_few_extremes")
 @pytest.mark.parametrize("golden", GOLDEN, ids=[golden["command"] for golden in GOLDEN])
-@pytest.mark.slow_except("poles", "choose --engine", "check", "engines", "region --method B4 --method AB4")
 def test_a_command_prints_what_it_printed_before(golden: dict[str, Any], tmp_path: Path) -> None:
     command = golden["command"]
     result = run(command, "--format json")
