@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from bezstab.show import plot
     from bezstab.units import from_dimensionless, to_dimensionless
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 __getattr__ = lazy_names(__name__)
 

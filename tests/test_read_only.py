@@ -9,7 +9,6 @@ import pytest
 
 import bezstab
 from bezstab.evidence import VerdictMap, map_rows, reference_run, simulated_verdicts, verdict_map
-from bezstab.stability import bezier_limit
 
 ERROR = 1e-4 * 0.7 ** np.arange(60) * np.cos(0.9 * np.arange(60))
 
@@ -28,7 +27,6 @@ RESULTS: dict[str, Callable[[], Any]] = {
     "verify": lambda: bezstab.verify("slider_crank", "B4", alpha_hat=0.5, beta_hat=0.1, h=0.001),
     "probe": lambda: bezstab.probe(ERROR, differenced=True, methods=["B4"], alpha_hat=0.5, beta_hat=0.1),
     "a map": small_map,
-    "a family's limit": bezier_limit,
     "a reference motion": lambda: reference_run(bezstab.scene("slider_crank"), h=0.001, duration=0.01),
 }
 WITHOUT_ARRAYS = {"check", "verify", "probe"}

@@ -11,10 +11,11 @@ from typing import Any, NoReturn
 import click
 
 from bezstab import __version__
+from bezstab.cli.removed import where_it_went
 from bezstab.errors import InputError, NumericalError
 
 SECTIONS: Mapping[str, Sequence[str]] = {
-    "Maps": ("poles", "region", "methods", "family"),
+    "Maps": ("poles", "region", "methods"),
     "Choose": ("choose", "check", "lint", "engines", "chains", "explore"),
     "Evidence": ("simulate", "verify", "probe", "tradeoff", "extremes"),
     "Programs": ("schema",),
@@ -54,6 +55,14 @@ class BezstabGroup(click.Group):
         """Return the command of that name, loaded now; None if there is none."""
         return _loaded(cmd_name) if cmd_name in self.list_commands(ctx) else None
 
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """Return the command that was typed; UsageError, which says where it went, if it was removed."""
+        if (went := where_it_went(args[0])) and not ctx.resilient_parsing:
+            raise click.UsageError(went)
+        return super().resolve_command(ctx, args)
+
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write a heading for each section and a sentence for each command."""
         for heading, names in SECTIONS.items():
@@ -75,6 +84,10 @@ class BezstabGroup(click.Group):
         """Run the command line and exit."""
         try:
             status = super().main(*args, **{**kwargs, "standalone_mode": False})
+        except click.NoSuchOption as error:
+            command = error.ctx.info_name if error.ctx else None
+            _complain(where_it_went(f"{command} {error.option_name}") or error.format_message())
+            sys.exit(2)
         except click.ClickException as error:
             _complain(error.format_message())
             sys.exit(2)

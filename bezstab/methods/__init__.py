@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from bezstab.lazy import lazy_names
 from bezstab.methods.aliases import OTHER_NAMES
 from bezstab.methods.method_files import read_method
-from bezstab.methods.multistep_methods import STEP_FAMILIES, adams_bashforth, bezier, is_bezier
+from bezstab.methods.multistep_methods import adams_bashforth, bezier, is_bezier
 from bezstab.methods.polynomials import Polynomial
 from bezstab.methods.registry import GROUPS, REGISTRY, lookup
 from bezstab.methods.scheme_motions import (

@@ -10,8 +10,8 @@ they differ in the curve. Time is counted in steps from t_k: the known values si
     Bezier            the Bernstein curve with the values as control points, extended past its end
 """
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import replace
 from fractions import Fraction
 from functools import partial
 from math import comb
@@ -66,22 +66,6 @@ def _from_one_step_back(sigma: Sequence[Fraction]) -> LinearMultistep:
     return LinearMultistep((ONE, -ONE, *[ZERO] * (len(sigma) - 2)), tuple(sigma))
 
 
-@dataclass(frozen=True)
-class StepFamily:
-    """Explicit methods by their number of steps n, up to the `largest`; figures call the family by its `title`."""
-
-    title: str
-    make: Callable[[int], Method]
-    largest: int
-
-
-STEP_FAMILIES = {
-    "bezier": StepFamily("Bézier", bezier, 12),
-    "adams-bashforth": StepFamily("Adams–Bashforth", adams_bashforth, 8),
-}
-"""By the names that are typed."""
-
-
 def adams_bashforth_moulton(n: int) -> Method:
     """Return the PECE pair of order n >= 2: AB of order n predicts, Adams-Moulton of order n corrects.
 
@@ -126,11 +110,8 @@ def trapezoid() -> Method:
 
 
 EXPLICIT_MULTISTEP = (
-    MethodGroup("Bézier", {f"B{n}": partial(bezier, n) for n in range(1, STEP_FAMILIES["bezier"].largest + 1)}),
-    MethodGroup(
-        "Adams-Bashforth",
-        {f"AB{n}": partial(adams_bashforth, n) for n in range(1, STEP_FAMILIES["adams-bashforth"].largest + 1)},
-    ),
+    MethodGroup("Bézier", {f"B{n}": partial(bezier, n) for n in range(1, 13)}),
+    MethodGroup("Adams-Bashforth", {f"AB{n}": partial(adams_bashforth, n) for n in range(1, 9)}),
     MethodGroup(
         "Adams-Bashforth-Moulton, predicted and corrected (PECE)",
         {f"ABM{n}": partial(adams_bashforth_moulton, n) for n in range(2, 5)},

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from functools import partial
 from operator import mul
 from typing import TYPE_CHECKING, Any
@@ -16,7 +16,6 @@ from matplotlib.path import Path
 from matplotlib.patheffects import AbstractPathEffect, withStroke
 from matplotlib.ticker import FixedLocator, MaxNLocator
 
-from bezstab.methods import STEP_FAMILIES
 from bezstab.show import plot
 from bezstab.show.result_sentences import timing_words
 from bezstab.show.style import (
@@ -37,7 +36,7 @@ from bezstab.show.style import (
     title_lines,
     with_legend,
 )
-from bezstab.stability import ComplexArray, FloatArray, FrontPoint, Limit, Member, Region
+from bezstab.stability import ComplexArray, FloatArray, FrontPoint, Region
 
 EDGE_LINES = 0.015  # of the axes' sides: so far apart are the arrows of regions that go on beyond the same edge
 ALONG_AN_EDGE, ARROW_EVERY = 121, 24
@@ -315,45 +314,6 @@ def held_figure(answer: HeldAnswer, points: int) -> Figure:
         for axis in (axes.xaxis, axes.yaxis, across.xaxis, up.yaxis):
             axis.set_major_formatter("{x:g}")  # a common factor would stand beside it, on the axis opposite
         return with_legend(figure, facecolor="0.75")
-
-
-def family_figure(families: Mapping[str, Sequence[Member]], shown: str, limit: Limit | None) -> Figure:
-    """Return area and least |z_p| of families against n, and of the one that is `shown` its accuracy and its regions.
-
-    Error constants can be compared between methods of one order alone: where the order differs from member to member
-    the orders are drawn instead. `limit` is what the Bezier methods tend to: a line, and its region.
-    """
-    members = families[shown]
-    one_order = len({member.order for member in members}) == 1
-    with styled():
-        figure = column_figure(1.3)
-        (area, fastest), (accuracy, regions) = figure.subplots(2, 2)
-        for place, (name, of_family) in enumerate(families.items()):
-            line = {"label": STEP_FAMILIES[name].title, "marker": ".", **line_at(place)}
-            numbers = [(each.n, each.region.area, each.z_abs, each.order, each.error_constant) for each in of_family]
-            n, areas, moduli, orders, constants = np.array(numbers, float).T  # nan for None
-            area.plot(n, areas, **line)
-            fastest.plot(n, moduli, **line)
-            if name == shown:
-                accuracy.plot(n, constants if one_order else orders, **line)
-                for member, dashes in zip(members[:: max(1, len(members) // 3)], DASHES, strict=False):
-                    plot.region(member.region, regions, color=line["color"], linestyle=dashes)
-        if limit is not None:
-            line = {"color": ACCENT, "linestyle": DASHES[2]}
-            values = ((area, limit.area), (fastest, limit.z_abs), (accuracy, float(limit.error_constant)))
-            for axes, value in values:
-                axes.axhline(value, label="Bézier, limit", **line)
-            regions.plot(*limit.boundary.T, **line)
-        area.set(ylabel="area of the region", yscale="log")
-        fastest.set(ylabel="least $|z_p|$")
-        accuracy.set(ylabel=f"error constant, all of order {members[0].order}" if one_order else "order of accuracy")
-        regions.set(xlabel=r"$\hat\alpha$ (dimensionless)", ylabel=r"$\hat\beta$ (dimensionless)")
-        regions.set_ylim(top=1.4 * regions.get_ylim()[1])  # room above the curves
-        regions.legend(fontsize=6, loc="upper center", ncols=2, handlelength=1.5, columnspacing=1)
-        for axes in (area, fastest, accuracy):
-            axes.set_xlabel("steps $n$")
-            axes.xaxis.set_major_locator(MaxNLocator(5, integer=True))
-        return with_legend(figure, handles=area.lines)
 
 
 def error_front_figure(fronts: Sequence[Sequence[FrontPoint]]) -> Figure:

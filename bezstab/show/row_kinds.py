@@ -147,9 +147,7 @@ BEST_Z_ABS = number(
     null=NO_BEST,
     path="inside.z_abs",
 )
-STEPS = integer(
-    "steps", "Number of steps of the method", "steps", otherwise=lambda _: "limit", null="for the limit of a family"
-)
+STEPS = integer("steps", "Number of steps of the method", "steps")
 ORDER = integer("order", "Order of accuracy, computed from the coefficients", "order", text=order_text)
 ERROR_CONSTANT = number("error_constant", "Error constant of the method", "error constant", text=constant_text)
 SOURCE = text("source", "Where a method or a conversion is from", "source")
@@ -751,20 +749,6 @@ NAMED_METHODS = RowKind(
         )
     ),
     sentence=whole_method_sentence,
-)
-# printed by `family`
-MEMBERS = RowKind(
-    "a member of a family, or its limit",
-    fields=(
-        STEPS.of("n"),
-        METHOD,
-        AREA,
-        ALPHA_HAT_MAX,
-        BETA_HAT_MAX,
-        BEST_Z_ABS.of("z_abs"),
-        ORDER,
-        ERROR_CONSTANT,
-    ),
 )
 # printed by `chains`
 CHAINS = RowKind(
@@ -1387,7 +1371,6 @@ ROW_KINDS: Mapping[str, Sequence[RowKind]] = {
         LISTED_METHODS,
         NAMED_METHODS,
     ),
-    "family": (MEMBERS,),
     "choose": (CHOICES, STEPS_OF_CHOICES, HELD),
     "check": (
         CHECKED,

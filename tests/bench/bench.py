@@ -296,10 +296,7 @@ def starts() -> Iterator[Line]:
 
 
 def waiting() -> Iterator[Line]:
-    """Yield how far what people wait for is from the imports it needs.
-
-    `family` finds the best points of eighteen methods, of up to twelve steps.
-    """
+    """Yield how far what people wait for is from the imports it needs."""
     without_figure = "numpy, click, sympy"
     with_figure = f"{without_figure}, matplotlib.figure, matplotlib.backends.backend_svg"
     for name, promise in (("B4", 2.5), ("AB8", 5.0), ("B12", 5.0)):
@@ -308,7 +305,6 @@ def waiting() -> Iterator[Line]:
         check = ["check", *step, "--alpha", "5", "--beta", "5", "--physical"]
         yield beside_imports("waiting", f"check, {name}", check, without_figure, promise, 5)
     yield beside_imports("waiting", "region, B4", ["region", "--method", "B4"], with_figure, 2.5, 5)
-    yield beside_imports("waiting", "family bezier", ["family", "bezier"], with_figure, 10.0, 3)
     yield explorer_updates()
 
 

@@ -11,6 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from bezstab.cli import main
+from bezstab.cli.removed import WENT
 from tests.cli.running import run
 
 NAMES = main.list_commands(click.Context(main))
@@ -66,6 +67,14 @@ def test_whatever_is_typed_ends_in_an_answer_or_one_line(data: st.DataObject) ->
     assert isinstance(result.exception, SystemExit | None)
     assert result.exit_code in (0, 1, 2, 3)
     assert result.exit_code < 2 or result.stderr.count("\n") == 1  # beside an answer there may be notes
+
+
+@pytest.mark.parametrize("name", WENT)
+def test_what_was_removed_says_where_it_went_and_the_readme_lists_it(name: str) -> None:
+    result = run(name)
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert result.stderr == f"bezstab: `{name}`: {WENT[name]}\n"
+    assert f"\n| `{name}` |" in (Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8")
 
 
 def test_numerical_trouble_is_status_three_and_no_file(tmp_path: Path) -> None:

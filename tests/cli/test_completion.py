@@ -24,7 +24,6 @@ def completions(words: str, kind: str = "plain") -> list[str]:
         ("simulate --scene ", list(shipped_scenes())),
         ("choose --engine ", list(ENGINES)),
         ("check --engine muj", ["mujoco="]),
-        ("family ad", ["adams-bashforth"]),
         ("sche", ["schema"]),
         ("engines --al", ["--alpha"]),
         ("poles --alpha 1", []),

@@ -31,7 +31,6 @@ EXAMPLES = (
     f"region --method SYM --scene driven_four_bar --h 0.01 {SMALL}",
     "methods",
     "methods SYM RK4@5",
-    "family bezier --from 2 --to 3 --figure none",
     "choose --engine mujoco --h 0.002",
     "choose --method SYM --h 0.01 --scene driven_four_bar",
     "choose --method SYM --method RK1 --h 0.01",

@@ -12,8 +12,8 @@ from bezstab.evidence import map_rows, simulated_verdicts, verdict_map
 from bezstab.mechanism import load_scene
 from bezstab.methods import lookup
 from bezstab.questions import MapAnswer, MapQuestion
-from bezstab.show.map_figures import comparison_figure, family_figure, map_figure, verdict_figure
-from bezstab.stability import bezier_limit, family_members, region
+from bezstab.show.map_figures import comparison_figure, map_figure, verdict_figure
+from bezstab.stability import region
 from tests.show.drawn import lines_of
 
 
@@ -72,22 +72,6 @@ def test_the_verdict_figure_shows_cells_boundary_and_disagreement() -> None:
     assert lines["disagree"].tolist() == [[cells.alpha_hat[3], cells.beta_hat[2]]]
     assert lines["$|z_p| = 1$"][:-1] == pytest.approx(region(method).boundary[0])
     assert axes.get_title().splitlines()[-2:] == ["35 of 36 runs gave a verdict,", "34 of them agree"]
-
-
-@pytest.mark.slow
-def test_the_family_figure_has_a_point_per_method_and_the_limit() -> None:
-    families = {"bezier": family_members("bezier", 2, 4), "adams-bashforth": family_members("adams-bashforth", 2, 3)}
-    limit = bezier_limit()
-    area, fastest, constant, regions = family_figure(families, "bezier", limit).axes
-    for key, of_area, of_fastest in zip(families, area.lines, fastest.lines, strict=False):
-        assert np.array(of_area.get_xydata()).tolist() == [[each.n, each.region.area] for each in families[key]]
-        assert np.array(of_fastest.get_xydata()).tolist() == [[each.n, each.z_abs] for each in families[key]]
-    errors = [[each.n, float(each.error_constant)] for each in families["bezier"]]
-    assert np.array(constant.lines[0].get_xydata()).tolist() == errors  # those of another order are not comparable
-    assert [np.array(axes.lines[-1].get_ydata())[0] for axes in (area, fastest)] == [limit.area, limit.z_abs]
-    assert np.array(regions.lines[-1].get_xydata()) == pytest.approx(limit.boundary)
-    _, _, orders, _ = family_figure(families, "adams-bashforth", None).axes
-    assert np.array(orders.lines[0].get_xydata()).tolist() == [[2, 2], [3, 3]]
 
 
 def test_a_comparison_draws_each_boundary_in_a_given_window_or_in_alpha_and_beta() -> None:

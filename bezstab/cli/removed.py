@@ -1,0 +1,13 @@
+"""Where a command or an option went that is no more: each answers in one line."""
+
+from collections.abc import Mapping
+
+WENT: Mapping[str, str] = {
+    "family": "see `region --compare` for the regions, and `methods NAME` for order and error constant",
+}
+"""Of commands ("family") and options ("verify --witness") that were removed: what gives their answer now."""
+
+
+def where_it_went(name: str) -> str | None:
+    """Return the line for a command or an option; None if none of that name was removed."""
+    return f"`{name}`: {WENT[name]}" if name in WENT else None
