@@ -76,7 +76,6 @@ bench: .venv/benched  ## speed, as ratios measured in one run, into figures/benc
 
 campaign: .venv/tested  ## areas, extents, best points of 10,000 random methods against independent ones, in hours
 	$(BIN)/python tests/stability/campaign.py
-	BEZSTAB_CAMPAIGN=yes $(BIN)/python -m pytest -n 2 tests/methods tests/stability tests/evidence tests/mechanism
 
 clean:  ## remove the virtual environments
 	rm -rf .venv .venv-oldest

@@ -71,7 +71,7 @@ def test_every_goal_can_be_chosen(goal: Goal) -> None:
         ),
     ],
 )
-@pytest.mark.slow_except("check --engine", "choose")
+@pytest.mark.slow
 def test_python_answers_what_the_command_line_answers(typed: str, asked: dict[str, Any]) -> None:
     command = typed.split(maxsplit=1)[0]
     printed = json.loads(run(typed, "--format json").stdout)

@@ -47,7 +47,7 @@ def arrays_in(value: object) -> Iterator[np.ndarray[Any, Any]]:
 
 
 @pytest.mark.parametrize("name", RESULTS)
-@pytest.mark.slow_except("region")
+@pytest.mark.slow
 def test_every_array_of_a_result_is_read_only(name: str) -> None:
     found = list(arrays_in(RESULTS[name]()))
     assert bool(found) == (name not in WITHOUT_ARRAYS)

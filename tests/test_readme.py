@@ -2,6 +2,7 @@ import re
 import shlex
 import shutil
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,7 +11,6 @@ from click.testing import CliRunner
 from bezstab.cli import main
 from bezstab.methods import lookup
 from bezstab.stability import poles
-from tests.evidence.samples import of_campaign
 from tests.reference.sampled_responses import of_poles
 
 ROOT = Path(__file__).parent.parent
@@ -55,11 +55,20 @@ def prompted(session: str) -> str:
     return session.partition("\n")[0].removeprefix("$ bezstab ")
 
 
+QUICK = ("check --method SYM", "check --engine bullet", "choose --method SYM", "chains", "methods", "poles", "lint")
 SESSIONS = [session for page in PAGES for session in sessions(page)]
 GOLDEN = ("extremes --short", "paper -o figures")
 """Commands of pages that others run: tests/evidence/test_extremes.py, tests/paper/test_command.py."""
 
 INLINE = sorted({command for page in PAGES for command in commands(page)} - {*GOLDEN})
+
+
+def all_but_a_few_slow(commands: list[str]) -> list[Any]:
+    """Return each command as a case of a test, slow unless it begins as one of the quick ones."""
+    return [
+        pytest.param(each, marks=() if prompted(each).startswith(QUICK) else pytest.mark.slow, id=prompted(each))
+        for each in commands
+    ]
 
 
 @pytest.fixture
@@ -76,10 +85,7 @@ def _with_the_files_of_the_pages(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 
 
 @pytest.mark.usefixtures("_with_the_files_of_the_pages")
-@pytest.mark.parametrize("session", SESSIONS, ids=prompted)
-@pytest.mark.slow_except(
-    "check --method SYM", "check --engine bullet", "choose --method SYM", "chains", "methods", "probe kicked"
-)
+@pytest.mark.parametrize("session", all_but_a_few_slow(SESSIONS))
 def test_a_session_prints_what_the_page_shows(session: str) -> None:
     """Three dots stand for whatever is printed there."""
     command, shown = prompted(session), session.partition("\n")[2]
@@ -91,12 +97,11 @@ def test_a_session_prints_what_the_page_shows(session: str) -> None:
 
 
 @pytest.mark.usefixtures("_with_the_files_of_the_pages")
-@pytest.mark.parametrize("command", INLINE)
-@pytest.mark.slow_except("poles", "lint", "check --engine box2d=", "check --method rk45")
+@pytest.mark.parametrize("command", all_but_a_few_slow(INLINE))
 def test_a_command_in_the_text_runs(command: str) -> None:
     if "own.toml" in command:
         shutil.copy(own_file(command), "own.toml")
-    shorter = command.replace("--points 300", of_campaign("--points 300", "--points 40"))
+    shorter = command.replace("--points 300", "--points 40")
     result = CliRunner(env=ON_A_PIPE).invoke(main, shlex.split(shorter))
     may_end = (0, 1) if command.startswith(UNSAFE) else (0, 3) if command.startswith("probe") else (0,)
     assert result.exit_code in may_end, result.stderr  # 3: of another method's log nothing fits

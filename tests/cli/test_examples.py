@@ -87,8 +87,10 @@ def test_every_command_that_prints_rows_has_a_schema_and_an_example() -> None:
 
 
 @pytest.mark.usefixtures("_few_extremes")
-@pytest.mark.parametrize("example", EXAMPLES)
-@pytest.mark.slow_except(*QUICK)
+@pytest.mark.parametrize(
+    "example",
+    [pytest.param(each, marks=() if each.startswith(QUICK) else pytest.mark.slow) for each in EXAMPLES],
+)
 def test_an_example_keeps_to_its_schema_its_keys_and_the_width_of_the_terminal(
     example: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -38,7 +38,7 @@ def test_steps_that_are_refuted_together_may_be_typed_or_stand_in_a_file() -> No
         "--method generalized-alpha --alpha 0.02 --beta 40 --h 0.01 --h-min 0.0005",
     ],
 )
-@pytest.mark.slow_except("--method SYM --alpha 0.4")
+@pytest.mark.slow
 def test_the_line_that_shows_errors_grow_does_as_typed(arguments: str, monkeypatch: pytest.MonkeyPatch) -> None:
     given = rows("check", arguments, status=1)[0]
     assert given["varying"] == "refuted"

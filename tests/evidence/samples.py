@@ -1,4 +1,4 @@
-"""How much the slow tests of this room take: a part each time, all of it in `make campaign`."""
+"""How much the slow tests of this room take."""
 
 import os
 from typing import TypeVar

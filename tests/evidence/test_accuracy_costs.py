@@ -22,7 +22,7 @@ QUICK = ("B4", "ABM4", "RK4", "SYM")
 
 
 @pytest.mark.parametrize("name", [*of_campaign(METHODS, ("B2", *QUICK)), "trapezoid", "verlet-predicted"])
-@pytest.mark.slow_except(*QUICK, "verlet-predicted")
+@pytest.mark.slow
 def test_a_run_knows_its_error_its_cost_and_its_order(name: str) -> None:
     coarse, fine = swept(name, (8e-4, 1.6e-3), SOFT)
     assert (coarse.h, fine.h) == (1.6e-3, 8e-4)

@@ -28,7 +28,7 @@ def name(check: Callable[[], Check]) -> str:
 
 
 @pytest.mark.parametrize("check", [pytest.param(check, id=name(check)) for check in SHORT])
-@pytest.mark.slow_except("_speed-10", "_step", "_root_check", "_double_root-B4")
+@pytest.mark.slow
 def test_what_was_stated_beforehand_holds(check: Callable[[], Check]) -> None:
     found = check()
     assert found.held, found

@@ -38,7 +38,7 @@ def robust_point(name: str, share: float = 1.0) -> tuple[float, float]:
     ("name", "scene"),
     sorted(of_campaign({*product(METHODS, SCENES)}, FEW)),
 )
-@pytest.mark.slow_except("B4-driven")
+@pytest.mark.slow
 def test_measured_over_predicted_is_one_whatever_the_gains(name: str, scene: str) -> None:
     h, duration, allowed = SCENES[scene]
     shares = SHARES if scene != "andrews" else (0.2, 0.5, 1.0)  # whose implicit steps take long

@@ -18,7 +18,7 @@ from tests.reference.perturbed_revolutions import runner_motion
         ("AB2", 0.54165581, 0.68299639, 1e-5),  # truncation errors give a run a motion of its own
     ],
 )
-@pytest.mark.slow_except("AB4-0.3")
+@pytest.mark.slow
 def test_disturbed_runs_show_the_exact_rate(name: str, alpha_hat: float, beta_hat: float, apart: float) -> None:
     method = lookup(name)
     found = runner_motion(four_bar(), method, 203, alpha_hat, beta_hat)

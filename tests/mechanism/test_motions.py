@@ -31,7 +31,7 @@ MECHANISM = compiled_mechanism(load_scene("driven_four_bar"))
         (2 * np.pi, 2 * np.pi, 1.0),
     ],
 )
-@pytest.mark.slow_except("0.0")
+@pytest.mark.slow
 def test_drivers_that_turn_and_oscillate_begin_anew_after_their_common_period(
     rate: float, frequency: float, period: float
 ) -> None:
@@ -45,7 +45,7 @@ def test_drivers_that_turn_and_oscillate_begin_anew_after_their_common_period(
 
 
 @pytest.mark.parametrize("ratio", [np.sqrt(2), 1.0001, 1 / 997])
-@pytest.mark.slow_except("1.4142")
+@pytest.mark.slow
 def test_without_a_common_period_the_motion_is_a_run(ratio: float) -> None:
     run = motion(swinging_four_bar(2 * np.pi, 2 * np.pi * ratio), 0.05)
     assert not run.closed

@@ -45,7 +45,7 @@ def projected(
 
 @pytest.mark.parametrize("name", ["slider_crank", "driven_four_bar", "andrews"])
 @pytest.mark.parametrize("method", KINDS)
-@pytest.mark.slow_except("ABM2-slider_crank")
+@pytest.mark.slow
 def test_after_each_step_the_constraints_hold(name: str, method: str) -> None:
     h = step_for(name)
     run = projected(scene(name), lookup(method), h, 50 * h)
@@ -61,7 +61,7 @@ def test_after_each_step_the_constraints_hold(name: str, method: str) -> None:
         *(("implicit-euler", 1), ("trapezoid", 2), ("bdf2", 2), ("hht", 2)),
     ],
 )
-@pytest.mark.slow_except("RK4-4")
+@pytest.mark.slow
 def test_the_order_of_accuracy_stays(name: str, order: int) -> None:
     """Against the motion in the crank's angle alone, by quadrature; RK4 loses half of its order by strong feedback."""
     count = 400 if not implicit(lookup(name)) else 200

@@ -40,7 +40,7 @@ FOLLOWED = [
 @pytest.mark.parametrize(
     ("method", "alpha_hat", "beta_hat"), [pytest.param(*each, id=f"{each[0].name}-{each[1]}") for each in FOLLOWED]
 )
-@pytest.mark.slow_except("rkn4-1/5", "trapezoid-40", "gauss4-40", "leapfrog", "hht@3/2")
+@pytest.mark.slow
 def test_a_linear_constraint_follows_the_recursion_of_the_characteristic_polynomial(
     method: Method, alpha_hat: str, beta_hat: str
 ) -> None:

@@ -54,7 +54,7 @@ def run_with(
 
 
 @pytest.mark.parametrize("name", ONE_STEP)
-@pytest.mark.slow_except("rkn4")
+@pytest.mark.slow
 def test_equal_steps_are_the_run_of_constant_steps(name: str) -> None:
     constant, run = (run_with(sequence, 0.2, name, hold=True, mechanism=DRIVEN) for sequence in ([], [H]))
     assert run.t == pytest.approx(constant.t, abs=1e-12)  # sums of steps, against multiples

@@ -91,7 +91,7 @@ def steady_error_latex(method: Method, latex: bool) -> str:
 
 @pytest.mark.parametrize("name", [*FEW, *SOLVED, "tsit5", "B6", "RK4@5", "B3@5/2", "hht@1/3"])
 @pytest.mark.parametrize("write", [recursion_text, mapping_text, characteristic_text, steady_error_latex])
-@pytest.mark.slow_except("mapping_text-R", "recursion_text-SIE", "steady_error_latex-am3")
+@pytest.mark.slow
 def test_latex_can_be_typeset(name: str, write: Callable[[Method, bool], str]) -> None:
     for part in re.split(r"; |: ", write(lookup(name), True)):
         typeset = part.replace(r"\left", "").replace(r"\right", "")  # which mathtext wants in pairs per line

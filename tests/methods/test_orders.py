@@ -123,7 +123,7 @@ def measured_order(scheme: SecondOrder, kind: str, count: int) -> float:
 
 
 @pytest.mark.parametrize("name", [*kinds.SECOND_ORDER, *kinds.IMPLICIT])
-@pytest.mark.slow_except("SYM")
+@pytest.mark.slow
 def test_measured_orders_of_second_order_and_implicit_methods(name: str) -> None:
     """In float64, from exact starting values; the steps are such that rounding, some 1e-14, does not show."""
     method = lookup(name)

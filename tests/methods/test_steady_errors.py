@@ -54,7 +54,7 @@ DECAYED = 1e-48
 
 
 @pytest.mark.parametrize("name", ["B2", "B6", "AB4", "ABM3", "RK3", "SIE", "dirk3", "yoshida4", *SOLVED])
-@pytest.mark.slow_except("SYM", "B2")
+@pytest.mark.slow
 def test_it_is_what_the_methods_own_recursion_ends_on_to_forty_digits(name: str) -> None:
     method = replace(lookup(name), step_multiple=Fraction(1))
     errors, point = forced_errors(method), NEARER.get(name, POINT)

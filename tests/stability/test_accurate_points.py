@@ -16,7 +16,7 @@ OMEGA_H = Fraction(1, 50)
 
 
 @pytest.mark.parametrize("name", ["RK4", "B4", "SYM", "gauss4", "verlet-half"])
-@pytest.mark.slow_except("verlet-half", "SYM", "RK4")
+@pytest.mark.slow
 def test_it_decays_as_asked_within_the_spread_and_no_sampled_point_forces_less(name: str) -> None:
     method = lookup(name)
     chosen = choose(method, "accurate", omega_h=OMEGA_H, margins=False)

@@ -55,7 +55,7 @@ def beside_the_least(chart: Chart) -> tuple[float, list[Least]]:
 
 @pytest.mark.parametrize("name", ["B2", "B4", "AB4", "ABM2", "ABM3"])
 @pytest.mark.parametrize(("factor", "moved"), [(1.01, 1.0), (0.99, 1.0), (1.0, 1.02)])
-@pytest.mark.slow_except("1.01-1.0-B", "1.0-1.02-B")
+@pytest.mark.slow
 def test_a_wrong_best_point_is_no_answer(name: str, factor: float, moved: float) -> None:
     right = best_point(lookup(name))
     extent = region(lookup(name)).extent
@@ -68,7 +68,7 @@ def test_a_wrong_best_point_is_no_answer(name: str, factor: float, moved: float)
 
 
 @pytest.mark.parametrize("name", ["B4", "AB4", "ABM3"])
-@pytest.mark.slow_except("AB4")
+@pytest.mark.slow
 def test_a_kink_that_is_not_the_least_is_no_answer(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(best_points, "least_on", beside_the_least)
     with pytest.raises(NumericalError, match="the point chosen"):
@@ -103,7 +103,7 @@ BESIDE: list[tuple[str, str, Goal, float, str]] = [
 
 
 @pytest.mark.parametrize(("search", "name", "goal", "off", "said"), BESIDE)
-@pytest.mark.slow_except("least_between-RK4", "_critical_point-RK4", "first_where")
+@pytest.mark.slow
 def test_a_choice_beside_its_place_is_no_answer(
     search: str, name: str, goal: Goal, off: float, said: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -123,7 +123,7 @@ def zoom_beside(objective: Callable[..., FloatArray], *arguments: Any, **options
 
 
 @pytest.mark.parametrize("name", ["RK4", "B4"])
-@pytest.mark.slow_except("RK4")
+@pytest.mark.slow
 def test_a_robust_choice_beside_its_place_is_no_answer(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(choices, "lowest_minima", zoom_beside)
     with pytest.raises(NumericalError, match="the point chosen has"):
@@ -146,7 +146,7 @@ def test_what_fails_at_first_is_searched_more_finely(monkeypatch: pytest.MonkeyP
 
 
 @pytest.mark.parametrize("rate", [0.99, 0.9, 0.7])
-@pytest.mark.slow_except("0.7")
+@pytest.mark.slow
 def test_margins_of_a_fourfold_pole_are_where_the_verdict_turns(rate: float) -> None:
     """On alpha = beta four poles of ABM2 meet, and float64 alone is off by more than the check allows."""
     gentle = choose(lookup("ABM2"), "gentle", h=Fraction(1), settle=settling(rate))

@@ -57,7 +57,7 @@ def test_the_kink_where_two_opposite_real_roots_meet(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", sampled([*EXPLICIT, "B4@2"]))
-@pytest.mark.slow_except("RK4", "B1", "AB2", "B2", "AB4")
+@pytest.mark.slow
 def test_nothing_in_the_plane_is_faster(name: str) -> None:
     method, found, random = lookup(name), best(lookup(name)), np.random.default_rng(5)
     (a_low, a_high), (b_low, b_high) = window(region(method))
@@ -183,7 +183,7 @@ def test_without_a_zero_of_r_where_mu_is_damped_the_least_value_is_on_the_edge(n
 
 
 @pytest.mark.parametrize(("number", "alpha_hat"), [(250, "0.198585"), (134, "0")])
-@pytest.mark.slow_except("250")
+@pytest.mark.slow
 def test_negative_damping_is_no_answer(number: int, alpha_hat: str) -> None:
     """Pairs whose |z_p| is least at alpha_hat = -3.1 and -0.06."""
     method = random_method(number)

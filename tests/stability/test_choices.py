@@ -47,7 +47,7 @@ def test_the_most_robust_feedback_of_a_method_whose_step_is_five_is_that_of_its_
 
 
 @pytest.mark.parametrize("name", ["B3", "B8", "AB4"])
-@pytest.mark.slow_except("B3")
+@pytest.mark.slow
 def test_the_critical_choice_is_where_an_opposite_pole_is_as_large(name: str) -> None:
     """Of these that is the best point of all; a ten-millionth of mu beside it the real and positive pole is larger."""
     chosen, best = choose(lookup(name), "critical"), best_point(lookup(name))
@@ -150,7 +150,7 @@ UNBOUNDED = ["trapezoid", "implicit-euler", "bdf2", "imex-euler", "average-accel
 
 @pytest.mark.parametrize("goal", ["robust", "fastest", "critical"])
 @pytest.mark.parametrize("name", sampled(UNBOUNDED, quick=["trapezoid", "imex-euler", "verlet-implicit"]))
-@pytest.mark.slow_except("trapezoid", "verlet-implicit-f")
+@pytest.mark.slow
 def test_where_the_region_goes_on_a_choice_says_how_far_it_looked(name: str, goal: Goal) -> None:
     choice = choose(lookup(name), goal)
     assert choice.verdict == "converges"

@@ -30,7 +30,7 @@ FOLLOWING = (*("RK3", "RK4", "ssprk3", "bs3", "dopri5", "tsit5", "cash-karp", "r
 """Explicit methods with stages, of order three and more, and implicit ones whose velocities strong feedback spoils."""
 
 
-@pytest.mark.slow_except("RK3", "RK4", "RK2", "AB4", "SYM", "gauss4", "sdirk2")
+@pytest.mark.slow
 @pytest.mark.parametrize("name", REGISTRY)
 def test_which_methods_take_the_least_damping_that_settles(name: str) -> None:
     """Then alpha and beta are the same multiples of the motion's rate, however fast it is for the step."""

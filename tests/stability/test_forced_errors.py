@@ -19,7 +19,7 @@ POINTS = ((1e-5, 1e-10), (0.02, 1e-4), (0.02, 3e-4))
 
 @pytest.mark.parametrize("omega", OMEGAS, ids=str)
 @pytest.mark.parametrize("name", METHODS)
-@pytest.mark.slow_except("SYM", "verlet-half", "hht", "AB4", "RK4")
+@pytest.mark.slow
 def test_it_has_ten_digits_of_the_exact_functions(name: str, omega: Fraction) -> None:
     errors = forced_errors(lookup(name))
     for point in POINTS:

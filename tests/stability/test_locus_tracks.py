@@ -13,7 +13,7 @@ LEVELS = [1.0, 0.93, 0.75, 0.5]
 
 
 @pytest.mark.parametrize("level", LEVELS)
-@pytest.mark.slow_except("0.93")
+@pytest.mark.slow
 def test_the_area_of_close_branches_is_that_of_the_slices(level: float) -> None:
     area = region(CLOSE_BRANCHES, level).area
     assert area == pytest.approx(sliced_area(CLOSE_BRANCHES, level), rel=1e-9)
@@ -22,7 +22,7 @@ def test_the_area_of_close_branches_is_that_of_the_slices(level: float) -> None:
 
 
 @pytest.mark.parametrize("level", LEVELS)
-@pytest.mark.slow_except("0.75")
+@pytest.mark.slow
 def test_a_far_interval_reaches_furthest(level: float) -> None:
     """R is linear across the interval, so both its ends are the zero of R plus or minus level / |R'|."""
     growth = -MuPencil(FAR_INTERVAL).table[0]

@@ -30,7 +30,7 @@ def test_poles_are_eigenvalues_of_the_companion(method: Method) -> None:
 
 
 @pytest.mark.parametrize("method", METHODS, ids=str)
-@pytest.mark.slow_except("='SYM", "='verlet-kdk", "='verlet-half", "='verlet-implicit")
+@pytest.mark.slow
 def test_dominant_poles_are_right_to_fifty_digits_but_for_their_condition(method: Method) -> None:
     generator = np.random.default_rng(5)
     for alpha_hat, beta_hat in generator.uniform(0.01, 2, (25, 2)):

@@ -27,7 +27,7 @@ PROVEN = [
 
 
 @pytest.mark.parametrize("name", PROVEN)
-@pytest.mark.slow_except("am2", "newmark", "radau3", "trapezoid", "implicit")
+@pytest.mark.slow
 def test_what_is_known_to_be_stable_for_all_steps_is_proven_so(name: str) -> None:
     assert stable_for_all(lookup(name)) == "proven"
 

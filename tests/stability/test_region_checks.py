@@ -76,7 +76,7 @@ def with_a_bulge(bounds: Bounds) -> Bounds:
 
 @pytest.mark.parametrize("wrong", [without_arc, without_interval, with_a_bulge])
 @pytest.mark.parametrize(("method", "level"), REGIONS, ids=identify)
-@pytest.mark.slow_except("B4", "RK4")
+@pytest.mark.slow
 def test_a_wrong_region_is_no_answer(
     method: Method, level: float, wrong: Wrong, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -134,7 +134,7 @@ WRONG_SIZES: list[tuple[str, Callable[[Shape], Shape]]] = [
 
 
 @pytest.mark.parametrize(("name", "level"), SHAPES[:-2])
-@pytest.mark.slow_except("verlet-half")
+@pytest.mark.slow
 def test_a_right_shape_passes_and_a_wrong_one_does_not(name: str, level: float) -> None:
     method, shape = found(name, level)
     check_region(method, level, shape)
@@ -154,7 +154,7 @@ def test_a_right_shape_passes_and_a_wrong_one_does_not(name: str, level: float) 
 
 
 @pytest.mark.parametrize(("name", "level"), SHAPES[-2:])
-@pytest.mark.slow_except("imex")
+@pytest.mark.slow
 def test_an_unbounded_shape_passes_but_not_with_a_wrong_edge_or_a_wrong_way_out(name: str, level: float) -> None:
     method, shape = found(name, level)
     check_region(method, level, shape)

@@ -100,7 +100,7 @@ def test_a_region_is_empty_exactly_below_the_least_modulus(name: str) -> None:
 
 @pytest.mark.parametrize("name", sampled([*NAMES, "verlet-predicted"], quick=[*SAMPLE, "verlet-predicted"]))
 @pytest.mark.parametrize("level", [1.0, 0.9])
-@pytest.mark.slow_except("1.0-RK1", "0.9-RK4", "1.0-B4", "0.9-AB4", "0.9-verlet-predicted")
+@pytest.mark.slow
 def test_the_curves_are_closed_touch_the_extent_and_enclose_the_area_and_what_is_stable(
     name: str, level: float
 ) -> None:
