@@ -1,0 +1,96 @@
+"""Stable stretches of paths: against closed forms, lines in rationals, and proven verdicts at points of any path."""
+
+from fractions import Fraction
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from bezstab.methods import Method, lookup
+from bezstab.rationals import exact
+from bezstab.stability import FloatArray, verdict
+from bezstab.stability.stretches import ALONG_ALPHA, ALONG_BETA, ALONG_H, Stretches, paths
+from tests.methods.kinds import sampled
+from tests.reference.exact_lines import stable_parts
+
+BESIDE = 1e-5
+"""Of an end: on alpha = beta every root of P is double, and float64 knows ends to the root of rounding, and less."""
+
+METHODS = ["B2", "B4", "AB4", "ABM4", "RK4", "dopri5", "verlet-old", "ruth3", "generalized-alpha", "bdf3"]
+
+
+def one_line(name: str, alpha_hat: float, beta_hat: float, powers: tuple[int, int], level: float = 1.0) -> Stretches:
+    return paths(lookup(name), np.array([alpha_hat]), np.array([beta_hat]), powers, level).stretches(exact=True)
+
+
+def test_explicit_euler_has_the_triangle_of_its_conditions() -> None:
+    # P = z^2 + (a - 2) z + 1 - a + b: Jury's conditions are b > 0, b > 2 a - 4 and b < a
+    alpha_hat = np.array([0.5, 2.0, 3.0, 3.999, 4.001])
+    found = paths(lookup("AB1"), alpha_hat, np.ones(5), ALONG_BETA).stretches(exact=True)
+    assert found.path.tolist() == [0, 1, 2, 3]
+    assert found.low == pytest.approx([0, 0, 2, 3.998], abs=1e-9)
+    assert found.high == pytest.approx(alpha_hat[:4], rel=1e-9)
+
+
+def test_symplectic_euler_along_both_gains_and_along_h() -> None:
+    # P = z^2 + (a + b - 2) z + 1 - a: stable if and only if a, b > 0 and 2 a + b < 4
+    by_beta, by_alpha = one_line("SYM", 0.5, 1, ALONG_BETA), one_line("SYM", 1, 2, ALONG_ALPHA)
+    assert [by_beta.low[0], by_beta.high[0]] == pytest.approx([0, 3], rel=1e-12)
+    assert [by_alpha.low[0], by_alpha.high[0]] == pytest.approx([0, 1], rel=1e-12)
+    by_h = one_line("SYM", 1, 2, ALONG_H)  # 2 s + 2 s^2 = 4
+    assert by_h.high == pytest.approx([1], rel=1e-12)
+
+
+def test_a_line_without_an_end_is_stable_to_infinity() -> None:
+    found = one_line("trapezoid", 1, 1, ALONG_BETA)
+    assert (found.low.tolist(), found.high.tolist()) == ([0.0], [np.inf])
+
+
+@pytest.mark.parametrize("name", sampled(METHODS, quick=["B4", "verlet-old"]))
+@pytest.mark.parametrize("level", [1.0, 0.875])
+@pytest.mark.parametrize("axis", [0, 1])
+def test_lines_have_the_stretches_that_rationals_prove(name: str, level: float, axis: int) -> None:
+    for place in (Fraction(1, 4), Fraction(7, 8)):
+        proven = joined(stable_parts(lookup(name), level, place, axis))
+        start = (float(place), 1.0) if axis == 0 else (1.0, float(place))
+        found = one_line(name, *start, (ALONG_BETA, ALONG_ALPHA)[axis], level)
+        assert np.stack([found.low, found.high], axis=-1) == pytest.approx(proven, rel=1e-8, abs=1e-10)
+
+
+def joined(parts: list[tuple[Fraction | float, Fraction | float]]) -> FloatArray:
+    """Return the parts of a line above zero, those joined between which there is but a place that is met."""
+    positive = [(max(float(low), 0.0), float(high)) for low, high in parts if high > 0]
+    starts = positive[:1] + [after for before, after in pairwise(positive) if before[1] != after[0]]
+    ends = [before for before, after in pairwise(positive) if before[1] != after[0]] + positive[-1:]
+    return np.array([(low, high) for (low, _), (_, high) in zip(starts, ends, strict=True)]).reshape(-1, 2)
+
+
+@given(st.sampled_from(METHODS), st.floats(0.02, 4), st.floats(0.02, 4), st.sampled_from([ALONG_H, ALONG_BETA, (1, 1)]))
+def test_verdicts_beside_every_end_are_proven(
+    name: str, alpha_hat: float, beta_hat: float, powers: tuple[int, int]
+) -> None:
+    found = one_line(name, alpha_hat, beta_hat, powers)
+    for low, high in zip(found.low, found.high, strict=True):
+        ends = [(low, 1), (high, -1)]
+        for end, inwards in ends:
+            if 0 < end < np.inf:
+                assert converges(lookup(name), alpha_hat, beta_hat, powers, end * (1 + inwards * BESIDE))
+                assert not converges(lookup(name), alpha_hat, beta_hat, powers, end * (1 - inwards * BESIDE))
+
+
+def converges(method: Method, alpha_hat: float, beta_hat: float, powers: tuple[int, int], s: float) -> bool:
+    i, j = powers
+    return verdict(method, exact(alpha_hat) * exact(s) ** i, exact(beta_hat) * exact(s) ** j) == "converges"
+
+
+def test_levels_may_differ_from_path_to_path() -> None:
+    alpha_hat, levels = np.array([0.5, 0.5, 1.0]), np.array([1.0, 0.9, 0.8])
+    found = paths(lookup("RK4"), alpha_hat, np.ones(3), ALONG_BETA, levels).stretches(exact=True)
+    for number, level in enumerate(levels.tolist()):
+        alone = paths(lookup("RK4"), alpha_hat[number : number + 1], np.ones(1), ALONG_BETA, level).stretches(
+            exact=True
+        )
+        assert found.low[found.path == number] == pytest.approx(alone.low, rel=1e-9)
+        assert found.high[found.path == number] == pytest.approx(alone.high, rel=1e-9)
