@@ -78,12 +78,12 @@ def test_ode23s_has_the_pole_of_sdirk2(mu: complex) -> None:
     )
 
 
-@pytest.mark.parametrize("name", sorted(ADVICE))
-def test_every_name_in_a_piece_of_advice_can_be_typed(name: str) -> None:
-    advice = ADVICE[name]
-    words = set(re.findall(r"[A-Za-z][\w-]*\d|verlet-\w+|SYM|SIE|[a-z]+-(?:euler|midpoint|difference|ruth)", advice))
-    assert refusal(name) == f"method {name!r}: {advice}"
-    assert {folded(word) for word in words - {"x0", "x1"}} <= set(FOLDED_NAMES)
+def test_every_name_in_a_piece_of_advice_can_be_typed() -> None:
+    method_like = r"[A-Za-z][\w-]*\d|verlet-\w+|SYM|SIE|[a-z]+-(?:euler|midpoint|difference|ruth)"
+    for name, advice in ADVICE.items():
+        assert refusal(name) == f"method {name!r}: {advice}"
+        words = set(re.findall(method_like, advice)) - {"x0", "x1"}
+        assert {folded(word) for word in words} <= set(FOLDED_NAMES), name
 
 
 def test_the_lists_of_names_have_no_name_twice() -> None:

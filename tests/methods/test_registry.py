@@ -2,9 +2,9 @@
 
 import subprocess
 import sys
-from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
+from itertools import product
 from pathlib import Path
 
 import pytest
@@ -38,19 +38,18 @@ def test_the_registry_holds_every_method_once_under_one_heading() -> None:
     assert len({group.heading for group in GROUPS}) == len(GROUPS)
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_a_registered_name_looks_up_its_method_with_its_source(name: str) -> None:
-    method = lookup(name)
-    assert method.name.partition("(")[0] == name  # what may follow are its parameters
-    assert lookup(method.name) == method == REGISTRY[name]()
-    assert method.source.strip()
-    assert method.step_multiple == 1
+def test_a_registered_name_looks_up_its_method_with_its_source() -> None:
+    for name in NAMES:
+        method = lookup(name)
+        assert method.name.partition("(")[0] == name  # what may follow are its parameters
+        assert lookup(method.name) == method == REGISTRY[name]()
+        assert method.source.strip()
+        assert method.step_multiple == 1
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_name_at_m_is_the_method_with_a_step_of_m_h_however_it_is_spelt(name: str) -> None:
-    method = lookup(name)
-    for multiple in ("5", "1/2", "0.25"):
+def test_name_at_m_is_the_method_with_a_step_of_m_h_however_it_is_spelt() -> None:
+    for name, multiple in product(NAMES, ("5", "1/2", "0.25")):
+        method = lookup(name)
         longer = replace(method, name=f"{method.name}@{multiple}", step_multiple=Fraction(multiple))
         spelt = (name, name.lower(), name.upper(), name.replace("-", "_"))
         assert [lookup(f"{each}@{multiple}") for each in spelt] == [longer] * 4
@@ -61,10 +60,10 @@ def test_a_step_multiple_out_of_range_is_refused(text: str) -> None:
     refusal(text)
 
 
-@pytest.mark.parametrize("name", NAMES)
-@pytest.mark.parametrize("misspell", [lambda name: f"{name}?", lambda name: f"{name[0]}:{name[1:]}"])
-def test_a_misspelt_name_suggests_the_right_one(name: str, misspell: Callable[[str], str]) -> None:
-    assert f"did you mean {name}?" in refusal(misspell(name))
+def test_a_misspelt_name_suggests_the_right_one() -> None:
+    for name in NAMES:
+        for misspelt in (f"{name}?", f"{name[0]}:{name[1:]}"):
+            assert f"did you mean {name}?" in refusal(misspelt)
 
 
 def test_a_suggestion_heeds_the_name_and_not_the_step_multiple() -> None:
