@@ -91,6 +91,10 @@ def check(**typed: Any) -> bool:
             say_of_drive(question.drive, rows)
         show_rows(CHECKED, rows, without)
         say_varying(given)
+        if len(given) > 1:  # a single one has said so
+            show_sentences(
+                f"{each.method.name}, {each.goal}: {each.energy_sentence}" for each in given if each.energy_sentence
+            )
         show_sentences(map(costs_words, given if not question.drive else ()))
         if instead := [answer for answer in found if answer.role == "instead"]:
             show_text("\nWhat `choose` gives instead:\n")

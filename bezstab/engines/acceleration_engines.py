@@ -38,13 +38,20 @@ def _read_solref(h: Fraction, first: Fraction, second: Fraction, *_solimp: Fract
     )
 
 
+def _impedances(_first: Fraction, _second: Fraction, *solimp: Fraction) -> tuple[Fraction, Fraction]:
+    """Return d at no error and past solimp's width."""
+    given = (*solimp, *DEFAULT_SOLIMP[len(solimp) :])
+    d0, dmax = (min(max(each, LEAST_IMPEDANCE), MOST_IMPEDANCE) for each in given)
+    return d0, dmax
+
+
 def _apply_mujoco(h: Fraction, first: Fraction, second: Fraction, *solimp: Fraction) -> Applied:
     notes = []
     least = LEAST_TIME_CONSTANT * h
     if first > 0 and second > 0 and first < least:
         notes.append(f"refsafe raises timeconst {float(first):g} s to {LEAST_TIME_CONSTANT}h = {float(least):g} s")
         first = least
-    d0, dmax = (min(max(each, LEAST_IMPEDANCE), MOST_IMPEDANCE) for each in (*solimp, *DEFAULT_SOLIMP[len(solimp) :]))
+    d0, dmax = _impedances(first, second, *solimp)
     ratio = d0 / dmax
     alpha_hat, beta_hat = _read_solref(h, first, second)
     if ratio == 1:
@@ -76,6 +83,7 @@ MUJOCO = Engine(
     write=_write_solref,
     paste='solref="{} {}" solimp="{} {}"',
     apply=_apply_mujoco,
+    impedances=_impedances,
     marks={
         "MuJoCo: timeconst = 2h": "2h 1 0.95 0.95",  # equal impedances: r = 1
         "MuJoCo: solref = 0.02 1": "0.02 1 0.95 0.95",

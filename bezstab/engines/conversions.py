@@ -66,7 +66,8 @@ class Engine:
     label, the values as they are typed, or 2h for two steps. `excludes` is what the conversion leaves out. `curve` are
     the points to choose among, None for all of the plane. `jointly` is whether it solves all constraints together below
     acceleration level, too. `sweeping` is how it goes through a step in which it solves one after another, None where
-    that is not written down here. `energy_class` is how it takes errors back, None likewise.
+    that is not written down here. `energy_class` is how it takes errors back, None likewise. `impedances(*values)` are
+    the shares that soft constraints get of what they want, at no error and at large ones, None where they get all.
     """
 
     name: str
@@ -90,6 +91,7 @@ class Engine:
     jointly: bool = False
     sweeping: Sweeping | None = None
     energy_class: EnergyClass | None = None
+    impedances: Callable[..., tuple[Fraction, Fraction]] | None = None
 
     @property
     def units(self) -> Mapping[str, str]:

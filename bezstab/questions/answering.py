@@ -62,7 +62,7 @@ SHORTER = (2, 4)
 """A step may be so many times as short for a choice that is not safe: a mechanism then turns less in a step."""
 
 KEPT = 5e-5
-"""Of the largest kinetic energy: less is no change that anybody sees."""
+"""Of the largest kinetic energy in a run, or of a motion's in a second: less is no change that anybody sees."""
 
 MOVED = 0.01
 """Of the energy, in a second: what a motion may gain or lose without a word."""
@@ -115,6 +115,11 @@ class Answer(Choice):
     def sentence(self) -> str:
         """The answer in words: what was judged, whether it is safe, how fast errors fall, what may grow."""
         return answer_sentence(self)
+
+    @property
+    def energy_sentence(self) -> str | None:
+        """What a second does to the energy of a motion of rate --omega; None where that is little, or not known."""
+        return "".join(map(_sentence, _on_a_motion(self))) or None
 
     @property
     def safe(self) -> bool:
@@ -194,6 +199,15 @@ class Answer(Choice):
         engine = self.question.engine
         return engine is not None and engine.energy_class is not None and self.method.name == engine.method
 
+    @property
+    def impedance(self) -> float | None:
+        """The share that soft constraints get of what they want, where the engine has such: MuJoCo's d."""
+        engine, h = self.question.engine, self.question.h
+        if engine is None or engine.impedances is None or h is None:
+            return None
+        at_no_error, at_large = engine.impedances(*self._engine_values(engine, h))
+        return float(at_no_error if self.goal == "as given" and not self.question.as_typed else at_large)
+
     @cached_property
     def energy_rate(self) -> tuple[float, float] | None:
         """What a second adds to the energy of a motion of rate --omega, and its part by rotation alone: shares of it.
@@ -205,7 +219,8 @@ class Answer(Choice):
         if omega is None or h is None or self.question.scene or self.verdict != "converges":
             return None
         if engine and engine.energy_class and self.spins:
-            rate = 2 * spin_change(engine.energy_class, self.alpha_hat, self.beta_hat, float(omega) * h) / h
+            point, theta = (self.alpha_hat, self.beta_hat), float(omega) * h
+            rate = 2 * spin_change(engine.energy_class, *point, theta, self.impedance or 1.0) / h
             return rate, rate
         if engine and engine.level != "acceleration":
             return None
@@ -417,7 +432,11 @@ def answer_sentence(answer: Answer) -> str:
     motion = answer.question.motion
     if answer.goal == "accurate" and motion.assumed:
         said.append(f"without --omega {_assumed(motion.omega_h, answer.h)} is assumed")
-    return " ".join([f"{_judged(answer)}: {safe}{varying}.", *(f"{each[0].upper()}{each[1:]}." for each in said)])
+    return " ".join([f"{_judged(answer)}: {safe}{varying}.", *map(_sentence, said)])
+
+
+def _sentence(said: str) -> str:
+    return f"{said[0].upper()}{said[1:]}."
 
 
 def _assumed(omega_h: Fraction, h: float | None) -> str:
@@ -465,15 +484,21 @@ def _in_motion(answer: Answer, moving: MovingPole) -> str:
 
 
 def _on_a_motion(answer: Answer) -> list[str]:
-    """Return what a second does to the energy of a motion whose rate was given; nothing if that is a hundredth."""
-    if answer.energy_rate is None or abs(answer.energy_rate[0]) < MOVED:
+    """Return what a second does to the energy of a motion whose rate was given; nothing if that is a hundredth.
+
+    Of a choice that does not weigh it, it is said anyway.
+    """
+    unweighed = answer.role == "chosen" and answer.goal != "accurate"
+    if answer.energy_rate is None or not (abs(answer.energy_rate[0]) >= MOVED or unweighed):
         return []
     rate, by_rotation = answer.energy_rate
     omega = float(answer.question.omega or 0)
-    engine, what = answer.question.engine, "gains" if rate > 0 else "loses"
+    what = "gains" if rate > 0 else "loses"
     motion = f"a body that spins about a pin at {omega:.3g} rad/s" if answer.spins else f"a motion of {omega:.3g} rad/s"
-    if answer.spins and engine and engine.energy_class == "acceleration":  # an impedance below one, left out, brakes
-        motion += ", with hard constraints,"
+    if answer.spins and answer.impedance:
+        motion += f", with an impedance d of {answer.impedance:g},"
+    if abs(rate) < KEPT:
+        return [f"{motion} keeps its energy"]
     said = f"{motion} {what} {100 * abs(rate):.2g} % of its energy a second"
     # stages' torque grows as the cube of the rate
     if not answer.spins and by_rotation > MOVED and stage_torque(answer.method).power == 2:
@@ -525,7 +550,8 @@ def _swept(answer: Answer, swept: SweptAnswer) -> list[str]:
     enough = "no number of sweeps that was tried is stable"
     if stable is not None:
         enough = f"stable from {counted(stable, 'sweep')}"
-    said = [f"{change}; of one constraint alone, each step multiplies it by {swept.alone:.2f}", enough]
+    alone = f"{change}; of one constraint alone, each step multiplies it by {swept.alone:.2f}"
+    said = [alone, enough, *_on_a_motion(answer)]
     if answer.moving:
         said.append(f"that is at rest. Solved exactly: {_in_motion(answer, answer.moving)}")
     if answer.varying:

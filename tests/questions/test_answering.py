@@ -12,6 +12,7 @@ import pytest
 from bezstab.api import check
 from bezstab.engines import ENGINES, Drive, Point
 from bezstab.errors import InputError
+from bezstab.goals import Goal
 from bezstab.mechanism import Mechanism
 from bezstab.methods import Method, lookup
 from bezstab.questions import Answer, LargestStep, Question, answering, answers
@@ -269,6 +270,34 @@ def test_an_engine_says_what_its_step_does_to_a_spinning_body(engine: str, sign:
     assert f"{'gains' if sign > 0 else 'loses'}" in answer.sentence
     if engine == "box2d-v2":  # minus h omega^2
         assert answer.energy_rate[0] == pytest.approx(-0.6, rel=1e-3)
+
+
+def test_mujocos_impedance_counts_at_each_of_its_points() -> None:
+    """(0.2, 0.2) pumps at d = 0.95 and brakes at 0.8: neutral at 0.87."""
+    values = tuple(map(Fraction, ("-720", "-12", "0.8", "0.95")))
+    soft, past = answers(Question(engine=ENGINES["mujoco"], values=values, h=Fraction(1, 60), omega=Fraction(6)))
+    assert (soft.impedance, past.impedance) == (0.8, 0.95)
+    assert soft.energy_rate is not None
+    assert past.energy_rate is not None
+    assert soft.energy_rate[0] < 0 < past.energy_rate[0]
+    assert check(engine="mujoco", h=Fraction(1, 60), omega=6).impedance == 0.9
+    assert check(engine="chipmunk", h=Fraction(1, 60), omega=6).impedance is None
+
+
+@pytest.mark.parametrize("goal", ["robust", "fastest", "critical"])
+def test_a_choice_that_does_not_weigh_the_motion_says_what_that_costs(goal: Goal) -> None:
+    """Also where that is little."""
+    kept = Question(methods=SYM, goal=goal, h=Fraction(1, 600), omega=Fraction(6))
+    assert "A motion of 6 rad/s keeps its energy." in first(kept).sentence
+    pumped = replace(kept, methods=(lookup("RK2"),), h=Fraction(1, 100))
+    assert "A motion of 6 rad/s gains" in first(pumped).sentence
+    run = Question(methods=SYM, goal=goal, h=Fraction(1, 100), scene="pendulum")
+    assert "In a run of 10 s: |c| at most" in first(run).sentence
+
+
+def test_so_does_a_choice_for_a_chain_in_an_engine() -> None:
+    chain = Question(engine=ENGINES["chipmunk"], goal="robust", h=Fraction(1, 60), omega=Fraction(6))
+    assert "A body that spins about a pin at 6 rad/s loses" in first(chain).sentence
 
 
 def test_an_engine_with_another_integrator_is_judged_by_that_integrator() -> None:
