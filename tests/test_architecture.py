@@ -63,7 +63,7 @@ APPOINTED = {
     },
     "matplotlib": {
         *("show/style.py", "show/plot.py", "show/map_figures.py", "show/run_figures.py"),
-        "show/explorer.py",
+        "show/window.py",
         *(f"paper/{name}.py" for name in ("regions", "slider_crank", "drift", "influence", "comparison")),
     },
     "click": {path.relative_to(PACKAGE).as_posix() for path in (PACKAGE / "cli").glob("*.py")} | {"paper/command.py"},
@@ -143,7 +143,7 @@ def test_computation_neither_prints_nor_exits_nor_filters_warnings_and_one_file_
         assert path.as_posix() == "mechanism/generated_code.py" or not called & EXECUTING, path
         modules = {module for module, _ in imports(path)}
         assert "warnings" not in modules, path
-        if path.as_posix() != "show/explorer.py":  # pyplot is what opens a window
+        if path.as_posix() != "show/window.py":  # pyplot is what opens a window
             assert "matplotlib.pyplot" not in modules, path
             assert ("matplotlib", ("pyplot",)) not in set(imports(path)), path
 

@@ -16,7 +16,7 @@ from bezstab.errors import InputError, NumericalError
 
 SECTIONS: Mapping[str, Sequence[str]] = {
     "Maps": ("poles", "region", "methods"),
-    "Choose": ("choose", "check", "lint", "engines", "chains", "explore"),
+    "Choose": ("choose", "check", "lint", "engines", "chains"),
     "Evidence": ("simulate", "verify", "probe", "tradeoff", "extremes"),
     "Programs": ("schema",),
     "Paper": ("paper",),

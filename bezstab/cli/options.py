@@ -29,7 +29,7 @@ Option = Callable[..., click.Option]
 
 MOST_IN_SEQUENCE = 10**6  # steps: a run of minutes
 USUAL_METHODS = ("B2", "B3", "B4", "AB2", "AB3", "AB4", "RK4@5", "SIE")
-"""The methods that poles and explore show without --method: the Bezier methods and their usual alternatives."""
+"""The methods that poles shows without --method: the Bezier methods and their usual alternatives."""
 
 GAINS = ("kp", "kd", "inertia")
 
@@ -231,6 +231,8 @@ OPTIONS = {
         expose_value=False,
         callback=_choose_compiled,
     ),
+    "output": option("-o --output", click.Path(path_type=Path), "Directory for what is written.", default="."),
+    "figure": option("--figure", click.Choice([*FIGURE_FORMS, "none"]), "Format of the figure.", default="png"),
     "form": option(
         "--format form", click.Choice(get_args(Format)), "What to print on standard output.", default="text"
     ),
@@ -337,8 +339,8 @@ GROUPS: Mapping[str, tuple[str | Option | Rule, ...]] = {
         ),
     ),
     "picture": (
-        option("-o --output", click.Path(path_type=Path), "Directory for what is written.", default="."),
-        option("--figure", click.Choice([*FIGURE_FORMS, "none"]), "Format of the figure.", default="png"),
+        "output",
+        "figure",
     ),
     "files": ("picture", "table"),
     "shared_out": (  # runs that take long, and the table that comes of them

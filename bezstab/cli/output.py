@@ -157,7 +157,9 @@ class Files:
 
         if table and self.table != "none":
             write_file(path.with_name(f"{path.name}.{self.table}"), partial(show.write_arrays, table(), self.table))
-        if figure and self.figure != "none":
+        if figure and self.figure == "window":
+            show.show_in_window(figure())
+        elif figure and self.figure != "none":
             write_file(path.with_name(f"{path.name}.{self.figure}"), partial(show.save, figure(), self.figure))
 
 

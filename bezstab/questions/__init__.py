@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from bezstab.questions.log_probes import PoleQuestion, Probe, check_told, log_answers
     from bezstab.questions.motions import ReferenceMotion, check_speed, motion_of
     from bezstab.questions.question import Question, meant_in_seconds, methods_for, usual_goal
-    from bezstab.questions.regions import MapAnswer, MapQuestion, RegionAnswer, kick_response, region_answer
+    from bezstab.questions.regions import MapAnswer, MapQuestion, RegionAnswer, region_answer
     from bezstab.questions.runs import RunQuestion, run_answer
     from bezstab.questions.trades import FrontQuestion, TradeQuestion
     from bezstab.questions.verifications import VerifyQuestion

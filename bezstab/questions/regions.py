@@ -215,20 +215,6 @@ class MapQuestion:
         return {label: (float(alpha_hat), float(beta_hat)) for label, (alpha_hat, beta_hat) in points.items()}
 
 
-def kick_response(poles: ComplexArray, steps: int) -> FloatArray:
-    """Return c_0 = 1, c_1, ... of the linear recursion that has these poles, float64 of shape (steps + 1,).
-
-    `poles` has shape (degree,), complex ones in conjugate pairs. At rest before the kick. Not finite from where it
-    leaves the range of float64.
-    """
-    recursion = np.poly(poles).real[1:]
-    c: FloatArray = np.eye(1, steps + 1 + len(recursion))[0]  # the kick alone
-    with np.errstate(over="ignore", invalid="ignore"):
-        for k in range(steps + 1):
-            c[k + 1 : k + 1 + len(recursion)] -= c[k] * recursion  # what it adds to those after it
-    return c[: steps + 1]
-
-
 @dataclass(frozen=True, eq=False, repr=False)
 class MovingRegions:
     """Up to how many rad a step constraints may turn while errors surely decay, in cells that show the region.

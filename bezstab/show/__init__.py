@@ -84,7 +84,6 @@ if TYPE_CHECKING:
         verdict_arrays,
         write_arrays,
     )
-    from bezstab.show.explorer import open_explorer
     from bezstab.show.map_figures import (
         chains_figure,
         comparison_figure,
@@ -95,5 +94,6 @@ if TYPE_CHECKING:
     )
     from bezstab.show.run_figures import history_figure, trade_figures
     from bezstab.show.style import DASHES, column_figure, line_at, save, styled, with_legend
+    from bezstab.show.window import show_in_window
 
 __getattr__ = lazy_names(__name__)

@@ -16,6 +16,7 @@ from matplotlib.path import Path
 from matplotlib.patheffects import AbstractPathEffect, withStroke
 from matplotlib.ticker import FixedLocator, MaxNLocator
 
+from bezstab.methods import Method
 from bezstab.show import plot
 from bezstab.show.result_sentences import timing_words
 from bezstab.show.style import (
@@ -36,6 +37,7 @@ from bezstab.show.style import (
     title_lines,
     with_legend,
 )
+from bezstab.show.window import under_the_mouse
 from bezstab.stability import ComplexArray, FloatArray, FrontPoint, Region
 
 EDGE_LINES = 0.015  # of the axes' sides: so far apart are the arrows of regions that go on beyond the same edge
@@ -95,7 +97,7 @@ def map_figure(answer: MapAnswer, z: ComplexArray) -> Figure:
     with styled():
         name = region.method.name
         title = title_lines(name, f"at rest and on the {question.scene_name}") if turned else name
-        figure, axes = new_axes(*plane_words(title, h))
+        figure, axes = _plane(title, [answer.method], h)
         figure.colorbar(plot.modulus_map(*answer.axes, np.abs(z), axes, h), label="$|z_p|$")
         at_rest = " at rest" if turned else ""
         unbounded = "" if region.bounded else " (unbounded)"
@@ -113,6 +115,13 @@ def map_figure(answer: MapAnswer, z: ComplexArray) -> Figure:
         if question.alpha_beta:
             mark_in_alpha_and_beta(axes)
         return with_legend(figure, facecolor="0.75")
+
+
+def _plane(title: str, methods: Sequence[Method], h: float | None) -> tuple[Figure, Axes]:
+    """Return a figure and its axes, the plane for a step of h (s); a window says there what methods do at a point."""
+    figure, axes = new_axes(*plane_words(title, h))
+    axes.format_coord = under_the_mouse(methods, h)  # type: ignore[assignment]
+    return figure, axes
 
 
 def _draw_points(answer: MapAnswer, axes: Axes) -> None:
@@ -178,7 +187,7 @@ def _motion_map_figure(answer: MapAnswer, z: ComplexArray, omega_h: float) -> Fi
     with styled():
         what = "growth of energy" if answer.question.energy else "forced errors"
         title = rf"{region.method.name}, {what} at $\omega h$ = {omega_h:.3g}"
-        figure, axes = new_axes(*plane_words(title, h))
+        figure, axes = _plane(title, [answer.method], h)
         axes.set(xscale="log", yscale="log")
         axes.grid(visible=False)
         x, y = plane_coordinates(*answer.axes, h)
@@ -245,7 +254,7 @@ def comparison_figure(question: MapQuestion) -> Figure:
     """
     regions, h = [answer.region for answer in question.compared], question.seconds
     with styled():
-        figure, axes = new_axes(*plane_words(rf"$|z_p| = {regions[0].level:g}$", h))
+        figure, axes = _plane(rf"$|z_p| = {regions[0].level:g}$", question.methods, h)
         for place, region in enumerate(regions):
             plot.region(region, axes, h, **line_at(place))  # of those that coincide all show between dashes
         if question.alpha_range:

@@ -19,9 +19,6 @@ from pathlib import Path
 
 import numpy as np
 import sympy as sp
-from matplotlib.backend_bases import MouseEvent
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from bezstab.evidence import map_rows, simulated_verdicts
@@ -49,7 +46,6 @@ from bezstab.methods import (
     recipe,
     steps,
 )
-from bezstab.show.explorer import Explorer
 from bezstab.stability import FloatArray, Region, region, spectral_radius, window
 from bezstab.stability.boundary_locus import bounds_of
 from bezstab.stability.mu_pencils import MuPencil
@@ -86,7 +82,6 @@ STEPS_A_TURN = 200
 COMPILED_STEPS = 100_000  # of a run that pays for compiling
 COMPILED_CELLS = 44  # per axis of a map of verdicts: as many as one batch of numpy takes
 MUJOCO = {"SYM": "Euler", "RK4": "RK4"}
-UPDATES = 60  # of the window, as the mouse moves
 ENGINE_STEPS = 20_000  # of a run of MuJoCo, of Exudyn and of ours beside them
 
 
@@ -305,27 +300,6 @@ def waiting() -> Iterator[Line]:
         check = ["check", *step, "--alpha", "5", "--beta", "5", "--physical"]
         yield beside_imports("waiting", f"check, {name}", check, without_figure, promise, 5)
     yield beside_imports("waiting", "region, B4", ["region", "--method", "B4"], with_figure, 2.5, 5)
-    yield explorer_updates()
-
-
-def explorer_updates() -> Line:
-    """Return how many times 30 the window's updates a second of processor time are, as the mouse moves over it."""
-    figure = Figure(figsize=(9, 5))
-    canvas = FigureCanvasAgg(figure)
-    explorer = Explorer(figure, [lookup("B4")], 0.001, print)
-    canvas.draw()  # type: ignore[no-untyped-call]
-    places = [explorer.map.transData.transform((0.1 + 0.01 * k, 0.1 + 0.005 * k)) for k in range(UPDATES)]
-
-    def move() -> None:
-        for x, y in places:
-            name = "motion_notify_event"
-            canvas.callbacks.process(name, MouseEvent(name, canvas, x, y))
-
-    start = time.process_time()
-    move()
-    spent = time.process_time() - start
-    note = f"{UPDATES / spent:.0f} updates a second"
-    return Line("waiting", "explore, B4: 30 updates a second", UPDATES / spent / 30, 1.0, note)
 
 
 Slope = Callable[[float, FloatArray], FloatArray]

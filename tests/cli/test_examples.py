@@ -19,8 +19,7 @@ from bezstab.show import ROW_KINDS, json_schema, shown_width
 from tests.cli.running import DATA, run
 
 SMALL = "--figure none --table none"
-WITHOUT_ROWS = {"explore", "schema"}
-"""Commands that open a window, or print a schema."""
+WITHOUT_ROWS = {"schema"}
 
 EXAMPLES = (
     "poles --alpha 0.5 --beta 0.1",

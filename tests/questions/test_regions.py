@@ -1,13 +1,12 @@
 from fractions import Fraction
 from typing import Any
 
-import numpy as np
 import pytest
 
 from bezstab.engines import ENGINES
 from bezstab.methods import lookup
 from bezstab.questions import MapAnswer, MapQuestion, region_answer
-from bezstab.questions.regions import kick_response, moving_regions
+from bezstab.questions.regions import moving_regions
 from bezstab.stability import combined_error, moving_pole, region, spectral_radius
 
 
@@ -72,20 +71,3 @@ def test_the_most_accurate_point_forces_less_than_the_fastest() -> None:
 def test_the_marks_of_an_engine_are_stable_points_with_its_own_method() -> None:
     for point in MapQuestion(points=2, engine=ENGINES["box2d"], h=Fraction(1, 60)).marks.values():
         assert spectral_radius(lookup("SYM"), *point) < 1
-
-
-STEPS = 100
-
-
-def test_the_decay_is_the_linear_recursion() -> None:
-    assert kick_response(np.array([0.5 + 0j]), STEPS) == pytest.approx(0.5 ** np.arange(STEPS + 1))
-    two = kick_response(np.array([0.4 + 0j, 0.5 + 0j]), STEPS)
-    k = np.arange(STEPS + 1)
-    assert two == pytest.approx(5 * 0.5**k - 4 * 0.4**k)
-
-
-@pytest.mark.filterwarnings("error")
-def test_a_decay_that_grows_beyond_float64_ends_there_in_silence() -> None:
-    grown = kick_response(np.array([1e5 + 0j]), STEPS)
-    assert grown[:60] == pytest.approx(1e5 ** np.arange(60.0))
-    assert not np.isfinite(grown[-1])

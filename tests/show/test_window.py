@@ -1,0 +1,50 @@
+"""A window on the plane: what it says of the point under the mouse, and that it opens."""
+
+from fractions import Fraction
+
+import pytest
+from matplotlib import pyplot
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+from bezstab.methods import lookup
+from bezstab.questions import MapAnswer, MapQuestion
+from bezstab.show.map_figures import comparison_figure, map_figure
+from tests.cli.running import run
+
+
+def test_the_point_under_the_mouse_has_its_gains_its_pole_and_its_proven_verdict() -> None:
+    """B1, explicit Euler, has the poles 1/2 +- i/2 at (1, 1/2); on its edge alpha_hat = beta_hat no float64 decides."""
+    method, h = lookup("B1"), Fraction("0.01")
+    answer = MapAnswer(MapQuestion(methods=(method,), h=h, points=2), method)
+    (axes, _) = map_figure(answer, answer.dominant_poles()).axes
+    words = "α̂ = {}, β̂ = {} (α = {} 1/s, β = {} 1/s at h = 0.01 s)\nB1: |z_p| = {}, {} (proven)"
+    two_alpha, beta_squared = 1 / 0.01, 0.5 / 0.01**2
+    assert axes.format_coord(two_alpha, beta_squared) == words.format(1, 0.5, 50, 70.7107, "0.707107", "converges")
+    assert axes.format_coord(70, 7000) == words.format(0.7, 0.7, 35, 83.666, "1.000000", "marginal")
+
+
+def test_compared_methods_are_told_one_below_the_other() -> None:
+    figure = comparison_figure(MapQuestion(methods=(lookup("B1"), lookup("SYM"))))
+    first, *others = figure.axes[0].format_coord(1.0, 2.0).splitlines()
+    assert first == "α̂ = 1, β̂ = 2"
+    assert others == ["B1: |z_p| = 1.414214, diverges (proven)", "SYM: |z_p| = 1.000000, marginal (proven)"]
+
+
+REGION = "region --method SYM --quality fast --figure window"
+
+
+def test_a_window_opens_on_the_map(monkeypatch: pytest.MonkeyPatch) -> None:
+    opened = []
+    pyplot.switch_backend("agg")
+    monkeypatch.setattr(FigureCanvasAgg, "required_interactive_framework", "a screen")
+    monkeypatch.setattr(pyplot, "show", lambda: opened.append(pyplot.gcf().axes[0].get_title()))
+    assert run(REGION).exit_code == 0
+    assert opened == ["SYM"]
+    pyplot.close("all")
+
+
+def test_without_a_screen_one_line_says_so() -> None:
+    pyplot.switch_backend("agg")
+    result = run(REGION)
+    assert (result.exit_code, result.stdout, result.stderr.count("\n")) == (2, "", 1)
+    assert "window" in result.stderr
