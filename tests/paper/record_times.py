@@ -3,21 +3,20 @@
 import json
 import os
 import time
-from dataclasses import asdict
 
 from bezstab.compiling import COMPILED_CHOICE
 from bezstab.mechanism import compiled_mechanism, load_scene, simulate
 from bezstab.methods import lookup
-from bezstab.paper.cost import RECORDED, Cost
 from bezstab.paper.experiments import DURATION, STEP
 from bezstab.paper.printed import COMPARED
+from bezstab.paper.tables import RECORDED
 from bezstab.units import feedback_gains
 
 REPEATS = 5  # as many as the paper averages; here the fastest counts, which other programs disturb least
 
 
-def costs(repeats: int = REPEATS) -> list[Cost]:
-    """Return the cost of Table 6's runs; all in one process, interleaved, the fastest of several."""
+def costs(repeats: int = REPEATS) -> list[dict[str, str | int | float]]:
+    """Return the rows of Table 6 that are measured; all in one process, interleaved, the fastest of several."""
     mechanism = compiled_mechanism(load_scene("slider_crank"))
     gains = feedback_gains(0.1, 0.1, STEP)  # case 1 of Table 5; the cost does not depend on the point
     fastest = dict.fromkeys(COMPARED, float("inf"))
@@ -27,10 +26,9 @@ def costs(repeats: int = REPEATS) -> list[Cost]:
             begin = time.process_time()
             evaluations[name] = simulate(mechanism, lookup(name), STEP, DURATION, gains).evaluations
             fastest[name] = min(fastest[name], time.process_time() - begin)
-    return [Cost(name, evaluations[name], seconds=fastest[name]) for name in COMPARED]
+    return [{"method": name, "evaluations": evaluations[name], "seconds": round(fastest[name], 4)} for name in COMPARED]
 
 
 if __name__ == "__main__":
     os.environ[COMPILED_CHOICE] = "no"  # what everybody has
-    rows = [{**asdict(cost), "seconds": round(cost.seconds, 4)} for cost in costs()]
-    RECORDED.write_text(json.dumps(rows, indent=2) + "\n", encoding="utf-8")
+    RECORDED.write_text(json.dumps(costs(), indent=2) + "\n", encoding="utf-8")

@@ -1,23 +1,419 @@
+"""The numbers of figures/LEDGER.md, claim by claim: what the paper says, and what comes out."""
+
+from collections.abc import Callable
+from fractions import Fraction
+from functools import cache
+from itertools import product
+from typing import Any
+
+import numpy as np
 import pytest
 
-from bezstab.paper.ledger import ledger_text
-from bezstab.paper.reports import Agreement, Finding
+from bezstab.mechanism import (
+    Simulation,
+    Start,
+    accelerations,
+    compiled_mechanism,
+    constraint_errors,
+    constraint_motion,
+    initial_state,
+    load_scene,
+)
+from bezstab.methods import accuracy, closed_loop_at, evaluations, lookup, rho_and_sigma, steps
+from bezstab.paper.experiments import (
+    TABLE_4,
+    compared_runs,
+    experiment,
+    kicked_runs,
+    largest,
+    pole,
+    unstabilized_runs,
+)
+from bezstab.paper.figures import COLLAPSE, GROWTH
+from bezstab.paper.printed import COMPARED, FASTER_LEVEL, TABLE_5
+from bezstab.paper.tables import is_printed
+from bezstab.rationals import exact
+from bezstab.stability import (
+    FloatArray,
+    best_point,
+    dominant_pole,
+    feedback_cost,
+    poles,
+    region,
+    spectral_radius,
+    verdict,
+)
+from tests.paper.record_times import costs
+from tests.reference.derivatives import complex_step_jacobian
+
+SAMPLES = [Fraction("-3/2"), Fraction(0), Fraction("1/7"), Fraction(1), Fraction("5/3")]
+"""Values of each parameter at which polynomials are compared: more than the degree in it of any of them."""
+
+TABLE_3 = {"l1": 0.2, "m1": 20.0, "J1": 45.0, "l2": 0.35, "m2": 3.5, "J2": 3.5, "m3": 2.5, "J3": 0.02}
+"""Lengths in m, masses in kg, moments of inertia in kg m²: as the paper prints them."""
+
+CASES = tuple(TABLE_5)
+
+
+def area(name: str, level: float = 1.0) -> float:
+    found = region(lookup(name), level).area
+    assert found is not None
+    return found
+
+
+def judged(name: str, *point: float) -> str:
+    return verdict(lookup(name), *map(exact, point))
+
+
+# The methods: Tables 1 and 2, Eqs 12 to 17
+
+
+def test_eqs_12_and_14_b2_has_the_weights_and_the_mapping_that_are_printed() -> None:
+    mapping = rho_and_sigma(lookup("B2"))
+    assert mapping
+    rho, sigma = mapping
+    assert list(rho) == [0, -1, 1]
+    assert list(sigma) == [Fraction(-1, 2), Fraction(3, 2), 0]
+
+
+def test_eqs_15_and_17_are_the_characteristic_polynomial_of_b2() -> None:
+    for a, b in product(SAMPLES, SAMPLES):
+        printed = [b, 2 * a - 6 * b, 4 - 8 * a + 9 * b, -8 + 6 * a, 4]  # in 1, z, ...
+        ours = closed_loop_at(lookup("B2"), a, b)
+        assert [c / ours[-1] for c in ours] == [Fraction(c) / 4 for c in printed]
+
+
+def test_section_3_without_feedback_every_method_diverges_and_positive_parameters_are_not_enough() -> None:
+    assert {judged(name, 0, 0) for name in ("B2", "B3", "B4", "AB2", "AB3", "AB4")} == {"diverges"}
+    assert {judged(name, 2, 2) for name in ("B2", "B3", "B4", "AB4")} == {"diverges"}
+
+
+def test_table_1_all_bezier_methods_are_of_order_two() -> None:
+    assert [accuracy(lookup(name))[0] for name in ("B2", "B3", "B4", "AB3", "AB4")] == [2, 2, 2, 3, 4]
+    assert lookup("B2").scheme.mu_table == lookup("AB2").scheme.mu_table
+
+
+def test_sections_5_1_and_5_2_3_a_step_of_rk4_costs_four_evaluations_not_five() -> None:
+    needs = {name: (steps(lookup(name)), evaluations(lookup(name))) for name in ("B4", "AB4", "RK4")}
+    assert needs == {"B4": (4, 1), "AB4": (4, 1), "RK4": (1, 4)}
+
+
+# The regions: Figs. 1 to 3
+
+
+@pytest.mark.parametrize(("name", "level", "part"), [("B2", 0.65, 0.162), ("B3", 0.70, 0.186), ("B4", 0.75, 0.265)])
+def test_fig_1_there_are_regions_h(name: str, level: float, part: float) -> None:
+    assert FASTER_LEVEL[name] == level
+    assert area(name, level) / area(name) == pytest.approx(part, abs=5e-4)
 
 
 @pytest.mark.parametrize(
-    ("holds", "agreement"),
+    ("name", "printed", "least"), [("B2", 0.58, 0.57735), ("B3", 0.62, 0.60698), ("B4", 0.65, 0.62588)]
+)
+def test_section_5_1_the_least_moduli_lie_below_the_papers_like_those_of_a_grid(
+    name: str, printed: float, least: float
+) -> None:
+    best = best_point(lookup(name))
+    assert best is not None
+    assert best.z_abs == pytest.approx(least, abs=5e-6)
+    assert 0 < printed - best.z_abs < 0.03
+
+
+def test_figs_2_and_3_bezier_regions_shrink_less_than_those_of_adams_and_symplectic_eulers_is_the_largest() -> None:
+    assert area("B3") / area("B2") == pytest.approx(0.822, abs=5e-4)
+    assert area("B4") / area("B3") == pytest.approx(0.913, abs=5e-4)
+    assert area("B3") / area("AB3") == pytest.approx(2.32, abs=5e-3)
+    assert area("B4") / area("AB4") == pytest.approx(12.47, abs=5e-3)
+    assert area("AB4") / area("AB3") == pytest.approx(0.17, abs=5e-3)
+    at_equal_cost = {"B4": 0.8097, "AB4": 0.0649, "RK4@5": 0.2766, "RK4@4": 0.5402, "SIE@2": 0.427, "SYM": 4.0}
+    assert {name: area(name) for name in at_equal_cost} == pytest.approx(at_equal_cost, abs=5e-4)
+
+
+def test_introduction_adams_moulton_is_far_more_stable_unless_it_is_corrected_once() -> None:
+    areas = {"AM3": 120.45, "AM4": 20.10, "ABM3@2": 0.419, "ABM4@2": 0.181}
+    assert {name: area(name) for name in areas} == pytest.approx(areas, rel=3e-3)
+
+
+@pytest.mark.parametrize(
+    ("stable", "unstable", "point"),
     [
-        ([True, True], "confirmed"),
-        ([True, False], "confirmed with a correction"),
-        ([False, False], "not confirmed"),
-        ([], "cannot be tested"),
+        ("B4", "AB4", (1.01, 0.26)),
+        ("AB4", "B4", (0, 0.18)),
+        ("B4", "RK4@5", (0.78, 0.34)),
+        ("RK4@5", "B4", (-0.08, 0.23)),
     ],
 )
-def test_the_agreement_follows_from_the_conditions(holds: list[bool], agreement: Agreement) -> None:
-    assert Finding("Eq. 1", "c = 0", "0", "1e-16", holds).agreement == agreement
+def test_section_6_each_method_is_stable_somewhere_where_the_other_is_not(
+    stable: str, unstable: str, point: tuple[float, float]
+) -> None:
+    assert (judged(stable, *point), judged(unstable, *point)) == ("converges", "diverges")
 
 
-def test_the_ledger_counts_and_escapes() -> None:
-    found = [Finding(where="Fig. 1", claim="|z_p| < 1", paper="yes", here="no", holds=[False])]
-    assert "0 confirmed, 0 confirmed with a correction, 1 not confirmed, 0 cannot be tested" in ledger_text(found)
-    assert r"\|z_p\| < 1" in ledger_text(found)
+def test_abstract_the_integrator_decides() -> None:
+    z_abs = {"B2": 0.637, "B3": 0.628, "B4": 0.629, "AB3": 0.939, "AB4": 1.456, "RK4@5": 0.669, "SIE": 0.745}
+    assert {name: spectral_radius(lookup(name), 1.01, 0.26) for name in z_abs} == pytest.approx(z_abs, abs=5e-4)
+
+
+def test_table_5_euler_semi_implicit_is_an_euler_step_corrected_once() -> None:
+    found = [
+        [is_printed(poles_of["SIE"].split()[0], dominant_pole(lookup(name), *map(float, point)).real)]
+        for name in ("SIE", "SYM")
+        for point, poles_of in TABLE_5.items()
+    ]
+    assert found == [[True]] * 3 + [[False]] * 3
+
+
+# The mechanism: Table 3, Eqs 3 to 9 and 18 to 23
+
+MECHANISM = compiled_mechanism(load_scene("slider_crank"))
+Q = np.array([0.9, 0.2, 0.1, -0.5, 0.7])  # rad, m: no configuration of the mechanism, as none is needed
+V = np.array([1.0, -0.3, 0.2, -2.0, 0.4])
+
+
+def ours(matrix: Any) -> FloatArray:
+    """Return what a matrix of the equations of motion is at Q and V."""
+    return np.array(matrix.subs(dict(zip((*MECHANISM.q, *MECHANISM.v), (*Q, *V), strict=True))), float)
+
+
+def printed_constraints(q: Any) -> Any:
+    """Return c (m) of Eq. 19 at q = [θ₁, x₂, y₂, θ₂, x₃] (Eq. 18)."""
+    theta_1, x_2, y_2, theta_2, x_3 = q
+    x_l, y_l = TABLE_3["l1"] * np.cos(theta_1), TABLE_3["l1"] * np.sin(theta_1)
+    x_h, y_h = TABLE_3["l2"] / 2 * np.cos(theta_2), TABLE_3["l2"] / 2 * np.sin(theta_2)
+    return np.array([x_l + x_h - x_2, y_l + y_h - y_2, x_2 + x_h - x_3, y_2 + y_h])
+
+
+def test_eqs_19_21_and_22_are_the_scenes_up_to_the_signs_of_their_rows() -> None:
+    c = ours(MECHANISM.constraints)[:, 0]
+    signs = np.sign(c * printed_constraints(Q))
+    jacobian = complex_step_jacobian(printed_constraints, Q)
+    # C_q v along v, by a difference of exact derivatives: Eq. 4, as the constraints do not depend on time
+    ahead, behind = (complex_step_jacobian(printed_constraints, Q + step * V) for step in (1e-5, -1e-5))
+    gamma = -(ahead - behind) @ V / 2e-5
+    assert c == pytest.approx(signs * printed_constraints(Q), abs=1e-12)
+    assert ours(MECHANISM.jacobian) == pytest.approx(signs[:, np.newaxis] * jacobian, abs=1e-12)
+    assert ours(MECHANISM.gamma)[:, 0] == pytest.approx(signs * gamma, abs=1e-8)
+
+
+def test_eqs_20_and_23_the_mass_matrix_is_the_papers_and_the_weight_points_down() -> None:
+    assert MECHANISM.mass.tolist() == [TABLE_3[name] for name in ("J1", "m2", "m2", "J2", "m3")]
+    assert ours(MECHANISM.forces)[:, 0].tolist() == [0, 0, -TABLE_3["m2"] * 9.81, 0, 0]
+
+
+def test_section_2_accelerations_are_unique_unless_a_constraint_is_written_twice() -> None:
+    jacobian = ours(MECHANISM.jacobian)
+    for rows, rank in ((jacobian, 9), (np.vstack([jacobian, jacobian[-1]]), 9)):
+        zero = np.zeros((len(rows), len(rows)))
+        matrix = np.block([[np.diag(MECHANISM.mass), rows.T], [rows, zero]])
+        assert np.linalg.matrix_rank(matrix) == rank
+
+
+@pytest.mark.parametrize(("off", "gains"), [(0.0, (0.0, 0.0)), (0.1, (100.0, 1e5))])
+def test_eqs_3_to_9_the_accelerations_keep_what_they_should_of_a_driven_mechanism(
+    off: float, gains: tuple[float, float]
+) -> None:
+    """By second differences of c along q + v t + q̈ t²/2, whatever formulas q̈ comes from."""
+    driven, dt = compiled_mechanism(load_scene("driven_four_bar")), 1e-4
+    q, v = initial_state(driven)
+    q = q + off * np.arange(1, len(q) + 1) / len(q)
+    qddot = accelerations(driven, 0.0, *gains, q, v)
+    before, now, after = (constraint_errors(driven, t, list(q + v * t + qddot * t**2 / 2)) for t in (-dt, 0.0, dt))
+    feedback = gains[0] * (after - before) / (2 * dt) + gains[1] * now
+    assert np.abs((after - 2 * now + before) / dt**2 + feedback).max() < 1e-5 * np.abs(qddot).max()
+
+
+@pytest.mark.slow
+def test_section_5_2_what_is_wrong_at_the_start_stays_wrong() -> None:
+    right, wrong = (experiment("AB4", kick=kick) for kick in (0.0, 1e-3))
+    assert np.abs([right.c[0], right.cdot[0]]).max() < 1e-12
+    assert largest(right, 0, 10) < 1e-10
+    assert largest(wrong, 9, 10) == pytest.approx(1.04e-3, abs=5e-6)
+    assert abs(wrong.q[-1, 0] - right.q[-1, 0]) == pytest.approx(4e-5, abs=5e-6)
+
+
+# No stabilisation: Figs. 5 and 6
+
+Runs = dict[tuple[Start, str, float], Simulation]
+
+
+@cache
+def collapsing() -> Runs:
+    return unstabilized_runs(*COLLAPSE)
+
+
+@cache
+def growing() -> Runs:
+    return unstabilized_runs(*GROWTH)
+
+
+def end(run: Simulation) -> float:
+    return float(run.t[-1]) if run.failure else np.inf
+
+
+def of(runs: Runs, number: Callable[[Simulation], float], start: Start, name: str) -> FloatArray:
+    """Return a number of one method's runs, step by step."""
+    return np.array([number(run) for (begun, method, _), run in runs.items() if (begun, method) == (start, name)])
+
+
+@pytest.mark.slow
+def test_fig_5_b4_collapses_later_only_after_a_start_of_low_order() -> None:
+    seconds = {
+        ("euler", "B4"): [1911, 312, 82],
+        ("euler", "AB4"): [1468, 237, 64],
+        ("rk4", "B4"): [np.inf, 1126, 292],
+        ("rk4", "AB4"): [np.inf, np.inf, np.inf],
+    }
+    for (start, name), expected in seconds.items():
+        assert of(collapsing(), end, start, name) == pytest.approx(expected, abs=1)  # type: ignore[arg-type]
+
+
+@pytest.mark.slow
+def test_fig_5_the_collapse_is_sudden() -> None:
+    blown_up = [run for run in collapsing().values() if run.failure]
+    before = [largest(run, 0, 0.99 * run.t[-1]) for run in blown_up]
+    after = [largest(run, 0.99 * run.t[-1], np.inf) for run in blown_up]
+    assert (len(blown_up), min(before), max(before)) == (
+        8,
+        pytest.approx(0.21, abs=0.005),
+        pytest.approx(0.24, abs=0.005),
+    )
+    assert all(late > 5 * early for early, late in zip(before, after, strict=True))
+
+
+def final(run: Simulation) -> float:
+    return largest(run, 80, 100)
+
+
+@pytest.mark.slow
+def test_fig_6_b4_has_the_smaller_error_only_after_a_start_of_low_order_and_never_for_large_steps_alone() -> None:
+    h = np.log(GROWTH[0])
+    ratios, powers = {}, {}
+    for start in ("euler", "rk4"):
+        b4, ab4 = (of(growing(), final, start, name) for name in ("B4", "AB4"))  # type: ignore[arg-type]
+        ratios[start] = b4 / ab4
+        powers[start] = [round(np.polyfit(h, np.log(errors), 1)[0]) for errors in (b4, ab4)]
+    assert powers == {"euler": [2, 2], "rk4": [2, 4]}
+    assert ratios["euler"] == pytest.approx([0.78] * 4, abs=0.005)
+    assert ratios["rk4"][-1] == pytest.approx(5e3, abs=5e2)
+    assert ratios["rk4"].min() == ratios["rk4"][-1]
+
+
+@pytest.mark.slow
+def test_fig_6_the_error_grows_linearly_its_rate_stays_and_the_first_constraint_has_the_largest() -> None:
+    times = np.linspace(10, 100, 40)
+    above_rounding = [run for run in growing().values() if largest(run, 0, 100) > 1e-10]
+    for run in above_rounding:
+        slope = np.polyfit(np.log(times), np.log([largest(run, 0, time) for time in times.tolist()]), 1)[0]
+        assert round(slope, 1) == 1.0
+    sizes = np.array([np.abs(run.c).max(axis=0) for run in above_rounding])
+    ratios = sizes[:, 0] / sizes[:, 3]
+    assert (len(sizes), set(sizes.argmax(axis=1))) == (15, {0})
+    assert (round(ratios.min()), round(ratios.max())) == (3, 32)
+    for run in (run for (_, name, _), run in growing().items() if name == "B4"):
+        assert largest(run, 50, 100) / largest(run, 0, 50) == pytest.approx(2, abs=0.05)
+        assert largest(run, 50, 100, rate=True) / largest(run, 0, 50, rate=True) == pytest.approx(1, abs=5e-3)
+
+
+# What the poles do: Table 4, Figs. 7 and 8
+
+
+def steps_to_a_hundredth(history: FloatArray) -> int:
+    return int(np.flatnonzero(np.abs(history) > 0.01 * np.abs(history).max())[-1]) + 1
+
+
+def test_section_4_smaller_poles_are_faster_but_for_double_ones_and_the_derivative_does_the_same() -> None:
+    fallen = [[steps_to_a_hundredth(history[:, 0]) for history in (run.c, run.cdot)] for run in kicked_runs()[1:5]]
+    assert fallen == [[333, 383], [233, 241], [18, 20], [13, 12]]
+    assert [round(abs(pole(run)), 4) for run in kicked_runs()[1:5]] == [0.9802, 0.9810, 0.6835, 0.6836]
+    for run in (kicked_runs()[0], kicked_runs()[5]):
+        rates = np.abs(run.cdot[:, 0])
+        assert rates[len(rates) // 2 :].max() > rates[: len(rates) // 2].max()
+
+
+def test_section_5_1_a_pole_that_is_not_dominant_decides_first() -> None:
+    run = experiment("AB4", 0.5, 0.1, duration=1.0, kick=1e-3)
+    c, moduli = np.abs(run.c[:, 0]), np.abs(poles(run.method, 0.5, 0.1))  # of pairs, descending
+    assert (round(moduli[0], 4), round(moduli[2], 4)) == (0.9988, 0.7776)
+    assert np.flatnonzero(c > 1e-6)[-1] + 1 == 27
+    assert np.log(1e-3) / np.log(moduli[0]) == pytest.approx(5992, abs=0.5)
+    assert round((c[750:].max() / c[500:750].max()) ** (1 / 250), 4) == 0.9988  # after half a second
+
+
+@pytest.mark.parametrize(("case", "times"), [(6, 928.0), (4, 1.0)])
+def test_section_3_energy_tells_wrong_parameters(case: int, times: float) -> None:
+    energy = experiment("B4", *TABLE_4[case - 1][1:], duration=0.5).energy
+    assert energy[-1] / energy[0] == pytest.approx(times, abs=0.5 if times > 1 else 5e-5)
+
+
+# Four methods at three points: Table 5, Fig. 9
+
+
+@pytest.mark.parametrize(("beta_hat", "expected"), [(0.10044, "converges"), (0.10046, "diverges")])
+def test_table_5_the_edge_of_ab4_lies_between_the_second_and_the_third_point(beta_hat: float, expected: str) -> None:
+    assert judged("AB4", 0.5, beta_hat) == expected
+    outside = [
+        (point, name)
+        for point, name in product(CASES, COMPARED)
+        if verdict(lookup(name), *map(Fraction, point)) == "diverges"
+    ]
+    assert outside == [(("0.5", "0.101"), "AB4")]
+
+
+@pytest.mark.slow
+def test_fig_9_in_case_1_rk4_and_euler_oscillate_above_b4_and_ab4() -> None:
+    left = {name: largest(compared_runs()[CASES[0], name], 8, 10) for name in COMPARED}
+    assert left["AB4"] < 1e-13
+    assert left["B4"] == pytest.approx(1e-10, abs=5e-11)
+    assert left["RK4@5"] == pytest.approx(1.7e-7, abs=3e-8)
+    assert left["SIE"] / left["RK4@5"] == pytest.approx(1.9, abs=0.05)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("case", "growth"), [(1, 0.093), (2, 27.0)])
+def test_fig_9_ab4_decays_inside_its_edge_and_grows_outside_and_so_does_the_derivative(
+    case: int, growth: float
+) -> None:
+    run = compared_runs()[CASES[case], "AB4"]
+    for rate in (False, True):
+        assert largest(run, 8, 10, rate) / largest(run, 6, 8, rate) == pytest.approx(growth, rel=0.05)
+
+
+@pytest.mark.slow
+def test_section_5_2_3_ab4_makes_one_regular_wave_of_its_dominant_poles() -> None:
+    """A single pair of poles z makes c_{n+1} - 2 Re z c_n + |z|² c_{n-1} zero."""
+    run = compared_runs()[CASES[2], "AB4"]
+    z, c = pole(run), run.c[run.t >= 8, 0]
+    assert np.angle(z) / (2 * np.pi) * 1000 == pytest.approx(429, abs=0.5)  # turns a second
+    assert np.count_nonzero(np.diff(np.sign(c))) / 2 / (len(c) - 1) * 1000 == pytest.approx(429, abs=1)
+    left = c[2:] - 2 * z.real * c[1:-1] + abs(z) ** 2 * c[:-2]
+    assert np.abs(left).max() / np.abs(c).max() < 1e-3
+
+
+@pytest.mark.slow
+def test_section_6_the_crank_is_as_wrong_as_an_independent_angle_says() -> None:
+    """Angle after 10 s by two high-precision routes: 11.735910737052 rad."""
+    wrong = {name: abs(compared_runs()[CASES[0], name].q[-1, 0] - 11.735910737052) for name in COMPARED}
+    assert wrong["AB4"] < 1e-10
+    assert [float(f"{wrong[name]:.0e}") for name in ("B4", "RK4@5", "SIE")] == [3e-7, 4e-7, 8e-4]
+
+
+@pytest.mark.slow
+def test_section_6_the_oscillation_of_rk4_is_that_of_feedback_chosen_for_stability() -> None:
+    omega = constraint_motion(MECHANISM, 10.0).omega
+    for name, order, times, left in (("RK4@5", 4, (4e4, 9e4), 2e-12), ("B4", 2, (2e1, 9e1), 7e-12)):
+        found = [feedback_cost(lookup(name), *map(Fraction, point), exact(omega) / 1000) for point in CASES]
+        assert (found[0].order_left, found[0].order) == (2, order)
+        forced = [cost.times_least or np.nan for cost in found]
+        assert [float(f"{each:.0e}") for each in (min(forced), max(forced))] == list(times)
+        assert found[0].least_at
+        assert largest(experiment(name, *found[0].least_at), 8, 10) == pytest.approx(left, abs=6e-13)
+
+
+# Costs: Table 6
+
+
+@pytest.mark.slow
+def test_table_6_the_four_methods_do_not_evaluate_the_same() -> None:
+    starter = 3 * (evaluations(lookup("RK4")) - 1)
+    expected = {"B4": 10000 + starter, "AB4": 10000 + starter, "RK4@5": 8000, "SIE": 20000}
+    assert {row["method"]: row["evaluations"] for row in costs(repeats=1)} == expected

@@ -1,0 +1,58 @@
+import numpy as np
+import pytest
+
+from bezstab.methods import lookup
+from bezstab.paper import figures
+from bezstab.paper.experiments import experiment, kicked_runs, unstabilized_runs
+from bezstab.paper.printed import COMPARED, TABLE_5
+from bezstab.stability import region
+
+
+def test_a_panel_of_fig_1_has_the_regions_s_and_h() -> None:
+    axes = figures.faster_region_figure("B3").axes[0]
+    lines = {str(line.get_label()): np.array(line.get_xydata()) for line in axes.lines}
+    for label, level in (("$|z_p| = 1$", 1.0), ("$|z_p| = 0.7$", 0.7)):
+        (boundary,) = region(lookup("B3"), level).boundary
+        assert lines[label][:-1] == pytest.approx(boundary)
+
+
+def test_fig_3_is_in_units_of_a_step_of_1_ms() -> None:
+    axes = figures.compared_regions_figure("B4", "RK4@5", h=1e-3).axes[0]
+    assert [line.get_label() for line in axes.lines] == ["B4", "RK4@5"]
+    assert "1/s" in axes.get_xlabel()
+
+
+def test_figs_5_and_6_show_the_largest_error_so_far_by_start_and_step() -> None:
+    runs = unstabilized_runs((0.05, 0.1), 100.0)
+    panels = dict(zip(("euler", "rk4"), figures.drift_figure(runs).axes, strict=True))
+    assert "Euler" in panels["euler"].get_title()
+    for (start, name, h), run in runs.items():
+        lines = {str(line.get_label()): np.array(line.get_xydata()) for line in panels[start].lines}
+        drawn = lines[f"{name}, {1e3 * h:g} ms"]
+        so_far = np.maximum.accumulate(np.abs(run.c[:, 0]))
+        assert drawn[:, 1] == pytest.approx(np.interp(drawn[:, 0], run.t, so_far))
+        assert drawn[-1, 1] == so_far[-1]
+        crossed = [line for line in panels[start].lines if line.get_marker() == "x"]
+        assert len(crossed) == sum(other.failure is not None for (of, *_), other in runs.items() if of == start)
+
+
+@pytest.mark.parametrize("derivative", [False, True])
+def test_figs_7_and_8_draw_the_histories(derivative: bool) -> None:
+    for axes, run in zip(figures.histories_figure(derivative).axes, kicked_runs(), strict=True):
+        history = (run.cdot if derivative else run.c)[:, 0]
+        (line,) = axes.lines
+        t, drawn = np.array(line.get_xdata()), np.array(line.get_ydata())
+        assert t == pytest.approx(1e3 * run.t[: t.size])
+        assert drawn == pytest.approx(history[: t.size])
+        # the rest is its axis
+        assert np.abs(history[t.size :]).max(initial=0.0) <= figures.VISIBLE * np.abs(history).max()
+        assert f"{run.alpha_hat:g}" in axes.get_title()
+
+
+def test_fig_9_keeps_the_papers_panels(monkeypatch: pytest.MonkeyPatch) -> None:
+    runs = {(case, name): experiment(name, *map(float, case), duration=0.02) for case in TABLE_5 for name in COMPARED}
+    monkeypatch.setattr(figures, "compared_runs", lambda: runs)
+    figure = figures.compared_figure()
+    shown = ["".join(sorted(str(line.get_label()) for line in axes.lines)) for axes in figure.axes]
+    assert shown == ["RK4@5SIE", "AB4B4", "RK4@5SIE", "AB4B4", "AB4B4", "RK4@5SIE"]
+    assert [axes.get_title()[0] for axes in figure.axes] == list("abcdef")

@@ -1,0 +1,47 @@
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from bezstab.methods import lookup
+from bezstab.paper.experiments import TABLE_4, experiment, kicked_runs, largest, pole
+from bezstab.paper.tables import TABLES, behaviour, is_printed
+from bezstab.stability import dominant_pole, region
+
+FIGURES = Path(__file__).parent.parent.parent / "figures"
+
+
+@pytest.mark.parametrize("name", [pytest.param(name, marks=[pytest.mark.slow] * (name == "table5")) for name in TABLES])
+def test_a_table_is_the_one_that_is_kept(name: str) -> None:
+    assert TABLES[name]() == (FIGURES / f"paper_{name}.md").read_text(encoding="utf-8")
+
+
+def test_a_misprint_is_noticed_and_a_half_digit_is_not() -> None:
+    assert is_printed("0.12", 0.1249)
+    assert not is_printed("0.12", 0.1251)
+    assert not is_printed("-0.12", -0.1271)
+    assert is_printed("0.9", 0.9004)
+
+
+def test_a_run_begins_with_its_kick_and_its_largest_error_is_that_between_two_times() -> None:
+    run = experiment("B4", 0.6, 0.35, duration=0.05, kick=1e-3)
+    assert run.c[0, 0] == pytest.approx(1e-3)
+    assert pole(run) == dominant_pole(lookup("B4"), 0.6, 0.35)
+    assert largest(run, 0, 0.05) == np.abs(run.c[:, 0]).max()
+    assert largest(run, 0.01, 0.02) == np.abs(run.c[10:21, 0]).max()
+
+
+def test_the_points_of_table_4_lie_where_the_paper_puts_them_and_do_what_their_poles_say() -> None:
+    edge = region(lookup("B4")).extent
+    assert edge
+    points = [point for _, *point in TABLE_4]
+    assert points[0][0] < 0 < min(points[5])
+    # outside, though neither parameter exceeds what the region reaches
+    assert points[5][0] < edge[0][1]
+    assert points[5][1] < edge[1][1]
+    for run in kicked_runs():
+        z, (rate, crossings) = pole(run), behaviour(run)
+        if z.imag > 0.01:  # else a double pole, where the decay is slower at first
+            assert rate == pytest.approx(abs(z), abs=0.03)  # the wave's phase at either end of the window
+            if run.failure is None and rate > 0.9:  # it is followed to the end: a crossing each half turn
+                assert crossings / (len(run.t) - 1) == pytest.approx(np.angle(z) / np.pi, rel=0.05)
