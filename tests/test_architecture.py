@@ -63,8 +63,7 @@ APPOINTED = {
     },
     "matplotlib": {
         *("show/style.py", "show/plot.py", "show/map_figures.py", "show/run_figures.py"),
-        "show/window.py",
-        *(f"paper/{name}.py" for name in ("regions", "slider_crank", "drift", "influence", "comparison")),
+        *("show/window.py", "paper/figures.py"),
     },
     "click": {path.relative_to(PACKAGE).as_posix() for path in (PACKAGE / "cli").glob("*.py")} | {"paper/command.py"},
     "mujoco": {"evidence/mujoco_models.py"},

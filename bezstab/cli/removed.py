@@ -5,6 +5,7 @@ from collections.abc import Mapping
 WENT: Mapping[str, str] = {
     "explore": "see `region --figure window`",
     "family": "see `region --compare` for the regions, and `methods NAME` for order and error constant",
+    "paper --format": "what came of the paper's claims stands in figures/LEDGER.md",
 }
 """Of commands ("family") and options ("verify --witness") that were removed: what gives their answer now."""
 

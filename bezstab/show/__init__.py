@@ -29,7 +29,6 @@ from bezstab.show.row_kinds import (
     CHAINS,
     CHECKED,
     CHOICES,
-    CLAIMS,
     ENGINES_LISTED,
     EXTREMES,
     FIELDS,

@@ -1288,22 +1288,6 @@ EXTREMES = RowKind(
         truth("held", "Whether what came out is what was expected", "held", form="NO"),
     ),
 )
-# printed by `paper`
-CLAIMS = RowKind(
-    "a claim of the paper",
-    fields=(
-        text("where", "Where in the paper the claim stands", "where"),
-        text("claim", "What the paper claims", "claim"),
-        text("paper", "What the paper says of it, in numbers", "paper"),
-        text("here", "What came out here", "here"),
-        text(
-            "agreement",
-            "Whether the claim is confirmed",
-            "agreement",
-            values_of="paper.reports.Agreement",
-        ),
-    ),
-)
 _APPLIED, KP, KP_MAX, KD, INERTIA, KD_MIN, KD_MAX, _ = DRIVE
 # printed by `check`, `choose` and `region` about drives whose controller is slower than the physics
 HELD = RowKind(
@@ -1393,7 +1377,6 @@ ROW_KINDS: Mapping[str, Sequence[RowKind]] = {
         FRONTS,
     ),
     "extremes": (EXTREMES,),
-    "paper": (CLAIMS,),
 }
 """The kinds of rows that each command prints."""
 

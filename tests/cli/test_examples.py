@@ -19,7 +19,7 @@ from bezstab.show import ROW_KINDS, json_schema, shown_width
 from tests.cli.running import DATA, run
 
 SMALL = "--figure none --table none"
-WITHOUT_ROWS = {"schema"}
+WITHOUT_ROWS = {"schema", "paper"}
 
 EXAMPLES = (
     "poles --alpha 0.5 --beta 0.1",
@@ -57,7 +57,6 @@ EXAMPLES = (
     f"tradeoff --scene pendulum --method SYM --h 0.01 --h 0.02 --time 0.1 --workers 1 {SMALL}",
     f"tradeoff --predicted --method SYM --level 0.9 --h 0.01 --omega 2 {SMALL}",
     "extremes --short",
-    "paper --only fig7 --figure none",
 )
 """Together they print every kind of row."""
 QUICK = ("poles --alpha 1", "check --method SYM --alpha 2 --beta 2", "probe", "engines", "simulate")

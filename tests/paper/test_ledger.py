@@ -401,7 +401,7 @@ def test_section_6_the_crank_is_as_wrong_as_an_independent_angle_says() -> None:
 def test_section_6_the_oscillation_of_rk4_is_that_of_feedback_chosen_for_stability() -> None:
     omega = constraint_motion(MECHANISM, 10.0).omega
     for name, order, times, left in (("RK4@5", 4, (4e4, 9e4), 2e-12), ("B4", 2, (2e1, 9e1), 7e-12)):
-        found = [feedback_cost(lookup(name), *map(Fraction, point), exact(omega) / 1000) for point in CASES]
+        found = [feedback_cost(lookup(name), Fraction(a), Fraction(b), exact(omega) / 1000) for a, b in CASES]
         assert (found[0].order_left, found[0].order) == (2, order)
         forced = [cost.times_least or np.nan for cost in found]
         assert [float(f"{each:.0e}") for each in (min(forced), max(forced))] == list(times)

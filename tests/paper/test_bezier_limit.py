@@ -1,0 +1,45 @@
+"""What bezstab/paper/README.md says of the limit of the Bézier methods."""
+
+from fractions import Fraction
+from math import factorial
+
+import mpmath as mp
+import numpy as np
+import pytest
+from numpy.polynomial.polynomial import polyval
+from numpy.typing import NDArray
+
+from bezstab.methods import accuracy, lookup, rho_and_sigma
+
+CIRCLE = np.exp(1j * np.linspace(0, np.pi, 4097)[1:])
+LENGTH = 4 / np.expm1(2)  # -mu(-1)
+
+
+def mu(z: NDArray[np.complex128] | float) -> NDArray[np.complex128]:
+    return np.asarray((z - 1) ** 2 / (z * np.expm1((z - 1) / z)))
+
+
+def test_the_weights_tend_to_those_of_the_mapping() -> None:
+    weights = [float(mp.quad(lambda x, j=j: mp.exp(x) * (-x) ** j / factorial(j), [0, 1])) for j in range(30)]
+    z = 1.5 * CIRCLE  # where sigma = sum of w_j z^-j converges, and rho = z - 1
+    assert (z - 1) / polyval(1 / z, weights) == pytest.approx(mu(z), rel=1e-12)
+
+
+@pytest.mark.parametrize("n", [6, 12])
+def test_the_mappings_of_the_methods_tend_to_it_like_one_over_n(n: int) -> None:
+    mapping = rho_and_sigma(lookup(f"B{n}"))
+    assert mapping
+    rho, sigma = (np.array(part, float) for part in mapping)
+    apart = np.abs(polyval(CIRCLE, rho) / polyval(CIRCLE, sigma) - mu(CIRCLE)).max()
+    assert 0.1 / n < apart < 1 / n
+    assert accuracy(lookup(f"B{n}")) == (2, Fraction(1, 4) + Fraction(1, 6 * (n - 1)))
+
+
+def test_the_numbers_of_its_region() -> None:
+    x, y = mu(CIRCLE).real, mu(CIRCLE).imag
+    # by pairs of complex mu = x + iy, whose area is the integral of 2 y² dx, and by pairs of real ones
+    complex_pairs = ((y[1:] ** 2 + y[:-1] ** 2) * np.diff(x)).sum()
+    assert abs(complex_pairs) + LENGTH**3 / 6 == pytest.approx(0.619623, abs=5e-7)
+    assert max(2 * LENGTH, -2 * x.min()) == pytest.approx(1.252141, abs=5e-7)
+    assert np.abs(mu(CIRCLE)).max() ** 2 == pytest.approx(0.741419, abs=5e-7)
+    assert mu(0.687350).real == pytest.approx(mu(-0.687350).real, abs=1e-5)
