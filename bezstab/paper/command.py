@@ -1,5 +1,7 @@
 """The command `bezstab paper`: write the tables and figures that are asked for."""
 
+from operator import methodcaller
+
 import click
 
 from bezstab.cli.options import command, option
@@ -34,8 +36,8 @@ def paper(only: tuple[str, ...], files: Files) -> None:
     wanted = only or PARTS
     for name, table in TABLES.items():
         if name in wanted:
-            text = table()
-            write_file(files.output / f"paper_{name}.md", lambda file, text=text: file.write(text.encode()))
+            text = table().encode()
+            write_file(files.output / f"paper_{name}.md", methodcaller("write", text))
     for name, draw in FIGURES.items():
         if name.rstrip("abc") in wanted:
             files.write(files.path("paper", name), draw)
