@@ -31,6 +31,7 @@ if TYPE_CHECKING:
         verdict,
         verify,
     )
+    from bezstab.drives.answer import drive
     from bezstab.show import plot
     from bezstab.units import from_dimensionless, to_dimensionless
 
@@ -44,6 +45,7 @@ __all__ = [
     "check_drive",
     "choose",
     "dominant_pole",
+    "drive",
     "feedback_cost",
     "from_dimensionless",
     "largest_step",

@@ -9,28 +9,21 @@ of a TOML file, or what `scene` returns.
 from __future__ import annotations  # so that help() shows annotations as they are written
 
 import inspect
-import re
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
-from fractions import Fraction
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, Generic, TypedDict, TypeVar, Unpack, get_args, get_origin, get_type_hints
 
-import numpy as np
 from numpy.typing import ArrayLike
 
 from bezstab import evidence, mechanism, questions, stability
+from bezstab.arguments import Number, exact_number, in_keywords, real_number, whole_number
 from bezstab.engines import Drive, engine_and_values, engine_named
 from bezstab.errors import InputError, shown
 from bezstab.goals import Goal
 from bezstab.mechanism import Scene, Simulation
 from bezstab.methods import Method, Verdict, lookup
-from bezstab.rationals import rational
 from bezstab.stabilising import Stabilise
 from bezstab.stability import ComplexArray, FloatArray
 from bezstab.units import check_step, to_dimensionless
-
-Number = int | float | str | Fraction
-"""A number that is read exactly: a float as the decimal it shows, a text as a decimal or a fraction such as "6/11"."""
 
 Given = TypeVar("Given")
 
@@ -84,20 +77,6 @@ def _spelled_out(function: Function) -> Function:
     return function
 
 
-@contextmanager
-def _in_keywords() -> Iterator[None]:
-    """Turn the options that an InputError names (--h-max) into the keywords of a function (h_max)."""
-    try:
-        yield
-    except InputError as error:
-        raise InputError(re.sub(r"--([a-z]+(?:-[a-z]+)*)", _keyword, str(error))) from None
-
-
-def _keyword(option: re.Match[str]) -> str:
-    """Return the keyword for what an option is about."""
-    return {"time": "duration", "filter": "filter_seconds"}.get(option[1], option[1].replace("-", "_"))
-
-
 def method(name: str | Method) -> Method:
     """Return the integration method of that name.
 
@@ -129,7 +108,7 @@ def scene(name: str | Scene, speed: float = 1.0) -> Scene:
             f"scene {shown(name)}: expected one name such as 'pendulum', or what bezstab.scene makes of one"
         )
     given = name if isinstance(name, Scene) else mechanism.load_scene(name)
-    return mechanism.at_speed(given, _real(speed, "speed"))
+    return mechanism.at_speed(given, real_number(speed, "speed"))
 
 
 @_spelled_out
@@ -193,7 +172,7 @@ def verdict(method: str | Method, **point: Unpack[PointAtStep[Number]]) -> Verdi
     return stability.verdict(_method(method), *_plane_point(point))
 
 
-@_in_keywords()
+@in_keywords()
 def region(method: str | Method, level: float = 1.0) -> stability.Region:
     """Return the exact region of the plane of alpha_hat and beta_hat in which |z_p| < level.
 
@@ -206,7 +185,7 @@ def region(method: str | Method, level: float = 1.0) -> stability.Region:
     InputError for another level. NumericalError if an edge cannot be found. Source: boundary locus of
     paper Eq. 17.
     """
-    return stability.region(_method(method), _real(level, "level"))
+    return stability.region(_method(method), real_number(level, "level"))
 
 
 def best_point(method: str | Method) -> stability.BestPoint | None:
@@ -223,7 +202,7 @@ def best_point(method: str | Method) -> stability.BestPoint | None:
 
 
 @_spelled_out
-@_in_keywords()
+@in_keywords()
 def choose(
     method: str | Method | None = None,
     *,
@@ -296,7 +275,7 @@ def choose(
 
 
 @_spelled_out
-@_in_keywords()
+@in_keywords()
 def check(
     method: str | Method | None = None,
     *,
@@ -359,7 +338,7 @@ def check(
     return _first_unsafe(questions.answers(question))
 
 
-@_in_keywords()
+@in_keywords()
 def check_drive(
     pd: Sequence[Number],
     *,
@@ -410,11 +389,11 @@ def largest_step(method: str | Method, *, alpha: Number, beta: Number) -> float:
     InputError unless the numbers are finite. Source: the path of all steps through the plane of paper
     Eq. 17.
     """
-    return questions.LargestStep(_method(method), _exact(alpha, "alpha"), _exact(beta, "beta")).h_limit
+    return questions.LargestStep(_method(method), exact_number(alpha, "alpha"), exact_number(beta, "beta")).h_limit
 
 
 @_spelled_out
-@_in_keywords()
+@in_keywords()
 def feedback_cost(
     method: str | Method,
     *,
@@ -448,7 +427,7 @@ def feedback_cost(
 
 
 @_spelled_out
-@_in_keywords()
+@in_keywords()
 def simulate(
     scene: str | Scene,
     method: str | Method,
@@ -513,14 +492,14 @@ def verify(
     Source: opposite kicks and linear prediction (Prony).
     """
     alpha_hat, beta_hat = _plane_arrays({**point, "h": h})
-    step = _real(h, "h")
+    step = real_number(h, "h")
     check_step(step)
     kicked = mechanism.compiled_mechanism(_scene(scene))
     return evidence.measure_poles(kicked, _method(method), step, alpha_hat.ravel(), beta_hat.ravel())
 
 
 @_spelled_out
-@_in_keywords()
+@in_keywords()
 def probe(
     c: ArrayLike,
     *,
@@ -556,8 +535,8 @@ def probe(
         point=_point_if_given(point),
         methods=tuple(map(_method, methods or ())),
         every=every,
-        h=None if h is None else _real(h, "h"),
-        turning=None if turning is None else _exact(turning, "turning"),
+        h=None if h is None else real_number(h, "h"),
+        turning=None if turning is None else exact_number(turning, "turning"),
     )
     c = stability.real_array(c, "c")
     minus = None if minus is None else stability.real_array(minus, "minus")
@@ -600,23 +579,11 @@ def _scene(scene_or_name: str | Scene, _name: str = "scene") -> Scene:
     return scene(scene_or_name)
 
 
-def _exact(value: Number, name: str) -> Fraction:
-    """Return one number exactly as it is written, a float as the decimal it shows; InputError for what is none."""
-    if isinstance(value, np.ndarray | np.generic) and value.ndim == 0 and not isinstance(value, np.ma.MaskedArray):
-        value = value.item()
-    if isinstance(value, bool) or not isinstance(value, int | float | str | Fraction):
-        raise InputError(f"{name} = {shown(value)}: expected one real number")
-    try:
-        return rational(str(value))
-    except ValueError as error:  # InputError, and what Python says of whole numbers with thousands of digits
-        raise InputError(f"{name}: {error}") from None
-
-
 def _drive(gains: Sequence[Number], _name: str) -> Drive:
     """Return the drive of gains (kp, kd, inertia); InputError for another number of them."""
     if isinstance(gains, str) or not isinstance(gains, Sequence) or len(gains) != 3:
         raise InputError(f"pd = {shown(gains)}: expected (kp, kd, inertia)")
-    return Drive(*(_exact(gain, name) for gain, name in zip(gains, ("kp", "kd", "inertia"), strict=True)))
+    return Drive(*(exact_number(gain, name) for gain, name in zip(gains, ("kp", "kd", "inertia"), strict=True)))
 
 
 def _asked(kind: Callable[..., Asked], **given: Any) -> Asked:
@@ -634,30 +601,19 @@ def _first_unsafe(answers: Iterable[Judged]) -> Judged:
     return next((answer for answer in found if not answer.safe), found[0])
 
 
-def _whole(value: int, name: str) -> int:
-    if isinstance(value, bool) or not isinstance(value, int):
-        raise InputError(f"{name} = {shown(value)}: expected a whole number")
-    return value
-
-
-def _real(value: Number, name: str) -> float:
-    """Return one number as float64; errors as `_exact`."""
-    return float(_exact(value, name))
-
-
 READ: Mapping[str, Callable[[Any, str], Any]] = {
-    **dict.fromkeys(("h", "h_min", "h_max", "omega", "omega_h", "speed", "mass_ratio", "settle"), _exact),
-    **dict.fromkeys(("late", "filter_seconds", "duration", "perturb"), _exact),
-    **dict.fromkeys(("chain", "iterations"), _whole),
+    **dict.fromkeys(("h", "h_min", "h_max", "omega", "omega_h", "speed", "mass_ratio", "settle"), exact_number),
+    **dict.fromkeys(("late", "filter_seconds", "duration", "perturb"), exact_number),
+    **dict.fromkeys(("chain", "iterations"), whole_number),
     "drive": _drive,
-    "spread": _real,
+    "spread": real_number,
     "scene": _scene,
     "methods": lambda given, _name: (method(given),),
 }
 """How keywords are read; the others are taken as they are."""
 
 
-def _plane_point(point: Mapping[str, Any], read: Callable[[Any, str], Any] = _exact) -> tuple[Any, Any]:
+def _plane_point(point: Mapping[str, Any], read: Callable[[Any, str], Any] = exact_number) -> tuple[Any, Any]:
     """Return alpha_hat and beta_hat from whichever of the two ways was taken, exact unless numbers are `read` else."""
     given = {name: value for name, value in point.items() if value is not None}
     h = given.pop("h", None)
@@ -668,7 +624,7 @@ def _plane_point(point: Mapping[str, Any], read: Callable[[Any, str], Any] = _ex
         raise InputError(f"a point is given as {expected}, not as {', '.join(given) or 'nothing'}")
     if h is None:
         raise InputError("alpha and beta in 1/s need the step h in s")
-    return to_dimensionless(read(given["alpha"], "alpha"), read(given["beta"], "beta"), _exact(h, "h"))
+    return to_dimensionless(read(given["alpha"], "alpha"), read(given["beta"], "beta"), exact_number(h, "h"))
 
 
 def _point_if_given(point: Mapping[str, Any], *, needed: bool = False) -> tuple[Any, Any] | None:

@@ -7,7 +7,19 @@ from pathlib import Path
 
 ROOT = Path(__file__).parent.parent
 PACKAGE = ROOT / "bezstab"
-ROOMS = ("engines", "methods", "motion", "stability", "mechanism", "evidence", "questions", "show", "cli", "paper")
+ROOMS = (
+    "engines",
+    "methods",
+    "motion",
+    "stability",
+    "mechanism",
+    "evidence",
+    "questions",
+    "show",
+    "cli",
+    "drives",
+    "paper",
+)
 """From data upwards: a room imports only from rooms before it."""
 
 

@@ -16,14 +16,14 @@ from bezstab.errors import InputError, NumericalError
 
 SECTIONS: Mapping[str, Sequence[str]] = {
     "Maps": ("poles", "region", "methods"),
-    "Choose": ("choose", "check", "lint", "engines", "chains"),
+    "Choose": ("choose", "check", "drive", "lint", "engines", "chains"),
     "Evidence": ("simulate", "verify", "probe", "tradeoff", "extremes"),
     "Programs": ("schema",),
     "Paper": ("paper",),
 }
 """What `bezstab --help` lists under which heading, in this order. The command NAME is in the file NAME_command.py."""
 
-ELSEWHERE: Mapping[str, str] = {"paper": "bezstab.paper.command"}
+ELSEWHERE: Mapping[str, str] = {"paper": "bezstab.paper.command", "drive": "bezstab.drives.command"}
 """The module of each command that is an extension: nothing imports it, the group finds it by name."""
 
 NUMERICAL_TROUBLE = 3

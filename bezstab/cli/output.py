@@ -16,12 +16,17 @@ import click
 from bezstab.errors import InputError
 from bezstab.files import output_directory, write_whole
 from bezstab.show import (
+    MISSING,
+    Column,
     Format,
     Row,
     RowKind,
     block,
     fits,
+    lines_below,
     render,
+    row_of,
+    table,
     visible,
     wrapped,
 )
@@ -72,6 +77,30 @@ def show_rows(kind: RowKind, found: Iterable[Row], without: Collection[str] = ()
     if form == "text" and rows and (in_blocks or len(rows) == 1 or not fits(answer, text_width())):
         blocks = [block(row, columns, text_width(), kind.sentence(row)) for row in rows]
         answer = "\n\n".join(blocks)
+    click.echo(answer)
+
+
+def show_answers(columns: Sequence[Column[Item]], answers: Sequence[Item], sentences: Sequence[str]) -> None:
+    """Print answers on standard output: every column as JSON and CSV, else the brief ones, or with --all every one.
+
+    As text each answer is its sentence, with a line for each column below; several are a table, if that is not wider
+    than the terminal.
+    """
+    form, every_column = chosen_format(), click.get_current_context().params["every_column"]
+    if not for_reading():
+        click.echo(render([row_of(columns, answer) for answer in answers], [], form))
+        return
+    many = len(answers) > 1
+    shown = [each for each in columns if each.heading and (every_column or each.brief or (each.apart and many))]
+    cells = [[each.text(answer) for each in shown] for answer in answers]
+    headings = [each.heading for each in shown]
+    known = [place for place in range(len(shown)) if any(row[place] != MISSING for row in cells)]
+    answer = table([[row[place] for place in known] for row in (headings, *cells)], form)
+    if form == "text" and not (many and fits(answer, text_width())):
+        blocks = zip(sentences, cells, strict=True)
+        answer = "\n\n".join(
+            lines_below(sentence, list(zip(headings, row, strict=True)), text_width()) for sentence, row in blocks
+        )
     click.echo(answer)
 
 

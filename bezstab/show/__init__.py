@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 from bezstab.lazy import lazy_names
 from bezstab.show.cells import pole_text
-from bezstab.show.fields import Field, Row, RowKind, cells, column, formatted, visible
+from bezstab.show.columns import Column, page_of_keys, row_of
+from bezstab.show.fields import MISSING, Field, Row, RowKind, cells, column, formatted, visible
 from bezstab.show.file_forms import FIGURE_FORMS, TABLE_FORMS
 from bezstab.show.result_sentences import (
     LATE_COMMANDS,
@@ -71,7 +72,7 @@ from bezstab.show.rows import (
 )
 from bezstab.show.schemas import json_schema
 from bezstab.show.sentences import one_pole_sentence
-from bezstab.show.tables import Format, block, fits, render, shown_width, wrapped
+from bezstab.show.tables import Format, block, fits, lines_below, render, shown_width, table, wrapped
 
 if TYPE_CHECKING:
     from bezstab.show import plot

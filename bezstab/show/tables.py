@@ -28,7 +28,7 @@ def render(rows: Sequence[Row], columns: Sequence[Field], form: Format) -> str:
     if form == "csv":
         return _comma_separated(rows, list(nothing))
     headings = [column.heading for column in columns]
-    return _table([headings, *([column.cell(row) for column in columns] for row in rows)], form)
+    return table([headings, *([column.cell(row) for column in columns] for row in rows)], form)
 
 
 def _comma_separated(rows: Sequence[Row], keys: Sequence[str]) -> str:
@@ -41,7 +41,7 @@ def _comma_separated(rows: Sequence[Row], keys: Sequence[str]) -> str:
     return text.getvalue().rstrip("\n")
 
 
-def _table(lines: list[list[str]], form: Format) -> str:
+def table(lines: list[list[str]], form: Format) -> str:
     """Return lines of cells, the first the headings, with each cell as wide as its column."""
     if form == "markdown":
         lines = [[cell.replace("|", "\\|") for cell in line] for line in lines]
@@ -76,13 +76,15 @@ def wrapped(text: str, width: int) -> str:
 
 
 def block(row: Row, columns: Sequence[Field], width: int, sentence: str = "") -> str:
-    """Return the row as a line for each column that has a value, its heading in front, below the sentence.
+    """Return the row as a line for each column that has a value, its heading in front, below the sentence."""
+    return lines_below(sentence, [(column.heading, column.cell(row)) for column in columns], width)
 
-    A value that is longer than its line goes on below itself.
-    """
-    present = [(column.heading, text) for column in columns if (text := column.cell(row)) not in (MISSING, "")]
+
+def lines_below(sentence: str, values: Sequence[tuple[str, str]], width: int) -> str:
+    """Return a line for each value that there is, its heading in front, below a sentence, if any."""
+    present = [(heading, text) for heading, text in values if text not in (MISSING, "")]
     indent = max((shown_width(heading) for heading, _ in present), default=0) + len(GAP)
-    lines = []
+    lines = []  # a value that is longer than its line goes on below itself
     for heading, text in present:
         value = wrapped(text, width - indent).replace("\n", "\n" + " " * indent)
         lines.append(_filled_up(heading, indent) + value)

@@ -9,7 +9,7 @@ from bezstab.goals import Goal
 from bezstab.lazy import lazy_names
 from bezstab.stability.accurate_points import default_rate
 from bezstab.stability.answer_checks import Modulus
-from bezstab.stability.arrays import EPS, BoolArray, ComplexArray, Extent, FloatArray, plane_arrays, real_array
+from bezstab.stability.arrays import EPS, SLOW, BoolArray, ComplexArray, Extent, FloatArray, plane_arrays, real_array
 from bezstab.stability.best_points import BestPoint, best_point, best_point_or_reason, falls_towards
 from bezstab.stability.choices import Choice, choose, describe_point, gain_stretches, steps_to_settle
 from bezstab.stability.closed_loop import QUALITY, dominant_pole, pole_map, poles, spectral_radius, verdict

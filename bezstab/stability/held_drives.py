@@ -13,62 +13,22 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cache
-from math import ceil, floor
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from bezstab.errors import InputError
+from bezstab.engines import MOST_STEPS, Timing
 from bezstab.methods import Assignment, Combination, Evaluation, Method, Quantity, SecondOrder, Verdict
 from bezstab.rationals import ONE
 from bezstab.stability.arrays import SLOW, BoolArray, FloatArray
 from bezstab.stability.drive_poles import drive_pole, drive_verdict
 from bezstab.stability.searches import first_where
 
-MOST_STEPS = 100
-"""Of `every` and of `late`: the polynomial's degree is theirs, and nobody's controller is slower."""
-
 Numbers = NDArray[np.object_]
 """Exact ones."""
 
 X, V = Quantity("x", 0), Quantity("v", 0)
-
-
-@dataclass(frozen=True)
-class Timing:
-    """When a controller computes the torque and when it is applied, in steps of the physics.
-
-    `every`: steps from one computation to the next. `late`: steps from a computation until its torque is applied; of a
-    step that begins with a fraction of it left, the torque before keeps that share. `filter_steps`: the time constant
-    of a first-order filter through which the controller sees the velocity, over h; 0 for none. It is stepped with the
-    controller, by the implicit Euler method: y' = y + (v - y) / (1 + filter_steps / every).
-
-    InputError where one is out of its range.
-    """
-
-    every: int = 1
-    late: Fraction = Fraction(0)
-    filter_steps: Fraction = Fraction(0)
-
-    def __post_init__(self) -> None:
-        if not 1 <= self.every <= MOST_STEPS:
-            raise InputError(f"--every {self.every}: expected a whole number of steps from 1 to {MOST_STEPS}")
-        if not 0 <= self.late <= MOST_STEPS:
-            raise InputError(f"--late {float(self.late):g}: expected from 0 to {MOST_STEPS} steps")
-
-    def applied(self, step: int) -> list[tuple[int, Fraction]]:
-        """Return what acts in a step after the latest computation: how far back it was computed, and its share.
-
-        What was computed i times `every` steps ago is applied from the step whole - i every on; in that very step the
-        one before it keeps the share of `late` beyond whole steps.
-        """
-        whole = floor(self.late)
-        left = self.late - whole
-        begun = max(0, ceil(Fraction(whole - step, self.every)))
-        if left and step == whole - begun * self.every:
-            return [(begun, 1 - left), (begun + 1, left)]
-        return [(begun, Fraction(1))]
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,292 @@
+"""Is a drive safe, and which gains give a bandwidth?
+
+kp, kd, inertia, h, method, timing          →   judge_drive   →   DriveAnswer
+inertia, h, methods, timing, bandwidth      →   gains_for            →   Drive
+"""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+from typing import Any, Literal
+
+import numpy as np
+
+from bezstab.arguments import Number, exact_number, in_keywords, whole_number
+from bezstab.drives.held_torque import spectral_radius, verdict
+from bezstab.drives.limits import Limits, limits
+from bezstab.engines import DRIVE_METHODS, FRESH, Drive, Timing, timing_of
+from bezstab.errors import InputError
+from bezstab.methods import Method, Verdict, lookup
+from bezstab.rationals import exact, rounded_down
+from bezstab.stability import first_where, steps_to_settle
+from bezstab.units import check_step
+from bezstab.words import change_words, counted, decay_words, gains_words
+
+UsedUp = Literal["gains", "rate", "delay", "rate and delay", "kp", "kd", "too little kd"]
+"""Why a drive is unstable; for a stable one, which of its numbers is nearest to its limit."""
+
+CAUSES: Mapping[UsedUp, str] = {
+    "gains": "These gains are not stable even if each step computes and applies its torque.",
+    "rate": "The torque is held too long: the same gains are stable if each step computes it.",
+    "delay": "The torque comes too late: the same gains are stable without the delay.",
+    "rate and delay": "The torque is held too long and comes too late.",
+}
+
+NEAREST: Mapping[UsedUp, str] = {
+    "kp": "kp is nearest to its limit",
+    "kd": "kd is nearest to its limit",
+    "too little kd": "kd is nearest to its limit, the lower one",
+    "rate": "the time between two torques is nearest to its limit",
+    "delay": "the delay is nearest to its limit",
+}
+
+
+@dataclass(frozen=True, repr=False)
+class DriveAnswer:
+    """All that is known of a drive (SI units) whose torque a method applies, fresh, held or late.
+
+    `verdict` is proven: what errors do, without kp those of the velocity. `z_abs` is the factor by which each step
+    multiplies them; `fresh_z_abs` the same if each step computed the torque and applied it. `settle_steps`: steps until
+    an error is a thousandth; None where it does not fall. `applied`: what this way of applying a drive is called, None
+    for a method that engines do not apply drives with. `sentence`: the answer in words.
+    """
+
+    drive: Drive
+    h: Fraction
+    method: Method
+    timing: Timing
+    applied: str | None
+    verdict: Verdict
+    z_abs: float
+    fresh_z_abs: float
+    settle_steps: int | None
+    limits: Limits
+    used_up: UsedUp | None
+    sentence: str = field(compare=False)
+
+    def __repr__(self) -> str:
+        return f"{self.sentence} [{self.method.name}, |z_p| = {self.z_abs:.6g}]"
+
+    def __bool__(self) -> bool:
+        return self.safe
+
+    @property
+    def safe(self) -> bool:
+        """Whether errors are proven to shrink."""
+        return self.verdict == "converges"
+
+
+@in_keywords()
+def drive(
+    kp: Number,
+    kd: Number,
+    inertia: Number,
+    *,
+    h: Number,
+    method: str | Method = "SYM",
+    every: int = 1,
+    late: Number = 0,
+    filter_seconds: Number = 0,
+) -> DriveAnswer:
+    """Return whether a joint's drive is safe: torque = -kp (q - target) - kd q' on an inertia, in SI units.
+
+    h: the step of the physics in s.
+    method: how the torque is applied: "SYM" (explicit), "imex-euler" (implicit in the velocity),
+        "stable-pd", "implicit-euler" (fully implicit); for a fresh torque any method.
+    every: the torque is computed every so many steps, and held; 1 to 100.
+    late: it is applied so many steps late, or a fraction of them; 0 to 100.
+    filter_seconds: time constant in s of a first-order filter of the measured velocity; 0 for none.
+
+    Returns a DriveAnswer. A limit of the torque is not judged.
+
+    InputError for a number out of range, and for a method that cannot apply a torque that is held or late.
+    Source: Gil et al., J. Comput. Inf. Sci. Eng. 9, 011005, 2009.
+    """
+    step = exact_number(h, "h")
+    timing = timing_of(
+        step, whole_number(every, "every"), exact_number(late, "late"), exact_number(filter_seconds, "filter_seconds")
+    )
+    gains = Drive(exact_number(kp, "kp"), exact_number(kd, "kd"), exact_number(inertia, "inertia"))
+    return judge_drive(gains, step, method if isinstance(method, Method) else lookup(method), timing)
+
+
+def judge_drive(drive: Drive, h: Fraction, method: Method, timing: Timing = FRESH) -> DriveAnswer:
+    """Return whether a drive is safe with steps of h (s), and how far each of its numbers may go alone.
+
+    InputError for a step that is not positive, and if the method cannot apply a torque that is held or late.
+    """
+    check_step(h, "h")
+    point = drive.point(h)
+    found, z_abs = verdict(method, *point, timing), float(spectral_radius(method, *point, timing))
+    ends = limits(drive, h, method, timing)
+    used_up = _nearest_limit(drive, timing, ends) if found == "converges" else _cause(drive, h, method, timing, ends)
+    answer = DriveAnswer(
+        drive=drive,
+        h=h,
+        method=method,
+        timing=timing,
+        applied=DRIVE_METHODS.get(method.name),
+        verdict=found,
+        z_abs=z_abs,
+        fresh_z_abs=float(spectral_radius(method, *point, FRESH)),
+        settle_steps=steps_to_settle(z_abs) if found == "converges" else None,
+        limits=ends,
+        used_up=used_up,
+        sentence="",
+    )
+    return replace(answer, sentence=_sentence(answer))
+
+
+def _cause(drive: Drive, h: Fraction, method: Method, timing: Timing, ends: Limits) -> UsedUp:
+    """Return the cause of instability: the drive would be stable without it, or with another number in its place."""
+
+    def stable(**changed: Any) -> bool:
+        return verdict(method, *drive.point(h), replace(timing, **changed)) == "converges"
+
+    if timing == FRESH:
+        if ends.kd:
+            return "kd" if drive.kd > ends.kd[0] else "too little kd"
+        return "kp" if ends.kp else "gains"
+    if not stable(every=1, late=Fraction(0), filter_steps=Fraction(0)):
+        return "gains"
+    if stable(late=Fraction(0)):
+        return "delay"
+    return "rate" if stable(every=1) else "rate and delay"
+
+
+def _nearest_limit(drive: Drive, timing: Timing, ends: Limits) -> UsedUp | None:
+    """Return the number of a stable drive with the least factor left to its limit; None if none has a limit."""
+    kp, kd = float(drive.kp), float(drive.kd)
+    ratios: dict[UsedUp, float] = {}
+    if ends.kp and kp > 0:
+        ratios["kp"] = ends.kp[1] / kp
+    if ends.kd and kd > 0:
+        ratios["kd"] = ends.kd[1] / kd
+        ratios["too little kd"] = kd / ends.kd[0] if ends.kd[0] else math.inf
+    if ends.every and timing != FRESH:
+        ratios["rate"] = (ends.every + 1) / timing.every
+    if ends.late is not None and timing.late:
+        ratios["delay"] = (ends.late + 1) / float(timing.late)
+    nearest = min(ratios, key=lambda name: ratios[name], default=None)
+    return nearest if nearest and math.isfinite(ratios[nearest]) else None
+
+
+def _sentence(answer: DriveAnswer) -> str:
+    """Return whether a drive is safe, how fast an error falls, why not, and what may change.
+
+    kp = 98.7, kd = 6.28 (explicit, inertia 0.1, h = 0.002 s): safe. An error falls to a thousandth in 0.29 s (145
+    steps). It stays stable with one of these alone: kp up to 849, kd from 1.03 to 48.4, inertia from 0.0129 on, a
+    torque every 19 steps, at most 6 steps late; kp is nearest to its limit.
+    """
+    drive, h = answer.drive, float(answer.h)
+    judged = gains_words(drive.kp, drive.kd, drive.inertia, h, answer.applied or answer.method.name)
+    what = "error" if drive.kp else "velocity"
+    change = change_words(answer.z_abs, answer.verdict, what)
+    if answer.settle_steps:
+        change = decay_words(answer.settle_steps, h, what)
+    sentence = f"{judged}: {'safe' if answer.safe else 'not safe'}. {change[0].upper()}{change[1:]}.{_one_gain(drive)}"
+    changes = ", ".join(_changes(answer))
+    if not answer.safe:
+        remedy = f"It is stable with one of these alone: {changes}." if changes else "No single change makes it stable."
+        cause = "" if answer.timing == FRESH else f" {CAUSES[answer.used_up or 'gains']}"
+        return f"{sentence}{cause} {remedy}"
+    if not changes:
+        return f"{sentence} No number alone has a limit."
+    nearest = f"; {NEAREST[answer.used_up]}" if answer.used_up else ""
+    return f"{sentence} It stays stable with one of these alone: {changes}{nearest}."
+
+
+def _one_gain(drive: Drive) -> str:
+    """Return what is to be known of a drive that has one gain alone; nothing of another one."""
+    if not (drive.kp or drive.kd):
+        return " Without kp and kd nothing is driven."
+    if not drive.kp:
+        return " Without kp this is a damper: nothing holds the position, so the velocity is judged."
+    return "" if drive.kd else " Without kd this is a spring: nothing but the integrator damps."
+
+
+def _changes(answer: DriveAnswer) -> list[str]:
+    """Return how far each number alone may go with which a drive is stable."""
+    ends, drive = answer.limits, answer.drive
+    changes = []
+    if ends.kp and math.isfinite(ends.kp[1]):
+        changes.append(f"kp {'lowered' if drive.kp > ends.kp[1] else 'up'} to {ends.kp[1]:.3g}")
+    if ends.kd and drive.kd > ends.kd[1]:
+        changes.append(f"kd lowered to {ends.kd[1]:.3g}")
+    elif ends.kd and (ends.kd[0] or math.isfinite(ends.kd[1])):
+        least, most = ends.kd
+        changes.append(f"kd {f'from {least:.3g} ' if least else ''}{'on' if math.isinf(most) else f'up to {most:.3g}'}")
+    if ends.inertia and ends.inertia[0]:
+        changes.append(f"inertia {'raised to' if drive.inertia < ends.inertia[0] else 'from'} {ends.inertia[0]:.3g} on")
+    if answer.timing == FRESH:
+        return changes
+    if ends.every is not None:
+        changes.append("a torque every step" if ends.every == 1 else f"a torque every {ends.every} steps")
+    if ends.late is not None:
+        changes.append(f"at most {counted(ends.late, 'step')} late")
+    return changes
+
+
+DIGITS = 3
+"""Of recommended gains."""
+
+MARGIN = 1.25
+"""Each recommended gain alone may grow by this factor: a quarter is left for what is not modelled."""
+
+OMEGA_H = np.geomspace(1, 3e-6, 260)
+"""Radians a step at which the largest bandwidth is looked for: from 1 downwards, 5 % apart."""
+
+SETTLED = 9.2334
+"""omega t at which a critically damped error is a thousandth: (1 + omega t) e^(-omega t) = 1/1000."""
+
+
+def gains_for(
+    inertia: Fraction,
+    h: Fraction,
+    methods: Sequence[Method],
+    timing: Timing = FRESH,
+    *,
+    bandwidth: Fraction | None = None,
+    settle: Fraction | None = None,
+) -> Drive:
+    """Return critically damped gains for a bandwidth (Hz, the natural frequency) or a time to settle (s), to 3 digits.
+
+        kp = inertia omega^2        kd = 2 inertia omega        omega = 2 pi bandwidth = 9.2334 / settle
+
+    They are proven stable in every method, and so is each gain alone MARGIN times as large. InputError where they are
+    not, with the largest bandwidth, or the shortest time, for which they are.
+    """
+    if (bandwidth is None) == (settle is None):
+        raise InputError("give --bandwidth or --settle, and only one of them")
+    if settle is None:
+        asked, wanted = f"--bandwidth {float(bandwidth or 0):g} Hz", 2 * math.pi * float(bandwidth or 0)
+    else:
+        asked, wanted = f"--settle {float(settle):g} s", SETTLED / float(settle) if settle else 0.0
+    if not wanted > 0:
+        raise InputError(f"{asked}: expected a positive number")
+
+    def holds(omega_h: float) -> bool:
+        drive = _critically_damped(omega_h / float(h), inertia)
+        more = exact(MARGIN)
+        stronger = (replace(drive, kp=more * drive.kp), replace(drive, kd=more * drive.kd))
+        return all(
+            verdict(method, *each.point(h), timing) == "converges" for method in methods for each in (drive, *stronger)
+        )
+
+    if holds(wanted * float(h)):
+        return _critically_damped(wanted, inertia)
+    found = first_where(np.vectorize(holds, otypes=[bool]), OMEGA_H)
+    refused = f"{asked}: unstable with a {MARGIN - 1:.0%} margin at this rate and delay"
+    if found is None:
+        raise InputError(f"{refused}, and so is any that is slower")
+    largest = found[1] / float(h)
+    if settle is None:
+        raise InputError(f"{refused}. Largest safe bandwidth: {rounded_down(largest / (2 * math.pi), DIGITS)} Hz")
+    raise InputError(f"{refused}. Shortest safe time: {SETTLED / largest:.3g} s")
+
+
+def _critically_damped(omega: float, inertia: Fraction) -> Drive:
+    """Return the critically damped gains of a natural frequency (1/s), to DIGITS."""
+    kp, kd = (Fraction(f"{float(inertia) * gain:.{DIGITS}g}") for gain in (omega**2, 2 * omega))
+    return Drive(kp, kd, inertia)

@@ -1,0 +1,110 @@
+"""What is printed of a drive: its columns, and how its controller works in words."""
+
+import math
+from collections.abc import Sequence
+
+from bezstab.drives.answer import DriveAnswer
+from bezstab.drives.limits import Stretch
+from bezstab.engines import Timing
+from bezstab.show import Column
+from bezstab.words import seconds_words
+
+NOT_JUDGED = (
+    "A target that comes late only delays the motion. A torque or a measurement that comes late takes stability. "
+    "Not judged: a limit of the torque, friction, and what else the drive is connected to."
+)
+
+
+def _end(stretch: Stretch | None, place: int) -> float | None:
+    """Return an end of a stretch; None where there is none."""
+    return stretch[place] if stretch and math.isfinite(stretch[place]) and stretch[place] else None
+
+
+KP, KD, INERTIA = "N m/rad or N/m", "N m s/rad or N s/m", "kg m² or kg"
+
+COLUMNS: Sequence[Column[DriveAnswer]] = (
+    Column("method", "method", lambda answer: answer.method.name, "integration method", apart=True),
+    Column("applied", "applied", lambda answer: answer.applied, "how the drive is applied", apart=True),
+    Column("verdict", "verdict", lambda answer: answer.verdict, "what errors do, proven; without kp the velocity"),
+    Column("safe", "safe", lambda answer: answer.safe, "whether errors are proven to shrink", apart=True),
+    Column("|z_p|", "z_abs", lambda answer: answer.z_abs, "a step multiplies errors by it", form=".6f", brief=True),
+    Column(
+        "|z_p| if fresh",
+        "fresh_z_abs",
+        lambda answer: answer.fresh_z_abs,
+        "the same if each step computes and applies the torque",
+        form=".6f",
+    ),
+    Column(
+        "settles in (steps)",
+        "settle_steps",
+        lambda answer: answer.settle_steps,
+        "steps until an error is a thousandth; null where it does not fall",
+    ),
+    Column(
+        "settles in (s)",
+        "settle_seconds",
+        lambda answer: None if answer.settle_steps is None else answer.settle_steps * float(answer.h),
+        "the same in seconds",
+        unit="s",
+        form=".4g",
+        brief=True,
+    ),
+    Column("kp", "kp", lambda answer: float(answer.drive.kp), "stiffness", unit=KP),
+    Column("kp to", "kp_max", lambda answer: _end(answer.limits.kp, 1), "largest stable kp", KP, ".4g", True),
+    Column("kd", "kd", lambda answer: float(answer.drive.kd), "damping", unit=KD),
+    Column("kd from", "kd_min", lambda answer: _end(answer.limits.kd, 0), "smallest stable kd", KD, ".4g", True),
+    Column("kd to", "kd_max", lambda answer: _end(answer.limits.kd, 1), "largest stable kd", KD, ".4g", True),
+    Column("inertia", "inertia", lambda answer: float(answer.drive.inertia), "inertia", unit=INERTIA),
+    Column(
+        "inertia from",
+        "inertia_min",
+        lambda answer: _end(answer.limits.inertia, 0),
+        "smallest stable inertia, or armature and inertia together",
+        INERTIA,
+        ".4g",
+        True,
+    ),
+    Column("h", "h", lambda answer: float(answer.h), "step of the physics", unit="s"),
+    Column("every", "every", lambda answer: answer.timing.every, "steps from one torque to the next"),
+    Column("every to", "every_max", lambda answer: answer.limits.every, "steps that it may be held", brief=True),
+    Column("late", "late", lambda answer: float(answer.timing.late), "steps until a torque is applied"),
+    Column("late to", "late_max", lambda answer: answer.limits.late, "whole steps that it may be late", brief=True),
+    Column(
+        "filter",
+        "filter",
+        lambda answer: float(answer.timing.filter_steps * answer.h),
+        "time constant of the filter of the velocity",
+        unit="s",
+    ),
+    Column(
+        "limited by",
+        "used_up",
+        lambda answer: answer.used_up,
+        "what an unstable drive would be stable without, or the number of a stable one that is nearest to its limit",
+        brief=True,
+    ),
+    Column("", "sentence", lambda answer: answer.sentence, "the answer in words"),
+)
+
+
+def timing_words(timing: Timing, h: float) -> str:
+    """Return how a controller works: the torque is computed every 4 steps (8 ms) and applied 1 step (2 ms) late."""
+    words = "The torque is computed in every step"
+    if timing.every > 1:
+        words = f"The torque is computed every {timing.every} steps ({seconds_words(timing.every * h)})"
+    if timing.late:
+        late = float(timing.late)
+        words += f" and applied {late:g} step{'s' * (late > 1)} ({seconds_words(late * h)}) late"
+    if timing.filter_steps:
+        words += f", with the velocity filtered over {seconds_words(float(timing.filter_steps) * h)}"
+    return f"{words}."
+
+
+def ways_words(answers: Sequence[DriveAnswer]) -> str:
+    """Return in which ways of applying a torque a drive is safe."""
+    verdicts = []
+    for verdict, safe in (("safe", True), ("not safe", False)):
+        if names := [f"{each.applied} ({each.method.name})" for each in answers if each.safe == safe]:
+            verdicts.append(f"{verdict} {'is' if len(names) == 1 else 'are'} {', '.join(names)}")
+    return f"Of the ways to apply the torque, of which --method names yours, {'; '.join(verdicts)}."

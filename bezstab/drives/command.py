@@ -1,0 +1,87 @@
+"""The command that judges a joint's drive, or finds its gains: drive."""
+
+from collections.abc import Sequence
+from fractions import Fraction
+from functools import partial
+from pathlib import Path
+
+import click
+
+from bezstab.cli import shared_options as shared
+from bezstab.cli.options import NUMBER, POSITIVE
+from bezstab.cli.output import Files, show_answers, show_text
+from bezstab.errors import InputError
+from bezstab.methods import Method, lookup
+
+POINTS = 200
+"""Along each axis of the figure."""
+
+
+@click.command()
+@click.option("--kp", type=NUMBER, help="Stiffness, N m/rad or N/m.")
+@click.option("--kd", type=NUMBER, help="Damping, N m s/rad or N s/m.")
+@click.option("--inertia", type=POSITIVE, required=True, help="Inertia that the drive feels, kg m² or kg.")
+@shared.h
+@click.option("--bandwidth", type=NUMBER, help="Find critically damped gains of this natural frequency in Hz.")
+@click.option("--settle", type=NUMBER, help="Find critically damped gains that settle in so many s.")
+@shared.methods
+@click.option("--every", type=int, default=1, help="The torque is computed every so many steps and held in between.")
+@click.option("--late", type=NUMBER, default="0", help="The torque is applied so many steps late; fractions too.")
+@click.option(
+    "--filter", "filter_seconds", type=NUMBER, default="0", help="Time constant in s of a filter of the velocity."
+)
+@shared.output_options
+def drive(
+    kp: Fraction | None,
+    kd: Fraction | None,
+    inertia: Fraction,
+    h: Fraction,
+    bandwidth: Fraction | None,
+    settle: Fraction | None,
+    methods: Sequence[Method],
+    every: int,
+    late: Fraction,
+    filter_seconds: Fraction,
+    output: Path,
+    figure: str,
+    **_: object,
+) -> bool:
+    """Judge a joint's drive, or find its gains: exit status 0 if safe, 1 if not.
+
+    The torque is -kp (q - target) - kd q'. Without --method all four ways to apply it are judged: explicit (SYM),
+    implicit in velocity (imex-euler), stable PD (stable-pd), fully implicit (implicit-euler). Yours is most often SYM.
+
+    A contact of stiffness k and damping c between bodies of reduced mass m is --kp k --kd c --inertia m.
+
+    Example: bezstab drive --kp 200 --kd 5 --inertia 0.1 --h 0.002 --every 4 --late 1
+    """
+    from bezstab.drives.answer import gains_for, judge_drive
+    from bezstab.drives.columns import COLUMNS, NOT_JUDGED, timing_words, ways_words
+    from bezstab.engines import DRIVE_METHODS, FRESH, Drive, timing_of
+
+    ways = tuple(methods) or tuple(map(lookup, DRIVE_METHODS))
+    timing = timing_of(h, every, late, filter_seconds)
+    files = Files(output, figure)
+    files.check_output()
+    if bandwidth is not None or settle is not None:
+        if kp is not None or kd is not None:
+            raise InputError("--bandwidth and --settle find gains: leave out --kp and --kd")
+        judged = gains_for(inertia, h, ways, timing, bandwidth=bandwidth, settle=settle)
+        show_text(f"kp = {float(judged.kp):g}, kd = {float(judged.kd):g}\n")
+    elif kp is None or kd is None:
+        raise InputError("give --kp and --kd, or --bandwidth, or --settle")
+    else:
+        judged = Drive(kp, kd, inertia)
+    answers = [judge_drive(judged, h, method, timing) for method in ways]
+    if timing != FRESH:
+        show_text(f"{timing_words(timing, float(h))}\n")
+    if len(answers) > 1:
+        show_text(f"{ways_words(answers)}\n")
+    show_answers(COLUMNS, answers, [answer.sentence for answer in answers])
+    if timing != FRESH:
+        show_text(f"\n{NOT_JUDGED}")
+    for answer in answers if figure != "none" else ():
+        from bezstab.drives.figure import drive_figure
+
+        files.write(files.path("drive", answer.method.name), partial(drive_figure, answer, POINTS))
+    return all(answers)

@@ -1,0 +1,96 @@
+"""Answers about drives: the number that is nearest to its limit, and gains to write."""
+
+from fractions import Fraction
+
+import pytest
+
+from bezstab.drives.answer import DriveAnswer, gains_for, judge_drive
+from bezstab.drives.held_torque import verdict
+from bezstab.engines import Drive, Timing
+from bezstab.errors import InputError
+from bezstab.methods import lookup
+
+H = Fraction("0.002")
+INERTIA = Fraction("0.1")
+
+
+SYM = lookup("SYM")
+
+
+def explicit(kp: str, kd: str, timing: Timing) -> DriveAnswer:
+    return judge_drive(Drive(Fraction(kp), Fraction(kd), INERTIA), H, SYM, timing)
+
+
+def gains(timing: Timing, **wanted: Fraction) -> Drive:
+    return gains_for(INERTIA, H, [SYM], timing, **wanted)
+
+
+@pytest.mark.parametrize(
+    ("kp", "kd", "timing", "used_up"),
+    [
+        ("200", "120", Timing(2), "gains"),  # 2 a = 4.8 is too much even if it is fresh
+        ("200", "0.6", Timing(every=4), "rate"),  # held needs a > b (N - 1) / 2, which is 0.012 = a
+        ("200", "0.3", Timing(late=Fraction(2)), "delay"),
+        ("200", "1.1", Timing(every=4, late=Fraction(2)), "delay"),
+    ],
+)
+def test_of_an_unstable_drive_what_it_would_be_stable_without_is_used_up(
+    kp: str, kd: str, timing: Timing, used_up: str
+) -> None:
+    answer = explicit(kp, kd, timing)
+    assert not answer.safe
+    assert answer.used_up == used_up
+
+
+def test_a_drive_begins_with_its_sentence_and_is_true_where_it_is_safe() -> None:
+    safe, unsafe = explicit("200", "5", Timing()), explicit("200", "120", Timing())
+    assert bool(safe)
+    assert not bool(unsafe)
+    assert repr(safe).startswith("kp = 200, kd = 5 (explicit, inertia 0.1, h = 0.002 s): safe. An error falls to a")
+    assert repr(unsafe).startswith("kp = 200, kd = 120 (explicit, inertia 0.1, h = 0.002 s): not safe. Each step")
+
+
+def test_of_a_stable_drive_the_number_nearest_to_its_end_is_used_up() -> None:
+    """Held for two steps it is stable for 2 A + B / 2 < 4 and A > B / 4, with A = 2 a and B = 4 b."""
+    assert explicit("200", "45", Timing(2)).used_up == "kd"  # a = 0.9, where it may be 0.996
+    assert (
+        explicit("200", "0.21", Timing(2)).used_up == "too little kd"
+    )  # a = 0.0042, where b = 0.008 needs more than 0.004
+    weak = explicit("200", "0.21", Timing(2)).limits
+    assert weak.kd == pytest.approx((0.2, 49.8), rel=1e-9)  # N m s/rad
+
+
+def test_fresh_is_told_beside_it() -> None:
+    answer = explicit("200", "5", Timing(4, Fraction(1)))
+    assert answer.fresh_z_abs == pytest.approx(0.9**0.5)  # P = z^2 - (2 - a - b) z + 1 - a, its poles a pair
+    assert answer.z_abs < 1
+
+
+@pytest.mark.parametrize("timing", [Timing(), Timing(4), Timing(4, Fraction(1)), Timing(late=Fraction(5, 2))])
+def test_gains_for_a_bandwidth_are_critically_damped_and_safe_with_a_margin(timing: Timing) -> None:
+    drive = gains(timing, bandwidth=Fraction(5))
+    assert float(drive.kd) == pytest.approx(2 * float(drive.kp * INERTIA) ** 0.5, rel=1e-2)  # three digits
+    assert float(drive.kp) == pytest.approx(0.1 * (2 * 3.14159265 * 5) ** 2, rel=5e-3)
+    for factor in (Fraction(1), Fraction(5, 4)):
+        for kp, kd in ((factor * drive.kp, drive.kd), (drive.kp, factor * drive.kd)):
+            point = Drive(kp, kd, INERTIA).point(H)
+            assert verdict(SYM, *point, timing) == "converges"
+
+
+def test_a_time_to_settle_is_a_bandwidth() -> None:
+    drive = gains(Timing(4), settle=Fraction("0.5"))
+    omega = float(drive.kp / INERTIA) ** 0.5
+    assert (1 + omega * 0.5) * 2.718281828459045 ** (-omega * 0.5) == pytest.approx(1e-3, rel=0.02)
+
+
+@pytest.mark.slow
+def test_what_cannot_be_reached_is_refused_with_what_can() -> None:
+    timing = Timing(4, Fraction(1))
+    with pytest.raises(InputError, match=r"--bandwidth 50 Hz: unstable .* Largest safe bandwidth: (\S+) Hz") as refused:
+        gains(timing, bandwidth=Fraction(50))
+    reach = str(refused.value).split()[-2]
+    gains(timing, bandwidth=Fraction(reach))
+    with pytest.raises(InputError):
+        gains(timing, bandwidth=Fraction(reach) * Fraction("1.02"))
+    with pytest.raises(InputError, match=r"--settle 0\.01 s: unstable .* Shortest safe time: \S+ s"):
+        gains(timing, settle=Fraction("0.01"))
