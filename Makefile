@@ -11,10 +11,6 @@ ANDREWS := --scene andrews --time 0.01 --h 16e-6 --h 32e-6 --h 64e-6 --h 128e-6 
 HELD := tradeoff --against projection --method B4 --method AB4 --method RK4 --method SYM --repeats 1 --table none
 OF_MILLISECONDS := --h 0.0008 --h 0.0016 --h 0.0032 --h 0.005 --h 0.008 --h 0.0125
 
-# methods for strong feedback, and two that force much more with it
-BOTH_KINDS := --method B4 --method AB4 --method ABM4 --method SYM --method verlet-half --method bdf2 --method RK4 \
-    --method dopri5
-
 .PHONY: region figures times test quick test-slow test-oldest witnesses campaign extremes lint bench clean
 
 region: .venv/installed  ## draw where B4 is stable, into this directory
@@ -29,7 +25,6 @@ figures: .venv/installed  ## draw what the README shows, into figures/
 	$(BIN)/bezstab chains --engine chipmunk=0.0017970103 --h 1/60 -o figures --format json > /dev/null
 	$(BIN)/bezstab region --method RK4 --accuracy --table none -o figures
 	$(BIN)/bezstab region --method SYM --motion --table none -o figures
-	$(BIN)/bezstab tradeoff --predicted $(BOTH_KINDS) --table none -o figures
 	$(BIN)/bezstab tradeoff --table none -o figures
 	$(BIN)/bezstab $(HELD) $(OF_MILLISECONDS) -o figures
 	$(BIN)/bezstab $(HELD) --scene driven_four_bar $(OF_MILLISECONDS) -o figures

@@ -48,27 +48,25 @@ OF_RUNS = (
     Rule(("--level",), "it says how fast errors must decay", needs=("--predicted",)),
     Rule(("--against projection",), "it has runs with and without feedback", excludes=("--stabilise",)),
     Rule(("--predicted",), "it simulates nothing", excludes=OF_RUNS),
+    Rule(("--predicted",), "it is a table", excludes=("--figure",)),
 )
-def tradeoff(predicted: bool, point: TypedPoint, tolerance: Fraction, work: Work, files: Files, **typed: Any) -> None:
+def tradeoff(predicted: bool, point: TypedPoint, work: Work, files: Files, **typed: Any) -> None:
     """Measure what accuracy costs, by method and step.
 
     Each run is compared with a reference of known accuracy. Prints errors, evaluations, processor time (median and
-    range) and the order observed. Sentences below name the cheapest run within --tolerance, and say where the Bézier
-    methods win and lose. Writes the table, without times, and two figures of errors against evaluations or time. A
-    run that fails is marked as diverged.
+    range), the order observed, and which run is the cheapest within --tolerance. Writes the table, without times, and
+    two figures of errors against evaluations or time, which mark it. A run that fails is marked as diverged.
 
     Without --alpha and --beta each step size has its own point: that of the goal accurate, for the scene's motion or
-    for --omega. If α̂ and β̂ stay the same while h shrinks, methods with stages lose order. A multistep method that
-    starts with RK4 loses order too. That error has died away "in the later half" of a run. What remains is the error
-    that the feedback makes; compare "predicted".
+    for --omega. If α̂ and β̂ stay the same while h shrinks, methods with stages lose order. "In the later half" of a run
+    the error of the start has died away. What remains is the error that the feedback makes; compare "predicted".
 
     --stabilise projection replaces feedback by projection onto the constraints after each step. --against projection
     makes both, feedback at the advised points and, with --alpha and --beta, at that one too. It draws the errors of
-    trajectory, constraints and energy at equal cost, in factorizations of C_q M⁻¹ C_qᵀ; below, a sentence for each
-    method says what projection costs for the same trajectory error.
+    trajectory, constraints and energy at equal cost, in factorizations of C_q M⁻¹ C_qᵀ.
 
     --predicted simulates nothing. It prints the least error that a method's feedback makes on a motion, for each
-    |z_p|. The motion is --omega, or a --scene with one --h; else it turns by ωh = 0.01. Writes tradeoff_predicted.
+    |z_p|. The motion is --omega, or a --scene with one --h; else it turns by ωh = 0.01. Writes tradeoff_predicted.csv.
 
     Example: bezstab tradeoff --method B4 --method AB4 --h 0.002 --h 0.004 --time 2
     """
@@ -82,25 +80,22 @@ def tradeoff(predicted: bool, point: TypedPoint, tolerance: Fraction, work: Work
     sweeps = worked_out(lambda: question.sweeps, typed["scene"])
     with results_of_chunks(evidence.measured_runs, sweeps, path, f"{question.methods} {question}", work) as results:
         swept = question.swept(results)
-        rows = [show.SWEPT.row(run, front=front) for run, front in zip(swept.runs, swept.front_labels, strict=True)]
+        marked = zip(swept.runs, swept.front_labels, strict=True)
+        rows = [show.SWEPT.row(run, front=front, cheapest=run is swept.cheapest) for run, front in marked]
         files.write(path, None, lambda: show.untimed_arrays(rows))
         for name, draw in show.trade_figures(swept, question.moving.name).items():
             files.write(path.with_name(f"{path.name}_{name}"), draw)
     show_rows(show.SWEPT, rows)
-    show_text("\n" + "\n".join(question.sentences(swept, float(tolerance))))
+    show_text(f"\n{question.basis}")
 
 
 def _show_fronts(files: Files, levels: Sequence[Fraction], **typed: Any) -> None:
-    """Print the least error that each method forces, by speed of decay; write it as table and figure."""
+    """Print the least error that each method forces, by speed of decay; write it as a table."""
     question = questions.FrontQuestion(levels=levels, scene=typed_options().get("--scene"), **typed)
     files.check_output()
-    fronts = list(progress(question.fronts(), "fronts", len(question.methods)))
+    fronts = progress(question.fronts(), "fronts", len(question.methods))
     h = None if question.h is None else float(question.h)
     rows = [show.row_in_seconds(show.FRONTS.fields, point, h) for front in fronts for point in front]
-    files.write(
-        files.path("tradeoff", "predicted"),
-        lambda: show.error_front_figure([front for front in fronts if front]),
-        lambda: show.untimed_arrays(rows),
-    )
+    files.write(files.path("tradeoff", "predicted"), None, lambda: show.untimed_arrays(rows))
     show_rows(show.FRONTS, rows)
     show_text(show.combined_words(question.motion))

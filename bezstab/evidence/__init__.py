@@ -55,7 +55,6 @@ if TYPE_CHECKING:
         points_like,
         probed_pole,
     )
-    from bezstab.evidence.sweep_summaries import Held, projection_sentences, sweep_sentences
     from bezstab.evidence.verdict_maps import VerdictMap, map_rows, simulated_verdicts, verdict_map
 
 __getattr__ = lazy_names(__name__)

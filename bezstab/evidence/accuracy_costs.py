@@ -172,12 +172,20 @@ def pareto_front(points: Iterable[tuple[float, float | None]]) -> list[int]:
 class SweptRuns:
     """All runs of a sweep over methods and steps, each method's with the largest step first.
 
-    `reference_error` (SI) is how well the true motion is known. Costs are `against` what they are counted in.
+    `reference_error` (SI) is how well the true motion is known, `tolerance` (m, rad) the trajectory error that is good
+    enough. Costs are `against` what they are counted in.
     """
 
     runs: Sequence[Run]
     reference_error: float
+    tolerance: float
     against: Cost = "evaluations"
+
+    @property
+    def cheapest(self) -> Run | None:
+        """The run of least cost among those within the tolerance; None where none is."""
+        within = [run for run in self.runs if not run.failure and (run.trajectory_error or 0.0) <= self.tolerance]
+        return min(within, key=lambda run: run.cost(self.against), default=None)
 
     def front(self, of: ErrorOf) -> list[int]:
         """Return the Pareto front by an error: indices of runs, ascending in cost, that no other run beats."""

@@ -19,13 +19,10 @@ from bezstab.evidence import (
     NO_FEEDBACK,
     STEPS,
     Cost,
-    Held,
     ReferenceRun,
     Sweep,
     SweptRuns,
-    projection_sentences,
     reference_run,
-    sweep_sentences,
     swept_runs,
 )
 from bezstab.mechanism import Scene, runs_compiled
@@ -47,8 +44,8 @@ class TradeQuestion(motions.SceneQuestion):
     Without numbers each step has its own point: that of the goal accurate, for a motion of rate `omega` (1/s), else for
     the scene's own. A projection of so many `iterations` at most may `stabilise` runs in place of feedback. Costs are
     counted `against` evaluations or time; against projection each run is made with feedback and with projection. Each
-    is timed `repeats` times. InputError for what does not go together, and for a method whose states cannot be
-    projected.
+    is timed `repeats` times. A trajectory error of `tolerance` (m, rad) is good enough. InputError for what does not go
+    together, and for a method whose states cannot be projected.
     """
 
     methods: Sequence[Method]
@@ -61,6 +58,7 @@ class TradeQuestion(motions.SceneQuestion):
     iterations: int | None = None
     against: Cost = "evaluations"
     repeats: int = 3
+    tolerance: Fraction = Fraction("1e-6")
 
     def __post_init__(self) -> None:
         if self.omega is not None and self.numbers and self.against != "projection":
@@ -129,20 +127,15 @@ class TradeQuestion(motions.SceneQuestion):
     def swept(self, measured: Sequence[Mapping[str, NDArray[np.generic]]]) -> SweptRuns:
         """Return what the runs of all sweeps have measured, as `measured_runs` returns it for each, and the fronts."""
         runs = chain.from_iterable(swept_runs(*each) for each in zip(self.sweeps, measured, strict=True))
-        return SweptRuns(list(runs), self.reference.error, self.against)
+        return SweptRuns(list(runs), self.reference.error, float(self.tolerance), self.against)
 
-    def sentences(self, swept: SweptRuns, tolerance: float) -> list[str]:
-        """Return in words what runs are compared with, what those within a tolerance (m, rad) cost, and who wins."""
-        said = [f"The reference is known to {swept.reference_error:.0e} (m, rad)."]
-        if self.rate is not None:
-            rate = f"ω = {float(self.rate):.3g} 1/s"
-            said.append(f"Each point is the choice of the goal accurate for a motion with {rate}.")
-        if self.against == "projection":
-            return said + projection_sentences(swept.runs, swept.reference_error)
-        held: Held = "alpha and beta" if self.physical else "alpha_hat and beta_hat"
-        if self.numbers is None:
-            held = "own choice" if swept.runs[0].advised else "no feedback"
-        return said + sweep_sentences(swept.runs, tolerance, held)
+    @property
+    def basis(self) -> str:
+        """What runs are compared with, and for which motion points are chosen, in words."""
+        said = f"The reference is known to {self.reference.error:.0e} (m, rad)."
+        if self.rate is None:
+            return said
+        return f"{said} Each point is the choice of the goal accurate for a motion with ω = {float(self.rate):.3g} 1/s."
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -87,7 +87,6 @@ if TYPE_CHECKING:
     from bezstab.show.map_figures import (
         chains_figure,
         comparison_figure,
-        error_front_figure,
         held_figure,
         map_figure,
         verdict_figure,

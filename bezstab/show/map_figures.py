@@ -14,7 +14,7 @@ from matplotlib.contour import QuadContourSet
 from matplotlib.figure import Figure
 from matplotlib.path import Path
 from matplotlib.patheffects import AbstractPathEffect, withStroke
-from matplotlib.ticker import FixedLocator, MaxNLocator
+from matplotlib.ticker import MaxNLocator
 
 from bezstab.methods import Method
 from bezstab.show import plot
@@ -29,7 +29,6 @@ from bezstab.show.style import (
     column_figure,
     line_at,
     mark_in_alpha_and_beta,
-    marked_line_at,
     new_axes,
     plane_coordinates,
     plane_words,
@@ -38,7 +37,7 @@ from bezstab.show.style import (
     with_legend,
 )
 from bezstab.show.window import under_the_mouse
-from bezstab.stability import ComplexArray, FloatArray, FrontPoint, Region
+from bezstab.stability import ComplexArray, FloatArray, Region
 
 EDGE_LINES = 0.015  # of the axes' sides: so far apart are the arrows of regions that go on beyond the same edge
 ALONG_AN_EDGE, ARROW_EVERY = 121, 24
@@ -323,25 +322,6 @@ def held_figure(answer: HeldAnswer, points: int) -> Figure:
         for axis in (axes.xaxis, axes.yaxis, across.xaxis, up.yaxis):
             axis.set_major_formatter("{x:g}")  # a common factor would stand beside it, on the axis opposite
         return with_legend(figure, facecolor="0.75")
-
-
-def error_front_figure(fronts: Sequence[Sequence[FrontPoint]]) -> Figure:
-    """Return how little error each method can force, a share of the motion, against |z_p|, even in how fast that is.
-
-    A front for each method, at least one point each, all of one motion.
-    """
-    with styled():
-        title = rf"equal steps, $\omega h$ = {fronts[0][0].omega_h:.3g}"
-        figure, axes = new_axes(title, "$|z_p|$ at most", "least forced error / motion", 1.05)
-        axes.set_xscale("function", functions=(decay_scale, from_decay_scale))
-        axes.set_yscale("log")
-        for place, front in enumerate(fronts):
-            drawn = [point for point in front if point.z_abs_below >= FASTEST_DRAWN]
-            x, y = [point.z_abs_below for point in drawn], [point.combined_error for point in drawn]
-            axes.plot(x, y, label=front[0].method.name, **marked_line_at(place))
-        axes.xaxis.set_major_locator(FixedLocator(TICKS))
-        axes.xaxis.set_major_formatter("{x:g}")
-        return with_legend(figure)
 
 
 def chains_figure(engine: Engine, title: str, maps: Sequence[ChainMap]) -> Figure:

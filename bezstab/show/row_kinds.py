@@ -1250,6 +1250,7 @@ SWEPT = RowKind(
             "T if no run is both cheaper and nearer to the trajectory, c if none is to the constraints",
             "front",
         ),
+        truth("cheapest", "Whether it costs least of all runs with a trajectory error within --tolerance", "cheapest"),
         FAILURE,
     ),
     sometimes=("z_abs",),

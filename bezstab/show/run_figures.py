@@ -14,6 +14,8 @@ from bezstab.evidence import Cost, ErrorOf, Run, SweptRuns
 from bezstab.mechanism import Simulation
 from bezstab.show import plot
 from bezstab.show.style import (
+    ABOVE_THE_AXES,
+    ACCENT,
     column_figure,
     line_at,
     marked_line_at,
@@ -71,7 +73,10 @@ def history_figure(simulation: Simulation) -> Figure:
 
 
 def work_precision_figure(swept: SweptRuns, scene: str, error: ErrorOf) -> Figure:
-    """Return an error of each run (SI) against its cost, discs behind the Pareto front, failed runs on top."""
+    """Return an error of each run (SI) against its cost, discs behind the Pareto front, failed runs on top.
+
+    That of the trajectory shows the tolerance, too, and marks the cheapest run within it.
+    """
     runs = swept.runs
     with styled():
         figure = column_figure(1.15)
@@ -87,6 +92,8 @@ def work_precision_figure(swept: SweptRuns, scene: str, error: ErrorOf) -> Figur
             _draw_runs(swept, [runs[number] for number in front], error, axes, label="front", **discs)
         if any(run.failure for run in runs):
             axes.plot([], [], "x", color="0.4", label="diverged")
+        if error == "trajectory":
+            _draw_cheapest(swept, axes)
         return with_legend(figure)
 
 
@@ -95,7 +102,7 @@ def projection_figure(swept: SweptRuns, scene: str) -> Figure:
 
     They are the trajectory's, the largest |c| and the energy's drift. Colour and dashes are those of a method; its
     markers are hollow with feedback at the advised points, crosses with feedback at a given one, and filled with
-    projection. Runs that failed are left out.
+    projection. Runs that failed are left out; the cheapest within the tolerance is marked.
     """
     methods = list(dict.fromkeys(run.method for run in swept.runs))
     with styled():
@@ -108,6 +115,7 @@ def projection_figure(swept: SweptRuns, scene: str) -> Figure:
                     line = {"markersize": 3.5, "markeredgewidth": 0.7, **line_at(place), **marker}
                     _draw_runs(swept, own, error, axes, label=f"{method.name}, {name}", **line)
             axes.label_outer()
+        _draw_cheapest(swept, panels[0])
         figure.suptitle(title_lines(scene))
         return with_legend(figure, handles=panels[0].lines)
 
@@ -121,6 +129,15 @@ def _draw_runs(swept: SweptRuns, runs: Sequence[Run], error: ErrorOf, axes: Axes
     known = [(run.cost(swept.against), run.error(error) or 0.0) for run in runs]
     axes.plot(*np.reshape([point for point in known if point[1] > floor], (-1, 2)).T, **line)
     axes.set(xscale="log", yscale="log", xlabel=COST_LABELS[swept.against], ylabel=ERROR_LABELS[error])
+
+
+def _draw_cheapest(swept: SweptRuns, axes: Axes) -> None:
+    """Draw a line at the tolerance, and a star at the cheapest run within it, with its method and step."""
+    axes.axhline(swept.tolerance, color="0.4", linewidth=0.6, label=f"tolerance {swept.tolerance:g}")
+    if run := swept.cheapest:
+        place = run.cost(swept.against), max(run.trajectory_error or 0.0, swept.reference_error)
+        label = f"cheapest: {run.method.name}, h = {run.h:g} s"
+        axes.plot(*place, "*", markersize=9, color=ACCENT, zorder=ABOVE_THE_AXES, label=label)
 
 
 def trade_figures(swept: SweptRuns, scene: str) -> dict[str, Callable[[], Figure]]:

@@ -55,7 +55,7 @@ EXAMPLES = (
     "verify --scene driven_four_bar --h 0.01 --alpha 0.5 --beta 0.1 --floquet",
     "verify --scene driven_four_bar --h 0.01 --method SYM --accuracy",
     f"tradeoff --scene pendulum --method SYM --h 0.01 --h 0.02 --time 0.1 --workers 1 {SMALL}",
-    f"tradeoff --predicted --method SYM --level 0.9 --h 0.01 --omega 2 {SMALL}",
+    "tradeoff --predicted --method SYM --level 0.9 --h 0.01 --omega 2 --table none",
     "extremes --short",
 )
 """Together they print every kind of row."""

@@ -3,7 +3,9 @@
 from fractions import Fraction
 from functools import cache
 
-from bezstab.evidence import ReferenceRun, Run, Sweep, measured_runs, reference_run, swept_runs
+import numpy as np
+
+from bezstab.evidence import Cost, ReferenceRun, Run, Sweep, measured_runs, reference_run, swept_runs
 from bezstab.mechanism import load_scene
 from bezstab.methods import lookup
 
@@ -42,3 +44,11 @@ def swept(name: str, steps: tuple[float, ...], point: tuple[float, float] | None
     """Return the runs of that sweep, the largest step first."""
     sweep = small_sweep(name, steps, point)
     return swept_runs(sweep, measured_runs(sweep))
+
+
+def cost_for(error: float | None, runs: list[Run], against: Cost) -> float:
+    """Return the cost at which the trajectory error falls to `error`, by a power law between neighbours; else nan."""
+    assert error
+    errors = [np.log(run.trajectory_error or np.nan) for run in runs[::-1]]  # ascending, as the costs fall
+    costs = [np.log(run.cost(against)) for run in runs[::-1]]
+    return float(np.exp(np.interp(np.log(error), errors, costs, left=np.nan, right=np.nan)))

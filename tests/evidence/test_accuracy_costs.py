@@ -1,20 +1,22 @@
 """Errors, costs and orders of swept runs, their Pareto fronts, and the reference that they are compared with."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from bezstab.errors import NumericalError
-from bezstab.evidence import METHODS, Cost, ErrorOf, SweptRuns, reference_run
+from bezstab.evidence import METHODS, NO_FEEDBACK, Cost, ErrorOf, SweptRuns, measured_runs, reference_run, swept_runs
 from bezstab.evidence.accuracy_costs import pareto_front
-from bezstab.evidence.sweep_summaries import cost_for, known_costs
 from bezstab.mechanism import load_scene
 from bezstab.methods import accuracy, evaluations, lookup
 from bezstab.rationals import exact
+from bezstab.stabilising import after_step
 from bezstab.stability import choose
 from tests.evidence.samples import of_campaign
-from tests.evidence.small_sweeps import DURATION, OMEGA, SOFT, reference, swept
+from tests.evidence.small_sweeps import DURATION, OMEGA, SOFT, cost_for, reference, small_sweep, swept
 from tests.reference.undominated import Point, undominated
 
 QUICK = ("B4", "ABM4", "RK4", "SYM")
@@ -66,13 +68,31 @@ def test_strong_feedback_costs_rk4_what_the_front_page_says() -> None:
 
 @pytest.mark.slow
 def test_b4_costs_against_ab4_what_the_front_page_says_and_rk4_as_much_as_ab4() -> None:
-    b4, ab4 = known_costs(swept("B4", (1e-4, 2e-4))), known_costs(swept("AB4", (0.0004, 0.0008, 0.0016, 0.0032)))
-    rk4 = known_costs(swept("RK4", (0.0032, 0.008, 0.0125)))
-    least_error = min(error for _, error in b4)
+    b4, ab4 = swept("B4", (1e-4, 2e-4)), swept("AB4", (0.0004, 0.0008, 0.0016, 0.0032))
+    rk4 = swept("RK4", (0.0032, 0.008, 0.0125))
+    least_error = b4[-1].trajectory_error
     assert least_error == pytest.approx(1.2e-6, rel=0.05)
-    dear, cheap, same = (cost_for(least_error, each) or np.nan for each in (b4, ab4, rk4))
+    dear, cheap, same = (cost_for(least_error, each, "evaluations") for each in (b4, ab4, rk4))
     assert dear / cheap == pytest.approx(17, rel=0.05)
     assert 0.5 < same / cheap < 2
+
+
+@pytest.mark.parametrize(("name", "order"), [("RK4", 2), ("AB4", 5)])
+def test_at_one_point_of_the_plane_while_h_shrinks_stages_lose_order(name: str, order: int) -> None:
+    fine, coarse = (run.measured_error or np.nan for run in swept(name, (5e-4, 1e-3), (0.5, 0.1))[::-1])
+    assert np.log2(coarse / fine) == pytest.approx(order, abs=0.1)
+
+
+@pytest.mark.parametrize(("name", "times"), [("RK4", 1.2), ("SYM", 4.4)])
+def test_projection_costs_what_the_front_page_says_for_the_same_trajectory(name: str, times: float) -> None:
+    """In factorizations, on a free mechanism; at equal steps it is nearer to the constraints by far."""
+    sweep = small_sweep(name, (8e-4, 1.6e-3))
+    projected = replace(sweep, point=NO_FEEDBACK, omega=None, after=after_step("projection"))
+    held, exact = (swept_runs(each, measured_runs(each)) for each in (sweep, projected))
+    error = max(runs[-1].trajectory_error or np.inf for runs in (held, exact))
+    found = cost_for(error, exact, "projection") / cost_for(error, held, "projection")
+    assert found == pytest.approx(times, rel=0.05)
+    assert exact[-1].c_max < 4e-12 < held[-1].c_max
 
 
 def test_a_run_that_fails_is_kept_and_says_so() -> None:
@@ -91,7 +111,7 @@ def test_a_run_that_fails_is_kept_and_says_so() -> None:
 def test_a_sweep_knows_its_fronts(against: Cost) -> None:
     runs = [*swept("B2", (0.004, 0.0125), SOFT), *swept("AB4", (0.004, 0.0125), SOFT)]
     assert any(run.failure for run in runs)  # AB4 at the larger step
-    whole = SweptRuns(runs, reference().error, against)
+    whole = SweptRuns(runs, reference().error, 1e-6, against)
     of: ErrorOf
     for of, letter in (("trajectory", "T"), ("constraint", "c")):
         front, points = whole.front(of), [(run.cost(against), run.error(of)) for run in runs]

@@ -36,7 +36,14 @@ def test_smaller_steps_cost_more_and_err_less() -> None:
     assert larger.trajectory_error
     assert smaller.trajectory_error
     assert smaller.trajectory_error < larger.trajectory_error
-    assert any("SYM" in sentence for sentence in QUESTION.sentences(swept, 1.0))
+
+
+def test_the_cheapest_within_the_tolerance_takes_the_largest_step_that_is_good_enough() -> None:
+    measured = [measured_runs(sweep) for sweep in QUESTION.sweeps]
+    larger, smaller = (run.trajectory_error or 0.0 for run in QUESTION.swept(measured).runs)
+    for tolerance, h in ((larger, 0.02), (smaller, 0.01), (smaller / 2, None)):
+        cheapest = replace(QUESTION, tolerance=Fraction(tolerance)).swept(measured).cheapest
+        assert (cheapest.h if cheapest else None) == h
 
 
 def test_a_front_has_the_speeds_that_were_asked_for() -> None:

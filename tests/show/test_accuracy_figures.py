@@ -11,8 +11,8 @@ from matplotlib.contour import QuadContourSet
 from bezstab.methods import lookup
 from bezstab.motion import motion_energy
 from bezstab.questions import MapAnswer, MapQuestion
-from bezstab.show.map_figures import error_front_figure, map_figure
-from bezstab.stability import FrontPoint, combined_error, spectral_radius
+from bezstab.show.map_figures import map_figure
+from bezstab.stability import combined_error, spectral_radius
 from tests.show.drawn import lines_of
 
 OMEGA_H = Fraction(1, 100)
@@ -66,14 +66,3 @@ def test_energy_is_kept_on_the_line_that_says_so_and_symplectic_euler_brakes_ins
     assert beta_hat[alpha_hat < 0.009] == pytest.approx((1e-4 - alpha_hat**2)[alpha_hat < 0.009], rel=0.1)
     inside, outside = (motion_energy(lookup("SYM"), 0.005, b, 0.01).growth() for b in (4e-5, 3e-4))
     assert inside < 0 < outside
-
-
-def test_the_front_figure_has_every_point_of_every_front() -> None:
-    def point(name: str, z_abs: float, error: float) -> FrontPoint:
-        return FrontPoint(lookup(name), 0.01, z_abs, z_abs, 0.0, 0.0, error, 0.0, error)
-
-    fronts = [[point("RK4", 0.99, 1e-9), point("RK4", 0.5, 1e-5), point("RK4", 0.0, 1e-2)], [point("B4", 0.9, 1e-4)]]
-    (axes,) = error_front_figure(fronts).axes
-    lines = lines_of(axes)
-    assert lines["RK4"].tolist() == [[0.99, 1e-9], [0.5, 1e-5]]  # deadbeat is infinitely far away
-    assert lines["B4"].tolist() == [[0.9, 1e-4]]
