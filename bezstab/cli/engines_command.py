@@ -12,19 +12,21 @@ from bezstab.show import ENGINES_LISTED, engine_row
     changed("h", default="0.001"),
     changed("alpha", help="α̂: with --beta, say what to set for this point."),
     changed("beta", help="β̂."),
+    changed("omega", help="The rate of a motion in 1/s: how much of its energy does that, or else the default, give?"),
     "form",
 )
-def engines(h: Fraction, point: TypedPoint) -> None:
+def engines(h: Fraction, point: TypedPoint, omega: Fraction | None) -> None:
     """List what other engines call the feedback, and what to set.
 
     "level" is where an engine applies the feedback. acceleration: true Baumgarte feedback, and the integrator
     decides. velocity or position: the engine feeds the error back into velocities or positions; each such step is a
     step of the method named. "left out" is what the conversion does not cover. "rests on" says whether we ran the
-    engine itself or rely on its source.
+    engine itself or rely on its source. "a spinning body" is what happens to the energy of a body that spins about a
+    pin, by θ = ωh in a step. With --omega a column says how large a share of it a second adds.
 
     Example: bezstab engines --alpha 1 --beta 0.2 --h 0.002
     """
-    show_rows(ENGINES_LISTED, (engine_row(engine, point.numbers, h) for engine in ENGINES.values()))
+    show_rows(ENGINES_LISTED, (engine_row(engine, point.numbers, h, omega) for engine in ENGINES.values()))
     show_text("\nAnd others, by what they run underneath:\n")
     for name, engine in ENGINE_ALIASES.items():
         show_text(f"{name}: another name of {engine}")

@@ -146,6 +146,7 @@ GENESIS = Engine(
 
 CROCODDYL = Engine(
     name="crocoddyl",
+    energy_class="acceleration",
     level="acceleration",
     parameters={"gains[0]": "1/s^2", "gains[1]": "1/s"},
     read=point_of_gains,
@@ -247,6 +248,7 @@ CHRONO_EXPLICIT = Engine(
 
 BRAX_SPRING = Engine(
     name="brax-spring",
+    energy_class="bias",
     level="acceleration",
     parameters={"constraint_stiffness": "N/m", "constraint_vel_damping": "N s/m"},
     optional={"mass": "kg"},

@@ -135,6 +135,7 @@ def _write_xpbd(alpha_hat: float, beta_hat: float, h: float) -> tuple[float, ...
 
 XPBD = Engine(
     name="xpbd",
+    energy_class="projected",
     level="position",
     method="implicit-euler",
     parameters={"compliance": "m/N"},

@@ -457,6 +457,7 @@ def _jolt_spring_step(iterations: int, h: Fraction, frequency: Fraction, damping
 
 JOLT_SPRING = Engine(
     name="jolt-spring",
+    energy_class="bias",
     level="velocity",
     method="implicit-euler",
     parameters={"mFrequency": "Hz", "mDamping": "-"},

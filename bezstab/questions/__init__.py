@@ -10,7 +10,14 @@ from typing import TYPE_CHECKING
 from bezstab.lazy import lazy_names
 
 if TYPE_CHECKING:
-    from bezstab.questions.answering import Answer, CheckedRole, Gain, LargestStep, answers
+    from bezstab.questions.answering import (
+        Answer,
+        CheckedRole,
+        Gain,
+        LargestStep,
+        answers,
+        engine_energy_rate,
+    )
     from bezstab.questions.chains import ChainMap, chain_map
     from bezstab.questions.growing_runs import growing_run
     from bezstab.questions.held_drives import HeldAnswer, HeldQuestion, UsedUp, held_answers, held_gains

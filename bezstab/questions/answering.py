@@ -15,7 +15,7 @@ from fractions import Fraction
 from functools import cached_property
 from typing import Literal, cast
 
-from bezstab.engines import DRIVE_METHODS, READ_BACK, Curve, Engine
+from bezstab.engines import DRIVE_METHODS, READ_BACK, Curve, Engine, Point, engine_and_values
 from bezstab.errors import InputError, NumericalError
 from bezstab.goals import UP_TO_LONGEST, Goal
 from bezstab.methods import Method, stage_torque
@@ -197,7 +197,10 @@ class Answer(Choice):
     def spins(self) -> bool:
         """Whether `energy_rate` is that of a body on a pin: in an engine of a known class, by its own steps."""
         engine = self.question.engine
-        return engine is not None and engine.energy_class is not None and self.method.name == engine.method
+        if engine is None or engine.energy_class is None or self.method.name != engine.method:
+            return False
+        damped = self.method.name == "implicit-euler" and self.alpha_hat > 0  # XPBD's damping has no map
+        return not (engine.energy_class == "projected" and damped)
 
     @property
     def impedance(self) -> float | None:
@@ -220,6 +223,8 @@ class Answer(Choice):
             return None
         if engine and engine.energy_class and self.spins:
             point, theta = (self.alpha_hat, self.beta_hat), float(omega) * h
+            if self.method.name == "implicit-euler":  # what its step takes back, as shares of the step before
+                point = (sum(point) / (1 + sum(point)), self.beta_hat / (1 + sum(point)))
             rate = 2 * spin_change(engine.energy_class, *point, theta, self.impedance or 1.0) / h
             return rate, rate
         if engine and engine.level != "acceleration":
@@ -631,6 +636,22 @@ def answers(question: Question, *, margins: bool = True) -> Iterator[Answer]:
             of_drive = question.drive is not None
             choice = describe_point(method, label, *point, question.spread, margins, of_drive=of_drive)
             yield _answer(question, "given", choice)
+
+
+def engine_energy_rate(engine: Engine, point: Point | None, h: Fraction, omega: Fraction) -> float | None:
+    """Return what a second adds to the energy of a motion (rate omega, 1/s) at a point, without one at the defaults.
+
+    As `Answer.energy_rate`; None, too, where an engine has no such values, or no integrator of its own. InputError for
+    a motion that turns too far in a step, or hardly.
+    """
+    try:
+        values = tuple(map(rational, engine.values(point, h))) if point else engine_and_values(engine.name)[1]
+        question = Question(engine=engine, values=values, h=h, omega=omega)
+    except InputError:
+        return None
+    _ = question.motion  # is checked
+    rate = next(answers(question, margins=False)).energy_rate
+    return None if rate is None else rate[0]
 
 
 def _answer(question: Question, role: Role, choice: Choice) -> Answer:

@@ -8,6 +8,14 @@ MOST_FIXED = 1e6  # a modulus from here on is shown with an exponent
 LIMITS = ("alpha_hat_min", "alpha_hat_max", "beta_hat_min", "beta_hat_max")
 """The ends of a region's ranges, as rows name them."""
 
+SPINNING = {
+    "acceleration": "gains, as θ⁴",
+    "bias": "loses, as θ⁴",
+    "beside": "loses θ² a step",
+    "projected": "loses 2θ² a step",
+}
+"""What becomes of the energy of a body that spins by θ in a step, by the class of an engine."""
+
 NAMES_ROOM = 22
 """Letters of the longest name in the list of methods."""
 

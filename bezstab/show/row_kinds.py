@@ -10,6 +10,7 @@ from functools import partial
 from operator import itemgetter
 
 from bezstab.show.cells import (
+    SPINNING,
     any_or_missing,
     any_speed,
     constant_text,
@@ -24,7 +25,7 @@ from bezstab.show.cells import (
     unbounded,
     used_up_text,
 )
-from bezstab.show.fields import Field, RowKind, column, integer, number, text, truth
+from bezstab.show.fields import MISSING, Field, RowKind, column, integer, number, text, truth
 from bezstab.show.sentences import (
     chain_sentence,
     measurement_sentence,
@@ -339,7 +340,8 @@ MOVING = (
 # what --omega adds without a scene
 ENERGY_RATE = number(
     "energy_rate",
-    "What a second adds to the energy of a motion of that rate, which varies by 30 %, as a share of it",
+    "What a second adds to the energy of a motion of that rate, which varies by 30 %, or in an engine of a body that "
+    "spins about a pin, as a share of it",
     "energy gained a second",
     ".2e",
     null="without --omega, or where an error grows",
@@ -924,6 +926,17 @@ ENGINES_LISTED = RowKind(
         text("optional", "Which of the parameters may be left away", "then"),
         text("units", "Units of the parameters, in their order", "units"),
         SETTING,
+        text(
+            "energy_class",
+            "How the engine takes errors back, which decides what a step does to the energy of a body that spins about "
+            "a pin: motion/README.md",
+            "a spinning body",
+            text=lambda row: SPINNING[row["energy_class"]],
+            otherwise=lambda row: "by the integrator" if row["level"] == "acceleration" else MISSING,
+            null="where the integrator decides, or nothing spins",
+            values_of="engines.EnergyClass",
+        ),
+        ENERGY_RATE,
         text(
             "witness",
             "With which engine a run has confirmed the conversion",

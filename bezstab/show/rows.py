@@ -204,8 +204,15 @@ def chain_rows(engine: Engine, found: ChainMap) -> list[Row]:
     ]
 
 
-def engine_row(engine: Engine, point: tuple[Fraction, Fraction] | None, h: Fraction) -> Row:
-    """Return an engine's words, and its setting for (alpha_hat, beta_hat) at a step h (s), or why it has none."""
+def engine_row(
+    engine: Engine, point: tuple[Fraction, Fraction] | None, h: Fraction, omega: Fraction | None = None
+) -> Row:
+    """Return an engine's words, and its setting for (alpha_hat, beta_hat) at a step h (s), or why it has none.
+
+    With a rate omega (1/s) also what that, or else its defaults, do to the energy of a motion.
+    """
+    from bezstab.questions import engine_energy_rate
+
     setting = None
     if point:
         try:
@@ -213,7 +220,9 @@ def engine_row(engine: Engine, point: tuple[Fraction, Fraction] | None, h: Fract
         except InputError as error:
             setting = str(error)
     units = tuple(engine.units.values())
-    return ENGINES_LISTED.row(engine, units=units, witness=WITNESSES.get(engine.name), setting=setting)
+    rate = None if omega is None else engine_energy_rate(engine, point, h, omega)
+    known = {"units": units, "witness": WITNESSES.get(engine.name), "setting": setting, "energy_rate": rate}
+    return ENGINES_LISTED.row(engine, **known)
 
 
 def answer_row(answer: Answer) -> Row:

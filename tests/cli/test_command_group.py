@@ -44,7 +44,7 @@ ENGINES = ["mujoco=0.02,1", "mujoco=0,0", "bullet=0.2", "box2d=60,-2", "drake=1e
 TYPED = {
     "poles": ["--alpha", "--beta", "--h", "--physical", "--all-poles", "--omega"],
     "check": ["--alpha", "--beta", "--h", "--physical", "--omega", "--engine"],
-    "engines": ["--alpha", "--beta", "--h"],
+    "engines": ["--alpha", "--beta", "--h", "--omega"],
     "methods": ["--latex"],
     "region --figure none --table none": ["--level", "--h", "--compare", "--engine"],
 }

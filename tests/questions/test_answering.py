@@ -15,10 +15,12 @@ from bezstab.errors import InputError
 from bezstab.goals import Goal
 from bezstab.mechanism import Mechanism
 from bezstab.methods import Method, lookup
-from bezstab.questions import Answer, LargestStep, Question, answering, answers
+from bezstab.motion import spin_change
+from bezstab.questions import Answer, LargestStep, Question, answering, answers, engine_energy_rate
 from bezstab.questions.scene_runs import SceneRun
-from bezstab.rationals import exact
+from bezstab.rationals import exact, rational
 from bezstab.stability import choose, describe_point, feedback_cost
+from tests.reference.engine_steps import STEPS, matrix
 
 SYM = (lookup("SYM"),)
 ONE = Fraction(1)
@@ -298,6 +300,20 @@ def test_a_choice_that_does_not_weigh_the_motion_says_what_that_costs(goal: Goal
 def test_so_does_a_choice_for_a_chain_in_an_engine() -> None:
     chain = Question(engine=ENGINES["chipmunk"], goal="robust", h=Fraction(1, 60), omega=Fraction(6))
     assert "A body that spins about a pin at 6 rad/s loses" in first(chain).sentence
+
+
+@pytest.mark.parametrize(
+    ("name", "point"), [("bullet", (1, 0.2)), ("jolt-spring", (1, 0.5)), ("xpbd", (0, 4)), ("brax-spring", (0.3, 0.1))]
+)
+def test_a_row_says_what_the_engines_own_step_does_to_a_motion(name: str, point: tuple[float, float]) -> None:
+    """The shares that a step takes back, of velocity and error, are read from the step that the engine's source has."""
+    engine, h, omega = ENGINES[name], Fraction(1, 60), Fraction(6)
+    exact_point = (rational(str(point[0])), rational(str(point[1])))
+    (of_place, _), (taken, kept) = matrix(STEPS[name], float(h), *map(float, engine.values(exact_point, h)))
+    a, b = (1 - of_place, 0.0) if engine.energy_class == "projected" else (1 - kept, -taken * float(h))
+    assert engine.energy_class
+    expected = 2 * spin_change(engine.energy_class, a, b, float(omega * h)) / float(h)
+    assert engine_energy_rate(engine, exact_point, h, omega) == pytest.approx(expected, rel=1e-6)
 
 
 def test_an_engine_with_another_integrator_is_judged_by_that_integrator() -> None:
