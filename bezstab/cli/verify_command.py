@@ -6,12 +6,11 @@ import click
 
 from bezstab import evidence, questions, show
 from bezstab.cli.asking import asked, of_each, show_point
-from bezstab.cli.command_group import NUMERICAL_TROUBLE
 from bezstab.cli.options import Rule, changed, command, flag, option
 from bezstab.cli.output import Files, Work, for_reading, progress, results_of_chunks, show_rows, show_text, worked_out
 from bezstab.methods import Method
 
-WHICH_POINTS = ("--alpha", "--points", "--map", "--witness")
+WHICH_POINTS = ("--alpha", "--points", "--map")
 """Options each of which says what is verified."""
 
 
@@ -27,14 +26,11 @@ WHICH_POINTS = ("--alpha", "--points", "--map", "--witness")
     ),
     option("--map across", click.IntRange(2, 10000), "Simulate N×N points, and draw their verdicts."),
     flag("--floquet", "Also predict exactly, for a motion that repeats itself, by linearising its steps."),
-    flag("--accuracy", "Compare predicted and measured errors that the feedback makes."),
-    option("--witness", click.Choice(["mujoco"]), "Run the scene in this engine, with its own integrators."),
     changed("h", default="0.001"),
     "shared_out",
-    Rule(("--accuracy",), "it compares one point", excludes=("--points", "--map", "--witness", "--floquet")),
     Rule(WHICH_POINTS, "each says which points are verified", excludes=WHICH_POINTS),
 )
-def verify(across: int | None, accuracy: bool, witness: str | None, work: Work, files: Files, **typed: Any) -> int:
+def verify(across: int | None, work: Work, files: Files, **typed: Any) -> int:
     """Compare predicted poles with poles measured in a simulation.
 
     Two runs start with opposite kicks. The dominant pole is fitted to their difference. If no pole can be measured, the
@@ -42,45 +38,18 @@ def verify(across: int | None, accuracy: bool, witness: str | None, work: Work, 
     bounds for the motion; and with --floquet the exact one.
 
     --map runs a simulation at each of N×N points and draws the verdicts under the exact boundary. --workers or
-    --scheduler share the work. --resume continues a run that was stopped. --witness mujoco runs the scene in MuJoCo, at
-    0.9 and 1.1 times the boundary of each of its integrators.
-
-    --accuracy compares the errors that the feedback makes, in m or rad, as predicted and as measured in runs. It takes
-    0.2 to 1 times α and β of the point (or of choose --goal robust), with steps of --h and of half of it. Exit status 1
-    if measured over predicted differs from one by more than a quarter. Exit status 3 if nothing can be compared,
-    because a run broke down or rounding is as large.
+    --scheduler share the work. --resume continues a run that was stopped.
 
     Example: bezstab verify --method AB4 --points 20
     """
     question = asked(questions.VerifyQuestion, **typed)
     worked_out(lambda: question.mechanism, typed["scene"])
-    if accuracy:
-        return _show_forced_errors(question, typed)
-    if witness:
-        witnesses = evidence.mujoco_witnesses(question.mechanism, float(question.h))
-        runs = progress(witnesses, "MuJoCo", evidence.witness_count())
-        show_rows(show.WITNESSED, [show.WITNESSED.row(run, scene=question.mechanism.scene.name) for run in runs])
-    elif across:
+    if across:
         rows, status = of_each(question.methods, lambda method: [_write_map(question, method, across, work, files)])
         show_rows(show.VERDICT_MAPS, rows)
         return status
-    else:
-        _show_measurements(question, typed)
+    _show_measurements(question, typed)
     return 0
-
-
-def _show_forced_errors(question: "questions.VerifyQuestion", typed: dict[str, Any]) -> int:
-    """Print predicted and measured errors at shares of a point's gains; return whether all hold, or an exit status."""
-    by_method = [
-        list(progress(question.forced_errors(method), method.name, len(evidence.SHARES))) for method in question.methods
-    ]
-    every_pair = [pair for of_method in by_method for pair in of_method]
-    scene = question.mechanism.scene.name
-    show_point(typed, question.point)
-    show_rows(show.FORCED, (row for pair in every_pair for row in show.forced_rows(scene, pair)))
-    show_text("\n" + "\n".join(map(evidence.forced_sentence, by_method)))
-    outcomes = {pair.holds for pair in every_pair}
-    return NUMERICAL_TROUBLE if None in outcomes else outcomes == {True}
 
 
 def _show_measurements(question: "questions.VerifyQuestion", typed: dict[str, Any]) -> None:

@@ -1,4 +1,4 @@
-"""Whether the prediction holds: measured poles, outside witnesses, what accuracy costs.
+"""Whether the prediction holds: measured poles, predicted errors, what accuracy costs.
 
 The only room in which stability and mechanism meet.
 """
@@ -23,7 +23,6 @@ if TYPE_CHECKING:
         swept_runs,
     )
     from bezstab.evidence.extremes import Check, extreme_checks
-    from bezstab.evidence.forced_runs import SHARES, HalvedStep, forced_sentence, halved_steps
     from bezstab.evidence.logs import (
         UNEVEN,
         Log,
@@ -44,7 +43,6 @@ if TYPE_CHECKING:
     from bezstab.evidence.mujoco_controllers import MotorGains
     from bezstab.evidence.mujoco_lint import linted_model
     from bezstab.evidence.mujoco_models import model_data, read_mujoco_model
-    from bezstab.evidence.mujoco_witness import TIMES, Outcome, mujoco_witnesses, witness_count
     from bezstab.evidence.parallel import Arrays, KeptResults, completed_chunks, joblib_is_installed
     from bezstab.evidence.probed_poles import (
         Likeness,

@@ -1,19 +1,18 @@
-"""Whether predictions hold: poles and errors as they are predicted, against those that are measured in runs.
+"""Whether predictions hold: poles as they are predicted, against those that are measured in runs.
 
-scene, methods, a step, a point or none   →   VerifyQuestion   →   measured poles, or errors at shares of the gains
+scene, methods, a step, a point or none   →   VerifyQuestion   →   measured poles
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
 import numpy as np
 
 from bezstab.engines import Point
-from bezstab.evidence import HalvedStep, Measurement, halved_steps, measure_poles, random_points
+from bezstab.evidence import Measurement, measure_poles, random_points
 from bezstab.methods import Method
 from bezstab.questions.motions import SceneQuestion
-from bezstab.stability import choose
 
 RANDOM_POINTS = 20
 
@@ -39,13 +38,3 @@ class VerifyQuestion(SceneQuestion):
         else:
             alpha_hat, beta_hat = (np.array([float(each)]) for each in self.point)
         return measure_poles(self.mechanism, method, float(self.h), alpha_hat, beta_hat, self.floquet)
-
-    def forced_errors(self, method: Method) -> Iterator[HalvedStep]:
-        """Yield predicted and measured errors at shares of the gains of the point, else of the goal robust."""
-        if self.point:
-            alpha_hat, beta_hat = map(float, self.point)
-        else:
-            chosen = choose(method, "robust", margins=False)
-            alpha_hat, beta_hat = chosen.alpha_hat, chosen.beta_hat
-        duration = self.mechanism.scene.duration
-        return halved_steps(self.mechanism, method, float(self.h), (alpha_hat, beta_hat), duration)

@@ -33,7 +33,6 @@ from bezstab.show.row_kinds import (
     ENGINES_LISTED,
     EXTREMES,
     FIELDS,
-    FORCED,
     FRONTS,
     HELD,
     LARGEST_STEPS,
@@ -52,13 +51,11 @@ from bezstab.show.row_kinds import (
     SUMMARIES,
     SWEPT,
     VERDICT_MAPS,
-    WITNESSED,
 )
 from bezstab.show.rows import (
     answer_row,
     chain_rows,
     engine_row,
-    forced_rows,
     largest_step_row,
     left_out,
     map_rows,

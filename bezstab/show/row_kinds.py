@@ -35,7 +35,6 @@ from bezstab.show.sentences import (
     step_sentence,
     verdict_map_sentence,
     whole_method_sentence,
-    witness_sentence,
 )
 from bezstab.words import times_words
 
@@ -278,7 +277,7 @@ MEASURED_VERDICT = text(
     "measured_verdict",
     "Verdict of the simulation",
     "measured verdict",
-    values_of="evidence.MeasuredVerdict evidence.Outcome",
+    values_of="evidence.MeasuredVerdict",
 )
 REASON = text(
     "reason",
@@ -1136,64 +1135,6 @@ VERDICT_MAPS = RowKind(
     ),
     sentence=verdict_map_sentence,
 )
-# printed by `verify --accuracy`
-FORCED = RowKind(
-    "what a method forces on a mechanism",
-    fields=(
-        SCENE.hidden,
-        METHOD,
-        number("gain_share", "Factor on alpha and beta of the point that was chosen or given", "gains"),
-        ALPHA_HAT,
-        BETA_HAT,
-        H,
-        PREDICTED_ERROR.of("predicted"),
-        MEASURED_ERROR.of("measured"),
-        number(
-            "quotient",
-            "Measured over predicted error, 1 if they agree",
-            "quotient",
-            ".3f",
-            null="where `reason` says why",
-        ),
-        number(
-            "predicted_order",
-            "Order in h of the predicted error between this and the next larger step",
-            "order predicted",
-            ".2f",
-            null="of the largest step",
-        ),
-        OBSERVED_ORDER,
-        REASON,
-    ),
-)
-# printed by `verify --witness`
-WITNESSED = RowKind(
-    "a run of an engine that is not ours",
-    fields=(
-        SCENE,
-        text("integrator", "What the other engine calls its integrator", "MuJoCo's integrator"),
-        METHOD,
-        ALPHA_HAT,
-        BETA_HAT,
-        number(
-            "times_boundary",
-            "Distance of the point from the origin, in those of the boundary on its ray",
-            "times the boundary",
-        ),
-        PREDICTED_Z_ABS,
-        PREDICTED_VERDICT,
-        MEASURED_VERDICT,
-        number(
-            "remaining",
-            "Largest constraint error in the last tenth of the run",
-            "largest |c| at the end (m)",
-            ".1e",
-            unit="m",
-        ),
-        RUN_STEPS,
-    ),
-    sentence=witness_sentence,
-)
 # printed by `probe`: three tables for reading, one list for programs
 PROBED = RowKind(
     "the pole in a column of a log, or a method beside it, or a point at which a method has it",
@@ -1382,8 +1323,6 @@ ROW_KINDS: Mapping[str, Sequence[RowKind]] = {
     "verify": (
         MEASUREMENTS,
         VERDICT_MAPS,
-        FORCED,
-        WITNESSED,
     ),
     "probe": (PROBED,),
     "tradeoff": (

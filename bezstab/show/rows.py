@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from fractions import Fraction
-from functools import partial
 from itertools import chain, compress
 from types import SimpleNamespace
 from typing import TYPE_CHECKING
@@ -25,7 +24,6 @@ from bezstab.show.row_kinds import (
     ENGINE_H_LIMIT,
     ENGINES_LISTED,
     EXCLUDES,
-    FORCED,
     LARGEST_STEPS,
     LISTED_METHODS,
     MOVING,
@@ -60,7 +58,7 @@ if TYPE_CHECKING:  # so that a small row does not load what makes the large ones
     from collections.abc import Iterable
 
     from bezstab.engines import Engine
-    from bezstab.evidence import HalvedStep, Likeness, LikePoint
+    from bezstab.evidence import Likeness, LikePoint
     from bezstab.questions import Answer, ChainMap, LargestStep, MapAnswer, Question, RegionAnswer
     from bezstab.stability import FrontPoint
 
@@ -167,18 +165,6 @@ def _nowhere(answer: RegionAnswer) -> str | None:
     if not answer.region.fixed_poles:
         return None
     return f"stable nowhere: a pole stays at {pole_place(answer.region.fixed_poles[0])} whatever α̂ and β̂"
-
-
-def forced_rows(scene: str, pair: HalvedStep) -> list[Row]:
-    """Return what two runs at one point were predicted to force and did, the larger step first; SI units.
-
-    None where there is nothing to compare; orders are between the two, and stand in the row of the smaller step.
-    """
-    of_pair = partial(FORCED.row, scene=scene, gain_share=pair.share)
-    return [
-        of_pair(pair.whole, predicted_order=None, observed_order=None),
-        of_pair(pair.half, predicted_order=pair.predicted_order, observed_order=pair.observed_order),
-    ]
 
 
 def nearest(likenesses: Sequence[Likeness]) -> list[Likeness]:

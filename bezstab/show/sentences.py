@@ -82,12 +82,6 @@ def verdict_map_sentence(row: Row) -> str:
     return f"{row['method']}: {given}; {row['disagreeing']} that are not too close to call differ."
 
 
-def witness_sentence(row: Row) -> str:
-    """Return what the other engine did against what was predicted."""
-    as_predicted = "as" if row["measured_verdict"] == row["predicted_verdict"] else "NOT as"
-    return f"MuJoCo's {row['integrator']}: {row['measured_verdict']}, {as_predicted} predicted."
-
-
 def chain_sentence(row: Row) -> str:
     """Return from how many sweeps a chain is stable, and what a step does with the engine's own number of them."""
     z_abs, stable = row["swept_z_abs"], row["stable_iterations"]

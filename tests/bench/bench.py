@@ -23,7 +23,6 @@ from numpy.typing import NDArray
 
 from bezstab.evidence import map_rows, simulated_verdicts
 from bezstab.evidence.exact_rates import exact_rates
-from bezstab.evidence.mujoco_witness import model_xml
 from bezstab.evidence.verdict_maps import MapRows
 from bezstab.mechanism import (
     Mechanism,
@@ -56,6 +55,7 @@ HERE = Path(__file__).parent
 sys.path.insert(0, str(HERE.parent.parent))  # run as a script, the tests are no package yet
 
 from tests.bench.timing import interleaved  # noqa: E402
+from tests.evidence.mujoco_witness import model_xml  # noqa: E402
 from tests.reference.companion_poles import radius  # noqa: E402
 from tests.reference.fifty_digit_poles import modulus_from_p  # noqa: E402
 from tests.reference.literal_equation_9 import literal_equation_9  # noqa: E402

@@ -24,18 +24,3 @@ def test_what_is_thrown_apart_at_once_diverges_and_seconds_are_understood() -> N
 def test_exact_rates_are_said_to_be_along_which_motion(scene: str, method: str, said: str) -> None:
     asked = f"verify --scene {scene} --method {method} --alpha 0.5 --beta 0.1 --h 0.01 --floquet"
     assert said in run(asked).stdout.replace("\n", " ")
-
-
-@pytest.mark.parametrize(
-    ("options", "status", "said"),
-    [
-        # 40 steps a turn of the crank: AB4's fifth derivative needs the tenfold
-        ("--scene driven_four_bar --h 0.025 --method AB4", 1, "the prediction does NOT hold"),
-        ("--scene driven_four_bar --h 0.004 --method SYM", 0, "the prediction holds"),
-        ("--method ABM4", 3, "ABM4: nothing could be compared."),  # 4e-16 m: as small as rounding
-    ],
-)
-@pytest.mark.slow
-def test_whether_the_prediction_holds_is_the_exit_status(options: str, status: int, said: str) -> None:
-    result = run("verify --accuracy", options)
-    assert (result.exit_code, said in result.stdout) == (status, True)

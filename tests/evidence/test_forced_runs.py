@@ -1,13 +1,13 @@
 """The constraint error that a method forces on a moving mechanism: predicted in metres, none fitted, and measured."""
 
+from collections.abc import Iterator, Sequence
 from itertools import product
 
 import numpy as np
 import pytest
 
-from bezstab.errors import InputError
-from bezstab.evidence.forced_runs import SHARES, ForcedMotion, HalvedStep, forced_motions, halved_steps
-from bezstab.mechanism import compiled_mechanism, load_scene, motion, simulate
+from bezstab.evidence.forced_runs import predicted_errors, settled_error
+from bezstab.mechanism import compiled_mechanism, load_scene, motion, simulate, simulated
 from bezstab.methods import RungeKutta, lookup
 from bezstab.stability import choose
 from bezstab.units import feedback_gains
@@ -24,6 +24,9 @@ SCENES = {
 A driven mechanism without a freedom of its own follows its motion whatever the method; Andrews' has a spring.
 Without what turning normals add gauss4 would be off by half.
 """
+SHARES = (0.2, 0.3, 0.5, 0.7, 1.0)
+"""Of the robust alpha and beta: what is forced changes some hundredfold over them."""
+
 FEW = {("RK4", "driven_four_bar"), ("B4", "driven_four_bar"), ("hht", "driven_four_bar"), ("AB4", "andrews")}
 FEW |= {("SYM", "slider_crank_light"), ("gauss4", "slider_crank_light")}
 
@@ -34,6 +37,16 @@ def robust_point(name: str, share: float = 1.0) -> tuple[float, float]:
     return share * chosen.alpha_hat, share**2 * chosen.beta_hat
 
 
+def errors(name: str, scene: str, h: float, shares: Sequence[float], duration: float) -> Iterator[tuple[float, float]]:
+    """Yield the predicted and the measured error (m, rad) at shares of the robust alpha and beta."""
+    mechanism, method = compiled_mechanism(load_scene(scene)), lookup(name)
+    points = [robust_point(name, share) for share in shares]
+    for point, predicted in zip(points, predicted_errors(mechanism, method, h, points, duration), strict=True):
+        run = simulated(mechanism, method, h=h, duration=duration, alpha_hat=point[0], beta_hat=point[1])
+        assert run.failure is None
+        yield predicted, settled_error(run, run.t)
+
+
 @pytest.mark.parametrize(
     ("name", "scene"),
     sorted(of_campaign({*product(METHODS, SCENES)}, FEW)),
@@ -42,21 +55,19 @@ def robust_point(name: str, share: float = 1.0) -> tuple[float, float]:
 def test_measured_over_predicted_is_one_whatever_the_gains(name: str, scene: str) -> None:
     h, duration, allowed = SCENES[scene]
     shares = SHARES if scene != "andrews" else (0.2, 0.5, 1.0)  # whose implicit steps take long
-    points = [robust_point(name, share) for share in shares]
-    for found in forced_motions(compiled_mechanism(load_scene(scene)), lookup(name), h, points, duration):
-        assert found.failure is None
-        assert found.quotient == pytest.approx(1, abs=allowed)
+    for predicted, measured in errors(name, scene, h, shares, duration):
+        assert measured / predicted == pytest.approx(1, abs=allowed)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", of_campaign(["bs3", "hht", "SYM", "ABM4"], ["bs3", "SYM"]))
 def test_what_is_left_of_the_quotient_vanishes_with_the_step(name: str) -> None:
     """Where it is off the most, at the weakest gains: what it lacks is of the next order in h."""
-    crank = compiled_mechanism(load_scene("slider_crank_light"))
-    coarse, middle, fine = (
-        abs(forced_motions(crank, lookup(name), h, [robust_point(name, 0.2)], 2.0)[0].quotient - 1)
-        for h in (0.004, 0.002, 0.001)
-    )
+    off = []
+    for h in (0.004, 0.002, 0.001):
+        ((predicted, measured),) = errors(name, "slider_crank_light", h, [0.2], 2.0)
+        off.append(abs(measured / predicted - 1))
+    coarse, middle, fine = off
     assert fine < 0.7 * middle < 0.49 * coarse
 
 
@@ -92,39 +103,8 @@ def test_a_free_motion_drifts_in_proportion_to_the_step_unless_velocities_and_po
 
 
 @pytest.mark.slow
-def test_runs_at_shares_of_a_point_have_the_order_predicted() -> None:
-    four_bar = compiled_mechanism(load_scene("driven_four_bar"))
-    pairs = list(halved_steps(four_bar, lookup("RK4"), 0.004, robust_point("RK4"), 0.5))
-    assert [pair.share for pair in pairs] == list(SHARES)
-    for pair in pairs:
-        assert pair.whole.h == 2 * pair.half.h
-        assert pair.holds
-        assert pair.observed_order == pytest.approx(pair.predicted_order, abs=0.02)
-    assert pairs[-1].predicted_order == pytest.approx(2, abs=0.02)  # alpha_hat and beta_hat held: not four
-
-
-@pytest.mark.parametrize(
-    ("coarse", "fine", "predicted", "holds"),
-    [
-        (1.2, 0.8, 1.0, True),
-        (1.2, 0.7, 1.0, False),
-        (1.3, 0.8, 1.0, False),
-        (np.nan, 0.8, 1.0, None),
-        (1.0, 1.0, 9e-9, None),
-    ],
-)
-def test_a_prediction_holds_if_no_quotient_is_off_by_a_quarter(
-    coarse: float, fine: float, predicted: float, holds: bool | None
-) -> None:
-    """And says nothing of runs that broke down, nor of errors that are rounding."""
-    whole, half = (
-        ForcedMotion(lookup("RK4"), 0.01, 1, 1, 1e-6 * predicted, 1e-6 * measured, None if measured > 0 else "at 1 s")
-        for measured in (coarse, fine)
-    )
-    assert HalvedStep(1.0, whole, half).holds is holds
-
-
-def test_what_is_not_stable_is_refused() -> None:
-    four_bar = compiled_mechanism(load_scene("driven_four_bar"))
-    with pytest.raises(InputError, match=r"B4 is not stable at 1 times the gains of α̂ = 0.5, β̂ = 1"):
-        list(halved_steps(four_bar, lookup("B4"), 0.001, (0.5, 1.0), 0.5))
+def test_at_one_point_of_the_plane_rk4_keeps_order_two_of_four() -> None:
+    coarse, fine = (list(errors("RK4", "driven_four_bar", h, SHARES, 0.5)) for h in (0.004, 0.002))
+    orders = np.log2(np.divide(coarse, fine))
+    assert orders[:, 1] == pytest.approx(orders[:, 0], abs=0.02)
+    assert orders[-1] == pytest.approx(2, abs=0.02)

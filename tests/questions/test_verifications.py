@@ -13,9 +13,3 @@ def test_a_pole_is_measured_at_the_point() -> None:
     (found,) = VerifyQuestion(scene="pendulum", methods=(SYM,), h=Fraction("0.001"), point=point).measurements(SYM)
     assert (found.alpha_hat, found.beta_hat) == (0.5, 0.1)
     assert found.measured == pytest.approx(found.predicted, abs=1e-3)
-
-
-def test_errors_are_compared_at_the_robust_choice_unless_a_point_is_given() -> None:
-    question = VerifyQuestion(scene="driven_four_bar", methods=(SYM,), h=Fraction("0.004"))
-    share = next(iter(question.forced_errors(SYM)))
-    assert share.holds
