@@ -11,7 +11,6 @@ import numpy as np
 from bezstab.errors import InputError
 from bezstab.mechanism.equations import Mechanism
 from bezstab.mechanism.observation import (
-    NODES,
     FloatArray,
     Observation,
     energy_balance,
@@ -117,8 +116,8 @@ def simulated(
     run = simulate_steps(mechanism, method, steps, perturbed_state(mechanism, perturb), start, after=after)
     times = len(run.t)
     observation = observe(mechanism, run.t, run.q, run.v, *steps.gains[:times, :, 0].T)
-    nodes = 2 if sequence else NODES
-    driver_work, force_work, energy_drift = energy_balance(observation, steps.lengths[: times - 1], nodes)
+    apart = steps.lengths[: times - 1] if sequence else h * multiple
+    driver_work, force_work, energy_drift = energy_balance(observation, apart)
     return Simulation(
         **vars(run),
         **vars(observation),
