@@ -3,7 +3,6 @@
 Nothing in a scene is ever executed: every entry is a number, a name or a list of them.
 """
 
-import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -28,7 +27,6 @@ from bezstab.mechanism.scenes import (
 from bezstab.toml_tables import TomlTable, a_number, pair_of
 
 NOWHERE = (0.0, 0.0)  # no displacement, direction or force
-MOST_FOUR_BARS = 100  # in a chain: beyond any benchmark, so that a slip is refused rather than worked on for hours
 
 IN_PLACE_OF = {
     **dict.fromkeys(("rpm", "RPM"), "rate, in rad/s (2π/60 times the rpm)"),
@@ -69,9 +67,8 @@ def parse_scene(data: dict[str, Any]) -> Scene:
     name = top.text("name")
     gravity = top.point("gravity", default=NOWHERE)
     duration = top.positive_number("duration", default=DURATION)
-    chain_bodies, chain_joints, upright = _four_bar_chain(top)
 
-    bodies = (*(_body(table) for table in top.tables("body")), *chain_bodies)
+    bodies = tuple(_body(table) for table in top.tables("body"))
     body_names = [body.name for body in bodies]
     for number, body_name in enumerate(body_names):
         if body_name in (GROUND, *body_names[:number]):
@@ -80,7 +77,7 @@ def parse_scene(data: dict[str, Any]) -> Scene:
     if not coordinates:
         raise top.mistake("no body has a free coordinate")
 
-    joints = (*(_joint(table, body_names, coordinates) for table in top.tables("joint")), *chain_joints)
+    joints = tuple(_joint(table, body_names, coordinates) for table in top.tables("joint"))
     if not joints:
         raise top.mistake("no joint, hence no constraint to stabilise")
     forces = tuple(_force(table, body_names) for table in top.tables("force"))
@@ -91,7 +88,7 @@ def parse_scene(data: dict[str, Any]) -> Scene:
     velocity = initial.numbers("velocity", allowed=coordinates)
     guess = initial.numbers("guess", allowed=coordinates)
     top.refuse_unknown_keys()
-    return Scene(name, gravity, bodies, joints, forces, springs, position, velocity, {**upright, **guess}, duration)
+    return Scene(name, gravity, bodies, joints, forces, springs, position, velocity, guess, duration)
 
 
 def _body(table: TomlTable) -> Body:
@@ -182,42 +179,3 @@ def _spring(table: TomlTable, body_names: Sequence[str]) -> Spring:
     if stiffness == damping == 0:
         raise table.mistake("stiffness and damping are both 0: expected one of them positive")
     return Spring(*ends, stiffness, free_length, damping)
-
-
-Chain = tuple[tuple[Body, ...], tuple[Joint, ...], dict[str, float]]
-"""The bodies and joints of a scene that a chain of four-bars makes, and the guess that stands it upright."""
-
-
-def _four_bar_chain(top: TomlTable) -> Chain:
-    """Return the chain of the table four_bar_chain, an empty one without such a table.
-
-    Parallel four-bars in a row: count + 1 rods pivoted on the ground, couplers between their tips.
-
-        o---coupler0---o---coupler1---o
-        |              |              |
-      rod0           rod1           rod2        all of `length` (m) and `mass` (kg)
-        |              |              |
-      --o--------------o--------------o--       the pivots a length apart on the ground
-
-    The N-four-bar benchmark of Gonzalez et al.
-    """
-    table = top.table("four_bar_chain")
-    if "four_bar_chain" not in top.data:
-        return (), (), {}
-    number, length, mass = (table.positive_number(key) for key in ("count", "length", "mass"))
-    if number > MOST_FOUR_BARS or number != int(number):
-        raise table.mistake(f"count = {number:g}: expected a whole number from 1 to {MOST_FOUR_BARS}")
-    count, inertia, half, tip = int(number), mass * length**2, length / 2, (length, 0.0)
-    rods = [
-        Body(f"rod{i}", ("theta",), mass, inertia / 3, locked={"x": i * length}, center=(half, 0.0))
-        for i in range(count + 1)
-    ]
-    couplers = [Body(f"coupler{i}", COORDINATES, mass, inertia / 12, locked={}, center=NOWHERE) for i in range(count)]
-    joints: list[Joint] = []
-    for i in range(count):
-        joints.append(Revolute((f"rod{i}", f"coupler{i}"), (tip, (-half, 0.0))))
-        joints.append(Revolute((f"coupler{i}", f"rod{i + 1}"), ((half, 0.0), tip)))
-    guess = {f"rod{i}.theta": math.pi / 2 for i in range(count + 1)}
-    for i in range(count):
-        guess |= {f"coupler{i}.x": (i + 0.5) * length, f"coupler{i}.y": length}
-    return (*rods, *couplers), tuple(joints), guess

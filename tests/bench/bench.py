@@ -35,7 +35,6 @@ from bezstab.mechanism import (
     motion,
     simulate,
 )
-from bezstab.mechanism.scene_files import parse_scene
 from bezstab.methods import (
     LinearMultistep,
     Method,
@@ -56,6 +55,7 @@ sys.path.insert(0, str(HERE.parent.parent))  # run as a script, the tests are no
 
 from tests.bench.timing import interleaved  # noqa: E402
 from tests.evidence.mujoco_witness import model_xml  # noqa: E402
+from tests.mechanism.four_bar_chains import four_bars  # noqa: E402
 from tests.reference.companion_poles import radius  # noqa: E402
 from tests.reference.fifty_digit_poles import modulus_from_p  # noqa: E402
 from tests.reference.literal_equation_9 import literal_equation_9  # noqa: E402
@@ -548,21 +548,12 @@ def growth() -> Iterator[Growth]:
         state = tuple(np.full(size, x) for x in np.concatenate(initial_state(moving)))
         return lambda: list(march(moving, b4, even_steps(STEP, 50, GAINS, (size,)), state))
 
-    def chain(count: int) -> Mechanism:
-        table = {"count": count, "length": 1.0, "mass": 1.0}
-        initial = {"velocity": {"rod0.theta": -1.0}, "position": {"rod0.theta": 1.5}}
-        return compiled_mechanism(
-            parse_scene(
-                {"name": f"{count} four-bars", "gravity": [0.0, -9.81], "four_bar_chain": table, "initial": initial}
-            )
-        )
-
     def run_of(count: int) -> Callable[[], object]:
-        bars = chain(count)
+        bars = compiled_mechanism(four_bars(count))
         return lambda: simulate(bars, b4, STEP, 100 * STEP, GAINS)
 
     def derived(count: int) -> Callable[[], object]:
-        scene = chain(count).scene
+        scene = four_bars(count)
         return lambda: compiled_mechanism.__wrapped__(replace(scene, name="again"))
 
     yield fitted("map, in points per axis", (500, 1000, 2000), lambda n: map_of(b4, n), "points")

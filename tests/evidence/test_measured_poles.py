@@ -10,7 +10,6 @@ from bezstab.evidence.linear_prediction import SPREAD
 from bezstab.evidence.measured_poles import CLOSE, _measured_verdict
 from bezstab.mechanism import Mechanism, compiled_mechanism, load_scene
 from bezstab.methods import LinearMultistep, PredictorCorrector, SecondOrder, implicit, lookup
-from tests.mechanism.test_scenes import small
 from tests.methods.kinds import FEW
 
 H = 1e-3  # s
@@ -27,7 +26,7 @@ AT_REST = ("B4", "SYM", "verlet-half")
 
 def measurements(scene: str, name: str, count: int) -> list[Measurement]:
     method = lookup(name)
-    return measure_poles(compiled_mechanism(small(scene)), method, H, *random_points(method, count))
+    return measure_poles(compiled_mechanism(load_scene(scene)), method, H, *random_points(method, count))
 
 
 def errors(found: list[Measurement]) -> list[float]:

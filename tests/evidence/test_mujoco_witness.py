@@ -14,11 +14,11 @@ from bezstab.mechanism.scene_files import parse_scene
 from bezstab.stability import spectral_radius
 from tests.evidence.mujoco_witness import RAYS, RUN_WITH, TIMES, model_xml, mujoco_witnesses
 from tests.evidence.samples import of_campaign
-from tests.mechanism.test_scenes import pendulum, small
+from tests.mechanism.test_scenes import MANY, pendulum, scene_of
 from tests.reference.literal_equation_9 import literal_equation_9
 
 H = 1e-3
-SCENES = of_campaign(["slider_crank", "slider_crank_light", "four_bar", "n_four_bar"], ["slider_crank", "four_bar"])
+SCENES = of_campaign(["slider_crank", "slider_crank_light", "four_bar", MANY], ["slider_crank", "four_bar"])
 mujoco: Any = pytest.importorskip("mujoco")
 
 
@@ -29,7 +29,7 @@ def test_mujoco_settles_and_diverges_where_the_map_says(
 ) -> None:
     """And leaves no file of warnings where it diverges."""
     monkeypatch.chdir(tmp_path)
-    witnessed = list(mujoco_witnesses(compiled_mechanism(small(scene)), H))
+    witnessed = list(mujoco_witnesses(compiled_mechanism(scene_of(scene)), H))
     assert len(witnessed) == len(RUN_WITH) * len(RAYS) * len(TIMES)
     for one in witnessed:
         assert one.outcome == ("converges" if one.times_boundary < 1 else "diverges")
@@ -39,10 +39,10 @@ def test_mujoco_settles_and_diverges_where_the_map_says(
     assert not list(tmp_path.iterdir())
 
 
-@pytest.mark.parametrize("scene", ["slider_crank", "four_bar", "n_four_bar"])
+@pytest.mark.parametrize("scene", ["slider_crank", "four_bar", MANY])
 def test_the_model_has_the_scenes_masses_and_accelerations(scene: str) -> None:
-    mechanism = compiled_mechanism(small(scene))
-    built = mujoco.MjModel.from_xml_string(model_xml(small(scene), "Euler", H, 0.5, 0.1))
+    mechanism = compiled_mechanism(scene_of(scene))
+    built = mujoco.MjModel.from_xml_string(model_xml(scene_of(scene), "Euler", H, 0.5, 0.1))
     assert built.nq == built.nv == mechanism.size
     data = mujoco.MjData(built)
     state = perturbed_state(mechanism, 1e-4)

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from bezstab.mechanism import Mechanism, compiled_mechanism, initial_state, load_scene, state_function
+from bezstab.mechanism import compiled_mechanism, initial_state, load_scene, state_function
 from bezstab.mechanism.generated_code import code_of, compiled_source, lane_function, machine_source
 from bezstab.mechanism.scene_files import parse_scene
+from tests.mechanism.four_bar_chains import four_bars
 from tests.mechanism.test_scenes import pendulum
 
 
@@ -34,13 +35,6 @@ def test_names_never_reach_the_generated_code() -> None:
     mechanism = compiled_mechanism(parse_scene(pendulum(**changes)))
     assert "import" not in machine_source(code_of(mechanism, "accelerations"), "accelerations", 1)
     assert initial_state(mechanism)[0] == pytest.approx([0.6, 0.8])
-
-
-def chain(count: int) -> Mechanism:
-    """Return a chain of so many four-bars."""
-    upright = {"position": {"rod0.theta": math.pi / 2}, "velocity": {"rod0.theta": -1.0}}
-    links = {"count": count, "length": 1.0, "mass": 1.0}
-    return compiled_mechanism(parse_scene({"name": "chain", "four_bar_chain": links, "initial": upright}))
 
 
 def test_the_text_for_machine_code_is_that_of_the_function() -> None:
@@ -73,7 +67,7 @@ def test_runs_side_by_side_have_the_accelerations_of_each() -> None:
 @pytest.mark.slow
 def test_a_chain_twice_as_long_takes_twice_the_arithmetic() -> None:
     """Its matrices are banded: entries that are zero are not computed."""
-    short, long = (code_of(chain(count), "accelerations") for count in (12, 24))
+    short, long = (code_of(compiled_mechanism(four_bars(count)), "accelerations") for count in (12, 24))
     assert len(long.assignments) < 2.2 * len(short.assignments)
     of_short, of_long = (sum(sp.count_ops(value) for _, value in code.assignments) for code in (short, long))
     assert of_long < 2.2 * of_short

@@ -16,8 +16,8 @@ from bezstab.mechanism import (
     turning_normals,
 )
 from bezstab.mechanism.motions import STEPS
-from bezstab.mechanism.scene_files import parse_scene
 from tests.evidence.driven_four_bar import swinging_four_bar
+from tests.mechanism.four_bar_chains import four_bars
 
 MECHANISM = compiled_mechanism(load_scene("driven_four_bar"))
 
@@ -90,12 +90,7 @@ def test_a_motion_that_misses_its_start_is_refused_with_the_coordinate() -> None
 @pytest.mark.parametrize("offset", [np.pi / 2, 1.5])
 def test_a_motion_through_a_singular_configuration_is_refused(offset: float) -> None:
     """A parallelogram's rods lie along the ground twice a turn: a step meets that, or two steps lie around it."""
-    scene = parse_scene(
-        {
-            "name": "parallelogram",
-            "four_bar_chain": {"count": 1, "length": 1.0, "mass": 1.0},
-            "joint": [{"type": "driver", "coordinate": "rod0.theta", "offset": offset, "rate": 2 * np.pi}],
-        }
-    )
+    driver = {"type": "driver", "coordinate": "rod0.theta", "offset": offset, "rate": 2 * np.pi}
+    scene = four_bars(1, {}, [driver])
     with pytest.raises(NumericalError, match="singular configuration"):
         regular_motion(compiled_mechanism(scene), 1.0)

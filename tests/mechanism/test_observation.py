@@ -12,14 +12,15 @@ from bezstab.mechanism import (
     singular_passages,
 )
 from bezstab.methods import lookup
-from tests.mechanism.test_scenes import four_bars, small
+from tests.mechanism.four_bar_chains import four_bars
+from tests.mechanism.test_scenes import MANY, scene_of
 from tests.reference.literal_equation_9 import literal_equation_9
 from tests.reference.one_coordinate_motion import slider_crank_joint_forces
 
 
-@pytest.mark.parametrize("name", shipped_scenes())
+@pytest.mark.parametrize("name", [*shipped_scenes(), MANY])
 def test_the_generated_code_solves_the_literal_equation_9(name: str) -> None:
-    mechanism, random = compiled_mechanism(small(name)), np.random.default_rng(2)
+    mechanism, random = compiled_mechanism(scene_of(name)), np.random.default_rng(2)
     q, v = (state + random.normal(0, 0.01, (20, mechanism.size)) for state in initial_state(mechanism))
     t, two_alpha, beta_squared = random.uniform(0, 1, 20), 30.0, 500.0
     seen = observe(mechanism, t, q, v, two_alpha, beta_squared)

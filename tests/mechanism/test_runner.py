@@ -22,7 +22,7 @@ from bezstab.mechanism.runner import _starters
 from bezstab.methods import Method, accuracy, evaluations, lookup, steps
 from bezstab.stabilising import NOTHING, AfterStep
 from bezstab.units import feedback_gains
-from tests.mechanism.test_scenes import four_bars
+from tests.mechanism.four_bar_chains import four_bars
 from tests.methods.kinds import FEW, SOLVED
 from tests.reference.one_coordinate_motion import (
     distance,
@@ -278,8 +278,7 @@ energy is off by 2e-4 J on one processor and by half a joule on another. At 9e-4
 @pytest.mark.slow
 def test_a02_the_four_bars_go_through_their_singular_positions(count: int, duration: float, passages: int) -> None:
     """The benchmark has N = 40, runs for 20 s and allows errors of 1e-3 at most; its exact motion by quadrature."""
-    scene = load_scene("n_four_bar") if count == 40 else four_bars(count)
-    mechanism = compiled_mechanism(scene)
+    mechanism = compiled_mechanism(four_bars(count))
     run = simulated(mechanism, lookup("RK4"), h=CLEAR_STEP, duration=duration, alpha_hat=0.02, beta_hat=1e-4)
     times = run.t[::100]  # close: the quadrature has a sharp peak where the rods turn over
     passed = motion(four_bar_chain_energies(count), np.pi / 2, -1.0, times.tolist(), digits=20)

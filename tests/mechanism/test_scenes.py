@@ -1,18 +1,13 @@
-import tomllib
 from typing import Any
 
 import numpy as np
 import pytest
 
 from bezstab.errors import InputError
-from bezstab.mechanism import Scene, at_speed, compiled_mechanism, initial_state, load_scene, shipped_scenes, simulate
+from bezstab.mechanism import Scene, at_speed, compiled_mechanism, initial_state, load_scene, simulate
 from bezstab.mechanism.scene_files import parse_scene
 from bezstab.methods import lookup
-
-SHIPPED = [
-    pytest.param(name, marks=[pytest.mark.slow] * (name == "n_four_bar"))  # with N = 40
-    for name in shipped_scenes()
-]
+from tests.mechanism.four_bar_chains import four_bars
 
 
 def pendulum(**changes: Any) -> dict[str, Any]:
@@ -32,16 +27,13 @@ def pendulum(**changes: Any) -> dict[str, Any]:
     return {key: [value] if key in ("body", "joint") else value for key, value in data.items()}
 
 
-def four_bars(count: int) -> Scene:
-    """Return the N-four-bar with another N: the shipped one's 40 cost seconds before the first step."""
-    data = tomllib.loads(shipped_scenes()["n_four_bar"].read_text(encoding="utf-8"))
-    data["four_bar_chain"]["count"] = count
-    return parse_scene(data)
+MANY = "three four-bars"
+"""Beside the shipped scenes: many bodies and loops."""
 
 
-def small(name: str) -> Scene:
-    """Return a shipped scene, of the N-four-bar one with N = 3."""
-    return four_bars(3) if name == "n_four_bar" else load_scene(name)
+def scene_of(name: str) -> Scene:
+    """Return the shipped scene of that name, or three four-bars in a row."""
+    return four_bars(3) if name == MANY else load_scene(name)
 
 
 def test_a_pin_is_at_one_place_of_both_bodies_that_it_holds() -> None:
@@ -54,9 +46,9 @@ def test_a_pin_is_at_one_place_of_both_bodies_that_it_holds() -> None:
     assert any(place == pytest.approx(pin, abs=1e-12) for place in places["rod"])
 
 
-@pytest.mark.parametrize("name", ["four_bar", "driven_four_bar", "n_four_bar"])
+@pytest.mark.parametrize("name", ["four_bar", "driven_four_bar", MANY])
 def test_twice_the_speed_doubles_every_velocity_of_the_start(name: str) -> None:
-    slow, fast = (initial_state(compiled_mechanism(at_speed(small(name), factor))) for factor in (1.0, 2.0))
+    slow, fast = (initial_state(compiled_mechanism(at_speed(scene_of(name), factor))) for factor in (1.0, 2.0))
     assert np.array_equal(slow[0], fast[0])
     assert fast[1] == pytest.approx(2 * slow[1], rel=1e-14)
 

@@ -7,12 +7,12 @@ import pytest
 from numpy.typing import NDArray
 
 from bezstab.errors import InputError, NumericalError
-from bezstab.mechanism import compiled_mechanism, initial_state, load_scene, observe, perturbed_state
+from bezstab.mechanism import compiled_mechanism, initial_state, load_scene, observe, perturbed_state, shipped_scenes
 from bezstab.mechanism.scene_files import parse_scene
-from tests.mechanism.test_scenes import SHIPPED, pendulum
+from tests.mechanism.test_scenes import pendulum
 
 
-@pytest.mark.parametrize("name", SHIPPED)
+@pytest.mark.parametrize("name", shipped_scenes())
 def test_initial_states_satisfy_the_constraints(name: str) -> None:
     mechanism = compiled_mechanism(load_scene(name))
     q, v = initial_state(mechanism)

@@ -16,7 +16,6 @@ from bezstab.mechanism import (
     march,
     programs,
     resume,
-    shipped_scenes,
     simulate,
 )
 from bezstab.mechanism.runner import Block, states_needed
@@ -33,8 +32,6 @@ KINDS = (*EXPLICIT_KINDS, "bdf2", "gauss4", "sdirk2", "hht")
 """Of each kind of method one."""
 UNSTABLE = {"AB6", "AB7", "AB8"}
 """With the feedback of these tests: rounding grows."""
-SCENES = [name for name in shipped_scenes() if name != "n_four_bar"]
-"""Besides the chain of 40 four-bars, which takes a minute to compile: one of four stands for it."""
 
 
 def step_for(scene: str) -> float:
