@@ -23,6 +23,6 @@ from bezstab.mechanism.runner import Start, Trajectory, march, resume, simulate
 from bezstab.mechanism.scene_files import load_scene, shipped_scenes
 from bezstab.mechanism.scenes import DURATION, GROUND, Body, Driver, Force, Revolute, Scene, at_speed
 from bezstab.mechanism.second_order_memory import Memory, memory
-from bezstab.mechanism.simulation import Simulation, simulated
+from bezstab.mechanism.simulation import Simulation, check_duration, simulated
 from bezstab.mechanism.start import constraint_errors, constraint_jacobian, initial_state, perturbed_state
 from bezstab.mechanism.stepper import Stepper, linearized_step

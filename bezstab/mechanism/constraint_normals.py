@@ -54,17 +54,17 @@ def constraint_motion(mechanism: Mechanism, duration: float) -> ConstraintMotion
     InputError for a mechanism whose constraints do not accelerate: it has no rate. Else errors as `motion`.
     """
     along = motion(mechanism, duration)
-    accelerations = along_normals(mechanism, along, along.a)
+    derivatives = np.stack([along.a, np.gradient(along.a, along.t, axis=0, edge_order=2)], axis=-1)
+    accelerations, changing = np.moveaxis(along_normals(mechanism, along, derivatives), -1, 0)
     largest = float(np.abs(accelerations).max())
     if largest < AT_REST:
         raise InputError(f"{mechanism.scene.name} is at rest: its constraints do not move, so there is no omega")
-    changing = along_normals(mechanism, along, np.gradient(along.a, along.t, axis=0, edge_order=2))
     omega = float(np.sqrt((changing**2).mean() / (accelerations**2).mean()))
     return ConstraintMotion(omega=omega, amplitude=largest / omega**2)
 
 
 def along_normals(mechanism: Mechanism, along: Motion, vectors: FloatArray) -> FloatArray:
-    """Return C_q times a vector at each of the first times of a motion; shapes (times, n) and (times, m)."""
+    """Return C_q times vectors at each of the first times of a motion; shapes (times, n, ...) and (times, m, ...)."""
     states = zip(along.t, along.q, vectors, strict=False)
     return np.stack([constraint_jacobian(mechanism, t, q) @ vector for t, q, vector in states])
 

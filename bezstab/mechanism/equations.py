@@ -104,11 +104,11 @@ def compiled_mechanism(scene: Scene) -> Mechanism:
     mass = [body.inertia if axis == "theta" else body.mass for body in scene.bodies for axis in body.free]
     of_joints = [_constraints(joint, frames, symbol_of) for joint in scene.joints]
     c = sp.Matrix([row for rows in of_joints for row in rows])
-    jacobian = c.jacobian(q)
+    jacobian = _derivatives(c, q)
     c_t = c.diff(T)
     velocity = sp.Matrix(v)
     cdot = jacobian * velocity + c_t
-    gamma = -(cdot.jacobian(q) * velocity + cdot.diff(T))
+    gamma = -(_derivatives(cdot, q) * velocity + cdot.diff(T))
     lengths = []
     for spring in scene.springs:
         (ax, ay), (bx, by) = _end_positions(spring, frames)
@@ -135,7 +135,13 @@ def compiled_mechanism(scene: Scene) -> Mechanism:
 
 def _gradient(expression: sp.Expr, q: Sequence[sp.Symbol]) -> sp.Matrix:
     """Return the derivatives by each coordinate, shape (n, 1)."""
-    return sp.Matrix([expression]).jacobian(q).T
+    return _derivatives(sp.Matrix([expression]), q).T
+
+
+def _derivatives(rows: sp.Matrix, q: Sequence[sp.Symbol]) -> sp.Matrix:
+    """Return the derivatives of a column by each coordinate: of many bodies most are zero, which sympy sees slowly."""
+    occurring = [row.free_symbols for row in rows]
+    return sp.Matrix(len(rows), len(q), lambda i, j: rows[i].diff(q[j]) if q[j] in occurring[i] else 0)
 
 
 def _frame(body: Body, symbol_of: dict[str, sp.Symbol]) -> Frame:

@@ -19,7 +19,7 @@ from bezstab.engines import DRIVE_METHODS, READ_BACK, Curve, Engine, Point, engi
 from bezstab.errors import InputError, NumericalError
 from bezstab.goals import UP_TO_LONGEST, Goal
 from bezstab.methods import Method, stage_torque
-from bezstab.motion import motion_energy, spin_change
+from bezstab.motion import motion_energy, spin_change, steps_to_breakdown
 from bezstab.questions.chains import ALONE, SweptAnswer
 from bezstab.questions.question import Question, usual_goal
 from bezstab.questions.scene_runs import MOST_GAINED, SceneRun, scene_run
@@ -367,8 +367,11 @@ class Answer(Choice):
 
     @cached_property
     def safe_with(self) -> str | None:
-        """The option with which a choice is safe that is not: --goal robust, else a shorter step; None if neither."""
-        if self.safe or self.role == "given":
+        """The option with which a choice is safe that is not: --goal robust, else a shorter step; None if neither.
+
+        None, too, past a singular configuration: no run decides there.
+        """
+        if self.safe or self.role == "given" or (self.run and not self.run.decides):
             return None
         if self.goal != "robust" and self._robust:
             return "--goal robust"
@@ -507,7 +510,10 @@ def _on_a_motion(answer: Answer) -> list[str]:
     said = f"{motion} {what} {100 * abs(rate):.2g} % of its energy a second"
     # stages' torque grows as the cube of the rate
     if not answer.spins and by_rotation > MOVED and stage_torque(answer.method).power == 2:
-        said += f" and breaks down after about {seconds_words(1 / by_rotation)}: take heun or RK4, or gentler feedback"
+        h = cast(float, answer.h)
+        end = h * steps_to_breakdown(answer.method, answer.alpha_hat, answer.beta_hat, omega * h)
+        said += f" and breaks down after about {seconds_words(end)}" if end < math.inf else ""
+        said += ": take heun or RK4, or gentler feedback"
     return [said]
 
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from bezstab.engines import Point
 from bezstab.errors import InputError
-from bezstab.mechanism import DURATION, Mechanism, Simulation, simulated
+from bezstab.mechanism import DURATION, Mechanism, Simulation, check_duration, simulated
 from bezstab.methods import Method, stage_torque
 
 USUAL_TIME = 10.0
@@ -21,6 +21,9 @@ USUAL_TIME = 10.0
 
 MOST_STEPS = 10**4
 """Of a run that nobody gave a time: a second or two in Python."""
+
+FIRST_LOOK = 0.1
+"""Of a run: whether it passes a singular configuration so soon; the rest would decide nothing either."""
 
 FURTHER = 4
 """Times as long a run is looked for its end that a torque of stages drives."""
@@ -42,9 +45,10 @@ class SceneRun:
     """What a run of a scene showed, over `duration` (s).
 
     c_max: the largest |c| (m or rad). gained: what the energy gained beside the work of drivers and forces, as a share
-    of the largest kinetic energy; negative where it lost. culprit: whether most of it is the multipliers' work, which
-    depends on the feedback, or the method's own. breakdown: when (s) the energy becomes infinite if it goes on so, None
-    where it does not. passages: singular configurations on the way. failure: why the run ended early.
+    of the largest kinetic energy; negative where it lost. At the end of the run, but at its height where that is more
+    than MOST_GAINED: a run may explode, and lose all of it again. culprit: whether most of it is the multipliers' work,
+    which depends on the feedback, or the method's own. breakdown: when (s) the energy becomes infinite if it goes on
+    so, None where it does not. passages: singular configurations on the way. failure: why the run ended early.
     """
 
     duration: float
@@ -81,19 +85,30 @@ def scene_run(mechanism: Mechanism, method: Method, h: Fraction, point: Point, t
     """
     run_for = partial(simulated, mechanism, method, h=float(h), alpha_hat=float(point[0]), beta_hat=float(point[1]))
     duration = run_time(mechanism, method, float(h)) if time is None else time
-    run = run_for(duration=duration)
+    whole_step = float(h * method.step_multiple)
+    check_duration(duration, whole_step)
+    for part in (max(FIRST_LOOK * duration, whole_step), duration):
+        run = run_for(duration=part)
+        if run.failure or len(run.singular_times):
+            break
     with np.errstate(all="ignore"):  # of a run that broke down
         kinetic = run.v**2 @ mechanism.mass / 2
         own = float(np.nanmax(kinetic - np.maximum(run.energy_drift, 0.0)))  # without what it gained
     if not own > 0:
         raise InputError(f"--scene {mechanism.scene.name}: nothing moves within {duration:g} s")
     sizes, half, tenth = run.largest_c, len(run.t) // 2, max(len(run.t) // 10, 1)
-    drift, by_multipliers = float(run.energy_drift[-1]), float(run.multiplier_work[-1])
+    height = int(np.nanargmax(run.energy_drift))
+    at = height if run.energy_drift[height] > MOST_GAINED * own else -1
+    drift, by_multipliers = float(run.energy_drift[at]), float(run.multiplier_work[at])
     culprit: Culprit = "multipliers" if abs(by_multipliers) >= abs(drift - by_multipliers) else "method"
     breakdown = None
-    if culprit == "method" and drift > MOST_GAINED * own and stage_torque(method).power == 2 and not run.failure:
+    grows = run.energy_drift[-1] > MOST_GAINED * own
+    if culprit == "method" and grows and stage_torque(method).power == 2 and not run.failure:
         longer = run_for(duration=FURTHER * duration)
-        breakdown = float(longer.t[-1]) if longer.failure else _breakdown(run)
+        end = float(longer.t[-1])
+        breakdown = end if longer.failure else _breakdown(run)
+        if breakdown < end:  # it went on: a driver keeps its rate
+            breakdown = None
     return SceneRun(
         duration=float(run.t[-1]),
         c_max=run.c_max,

@@ -9,8 +9,10 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from bezstab.methods import Method, RungeKutta, lookup
+from bezstab.methods import REGISTRY, Method, RungeKutta, SecondOrder, lookup
 from bezstab.methods.rotation_torque import stage_torque
+from bezstab.stability import spectral_radius
+from tests.reference.circle_steps import last_gain
 
 A, B = sp.symbols("alpha_hat beta_hat")
 
@@ -68,6 +70,26 @@ def test_it_is_what_a_run_on_the_circle_shows(name: str) -> None:
     found, theta = stage_torque(method, point), 0.01
     measured = turned_once(method.scheme, 1.0, 0.25, theta)
     assert measured == pytest.approx(float(found.coefficient) * theta**2, rel=5e-3)  # the next term is of theta^2
+
+
+POINTS = [(Fraction(1, 2**k), Fraction(1, 4 ** (k + 1))) for k in range(5)] + [(Fraction(1, 32), Fraction(1, 2000))]
+"""Critically damped, and one where AB8 is stable while the mass goes round."""
+
+SETTLING = 25
+"""By e to so many what the start has made dies: to 1e-11 of what is of the size of a torque."""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", [name for name in REGISTRY if not isinstance(lookup(name).scheme, SecondOrder)])
+def test_it_is_what_the_step_itself_gives_in_fifty_digits(name: str) -> None:
+    method = lookup(name)
+    multiple = float(method.step_multiple)
+    radius = {at: float(spectral_radius(method, float(at[0]) / multiple, float(at[1]) / multiple**2)) for at in POINTS}
+    point = next(at for at in POINTS if radius[at] < 1)
+    found = stage_torque(method, point)
+    rate, gain = last_gain(method, point, Fraction(1, 100), count=int(SETTLING / -np.log(radius[point])))
+    expected = float(found.coefficient) * float(rate) ** found.power if found.power else 0.0
+    assert float(gain) == pytest.approx(expected, rel=0.01, abs=1e-14 if found.power is None else 0)
 
 
 def runge_kutta(b2: Fraction, b3: Fraction, c2: Fraction, c3: Fraction, a32: Fraction) -> Method:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from bezstab.errors import InputError
 from bezstab.methods import REGISTRY, accuracy, lookup
 from bezstab.methods.rotation_torque import stage_torque
-from bezstab.motion import motion_energy
+from bezstab.motion import motion_energy, steps_to_breakdown
 
 FloatArray = NDArray[np.float64]
 Field = Callable[[FloatArray, FloatArray], FloatArray]
@@ -85,6 +85,23 @@ def test_a_uniform_rotation_gains_what_the_stages_torque_says(name: str) -> None
     rotation = float(motion_energy(method, 1 / multiple, 0.25 / multiple**2, theta / multiple).rotation)
     leading = 2 * float(found.coefficient) * theta ** ((found.power or 1) - 1)
     assert rotation == pytest.approx(leading, rel=0.01, abs=5e-13)  # rounding of a step, 1e-16, over theta^2 / 2
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("theta", [0.03, 0.05, 0.09])
+@pytest.mark.parametrize(("alpha_hat", "beta_hat"), [(2.0, 1.0), (1.0, 0.25), (0.5, 0.0625)])
+def test_the_torque_of_midpoint_foretells_when_a_rotation_breaks_down(
+    alpha_hat: float, beta_hat: float, theta: float
+) -> None:
+    def field(q: FloatArray, v: FloatArray) -> FloatArray:
+        pull = (v @ v + alpha_hat * q @ v + beta_hat * (q @ q - 1) / 2) / (q @ q)
+        return np.asarray(-pull * q)
+
+    q, v, count = np.array([1.0, 0.0]), np.array([0.0, theta]), 0
+    while v @ v < 1:
+        q, v = midpoint(field, q, v)
+        count += 1
+    assert count == pytest.approx(steps_to_breakdown(lookup("RK2"), alpha_hat, beta_hat, theta), rel=0.05)
 
 
 OMEGA, ALPHA, BETA = 1.0, 1.0, 2.0

@@ -2,8 +2,10 @@
 
 from fractions import Fraction
 
+import numpy as np
 import pytest
 
+import bezstab
 from bezstab.errors import InputError
 from bezstab.mechanism import compiled_mechanism, load_scene, simulated
 from bezstab.mechanism.scene_files import parse_scene
@@ -29,11 +31,52 @@ def test_stages_that_pump_a_pendulum_are_seen_and_their_end_is_foretold() -> Non
     assert found.breakdown == pytest.approx(27.84, rel=0.05)
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("scene", "name", "h", "gain"),
+    [
+        ("pendulum", "RK2", "0.01", 100),
+        ("pendulum", "SIE", "0.002", 300),
+        ("slider_crank_light", "RK2", "0.01", 100),
+        ("slider_crank_light", "RK2", "0.005", 200),
+        ("slider_crank_300rpm", "SIE", "0.002", 300),
+        ("four_bar", "RK2", "0.002", 300),
+    ],
+)
+def test_a_breakdown_is_foretold_beyond_the_run(scene: str, name: str, h: str, gain: float) -> None:
+    found = run_of(scene, name, h, gain, gain)
+    step = float(h)
+    run = simulated(
+        compiled_mechanism(load_scene(scene)),
+        lookup(name),
+        h=step,
+        duration=60,
+        alpha_hat=2 * gain * step,
+        beta_hat=(gain * step) ** 2,
+    )
+    assert run.failure
+    assert found.failure is None
+    assert found.breakdown == pytest.approx(float(run.t[-1]), rel=0.05)
+
+
+def test_no_breakdown_is_foretold_of_a_mechanism_whose_driver_keeps_the_rate() -> None:
+    found = run_of("driven_four_bar", "RK2", "0.005", 300, 300, time=2.0)
+    assert found.gained > 1
+    assert found.breakdown is None
+
+
 def test_multipliers_that_pump_a_four_bar_are_seen() -> None:
     found = run_of("four_bar", "SYM", "0.001", 50, 50)
     assert not found.sound
     assert found.gained > 10
     assert found.culprit == "multipliers"
+
+
+def test_an_explosion_on_the_way_is_seen_though_its_energy_is_lost_again() -> None:
+    """At 4.4 s the four-bar has 235 times its largest kinetic energy; after ten it has lost a sixth."""
+    found = run_of("four_bar", "SYM", "0.002", 100, 100)
+    assert not found.sound
+    assert found.gained > 100
 
 
 def test_heun_with_the_same_feedback_is_sound() -> None:
@@ -64,6 +107,12 @@ def test_a_singular_passage_decides_nothing() -> None:
     assert not found.decides
 
 
+def test_a_run_that_soon_passes_one_ends_there() -> None:
+    found = run_of("slider_crank_equal", "RK4", "0.01", 10, 10, time=100)
+    assert found.duration == pytest.approx(10)
+    assert not found.decides
+
+
 def test_a_scene_in_which_nothing_moves_is_refused() -> None:
     still = {"position": {"bob.x": 1.0, "bob.y": 0.0}, "velocity": {"bob.y": 0.0}}
     at_rest = parse_scene(pendulum(gravity=[0, 0], initial=still))
@@ -83,3 +132,35 @@ def test_the_gain_is_that_of_simulate() -> None:
     )
     kinetic = run.v**2 @ run.mechanism.mass / 2
     assert found.gained == pytest.approx(run.energy_drift[-1] / (kinetic - run.energy_drift).max(), rel=1e-3)
+
+
+SAMPLED = [
+    "andrews",
+    "driven_four_bar",
+    "driven_slider_crank",
+    "four_bar",
+    "pendulum",
+    "slider_crank_300rpm",
+    "slider_crank_light",
+]
+METHODS = ["SYM", "verlet-half", "SIE", "RK2", "heun", "bs3", "RK4", "dopri5", "AB2", "AB4", "ABM4", "B4"]
+
+
+@pytest.mark.slow
+def test_what_is_called_safe_no_run_of_that_time_contradicts() -> None:
+    """Sixty points, critically damped: a run fails, or gains a tenth of its largest kinetic energy, of none."""
+    rng, safe = np.random.default_rng(48), 0
+    for _ in range(60):
+        scene, name = rng.choice(SAMPLED), rng.choice(METHODS)
+        h = rng.choice(["1e-5", "5e-5"] if scene == "andrews" else ["0.002", "0.005"])
+        gain = int(rng.choice([3, 10, 30, 100, 300])) * (10 if scene == "andrews" else 1)
+        answer = bezstab.check(str(name), h=str(h), alpha=gain, beta=gain, scene=str(scene))
+        if not answer.safe:
+            continue
+        safe += 1
+        assert answer.run
+        run = bezstab.simulate(str(scene), str(name), h=float(h), duration=answer.run.duration, alpha=gain, beta=gain)
+        kinetic = run.v**2 @ run.mechanism.mass / 2
+        assert not run.failure
+        assert run.energy_drift.max() < 0.1 * kinetic.max(), (scene, name, h, gain)
+    assert safe > 30
