@@ -19,7 +19,7 @@ region: .venv/installed  ## draw where B4 is stable, into this directory
 figures: .venv/installed  ## draw what the README shows, into figures/
 	$(BIN)/bezstab region --method B4 --table none -o figures
 	$(BIN)/bezstab region --method B4 --scene driven_four_bar --h 0.005 --speed 1 --speed 3 --speed 6 --table none -o figures
-	$(BIN)/bezstab region --pd 200,5,0.1 --h 0.002 --every 4 --late 1 --method SYM -o figures
+	$(BIN)/bezstab drive --kp 200 --kd 5 --inertia 0.1 --h 0.002 --every 4 --late 1 --method SYM --figure png -o figures
 	$(BIN)/bezstab verify --map 60 --method AB4 --table none -o figures
 	$(BIN)/bezstab paper -o figures
 	$(BIN)/bezstab chains --engine chipmunk=0.0017970103 --h 1/60 -o figures --format json > /dev/null

@@ -15,7 +15,6 @@ if TYPE_CHECKING:
     from bezstab.api import (
         best_point,
         check,
-        check_drive,
         choose,
         dominant_pole,
         feedback_cost,
@@ -42,7 +41,6 @@ __getattr__ = lazy_names(__name__)
 __all__ = [
     "best_point",
     "check",
-    "check_drive",
     "choose",
     "dominant_pole",
     "drive",

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 
 from bezstab import evidence, mechanism, questions, stability
 from bezstab.arguments import Number, exact_number, in_keywords, real_number, whole_number
-from bezstab.engines import Drive, engine_and_values, engine_named
+from bezstab.engines import engine_and_values, engine_named
 from bezstab.errors import InputError, shown
 from bezstab.goals import Goal
 from bezstab.mechanism import Scene, Simulation
@@ -62,7 +62,6 @@ class AboutFeedback(TypedDict, total=False):
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 Asked = TypeVar("Asked")
-Judged = TypeVar("Judged", questions.Answer, questions.HeldAnswer)
 
 
 def _spelled_out(function: Function) -> Function:
@@ -210,7 +209,6 @@ def choose(
     settle: Number | None = None,
     equal: bool = False,
     engine: str | None = None,
-    pd: Sequence[Number] | None = None,
     **asked: Unpack[AboutFeedback],
 ) -> questions.Answer:
     """Return the alpha and beta to use: the point that a goal asks for, proven stable, with its margins.
@@ -257,17 +255,14 @@ def choose(
     paper Eq. 17; the goals are this package's.
     """
     named = None if engine is None else engine_named(engine)
-    if method is None and pd is not None:
-        raise InputError("pd: name one method, such as 'SYM' where the drive is applied explicitly")
     given = () if method is None else READ["methods"](method, "methods")
     question = _asked(
         questions.Question,
         methods=method,
-        goal=goal or questions.usual_goal(named, pd is not None, given),
+        goal=goal or questions.usual_goal(named, given),
         settle=settle,
         equal=equal,
         engine=named,
-        drive=pd,
         **asked,
     )
     (chosen,) = questions.answers(question)
@@ -285,7 +280,6 @@ def check(
     beta: Number | None = None,
     engine: str | None = None,
     as_typed: bool = False,
-    pd: Sequence[Number] | None = None,
     **asked: Unpack[AboutFeedback],
 ) -> questions.Answer:
     """Return whether a point of your own is safe, how fast errors decay there, and how far the point may move.
@@ -328,56 +322,13 @@ def check(
     question = _asked(
         questions.Question,
         methods=method,
-        point=_point_if_given(typed, needed=engine is None and pd is None),
+        point=_point_if_given(typed, needed=engine is None),
         engine=named,
         values=values,
         as_typed=as_typed,
-        drive=pd,
         **asked,
     )
     return _first_unsafe(questions.answers(question))
-
-
-@in_keywords()
-def check_drive(
-    pd: Sequence[Number],
-    *,
-    h: Number,
-    every: int = 1,
-    late: Number = 0,
-    filter_seconds: Number = 0,
-    method: str | Method | None = None,
-) -> questions.HeldAnswer:
-    """Return whether a joint's drive is safe whose controller is slower than the physics.
-
-    pd: (kp, kd, inertia) in SI units; the torque is -kp (q - target) - kd q'.
-    h: the step of the physics in s.
-    every: the torque is computed every so many steps, and held; 1 to 100.
-    late: it is applied so many steps late, or a fraction of them; 0 to 100.
-    filter_seconds: time constant in s of a first-order filter of the measured velocity; 0 for none.
-    method: the way of applying the drive: "SYM" (explicit), "imex-euler" (implicit in the velocity),
-        "stable-pd" or "implicit-euler" (fully implicit). Without one all four are asked, and the answer
-        is the first that is not safe.
-
-    Returns a HeldAnswer. `verdict` is proven, and `safe` is whether it is "converges". `z_abs` is the
-    factor by which each step multiplies the error, `fresh_z_abs` the same without hold, delay and
-    filter. `used_up` names what makes an unsafe drive so, or which number of a safe one is nearest to
-    its limit. `limits` has how far each number may go alone: `kp` (N m/rad) and `kd` (N m s/rad) from
-    and to, `every` and `late` in steps. A limit of the torque is not judged.
-
-    InputError for a number out of range, and for a method that is no way of applying a drive. Source:
-    Gil et al., J. Comput. Inf. Sci. Eng. 9, 011005, 2009.
-    """
-    question = _asked(
-        questions.HeldQuestion,
-        drive=pd,
-        h=h,
-        methods=method,
-        every=every,
-        late=late,
-        filter_seconds=filter_seconds,
-    )
-    return _first_unsafe(questions.held_answers(question))
 
 
 def largest_step(method: str | Method, *, alpha: Number, beta: Number) -> float:
@@ -579,13 +530,6 @@ def _scene(scene_or_name: str | Scene, _name: str = "scene") -> Scene:
     return scene(scene_or_name)
 
 
-def _drive(gains: Sequence[Number], _name: str) -> Drive:
-    """Return the drive of gains (kp, kd, inertia); InputError for another number of them."""
-    if isinstance(gains, str) or not isinstance(gains, Sequence) or len(gains) != 3:
-        raise InputError(f"pd = {shown(gains)}: expected (kp, kd, inertia)")
-    return Drive(*(exact_number(gain, name) for gain, name in zip(gains, ("kp", "kd", "inertia"), strict=True)))
-
-
 def _asked(kind: Callable[..., Asked], **given: Any) -> Asked:
     """Return a question of that kind, its keywords as `READ` reads them; those that are None are left to the question.
 
@@ -595,7 +539,7 @@ def _asked(kind: Callable[..., Asked], **given: Any) -> Asked:
     return kind(**{name: READ[name](value, name) if name in READ else value for name, value in told.items()})
 
 
-def _first_unsafe(answers: Iterable[Judged]) -> Judged:
+def _first_unsafe(answers: Iterable[questions.Answer]) -> questions.Answer:
     """Return the first answer that is not safe; the first of all where every one is."""
     found = list(answers)
     return next((answer for answer in found if not answer.safe), found[0])
@@ -605,7 +549,6 @@ READ: Mapping[str, Callable[[Any, str], Any]] = {
     **dict.fromkeys(("h", "h_min", "h_max", "omega", "omega_h", "speed", "mass_ratio", "settle"), exact_number),
     **dict.fromkeys(("late", "filter_seconds", "duration", "perturb"), exact_number),
     **dict.fromkeys(("chain", "iterations"), whole_number),
-    "drive": _drive,
     "spread": real_number,
     "scene": _scene,
     "methods": lambda given, _name: (method(given),),

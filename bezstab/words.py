@@ -44,9 +44,10 @@ def gains_words(kp: Number, kd: Number, inertia: Number, h: Number, applied: str
 
 def seconds_words(seconds: float) -> str:
     """Return a time (s) to three digits, in the unit that suits it: 1.56 ms; powers of ten where none does."""
+    rounded = float(f"{seconds:.3g}")
     for least, size, unit in UNITS:
-        if least <= seconds < THOUSAND * size:
-            return f"{seconds / size:.3g} {unit}"
+        if least <= rounded < THOUSAND * size:
+            return f"{rounded / size:.3g} {unit}"
     return f"{_three_digits(seconds)} s"
 
 

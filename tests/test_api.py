@@ -64,7 +64,6 @@ def test_every_goal_can_be_chosen(goal: Goal) -> None:
             {"method": "SYM", "alpha_hat": 1, "beta_hat": 0.5, "h": 0.01, "scene": "driven_four_bar", "speed": 2},
         ),
         ("choose --engine bullet --h 1/240", {"engine": "bullet", "h": "1/240"}),
-        ("choose --pd 1000,80,0.1 --method SYM --h 1/240", {"pd": (1000, 80, 0.1), "method": "SYM", "h": "1/240"}),
         (
             "choose --method SYM --h 0.01 --goal fastest --h-min 0.005",
             {"method": "SYM", "h": 0.01, "goal": "fastest", "h_min": 0.005},
@@ -95,10 +94,10 @@ def test_poles_are_measured_at_each_of_the_points() -> None:
         assert each.measured == pytest.approx(each.predicted, abs=1e-3)
 
 
-def test_a_held_drive_is_checked_as_on_the_command_line() -> None:
-    answer = bezstab.check_drive((200, 5, "0.1"), h=0.002, every=4, late=1, filter_seconds="0.01", method="SYM")
-    typed = "check --pd 200,5,0.1 --h 0.002 --every 4 --late 1 --filter 0.01 --method SYM"
+def test_a_drive_is_judged_as_on_the_command_line() -> None:
+    answer = bezstab.drive(200, 5, "0.1", h=0.002, every=4, late=1, filter_seconds="0.01")
+    typed = "drive --kp 200 --kd 5 --inertia 0.1 --h 0.002 --every 4 --late 1 --filter 0.01 --method SYM"
     (row,) = rows(typed)
-    assert (answer.verdict, answer.z_abs, answer.used_up) == (row["verdict"], row["z_abs"], row["held_by"])
+    assert (answer.verdict, answer.z_abs, answer.used_up) == (row["verdict"], row["z_abs"], row["used_up"])
     assert answer.limits.late == row["late_max"]
     assert answer.limits.kd == (row["kd_min"], row["kd_max"])

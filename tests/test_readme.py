@@ -19,6 +19,7 @@ PAGES = (
     "README.md",
     "bezstab/README.md",
     "bezstab/stability/README.md",
+    "bezstab/drives/README.md",
     "bezstab/evidence/README.md",
     "bezstab/paper/README.md",
     "configs/logs/README.md",
@@ -31,7 +32,7 @@ PAGES = (
 
 ON_A_PIPE = {"COLUMNS": None}
 """Environment in which nothing says how wide a line may be."""
-UNSAFE = ("check", "choose", "lint")
+UNSAFE = ("check", "choose", "drive", "lint")
 """Commands whose exit status is 1 where what they judge is unsafe."""
 PLACEHOLDER = re.compile(r"\b(COMMAND|LOG|MODEL|NAME|PATH|FILE)\b")
 """Words that stand for something else: what holds one is no command to type."""

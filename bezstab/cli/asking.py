@@ -2,26 +2,17 @@
 
 from collections.abc import Callable, Iterable, Mapping, Sequence, Sized
 from fractions import Fraction
-from functools import partial
 from typing import Any, TypeVar
-
-import click
 
 from bezstab import questions, show
 from bezstab.cli.command_group import NUMERICAL_TROUBLE
-from bezstab.cli.options import OF_A_CONTROLLER, TypedPoint, refuse_beside, typed_options
-from bezstab.cli.output import Files, for_reading, say, show_command, show_rows, show_text, worked_out
-from bezstab.engines import Drive, Engine, Point
+from bezstab.cli.options import TypedPoint, typed_options
+from bezstab.cli.output import for_reading, say, show_command, show_text, worked_out
+from bezstab.engines import Engine, Point
 from bezstab.errors import NumericalError
 from bezstab.methods import Method, lookup
 from bezstab.rationals import typed_number
 from bezstab.words import point_words
-
-ABOUT_DRIVES = {
-    *("--pd", "--h", "--every", "--late", "--filter", "--method", "--format"),
-    *("--bandwidth", "--settle", "--quality", "--grid", "--output", "--figure"),
-}
-"""Options that go with a question about a held or late drive, of those that its commands have."""
 
 Asked = TypeVar("Asked")
 OfScene = TypeVar("OfScene", "questions.Question", "questions.MapQuestion")
@@ -30,11 +21,11 @@ OfScene = TypeVar("OfScene", "questions.Question", "questions.MapQuestion")
 def asked(kind: Callable[..., Asked], **typed: Any) -> Asked:
     """Return the question that was typed; `kind` is its class in `bezstab.questions`. Options have its fields' names.
 
-    Without --method an engine or a drive has its own methods. Errors as the class raises them.
+    Without --method an engine has its own method. Errors as the class raises them.
     """
     if isinstance(typed.get("engine"), tuple):
         typed["engine"], typed["values"] = typed["engine"]
-    if (typed.get("engine") or typed.get("drive")) and "--method" not in typed_options():
+    if typed.get("engine") and "--method" not in typed_options():
         typed["methods"] = ()
     point = typed.get("point")
     if point:
@@ -102,7 +93,7 @@ def show_below(question: "questions.Question", found: "Sequence[questions.Answer
     say_each(answer.cost_or_reason[1] for answer in found)
     if not for_reading():
         return
-    if motion and not question.drive and (question.goal or not question.motion.assumed):
+    if motion and (question.goal or not question.motion.assumed):
         show_text(f"\n{show.motion_words(question.motion)}")
     if question.engine:
         for note in () if question.goal else question.given.notes or ():
@@ -140,48 +131,3 @@ def say_if_units_were_mistaken(methods: Sequence[Method], point: TypedPoint, h: 
         alpha, beta = map(typed_number, point.numbers)
         needed = "" if "--h" in typed_options() else " and your --h"
         say(f"note: if {alpha} and {beta} are in 1/s, add --physical{needed}")
-
-
-def held_asked(typed: dict[str, Any], asked: str, *, always: bool = False) -> "questions.HeldQuestion | None":
-    """Take the timing options out of `typed`. Return the question about such a drive.
-
-    None if no option about a controller was typed, unless `always`: every step then computes its torque and applies it.
-    Without --method it is about all four ways of applying a drive. Errors as `HeldQuestion`; UsageError, which says
-    what is `asked`, if an option was typed that is not about drives.
-    """
-    timing = {name: typed.pop(name) for name in ("every", "late", "filter_seconds")}
-    if not always and typed_options().keys().isdisjoint(OF_A_CONTROLLER.options):
-        return None
-    if typed["h"] is None:
-        raise click.UsageError("--pd needs --h: the step in s")
-    methods = typed_options().get("--method", ())
-    question = questions.HeldQuestion(drive=typed["drive"], h=typed["h"], methods=methods, **timing)
-    refuse_beside(asked, typed_options().keys() - ABOUT_DRIVES, "this answer is about the drive alone")
-    return question
-
-
-def write_held(question: "questions.HeldQuestion", points: int, files: Files) -> None:
-    """Print the answers, and write for each way of applying the drive |z_p| over kd and kp, at points x points."""
-    files.check_output()
-    for answer in show_held(question):
-        files.write(files.path("region", answer.method.name, "held"), partial(show.held_figure, answer, points))
-
-
-def say_of_drive(drive: Drive, rows: Sequence[show.Row]) -> None:
-    """Print before its rows what is to be known of a drive with one gain alone, and, without --method, which ways."""
-    said = show.drive_words(drive)
-    if len(rows) > 1 and "--method" not in typed_options():
-        said.append(show.ways_words(rows))
-    for sentence in said:
-        show_text(f"{sentence}\n")
-
-
-def show_held(question: "questions.HeldQuestion") -> "list[questions.HeldAnswer]":
-    """Print and return the answer for each way of applying a held or late drive; print what is not judged."""
-    found = list(questions.held_answers(question))
-    show_text(f"{show.timing_words(question.timing, float(question.h))}\n")
-    rows = [show.HELD.row(answer) for answer in found]
-    say_of_drive(question.drive, rows)
-    show_rows(show.HELD, rows)
-    show_text(f"\n{show.LATE_COMMANDS}")
-    return found

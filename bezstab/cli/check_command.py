@@ -7,11 +7,8 @@ from typing import Any
 from bezstab import questions
 from bezstab.cli.asking import (
     asked_of_scene,
-    held_asked,
-    say_of_drive,
     say_varying,
     show_below,
-    show_held,
     show_point,
     show_sentences,
 )
@@ -29,7 +26,6 @@ OF_EVERY_STEP = {"--alpha", "--beta", "--physical", "--method", "--format", "--s
     "methods",
     "given_point",
     "swept",
-    "timing",
     *("omega", "h_min", "h_max", "hold"),
     changed("scene", help="Is it safe for this mechanism as it moves? Needs --h."),
     "speed",
@@ -61,41 +57,23 @@ def check(**typed: Any) -> bool:
     as heavy, and a step makes --iterations sweeps. With --scene, safe means so for the constraints of that mechanism at
     its start, in the order of its file.
 
-    --pd kp,kd,inertia judges a joint's drive, applied in four ways: explicit (SYM), implicit in velocity (imex-euler,
-    as MuJoCo's implicitfast), as stable PD (stable-pd), fully implicit (implicit-euler, as PhysX). All four must be
-    safe unless --method names yours. Gains that are stable in an implicit engine may explode in an explicit one.
-    "used up" names the gain that is at its limit, or nearest to it. "to" says how far each may go alone. An explicit
-    drive needs 2 kd h + kp h² < 4 inertia: mostly it is kd that is too large. An implicit velocity takes any kd. With
-    kp = 0 the drive is a damper: nothing holds its position, and its velocity is judged.
-
-    --every, --late and --filter are for a controller that is slower than the physics. Its torque is held for several
-    steps, comes late, or uses a filtered velocity. "used up" then names gains, rate or delay. A contact of stiffness k
-    and damping c between bodies of reduced mass m is --pd k,c,m while it is closed.
-
     Example: bezstab check --method RK2 --h 0.002 --alpha 50 --beta 50 --physical
     """
-    if held := held_asked(typed, "--every, --late and --filter"):
-        return all(answer.safe for answer in show_held(held))
     if typed["point"].physical and typed_options().keys() <= OF_EVERY_STEP:
         questions.check_speed(None, typed["speed"])
         return _check_without_step(typed["methods"], typed["point"])
     question = asked_of_scene(questions.Question, **typed)
-    judged = questions.answers(question)
-    only_damps = question.drive and not question.drive.kp  # a choice would hold a position that is to move
-    found = list(judged if only_damps else _with_instead(judged))
+    found = list(_with_instead(questions.answers(question)))
     given = [answer for answer in found if answer.role == "given"]
     show_point(typed, question.point, given)
     if for_reading():
-        without, rows = left_out(question), [answer_row(answer) for answer in given]
-        if question.drive:
-            say_of_drive(question.drive, rows)
-        show_rows(CHECKED, rows, without)
+        show_rows(CHECKED, map(answer_row, given), left_out(question))
         say_varying(given)
         if len(given) > 1:  # a single one has said so
             show_sentences(
                 f"{each.method.name}, {each.goal}: {each.energy_sentence}" for each in given if each.energy_sentence
             )
-        show_sentences(map(costs_words, given if not question.drive else ()))
+        show_sentences(map(costs_words, given))
         if instead := [answer for answer in found if answer.role == "instead"]:
             show_text("\nWhat `choose` gives instead:\n")
             show_rows(CHECKED, map(answer_row, instead), left_out(instead[0].question))
@@ -120,6 +98,6 @@ def _with_instead(given: "Iterable[questions.Answer]") -> "Iterator[questions.An
 def _check_without_step(methods: tuple[Method, ...], point: TypedPoint) -> bool:
     """Print the step up to which alpha and beta (1/s) are safe with each method; return whether each method has one."""
     assert point.numbers
-    found = [questions.LargestStep(method, *point.numbers) for method in questions.methods_for(methods, None, None)]
+    found = [questions.LargestStep(method, *point.numbers) for method in questions.methods_for(methods, None)]
     show_rows(LARGEST_STEPS, map(largest_step_row, found))
     return all(each.safe for each in found)

@@ -1,19 +1,15 @@
 """The command that recommends α and β: choose."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
-from fractions import Fraction
 from typing import Any
 
 import click
 
 from bezstab import questions
-from bezstab.cli.asking import asked_of_scene, held_asked, say_varying, show_below, show_held, show_sentences
-from bezstab.cli.options import INERTIA, NUMBER, SECONDS, SHARE, changed, command, option, typed_options
-from bezstab.cli.output import for_reading, progress, show_rows, show_text
+from bezstab.cli.asking import asked_of_scene, say_varying, show_below, show_sentences
+from bezstab.cli.options import SECONDS, SHARE, changed, command, option
+from bezstab.cli.output import for_reading, progress, show_rows
 from bezstab.goals import GOALS, Goal
-from bezstab.methods import lookup
-from bezstab.rationals import typed_number
 from bezstab.show import CHOICES, STEPS_OF_CHOICES, answer_row, left_out, spare_words, trade_words
 
 
@@ -24,7 +20,7 @@ from bezstab.show import CHOICES, STEPS_OF_CHOICES, answer_row, left_out, spare_
         "--goal",
         click.Choice(list(GOALS)),
         "; ".join(f"{goal}: {meaning}" for goal, meaning in GOALS.items())
-        + " [accurate; robust with --pd, and with an --engine whose α and β depend on each other].",
+        + " [accurate; robust with an --engine whose α and β depend on each other].",
     ),
     "omega",
     changed(
@@ -36,24 +32,17 @@ from bezstab.show import CHOICES, STEPS_OF_CHOICES, answer_row, left_out, spare_
     option(
         "--settle",
         SECONDS,
-        "The time in s in which errors fall to a thousandth. For the goals gentle and accurate, and with --pd.",
+        "The time in s in which errors fall to a thousandth. For the goals gentle and accurate.",
     ),
     option("--keep equal", click.Choice(["alpha=beta"]), "Only points with α = β."),
     "engine",
     "swept",
-    changed(
-        "drive",
-        type=INERTIA,
-        help="Choose gains for a joint drive on this inertia (SI units); of KP,KD,INERTIA only the inertia counts.",
-    ),
-    option("--bandwidth", NUMBER, "With --pd: choose critically damped gains with this natural frequency in Hz."),
-    "timing",
     changed("scene", help="Choose for this mechanism as it moves."),
     "speed",
     changed("duration", help="With --scene: how long it is run, in s [10 s, or 10,000 steps if that is less]."),
     "form",
 )
-def choose(goal: Goal | None, equal: str | None, bandwidth: Fraction | None, **typed: Any) -> bool:
+def choose(goal: Goal | None, equal: str | None, **typed: Any) -> bool:
     """Recommend α and β for an integrator and its step size.
 
     The answer is proven stable, and its margins are printed. You may ask for more: that it is safe as a mechanism
@@ -73,9 +62,7 @@ def choose(goal: Goal | None, equal: str | None, bandwidth: Fraction | None, **t
     is. For these only αh and βh up to 4 are searched, and "searched" says so.
 
     --engine searches only what that engine can express. Its own method is used unless you name another. Of several
-    points that are equally good the one with the least α̂ and β̂ is taken. --pd shows each way of applying a joint
-    drive, with the kp and kd to set. With --bandwidth or --settle the gains are critically damped and leave a margin.
-    They also allow for a controller that is slower than the physics (--every, --late, --filter).
+    points that are equally good the one with the least α̂ and β̂ is taken.
 
     With --h-min, "varying steps" says whether errors decay for every sequence of steps up to --h-max. Many engines
     solve their constraints one after another, in sweeps. Their answer is at most the strongest feedback that the
@@ -84,12 +71,7 @@ def choose(goal: Goal | None, equal: str | None, bandwidth: Fraction | None, **t
 
     Example: bezstab choose --method B4 --h 0.001
     """
-    drive, settle = typed["drive"], typed["settle"]
-    settling = drive is not None and settle is not None and goal is None
-    asked_by = "--bandwidth, --settle, --every, --late and --filter"
-    if held := held_asked(typed, asked_by, always=settling):
-        return _choose_held(held, bandwidth, settle)
-    goal = goal or questions.usual_goal(typed["engine"], drive is not None, typed["methods"])
+    goal = goal or questions.usual_goal(typed["engine"], typed["methods"])
     question = asked_of_scene(questions.Question, goal=goal, equal=equal is not None, **typed)
     if question.h is None:
         raise click.MissingParameter(param_hint="'--h'", param_type="option")
@@ -100,7 +82,7 @@ def choose(goal: Goal | None, equal: str | None, bandwidth: Fraction | None, **t
     show_rows(CHOICES, map(answer_row, chosen), left_out(question))
     if for_reading():
         say_varying(chosen)
-        if not (drive or question.swept):
+        if not question.swept:
             show_sentences(_trades(chosen))
     show_below(question, chosen)
     show_sentences(map(spare_words, chosen))
@@ -112,15 +94,3 @@ def _trades(chosen: "Sequence[questions.Answer]") -> "Iterator[str]":
     for answer in chosen:
         name = f"{answer.method.name}: " if len(chosen) > 1 else ""
         yield "\n".join(f"{name}{line}" for line in trade_words(answer))
-
-
-def _choose_held(question: "questions.HeldQuestion", bandwidth: Fraction | None, settle: Fraction | None) -> bool:
-    """Print gains for a bandwidth (Hz) or a time to settle (s) as `check` would; return whether every way is safe.
-
-    Of the question's drive only the inertia counts.
-    """
-    if "--method" not in typed_options():
-        question = replace(question, methods=(lookup("SYM"),))
-    drive = questions.held_gains(question, bandwidth=bandwidth, settle=settle)
-    show_text(f"kp = {typed_number(drive.kp)}, kd = {typed_number(drive.kd)}\n")
-    return all(answer.safe for answer in show_held(replace(question, drive=drive)))

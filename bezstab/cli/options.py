@@ -14,7 +14,7 @@ from click.shell_completion import CompletionItem
 
 from bezstab.cli.output import Files, Work, say
 from bezstab.compiling import COMPILED_CHOICE, compiler
-from bezstab.engines import ENGINES, Drive, Engine, Point, engine_and_values, engine_named
+from bezstab.engines import ENGINES, Engine, Point, engine_and_values, engine_named
 from bezstab.errors import InputError
 from bezstab.methods import REGISTRY, lookup
 from bezstab.rationals import rational
@@ -30,8 +30,6 @@ Option = Callable[..., click.Option]
 MOST_IN_SEQUENCE = 10**6  # steps: a run of minutes
 USUAL_METHODS = ("B2", "B3", "B4", "AB2", "AB3", "AB4", "RK4@5", "SIE")
 """The methods that poles shows without --method: the Bezier methods and their usual alternatives."""
-
-GAINS = ("kp", "kd", "inertia")
 
 
 @dataclass(frozen=True)
@@ -114,22 +112,6 @@ def _engine_values(text: str) -> EngineValues:
     return engine, values
 
 
-def _drive(text: str) -> Drive:
-    """Return the drive of a text such as 100,2,0.01."""
-    try:
-        numbers = [rational(number) for number in text.split(",")]
-    except InputError as error:
-        raise InputError(f"{error}: expected {','.join(GAINS)}") from None
-    if len(numbers) != len(GAINS):
-        raise InputError(f"{len(numbers)} values, expected {','.join(GAINS)}")
-    return Drive(*numbers)
-
-
-def _inertia(text: str) -> Drive:
-    """Return the drive of an inertia alone, or of a text such as 100,2,0.01: its gains are to be chosen."""
-    return Drive(Fraction(0), Fraction(0), rational(text)) if "," not in text else _drive(text)
-
-
 NUMBER = ParsedType("number", rational)
 POSITIVE = ParsedType("number", _positive)
 SECONDS = ParsedType("seconds", partial(_within_squares, unit="s"))
@@ -140,8 +122,6 @@ SHARE = ParsedType("number", lambda text: float(rational(text)))
 ENGINE = ParsedType("name", engine_named, lambda: ENGINES)
 ENGINE_VALUES = ParsedType("name[=values]", _engine_values, lambda: [f"{name}=" for name in ENGINES])
 SCENE = ParsedType("scene", str, _scenes)
-DRIVE = ParsedType(",".join(GAINS), _drive)
-INERTIA = ParsedType("inertia", _inertia)
 
 
 def option(names: str, kind: Any, meaning: str, **more: Any) -> Option:
@@ -186,11 +166,6 @@ OPTIONS = {
         "--engine",
         ENGINE_VALUES,
         "An engine's own values, such as mujoco=0.02,1 [its defaults], in place of --alpha and --beta; needs --h.",
-    ),
-    "drive": option(
-        "--pd drive",
-        DRIVE,
-        "A joint drive's gains and inertia (SI units), in place of --alpha and --beta; needs --h.",
     ),
     "every": option(
         "--every",
@@ -294,16 +269,15 @@ OF_A_CONTROLLER = Rule(
 
 GROUPS: Mapping[str, tuple[str | Option | Rule, ...]] = {
     "point": ("alpha", "beta", "physical"),
-    "given_point": (  # in the plane, by an engine's own values, or by a drive's gains
+    "given_point": (  # in the plane, or by an engine's own values
         "point",
-        changed("h", help="Step size in s, for --physical, --engine, --pd, --scene and --omega."),
+        changed("h", help="Step size in s, for --physical, --engine, --scene and --omega."),
         "engine_values",
         flag(
             "--as-typed",
             "With --engine: take the values as typed, without what the engine does to them, such as clamps.",
         ),
-        "drive",
-        Rule(("--engine", "--pd"), "it gives the point itself", excludes=("--alpha", "--beta", "--physical")),
+        Rule(("--engine",), "it gives the point itself", excludes=("--alpha", "--beta", "--physical")),
     ),
     "timing": (
         "every",

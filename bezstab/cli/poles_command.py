@@ -1,16 +1,13 @@
 """The command that prints poles at a point: poles."""
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from bezstab import questions
 from bezstab.cli.asking import asked_of_scene, show_below, show_point
 from bezstab.cli.options import USUAL_METHODS, Rule, changed, command, flag
 from bezstab.cli.output import show_rows
 from bezstab.show import POLES, one_pole_sentence, pole_rows
-
-if TYPE_CHECKING:
-    from bezstab.stability import ComplexArray
 
 
 @command(
@@ -20,7 +17,7 @@ if TYPE_CHECKING:
     "omega",
     changed("scene", help="Also say what the motion of this mechanism does to the poles; needs --h."),
     *("speed", "form"),
-    Rule(("--h",), "α̂ and β̂ have no unit", ("--physical", "--engine", "--pd", "--scene", "--omega")),
+    Rule(("--h",), "α̂ and β̂ have no unit", ("--physical", "--engine", "--scene", "--omega")),
 )
 def poles(all_poles: bool, **typed: Any) -> None:
     """Print each method's dominant pole at one point, and the verdict.
@@ -33,22 +30,19 @@ def poles(all_poles: bool, **typed: Any) -> None:
 
     Example: bezstab poles --alpha 0.5 --beta 0.1
     """
+    from bezstab import stability
+
     question = asked_of_scene(questions.Question, **typed)
-    margins = question.drive is not None
-    at_point = [each for each in questions.answers(question, margins=margins) if each.goal == "as given"]
-    rows = [row for each in at_point for row in pole_rows(each, _all_poles(each) if all_poles else [each.pole])]
-    costs_shown = not (all_poles or question.drive)
+    at_point = [each for each in questions.answers(question, margins=False) if each.goal == "as given"]
+    rows = [
+        row
+        for each in at_point
+        for row in pole_rows(
+            each, stability.poles(each.method, each.alpha_hat, each.beta_hat) if all_poles else [each.pole]
+        )
+    ]
     kind = replace(POLES, sentence=one_pole_sentence) if all_poles else POLES
-    without = () if costs_shown else ("total_error", "times_least")
+    without = ("total_error", "times_least") if all_poles else ()
     show_point(typed, question.given.point, () if all_poles else rows)
     show_rows(kind, rows, without)
     show_below(question, at_point, motion=not all_poles)
-
-
-def _all_poles(answer: "questions.Answer") -> "ComplexArray":
-    """Return every pole of an answer, of a drive without stiffness those of its velocity."""
-    from bezstab import stability
-
-    if answer.question.drive and not answer.beta_hat:
-        return stability.velocity_poles(answer.method, answer.alpha_hat)
-    return stability.poles(answer.method, answer.alpha_hat, answer.beta_hat)

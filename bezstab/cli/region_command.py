@@ -6,7 +6,7 @@ from typing import Any
 import click
 
 from bezstab import questions, show
-from bezstab.cli.asking import asked_of_scene, held_asked, of_each, say_each, write_held
+from bezstab.cli.asking import asked_of_scene, of_each, say_each
 from bezstab.cli.command_group import NUMERICAL_TROUBLE
 from bezstab.cli.options import NUMBER, POSITIVE, SPEED, Rule, changed, command, flag, option
 from bezstab.cli.output import Files, progress, show_rows, show_text
@@ -37,8 +37,6 @@ from bezstab.methods import Method
     flag("--accuracy", "Draw the error that the feedback makes on a motion, together with |z_p|, on logarithmic axes."),
     flag("--motion energy", "Draw what the feedback does to the energy of a motion, together with |z_p|."),
     "omega",
-    changed("drive", help="Draw a joint drive in the plane of kd and kp, and mark these gains (SI units); needs --h."),
-    "timing",
     changed("engine", help="Mark this engine's default values and rules of thumb; needs --h."),
     changed(
         "scene",
@@ -69,18 +67,12 @@ def region(quality: str, grid: int | None, files: Files, **typed: Any) -> int:
     --scene also draws the region of that mechanism as it moves, into region_METHOD_SCENE. --accuracy draws another
     map, region_METHOD_accuracy: the error that the feedback makes in position and velocity, as a share of the motion.
     --motion draws region_METHOD_motion: by what share the energy of a motion grows or falls in a revolution.
-    --pd draws region_METHOD_held for each way of applying a joint drive. Its axes are kd and kp. The torque may be
-    computed every few steps (--every) and come late (--late).
 
     Example: bezstab region --method B4
     """
     from bezstab import stability
 
     points = grid or stability.QUALITY[quality]
-    if held := held_asked(typed, "--pd", always=typed["drive"] is not None):
-        write_held(held, points, files)
-        return 0
-    del typed["drive"]
     question = asked_of_scene(questions.MapQuestion, points=points, **typed)
     files.check_output()
     if question.compare:

@@ -6,6 +6,11 @@ WENT: Mapping[str, str] = {
     "explore": "see `region --figure window`",
     "verify --accuracy": "see `methods NAME` and `choose` with --omega: what they predict is held by a test",
     "verify --witness": "a test runs MuJoCo, and it diverges where the map says: tests/evidence/test_mujoco_witness.py",
+    "check --pd": "see `bezstab drive`",
+    "choose --pd": "see `bezstab drive`",
+    "choose --bandwidth": "see `bezstab drive`",
+    "region --pd": "see `bezstab drive --figure png`",
+    "poles --pd": "see `bezstab drive`",
     "family": "see `region --compare` for the regions, and `methods NAME` for order and error constant",
     "paper --format": "what came of the paper's claims stands in figures/LEDGER.md",
 }

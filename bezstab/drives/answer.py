@@ -21,7 +21,7 @@ from bezstab.methods import Method, Verdict, lookup
 from bezstab.rationals import exact, rounded_down
 from bezstab.stability import first_where, steps_to_settle
 from bezstab.units import check_step
-from bezstab.words import change_words, counted, decay_words, gains_words
+from bezstab.words import change_words, counted, decay_words, gains_words, seconds_words
 
 UsedUp = Literal["gains", "rate", "delay", "rate and delay", "kp", "kd", "too little kd"]
 """Why a drive is unstable; for a stable one, which of its numbers is nearest to its limit."""
@@ -211,14 +211,20 @@ def _changes(answer: DriveAnswer) -> list[str]:
     ends, drive = answer.limits, answer.drive
     changes = []
     if ends.kp and math.isfinite(ends.kp[1]):
-        changes.append(f"kp {'lowered' if drive.kp > ends.kp[1] else 'up'} to {ends.kp[1]:.3g}")
+        changes.append(f"kp {'lowered' if drive.kp > ends.kp[1] else 'up'} to {_digits(ends.kp[1])}")
     if ends.kd and drive.kd > ends.kd[1]:
-        changes.append(f"kd lowered to {ends.kd[1]:.3g}")
+        changes.append(f"kd lowered to {_digits(ends.kd[1])}")
     elif ends.kd and (ends.kd[0] or math.isfinite(ends.kd[1])):
         least, most = ends.kd
-        changes.append(f"kd {f'from {least:.3g} ' if least else ''}{'on' if math.isinf(most) else f'up to {most:.3g}'}")
+        changes.append(
+            f"kd {f'from {_digits(least)} ' if least else ''}{'on' if math.isinf(most) else f'up to {_digits(most)}'}"
+        )
     if ends.inertia and ends.inertia[0]:
-        changes.append(f"inertia {'raised to' if drive.inertia < ends.inertia[0] else 'from'} {ends.inertia[0]:.3g} on")
+        changes.append(
+            f"inertia {'raised to' if drive.inertia < ends.inertia[0] else 'from'} {_digits(ends.inertia[0])} on"
+        )
+    if ends.h and math.isfinite(ends.h[1]):
+        changes.append(f"a step {'lowered' if answer.h > ends.h[1] else 'up'} to {seconds_words(ends.h[1])}")
     if answer.timing == FRESH:
         return changes
     if ends.every is not None:
@@ -226,6 +232,11 @@ def _changes(answer: DriveAnswer) -> list[str]:
     if ends.late is not None:
         changes.append(f"at most {counted(ends.late, 'step')} late")
     return changes
+
+
+def _digits(number: float) -> str:
+    """Return a number to three digits, 1020 without a power of ten."""
+    return f"{float(f'{number:.3g}'):g}"
 
 
 DIGITS = 3

@@ -66,6 +66,7 @@ COLUMNS: Sequence[Column[DriveAnswer]] = (
         True,
     ),
     Column("h", "h", lambda answer: float(answer.h), "step of the physics", unit="s"),
+    Column("h to (s)", "h_max", lambda answer: _end(answer.limits.h, 1), "largest stable step", "s", ".4g", True),
     Column("every", "every", lambda answer: answer.timing.every, "steps from one torque to the next"),
     Column("every to", "every_max", lambda answer: answer.limits.every, "steps that it may be held", brief=True),
     Column("late", "late", lambda answer: float(answer.timing.late), "steps until a torque is applied"),

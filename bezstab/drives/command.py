@@ -46,7 +46,7 @@ def drive(
     figure: str,
     **_: object,
 ) -> bool:
-    """Judge a joint's drive, or find its gains: exit status 0 if safe, 1 if not.
+    """Judge a joint's drive: exit status 0 if safe, 1 if not.
 
     The torque is -kp (q - target) - kd q'. Without --method all four ways to apply it are judged: explicit (SYM),
     implicit in velocity (imex-euler), stable PD (stable-pd), fully implicit (implicit-euler). Yours is most often SYM.
@@ -61,8 +61,6 @@ def drive(
 
     ways = tuple(methods) or tuple(map(lookup, DRIVE_METHODS))
     timing = timing_of(h, every, late, filter_seconds)
-    files = Files(output, figure)
-    files.check_output()
     if bandwidth is not None or settle is not None:
         if kp is not None or kd is not None:
             raise InputError("--bandwidth and --settle find gains: leave out --kp and --kd")
@@ -72,6 +70,8 @@ def drive(
         raise InputError("give --kp and --kd, or --bandwidth, or --settle")
     else:
         judged = Drive(kp, kd, inertia)
+    files = Files(output, figure)
+    files.check_output()
     answers = [judge_drive(judged, h, method, timing) for method in ways]
     if timing != FRESH:
         show_text(f"{timing_words(timing, float(h))}\n")

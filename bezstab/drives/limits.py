@@ -23,20 +23,21 @@ FACTORS = np.geomspace(1e-8, 1e8, 756)
 class Limits:
     """How far each number may go alone (SI units).
 
-    `kp`, `kd`, `inertia`: the stretch that holds the drive's own number, else the one nearest to it; None where there
-    is none. `every`, `late`: the last whole numbers of steps up to which all are proven stable; None where the least, 1
-    and 0, is not, and for a method that cannot be held or late.
+    `kp`, `kd`, `inertia`, `h` (s): the stretch that holds the drive's own number, else the one nearest to it; None
+    where there is none. `every`, `late`: the last whole numbers of steps up to which all are proven stable; None where
+    the least, 1 and 0, is not, and for a method that cannot be held or late.
     """
 
     kp: Stretch | None
     kd: Stretch | None
     inertia: Stretch | None
+    h: Stretch | None
     every: int | None
     late: int | None
 
 
 def limits(drive: Drive, h: Fraction, method: Method, timing: Timing) -> Limits:
-    """Return how far each number may go: gains and inertia by |z_p| in float64, whole steps by proven verdicts."""
+    """Return how far each number may go: by |z_p| in float64, whole steps by proven verdicts."""
     point = drive.point(h)
     a, b = map(float, point)
     kp_of_one, kd_of_one = drive.gains(1.0, 1.0, float(h))
@@ -53,6 +54,7 @@ def limits(drive: Drive, h: Fraction, method: Method, timing: Timing) -> Limits:
         kp=_times(kp_of_one, _stable_stretch(b, lambda some: decays(a, some))),
         kd=_times(kd_of_one, _stable_stretch(a, lambda some: decays(some, b))),
         inertia=_times(float(drive.inertia), _stable_stretch(1.0, lambda some: decays(a / some, b / some))),
+        h=_times(float(h), _stable_stretch(1.0, lambda some: decays(a * some, b * some**2))),
         every=_last_stable(lambda every: stable(every=every), least=1) if in_steps else None,
         late=_last_stable(lambda late: stable(late=Fraction(late)), least=0) if in_steps else None,
     )

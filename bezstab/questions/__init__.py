@@ -1,6 +1,6 @@
 """Questions and their answers: the one door of the command line and of `import bezstab`.
 
-    methods, a point or a goal, steps, an engine or a drive, a scene   →   Question   →   answers   →   row, table, text
+    methods, a point or a goal, steps, an engine, a scene   →   Question   →   answers   →   row, table, text
 
 `cli` and `api` make questions and hand on answers; neither computes.
 """
@@ -10,17 +10,9 @@ from typing import TYPE_CHECKING
 from bezstab.lazy import lazy_names
 
 if TYPE_CHECKING:
-    from bezstab.questions.answering import (
-        Answer,
-        CheckedRole,
-        Gain,
-        LargestStep,
-        answers,
-        engine_energy_rate,
-    )
+    from bezstab.questions.answering import Answer, CheckedRole, LargestStep, answers, engine_energy_rate
     from bezstab.questions.chains import ChainMap, chain_map
     from bezstab.questions.growing_runs import growing_run
-    from bezstab.questions.held_drives import HeldAnswer, HeldQuestion, UsedUp, held_answers, held_gains
     from bezstab.questions.log_probes import PoleQuestion, Probe, check_told, log_answers
     from bezstab.questions.motions import ReferenceMotion, check_speed, motion_of
     from bezstab.questions.question import Question, meant_in_seconds, methods_for, usual_goal

@@ -3,7 +3,7 @@
 An answer is a point with its proven verdict, pole and margins. What takes longer is computed when it is first asked
 for, and then kept:
 
-    answers(question)  →  Answer (given, or chosen)  ·  cost  ·  moving  ·  varying  ·  setting  ·  gains
+    answers(question)  →  Answer (given, or chosen)  ·  cost  ·  moving  ·  varying  ·  setting
                             ├── instead              what `choose` gives in its place
                             └── faster, slower       what faster decay costs, and slower decay gains
 """
@@ -15,7 +15,7 @@ from fractions import Fraction
 from functools import cached_property
 from typing import Literal, cast
 
-from bezstab.engines import DRIVE_METHODS, READ_BACK, Curve, Engine, Point, engine_and_values
+from bezstab.engines import READ_BACK, Curve, Engine, Point, engine_and_values
 from bezstab.errors import InputError, NumericalError
 from bezstab.goals import UP_TO_LONGEST, Goal
 from bezstab.methods import Method, stage_torque
@@ -34,7 +34,6 @@ from bezstab.stability import (
     choose,
     describe_point,
     feedback_cost,
-    gain_stretches,
     largest_stable_step,
     moving_modulus,
     moving_pole,
@@ -47,7 +46,6 @@ from bezstab.words import (
     change_words,
     counted,
     decay_words,
-    gains_words,
     growth_words,
     point_words,
     seconds_words,
@@ -71,35 +69,12 @@ SLOWER = 2
 """Slower decay takes this many times as long to settle."""
 
 
-Gain = Literal["kp", "kd"]
-
-
-@dataclass(frozen=True)
-class Gains:
-    """The gains (SI units) that a point is on a drive's inertia, and how far each may go alone.
-
-    The limits of kp go with this kd, those of kd with this kp. The upper one is infinite where there is none. It is
-    None, as `kd_min` is, where no such gain helps: kp is only lowered, kd is raised too. `used_up` is the gain at its
-    upper limit, or nearest to it; None without limits.
-    `applied` is what the method is called as a way of applying a drive, None if it is none.
-    """
-
-    applied: str | None
-    inertia: Fraction
-    kp: float
-    kd: float
-    kp_max: float | None
-    kd_min: float | None
-    kd_max: float | None
-    used_up: Gain | None
-
-
 @dataclass(frozen=True, repr=False, kw_only=True)
 class Answer(Choice):
     """All that `Choice` says of a point, and what that means for the question.
 
     These are None if the question is not about them: `moving` without a scene, `varying` without h_min, `setting`
-    without an engine, `gains` without a drive, `swept` without a chain or a scene in an engine that sweeps.
+    without an engine, `swept` without a chain or a scene in an engine that sweeps.
     """
 
     question: Question = field(compare=False)
@@ -318,38 +293,12 @@ class Answer(Choice):
         return swept.sweeps_to_spare(self.point, self.question.spread)
 
     @cached_property
-    def gains(self) -> Gains | None:
-        """The gains of the drive at this point, and their limits."""
-        drive, h = self.question.drive, self.question.h
-        if drive is None or h is None:
-            return None
-        kp, kd = (drive.kp, drive.kd) if self.role == "given" else drive.gains(self.alpha_hat, self.beta_hat, float(h))
-        of_alpha, of_beta = gain_stretches(self.method, *self.point)
-        kp_of_one, kd_of_one = drive.gains(1.0, 1.0, float(h))
-        kp_max = None if of_beta is None or of_beta[0] > self.beta_hat else kp_of_one * of_beta[1]
-        kd_min, kd_max = (None, None) if of_alpha is None else (kd_of_one * end for end in of_alpha)
-        pairs: dict[Gain, tuple[float, float | None]] = {"kd": (float(kd), kd_max), "kp": (float(kp), kp_max)}
-        # the distance is the ratio of the gain and its limit, whichever is larger
-        ratios = {gain: max(a / b, b / a) for gain, (a, b) in pairs.items() if a > 0 and b and math.isfinite(b)}
-        nearest = min(ratios, key=lambda gain: ratios[gain], default=None)
-        return Gains(
-            applied=DRIVE_METHODS.get(self.method.name),
-            inertia=drive.inertia,
-            kp=float(kp),
-            kd=float(kd),
-            kp_max=kp_max,
-            kd_min=kd_min,
-            kd_max=kd_max,
-            used_up=nearest,
-        )
-
-    @cached_property
     def instead(self) -> "Answer":
         """What `choose` gives for the same question by its usual goal.
 
         InputError where nothing is stable or the engine cannot express it, NumericalError where it cannot be found.
         """
-        goal = usual_goal(self.question.engine, self.question.drive is not None, (self.method,))
+        goal = usual_goal(self.question.engine, (self.method,))
         question = replace(self.question, chain=self.question.chain_to_choose_for)
         if goal == "accurate":
             replace(question, methods=(self.method,)).check_motion()
@@ -433,8 +382,6 @@ def answer_sentence(answer: Answer) -> str:
     said = _swept(answer, swept) if swept else _errors(answer)
     if answer.safe and not answer.swept_over:  # more of one constraint alone means nothing for a chain of them
         said += _growth(answer)
-    if answer.gains and answer.verdict != "converges":
-        said += _remedies(answer.gains)
     if answer.safe_with:
         said.append(f"with {answer.safe_with} it is safe")
     motion = answer.question.motion
@@ -454,20 +401,16 @@ def _assumed(omega_h: Fraction, h: float | None) -> str:
 
 
 def _judged(answer: Answer) -> str:
-    """Return the point that was judged, or the gains of a drive."""
-    gains, h = answer.gains, answer.question.h
-    if gains and h is not None:
-        return gains_words(gains.kp, gains.kd, gains.inertia, h, gains.applied)
-    return point_words(answer.alpha_hat, answer.beta_hat, h)
+    """Return the point that was judged."""
+    return point_words(answer.alpha_hat, answer.beta_hat, answer.question.h)
 
 
 def _change(answer: Answer, z_abs: float, verdict: str, bound: str = "") -> str:
     """Return how long an error takes to fall to a thousandth, or what a step does to one that does not fall."""
     steps = answer.settle_steps if z_abs == abs(answer.pole) else steps_to_settle(z_abs)
-    what = "velocity" if answer.gains and not answer.gains.kp else "error"
     if verdict != "converges" or steps is None:
-        return change_words(z_abs, verdict, what, bound)
-    return decay_words(steps, answer.method_step, what, bound)
+        return change_words(z_abs, verdict, bound=bound)
+    return decay_words(steps, answer.method_step, bound=bound)
 
 
 def _errors(answer: Answer) -> list[str]:
@@ -571,17 +514,13 @@ def _swept(answer: Answer, swept: SweptAnswer) -> list[str]:
 
 
 def _growth(answer: Answer) -> list[str]:
-    """Return how far the step, α and β may grow, or the gains of a drive: each alone, at rest; nothing if not asked."""
-    margins, gains = answer.margins, answer.gains
+    """Return how far the step, α and β may grow: each alone, at rest; nothing if not asked."""
+    margins = answer.margins
     if answer.margins_reason:
-        names = "kp and kd" if gains else "α and β"
-        return [f"how far the step, {names} may grow is not known: {answer.margins_reason}"]
+        return [f"how far the step, α and β may grow is not known: {answer.margins_reason}"]
     if margins is None:
         return []
-    if gains:
-        others = {"kp": _up_to(gains.kp_max, _gain_text), "kd": _up_to(gains.kd_max, _gain_text)}
-    else:
-        others = {"α": growth_words(_finite(margins.alpha[1])), "β": growth_words(_finite(margins.beta[1]))}
+    others = {"α": growth_words(_finite(margins.alpha[1])), "β": growth_words(_finite(margins.beta[1]))}
     of_engine = answer.question.engine is not None
     step = growth_words(_finite(margins.h))
     if answer.h is not None:
@@ -593,21 +532,6 @@ def _growth(answer: Answer) -> list[str]:
     return [f"{each} alone may grow: {', '.join(f'{name} {limit}' for name, limit in limits.items())}"]
 
 
-def _remedies(gains: Gains) -> list[str]:
-    """Return which change of one gain alone makes an unstable drive stable."""
-    kd_min, kd_max, kp_max = gains.kd_min, _finite(gains.kd_max), _finite(gains.kp_max)
-    remedies = []
-    if kd_min is not None and gains.kd <= kd_min:
-        remedies.append(
-            f"raise kd above {_gain_text(kd_min)}{'' if kd_max is None else f', up to {_gain_text(kd_max)}'}"
-        )
-    if kd_max is not None and gains.kd >= kd_max:
-        remedies.append(f"lower kd to {_gain_text(kd_max)}")
-    if kp_max is not None and gains.kp >= kp_max:
-        remedies.append(f"lower kp to {_gain_text(kp_max)}")
-    return [" or ".join(remedies)] if remedies else []
-
-
 def _finite(number: float | None) -> float | None:
     return None if number is None or math.isinf(number) else number
 
@@ -615,11 +539,6 @@ def _finite(number: float | None) -> float | None:
 def _up_to(limit: float | None, text: Callable[[float], str]) -> str:
     """Return up to where something may grow."""
     return growth_words(None) if limit is None or math.isinf(limit) else f"to {text(limit)}"
-
-
-def _gain_text(gain: float) -> str:
-    """Return a gain to four digits, 11000 without a power of ten."""
-    return f"{float(f'{gain:.4g}'):g}"
 
 
 def answers(question: Question, *, margins: bool = True) -> Iterator[Answer]:
@@ -639,9 +558,7 @@ def answers(question: Question, *, margins: bool = True) -> Iterator[Answer]:
             yield found
             continue
         for label, point in (("as given", question.given.point), *question.given.also):
-            of_drive = question.drive is not None
-            choice = describe_point(method, label, *point, question.spread, margins, of_drive=of_drive)
-            yield _answer(question, "given", choice)
+            yield _answer(question, "given", describe_point(method, label, *point, question.spread, margins))
 
 
 def engine_energy_rate(engine: Engine, point: Point | None, h: Fraction, omega: Fraction) -> float | None:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 
-from bezstab.engines import DRIVE_METHODS, Applied, Drive, Engine, Point
+from bezstab.engines import Applied, Engine, Point
 from bezstab.errors import InputError
 from bezstab.goals import SETTLING, UP_TO_LONGEST, Goal
 from bezstab.mechanism import Mechanism, Scene, TurningNormals, compiled_mechanism
@@ -35,7 +35,7 @@ SAME_GAINS = 1e-9
 
 WHICH_METHOD = (
     "which integrator? --method SYM (semi-implicit Euler, as most engines have), RK4, rk45 (solve_ivp's), AB4, "
-    "B4 or another of `bezstab methods`; or an --engine; or --pd"
+    "B4 or another of `bezstab methods`; or an --engine"
 )
 
 
@@ -53,8 +53,8 @@ class StepRange:
 class Question:
     """A question about feedback: is a point safe (no `goal`), or which point does a `goal` give?
 
-    The point is `point` (alpha_hat, beta_hat), or an `engine` gives it for its `values`, or a `drive` gives it. Without
-    `methods` the engine's own method is asked about, or all ways of applying the drive. `h` is the step (s). With
+    The point is `point` (alpha_hat, beta_hat), or an `engine` gives it for its `values`. Without `methods` the
+    engine's own method is asked about. `h` is the step (s). With
     `h_max` (s) a choice is for all steps up to it. With `h_min` (s) errors must also decay for every sequence of steps
     from h_min to h_max: alpha and beta stay the same while steps vary; with `hold` alpha_hat and beta_hat do.
     The motion has a rate `omega` (1/s) or `omega_h` (rad a step), or is that of a `scene`, `speed` times as fast as
@@ -78,7 +78,6 @@ class Question:
     engine: Engine | None = None
     values: tuple[Fraction, ...] | None = None
     as_typed: bool = False
-    drive: Drive | None = None
     omega: Fraction | None = None
     omega_h: Fraction | None = None
     scene: str | Scene | None = None
@@ -105,7 +104,7 @@ class Question:
         check_speed(self.scene, self.speed)
         self._check_duration()
         check_sweeps(self.chain, self.mass_ratio, self.iterations, self.engine, self.scene, self.speed)
-        object.__setattr__(self, "methods", methods_for(self.methods, self.engine, self.drive))
+        object.__setattr__(self, "methods", methods_for(self.methods, self.engine))
         if self.steps:
             for method in self.methods:
                 check_one_step(method)
@@ -123,20 +122,17 @@ class Question:
 
     def _check_given(self) -> None:
         """Raise InputError unless a point is given in one way, with the step that this way needs."""
-        in_other_words = self.values is not None or self.drive is not None
+        in_other_words = self.values is not None
         if self.h_max is not None and self.h_min is None:
             raise InputError("--h-max needs --h-min: together they are the range of steps")
         if in_other_words and self.h is None and self.h_max is None:
-            raise InputError("--physical, --engine and --pd need --h: the step in s")
+            raise InputError("--physical and --engine need --h: the step in s")
         if self.as_typed and self.values is None:
             raise InputError("--as-typed needs --engine: it leaves out what that engine does to its values")
-        if self.values is not None and self.drive:
-            raise InputError("--engine and --pd each give a point: use one of them")
         if in_other_words and self.point is not None:
-            option = "--engine" if self.engine else "--pd"
-            raise InputError(f"{option} takes the place of --alpha, --beta and --physical")
+            raise InputError("--engine takes the place of --alpha, --beta and --physical")
         if not in_other_words and self.point is None:
-            raise InputError("a point is needed: --alpha with --beta, --engine, or --pd")
+            raise InputError("a point is needed: --alpha with --beta, or --engine")
         if self.h is None and self.h_min is not None:
             object.__setattr__(self, "h", self.h_max)
 
@@ -149,18 +145,16 @@ class Question:
             raise InputError(f"--settle goes with --goal gentle or accurate, not {goal}")
         elif self.settle <= 0:
             raise InputError(f"--settle {float(self.settle):g} s: expected a positive time")
-        in_seconds = (self.h_min, self.h_max, self.settle, self.engine, self.drive)
+        in_seconds = (self.h_min, self.h_max, self.settle, self.engine)
         if self.h is None:
             if any(each is not None for each in in_seconds):
-                raise InputError("--h-min, --h-max, --settle, --engine and --pd need --h: the step in s")
+                raise InputError("--h-min, --h-max, --settle and --engine need --h: the step in s")
             return
         if self.h_max is not None and (not (goal in UP_TO_LONGEST or self.h_min) or self.h_max < self.h):
             raise InputError(
                 f"--h-max {float(self.h_max):g}: only for --goal accurate, robust or --h-min, and at least --h "
                 f"{float(self.h):g}"
             )
-        if self.engine and self.drive:
-            raise InputError("--engine and --pd each print what to set: use one of them")
         if self.engine and self.engine.level != "acceleration" and (self.h_max or self.h_min):
             raise InputError(
                 f"--h-max and --h-min: what {self.engine.name} makes of its values at other steps is told by "
@@ -184,8 +178,6 @@ class Question:
         """The point that is asked about, and those at which the same values must be safe, too."""
         if self.values is not None and self.engine and self.h is not None:
             return self.engine.applied(self.values, self.h, as_typed=self.as_typed)
-        if self.drive and self.h is not None:
-            return Applied(self.drive.point(self.h), None)
         assert self.point
         return Applied(self.point, None)
 
@@ -293,14 +285,14 @@ def _settles(method: Method, point: Point, h: Fraction) -> bool:
     return at_point.settle_steps is not None and at_point.settle_steps * h * method.step_multiple < SLOWLY
 
 
-def methods_for(methods: tuple[Method, ...], engine: Engine | None, drive: Drive | None) -> tuple[Method, ...]:
-    """Return the methods that are asked about: those given, else the engine's own, else all ways of applying a drive.
+def methods_for(methods: tuple[Method, ...], engine: Engine | None) -> tuple[Method, ...]:
+    """Return the methods that are asked about: those given, else the engine's own.
 
     InputError where there are none, and for another method than its own with an engine whose steps are of one alone.
     """
     own = engine.method if engine else None
     if not methods:
-        methods = tuple(map(lookup, [own] if own else DRIVE_METHODS if drive else []))
+        methods = (lookup(own),) if own else ()
     if not methods:
         raise InputError(
             f"{engine.name} has no integrator of its own: name yours with --method" if engine else WHICH_METHOD
@@ -312,14 +304,13 @@ def methods_for(methods: tuple[Method, ...], engine: Engine | None, drive: Drive
     return methods
 
 
-def usual_goal(engine: Engine | None, with_drive: bool, methods: tuple[Method, ...] = ()) -> Goal:
-    """Return the goal for a question that names none: robust with a drive or in an engine, else accurate.
+def usual_goal(engine: Engine | None, methods: tuple[Method, ...] = ()) -> Goal:
+    """Return the goal for a question that names none: robust in an engine, else accurate.
 
     In an engine bodies collide, and the feedback that forces least lets what a collision leaves die slowly; but where
     that feedback follows the motion, strong feedback forces far too much. On an engine's curve alpha and beta depend on
-    each other, so that no gentle feedback can be found there. Nothing feeds the acceleration of a drive's target
-    forward, so that the error of a weak drive is not forced by the method. InputError as `methods_for`.
+    each other, so that no gentle feedback can be found there. InputError as `methods_for`.
     """
-    if with_drive or (engine and engine.curve):
+    if engine and engine.curve:
         return "robust"
-    return "robust" if engine and not all(map(follows_motion, methods_for(methods, engine, None))) else "accurate"
+    return "robust" if engine and not all(map(follows_motion, methods_for(methods, engine))) else "accurate"

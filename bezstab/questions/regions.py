@@ -139,7 +139,7 @@ class MapQuestion:
     alpha_beta: bool = False
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "methods", methods_for(self.methods, self.engine, None))
+        object.__setattr__(self, "methods", methods_for(self.methods, self.engine))
         object.__setattr__(self, "speeds", self.speeds or (Fraction(1),))
         for option, ends in (("--alpha-range", self.alpha_range), ("--beta-range", self.beta_range)):
             if ends:

@@ -11,20 +11,16 @@ from bezstab.show.columns import Column, page_of_keys, row_of
 from bezstab.show.fields import MISSING, Field, Row, RowKind, cells, column, formatted, visible
 from bezstab.show.file_forms import FIGURE_FORMS, TABLE_FORMS
 from bezstab.show.result_sentences import (
-    LATE_COMMANDS,
     combined_words,
     costs_words,
-    drive_words,
     energy_words,
     exact_rate_words,
     likeness_sentence,
     motion_words,
     passages_words,
     spare_words,
-    timing_words,
     trade_words,
     varying_words,
-    ways_words,
 )
 from bezstab.show.row_kinds import (
     CHAINS,
@@ -34,7 +30,6 @@ from bezstab.show.row_kinds import (
     EXTREMES,
     FIELDS,
     FRONTS,
-    HELD,
     LARGEST_STEPS,
     LIKE_POINT,
     LIKENESS,
@@ -84,7 +79,6 @@ if TYPE_CHECKING:
     from bezstab.show.map_figures import (
         chains_figure,
         comparison_figure,
-        held_figure,
         map_figure,
         verdict_figure,
     )

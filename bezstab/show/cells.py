@@ -40,15 +40,6 @@ def any_or_missing(row: Row) -> str:
     return "any" if row["verdict"] == "converges" and not row.get("margins_reason") else MISSING
 
 
-def gain_limit_text(gain: str, row: Row) -> str:
-    """Return up to which kp or kd a drive is stable; that it is to be lowered to there, where it is above it."""
-    value, limit = row[gain], row[f"{gain}_max"]
-    if limit is None:
-        without_end = row["kd_min"] is not None if gain == "kd" else row["verdict"] == "converges"
-        return "any" if without_end else "none helps"
-    return f"lower {gain} to {limit:.4g}" if value > limit else f"{limit:.4g}"
-
-
 def unbounded(row: Row) -> str:
     """Return what is said of a region's area or of an end that it does not have: unbounded, unless it is empty."""
     return MISSING if row.get("bounded", True) else "unbounded"
@@ -72,17 +63,6 @@ def step_text(row: Row) -> str:
     if limit is None and row["h"] is not None and known:
         return "unlimited"
     return formatted(limit, ".4g")
-
-
-def used_up_text(row: Row) -> str:
-    """Return which gain is nearest its limit, and how much of that it is."""
-    gain = row["used_up"]
-    if gain is None:
-        return MISSING
-    value, limit = row[gain], row[f"{gain}_max"]
-    if value is None or not limit:  # out of range, or none of it
-        return str(gain)
-    return f"{gain} {100 * value / limit:.0f} %"
 
 
 def fits_text(row: Row) -> str:

@@ -1,10 +1,8 @@
-"""Figures of maps: |z_p| over the plane, the error that is forced there, a drive's gains, chains of bodies."""
+"""Figures of maps: |z_p| over the plane, the error that is forced there, chains of bodies."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import partial
-from operator import mul
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,7 +16,6 @@ from matplotlib.ticker import MaxNLocator
 
 from bezstab.methods import Method
 from bezstab.show import plot
-from bezstab.show.result_sentences import timing_words
 from bezstab.show.style import (
     ABOVE_THE_AXES,
     ACCENT,
@@ -77,7 +74,7 @@ LIGHTEST = 1.05
 if TYPE_CHECKING:  # so that a picture of the plane does not load what runs mechanisms
     from bezstab.engines import Engine
     from bezstab.evidence import VerdictMap
-    from bezstab.questions import ChainMap, HeldAnswer, MapAnswer, MapQuestion
+    from bezstab.questions import ChainMap, MapAnswer, MapQuestion
 
 
 def map_figure(answer: MapAnswer, z: ComplexArray) -> Figure:
@@ -288,40 +285,6 @@ def verdict_figure(verdicts: VerdictMap, region: Region) -> Figure:
             x, y = verdicts.alpha_hat[columns], verdicts.beta_hat[rows]
             axes.plot(x, y, "x", color=ACCENT, markersize=3, label="disagree")
         return with_legend(figure)
-
-
-def held_figure(answer: HeldAnswer, points: int) -> Figure:
-    """Return |z_p| of one way of applying a drive over kd and kp (SI units), its edge, and the drive's own gains.
-
-    Each axis has so many points. The axes opposite show alpha_hat and beta_hat. Where the edge has a closed form, that
-    is drawn over it.
-    """
-    question, found = answer.question, answer.map(points)
-    h = float(question.h)
-    kp_of_one, kd_of_one = question.drive.gains(1.0, 1.0, h)
-    kd, kp = kd_of_one * found.alpha_hat, kp_of_one * found.beta_hat
-    of_method = title_lines(answer.applied, f"h = {h:g} s")
-    with styled():
-        title = f"{of_method}\n{title_lines(timing_words(question.timing, h))}"
-        figure, axes = new_axes(title, "kd (N m s/rad)", "kp (N m/rad)", 1.1)
-        image = plot.modulus_map(kd, kp, found.z_abs, axes=axes)
-        figure.colorbar(image, label="$|z_p|$ a step", location="bottom", shrink=0.8)
-        if found.has_edge:
-            _level_line(axes, kd, kp, found.z_abs, 1.0, "$|z_p| = 1$")
-        if found.law is not None:
-            law = kp_of_one * found.law
-            axes.plot(kd, law, color="white", linestyle=(0, (4, 4)), linewidth=1.0, label="closed form")
-        own = float(question.drive.kd), float(question.drive.kp)
-        label = f"kp = {own[1]:g}, kd = {own[0]:g}"
-        plot.point(own, axes, label=label, marker="*", markersize=11, color=ACCENT, **WHOLE)
-        axes.set(xlim=(min(0.0, kd[0]), kd[-1]), ylim=(min(0.0, kp[0]), kp[-1]), facecolor="0.93")
-        across = axes.secondary_xaxis("top", functions=(partial(mul, 1 / kd_of_one), partial(mul, kd_of_one)))
-        across.set_xlabel(r"$\hat\alpha = $ kd $h$ / inertia")
-        up = axes.secondary_yaxis("right", functions=(partial(mul, 1 / kp_of_one), partial(mul, kp_of_one)))
-        up.set_ylabel(r"$\hat\beta = $ kp $h^2$ / inertia")
-        for axis in (axes.xaxis, axes.yaxis, across.xaxis, up.yaxis):
-            axis.set_major_formatter("{x:g}")  # a common factor would stand beside it, on the axis opposite
-        return with_legend(figure, facecolor="0.75")
 
 
 def chains_figure(engine: Engine, title: str, maps: Sequence[ChainMap]) -> Figure:

@@ -7,17 +7,16 @@ from typing import TYPE_CHECKING
 
 from bezstab.rationals import typed_number
 from bezstab.units import from_dimensionless
-from bezstab.words import counted, seconds_words, times_words
+from bezstab.words import counted, times_words
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from fractions import Fraction
 
-    from bezstab.engines import Drive, Point
+    from bezstab.engines import Point
     from bezstab.evidence import Likeness, Measurement
     from bezstab.questions import Answer, ReferenceMotion
-    from bezstab.show.fields import Row
-    from bezstab.stability import BestPoint, FarLimit, Timing, VaryingSteps
+    from bezstab.stability import BestPoint, FarLimit, VaryingSteps
 
 COSTLY = 10.0
 """Times the least error: from here on a sentence says what the feedback costs."""
@@ -37,11 +36,6 @@ FASTER = 3.0
 MOST_LISTED = 20  # times in a message
 
 TIMES = {2: "double", 3: "triple"}
-
-LATE_COMMANDS = (
-    "A target that comes late only delays the motion. A torque or a measurement that comes late takes stability. "
-    "Not judged: a limit of the torque, friction, and what else the drive is connected to."
-)
 
 
 def costs_words(answer: Answer) -> str | None:
@@ -136,43 +130,12 @@ def combined_words(motion: ReferenceMotion) -> str:
     )
 
 
-def drive_words(drive: Drive) -> list[str]:
-    """Return what is to be known of a drive that has one gain alone; nothing of another one."""
-    if not (drive.kp or drive.kd):
-        return ["Without kp and kd nothing is driven."]
-    if not drive.kp:
-        return ["Without kp this is a damper: nothing holds the position, so the velocity is judged."]
-    return [] if drive.kd else ["Without kd this is a spring: nothing but the integrator damps."]
-
-
-def ways_words(rows: Sequence[Row]) -> str:
-    """Return in which ways of applying a drive it is safe, of a row for each way."""
-    verdicts = []
-    for verdict, safe in (("safe", True), ("not safe", False)):
-        if names := [f"{row['drive']} ({row['method']})" for row in rows if row["safe"] == safe]:
-            verdicts.append(f"{verdict} {'is' if len(names) == 1 else 'are'} {', '.join(names)}")
-    return f"Of the ways to apply the torque, of which --method names yours, {'; '.join(verdicts)}."
-
-
 def energy_words(motion: ReferenceMotion) -> str:
     """Return what growths of energy are shares of."""
     return (
         "\nGrowth is a share of the energy of a mass on a circle, in each revolution. Its rate varies by 30 % to both "
         f"sides. Here it is {motion.words}. A negative growth is a loss."
     )
-
-
-def timing_words(timing: Timing, h: float) -> str:
-    """Return how a controller works in words: the torque is computed every 8 ms and applied 2 ms late."""
-    words = "The torque is computed in every step"
-    if timing.every > 1:
-        words = f"The torque is computed every {timing.every} steps ({seconds_words(timing.every * h)})"
-    if timing.late:
-        late = float(timing.late)
-        words += f" and applied {late:g} step{'s' * (late > 1)} ({seconds_words(late * h)}) late"
-    if timing.filter_steps:
-        words += f", with the velocity filtered over {seconds_words(float(timing.filter_steps) * h)}"
-    return f"{words}."
 
 
 def varying_words(name: str, varying: VaryingSteps) -> str:

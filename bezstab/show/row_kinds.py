@@ -15,7 +15,6 @@ from bezstab.show.cells import (
     any_speed,
     constant_text,
     fits_text,
-    gain_limit_text,
     method_and_alias_text,
     modulus_words,
     order_text,
@@ -23,7 +22,6 @@ from bezstab.show.cells import (
     safe_step_text,
     step_text,
     unbounded,
-    used_up_text,
 )
 from bezstab.show.fields import MISSING, Field, RowKind, column, integer, number, text, truth
 from bezstab.show.sentences import (
@@ -465,45 +463,6 @@ SWEPT_OVER = (
     STABLE_ITERATIONS,
 )
 """What an engine that sweeps adds: the first to all, the others to --chain and --scene."""
-# what --pd adds, of `Gains`; HELD has some of them too
-DRIVE = (
-    text("drive", "How the drive is applied", "applied", null="where the method is no drive's", path="applied"),
-    number("kp", "Stiffness of the drive", "kp", ".4g", unit="N m/rad or N/m"),
-    number(
-        "kp_max",
-        "Largest stable stiffness with this damping",
-        "kp to",
-        text=partial(gain_limit_text, "kp"),
-        unit="N m/rad or N/m",
-        null="without a limit",
-    ),
-    number("kd", "Damping of the drive", "kd", ".4g", unit="N m s/rad or N s/m"),
-    number("inertia", "Inertia that the drive feels", unit="kg m^2 or kg", path="question.drive.inertia"),
-    number(
-        "kd_min",
-        "Least stable damping with this stiffness",
-        "kd from",
-        ".4g",
-        unit="N m s/rad or N s/m",
-        null="where none helps",
-    ),
-    number(
-        "kd_max",
-        "Largest stable damping with this stiffness",
-        "kd to",
-        text=partial(gain_limit_text, "kd"),
-        unit="N m s/rad or N s/m",
-        null="without a limit",
-    ),
-    text(
-        "used_up",
-        "Which gain is at its limit or nearest to it",
-        "used up",
-        text=used_up_text,
-        null="where none has one",
-        values_of="questions.Gain",
-    ),
-)
 # what --h-min adds: a proof, or a sequence of steps that refutes it
 VARYING = (
     text(
@@ -608,7 +567,6 @@ POLES = RowKind(
         EXCLUDES.hidden,
         SWEEPS,
         *SWEPT_OVER,
-        *DRIVE,
     ),
     sentence=IN_WORDS,
 )
@@ -861,7 +819,7 @@ CHOICES = RowKind(
         ENERGY_RATE.hidden,
         SENTENCE,
     ),
-    added=(*MOVING, *SCENE_RUN, *VARYING, SWEEPS, *SWEPT_OVER, *DRIVE, ENGINE_H_LIMIT, SETTING),
+    added=(*MOVING, *SCENE_RUN, *VARYING, SWEEPS, *SWEPT_OVER, ENGINE_H_LIMIT, SETTING),
     sentence=IN_WORDS,
 )
 # printed by `check`: a choice with its role
@@ -1243,78 +1201,17 @@ EXTREMES = RowKind(
         truth("held", "Whether what came out is what was expected", "held", form="NO"),
     ),
 )
-_APPLIED, KP, KP_MAX, KD, INERTIA, KD_MIN, KD_MAX, _ = DRIVE
-# printed by `check`, `choose` and `region` about drives whose controller is slower than the physics
-HELD = RowKind(
-    "a drive that is held or late",
-    fields=(
-        METHOD,
-        _APPLIED,
-        VERDICT,
-        SAFE,
-        Z_ABS,
-        number(
-            "fresh_z_abs",
-            "Modulus of the same drive's pole if each step computes and applies its torque",
-            "|z| if fresh",
-            ".4f",
-        ),
-        H.hidden.of("question.h"),
-        integer(
-            "every", "Steps of the physics from one computation of the torque to the next", path="question.timing.every"
-        ),
-        number("late", "Steps of the physics until a torque is applied", path="question.timing.late"),
-        number(
-            "filter",
-            "Time constant of the filter through which the velocity is seen",
-            unit="s",
-            path="question.filter_seconds",
-        ),
-        INERTIA,
-        KP.of("question.drive.kp"),
-        KP_MAX.of("limits.kp.1"),
-        KD.of("question.drive.kd"),
-        KD_MIN.of("limits.kd.0"),
-        KD_MAX.of("limits.kd.1"),
-        integer(
-            "every_max",
-            "Steps up to which the torque may be held, the rest as it is",
-            "every to",
-            null="where even one is unstable",
-            path="limits.every",
-        ),
-        integer(
-            "late_max",
-            "Whole steps up to which the torque may be late, the rest as it is",
-            "late to",
-            null="where even none is unstable",
-            path="limits.late",
-        ),
-        text(
-            "held_by",
-            "What an unstable drive would be stable without, or which number of a stable one is nearest to its end",
-            "used up",
-            null="where none has an end",
-            values_of="questions.UsedUp",
-            path="used_up",
-        ),
-        SENTENCE,
-    ),
-    sentence=IN_WORDS,
-)
-
 ROW_KINDS: Mapping[str, Sequence[RowKind]] = {
     "poles": (POLES,),
-    "region": (REGIONS, HELD),
+    "region": (REGIONS,),
     "methods": (
         LISTED_METHODS,
         NAMED_METHODS,
     ),
-    "choose": (CHOICES, STEPS_OF_CHOICES, HELD),
+    "choose": (CHOICES, STEPS_OF_CHOICES),
     "check": (
         CHECKED,
         LARGEST_STEPS,
-        HELD,
     ),
     "lint": (LINTED,),
     "engines": (ENGINES_LISTED,),

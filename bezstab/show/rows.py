@@ -20,7 +20,6 @@ from bezstab.show.row_kinds import (
     CHAINS,
     CHECKED,
     CHOICES,
-    DRIVE,
     ENGINE_H_LIMIT,
     ENGINES_LISTED,
     EXCLUDES,
@@ -42,12 +41,6 @@ EXCLUDED_SHOWN = 5
 """Methods that do not fit and are shown where people read, the nearest; rows for programs have all."""
 
 OF_A_MOTION = ("total_error", "velocity_error", "times_least", "times_least_velocity")
-NOT_OF_DRIVES = (
-    *(*OF_A_MOTION, "order_left"),
-    *("alpha_factor_min", "alpha_factor_max", "beta_factor_min", "beta_factor_max"),
-)
-"""Columns that tables of a drive omit: nothing feeds the acceleration of its target forward; kp and kd have limits."""
-
 OF_ONE_ALONE = (
     *("worst", "settle_steps", "settle_seconds", "h_limit"),
     *("alpha_factor_min", "alpha_factor_max", "beta_factor_min", "beta_factor_max"),
@@ -212,7 +205,7 @@ def engine_row(
 
 
 def answer_row(answer: Answer) -> Row:
-    """Return all that an answer has as a row; keys of an engine, a drive, a scene, a range of steps where asked for."""
+    """Return all that an answer has as a row; keys of an engine, a scene, a range of steps where asked for."""
     kind = CHOICES if answer.role == "chosen" else CHECKED
     return {**kind.row(answer), **_added_cells(answer, ENGINE_H_LIMIT, SETTING)}
 
@@ -220,7 +213,7 @@ def answer_row(answer: Answer) -> Row:
 def pole_rows(answer: Answer, poles: Iterable[complex]) -> list[Row]:
     """Return a row for each pole of a method at the point of an answer (dimensionless), angles in degrees.
 
-    Keys of an engine, a drive, a scene where asked for.
+    Keys of an engine, a scene where asked for.
     """
     added = _added_cells(answer)
     return [{**POLES.row(answer, **pole_cells(z)), **added} for z in poles]
@@ -229,12 +222,12 @@ def pole_rows(answer: Answer, poles: Iterable[complex]) -> list[Row]:
 def left_out(question: Question) -> tuple[str, ...]:
     """Return the keys that tables of a question leave out."""
     assumed = not question.goal and question.motion.assumed
-    not_asked = NOT_OF_DRIVES if question.drive else OF_A_MOTION if assumed else ()
+    not_asked = OF_A_MOTION if assumed else ()
     return (*not_asked, *(OF_ONE_ALONE if question.swept else ()))
 
 
 def _added_cells(answer: Answer, *of_engine: Field) -> dict[str, Value]:
-    """Return what an engine, a drive, a scene and a range of steps add to a row of an answer's point.
+    """Return what an engine, a scene and a range of steps add to a row of an answer's point.
 
     Of an engine it is what it does to its values and what is left out, which is null where the values were not given;
     over what it sweeps; and the fields `of_engine`.
@@ -248,7 +241,7 @@ def _added_cells(answer: Answer, *of_engine: Field) -> dict[str, Value]:
             added |= cells((APPLIED, EXCLUDES), answer if given else None)
         swept_over = SWEPT_OVER if answer.swept else SWEPT_OVER[:1]
         added |= cells((SWEEPS, *swept_over, *of_engine), answer)
-    parts = ((DRIVE, answer.gains), (MOVING, answer.moving), (SCENE_RUN, answer.run), (VARYING, answer.varying))
+    parts = ((MOVING, answer.moving), (SCENE_RUN, answer.run), (VARYING, answer.varying))
     for fields, found in parts:
         if found:
             added |= cells(fields, found, {"shown_by": growing_run(answer)})

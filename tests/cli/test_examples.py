@@ -19,7 +19,7 @@ from bezstab.show import ROW_KINDS, json_schema, shown_width
 from tests.cli.running import DATA, run
 
 SMALL = "--figure none --table none"
-WITHOUT_ROWS = {"schema", "paper"}
+WITHOUT_ROWS = {"schema", "paper", "drive"}
 
 EXAMPLES = (
     "poles --alpha 0.5 --beta 0.1",
@@ -38,8 +38,6 @@ EXAMPLES = (
     "check --method SYM --alpha 2 --beta 100 --physical --h-min 0.00917 --h-max 1/60",
     "check --engine mujoco=0.02,1 --h 0.002",
     "check --engine bullet=0.2 --h 1/60 --chain 3 --mass-ratio 10",
-    "check --pd 1000,80,0.1 --h 1/240",
-    "check --pd 200,5,0.1 --h 0.002 --every 4 --late 1",
     "check --method SYM --alpha 1 --beta 0.5 --h 0.01 --scene driven_four_bar",
     "lint two_joints.xml",
     "probe pendulum.csv --alpha 2/3 --beta 1/4 --method SYM --method RK4",

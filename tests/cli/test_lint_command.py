@@ -60,5 +60,7 @@ def test_a_motor_is_judged_with_its_controllers_gains() -> None:
     timing = "--every 4 --late 1"
     for gains, exit_code in (("200,5", 0), ("200,0.1", 1), ("0,5", 0), ("0,60", 1)):
         (row,) = rows("lint", model, f"--pd hip.*={gains}", timing, status=exit_code)
-        (answer,) = rows(f"check --pd {gains},0.094 --h 0.002 --method SYM", timing, status=exit_code)
+        kp, kd = gains.split(",")
+        drive = f"drive --kp {kp} --kd {kd} --inertia 0.094 --h 0.002 --method SYM"
+        (answer,) = rows(drive, timing, status=exit_code)
         assert (row["verdict"], row["z_abs"]) == (answer["verdict"], pytest.approx(answer["z_abs"], rel=1e-9))

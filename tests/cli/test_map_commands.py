@@ -42,14 +42,6 @@ def test_the_tables_of_a_map_and_of_compared_boundaries(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_a_map_of_each_way_of_applying_a_drive_is_written_and_the_rows_are_those_of_check(tmp_path: Path) -> None:
-    late = "--pd 200,5,0.1 --h 0.002 --every 4 --late 1"
-    assert rows("region", late, "--quality fast") == rows("check", late)
-    ways = ("SYM", "imex-euler", "stable-pd", "implicit-euler")
-    assert {path.name for path in tmp_path.iterdir()} == {f"region_{way}_held.png" for way in ways}
-
-
-@pytest.mark.slow
 def test_the_map_of_errors_is_written_as_figure_and_table(tmp_path: Path) -> None:
     options = "--alpha-range 0.001 6 --beta-range 1e-5 9 --grid 20 --level 0.9 --table npz -o out"
     region, level = rows("region --method RK4 --accuracy", options)

@@ -5,7 +5,6 @@ from typing import Any
 
 import pytest
 
-from bezstab.engines import DRIVE_METHODS
 from tests.cli.running import DATA, rows, run
 
 
@@ -58,18 +57,6 @@ def test_what_is_meant_in_seconds_has_a_largest_step_and_what_is_meant_per_step_
     assert of_the_engine == pytest.approx(of_alpha_and_beta, rel=1e-9)
 
 
-def test_a_drive_is_shown_in_all_ways_of_applying_it() -> None:
-    given = {str(row["method"]): row for row in rows("poles --pd 1000,80,0.1 --h 1/240")}
-    assert {name: row["drive"] for name, row in given.items()} == DRIVE_METHODS
-    assert [row["verdict"] for row in given.values()] == ["diverges", "converges", "converges", "converges"]
-    explicit, velocity = given["SYM"], given["imex-euler"]
-    assert (explicit["used_up"], explicit["kp_max"]) == ("kd", None)  # no kp helps
-    assert explicit["kd_max"] == pytest.approx((4 - 1000 / 0.1 / 240**2) / 2 * 0.1 * 240)
-    assert (velocity["used_up"], velocity["kd_max"]) == ("kp", None)
-    assert velocity["kp_max"] == pytest.approx((4 + 2 * 80 / 0.1 / 240) * 0.1 * 240**2)
-    assert given["implicit-euler"]["used_up"] is None
-
-
 def test_numbers_that_look_like_one_over_seconds_are_said_to() -> None:
     typed = "check --method SYM --alpha 50 --beta 50.5 --h 0.002"
     assert run(typed).stderr.splitlines()[0].endswith("if 50 and 50.5 are in 1/s, add --physical")
@@ -107,7 +94,6 @@ def test_what_was_typed_is_shown_as_typed() -> None:
     for asked, keys, typed in (
         ("--method SYM --h 1/240 --alpha 60 --beta 60.1 --physical", ("alpha", "beta"), (60, 60.1)),
         ("--engine maplesim=60,60.1 --method SYM --h 0.003", ("alpha", "beta"), (60, 60.1)),
-        ("--pd 1000,80.1,0.3 --method stable-pd --h 1/239", ("kp", "kd"), (1000, 80.1)),
     ):
         given = rows("check", asked)[0]
         assert tuple(given[key] for key in keys) == typed

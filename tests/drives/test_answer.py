@@ -1,10 +1,11 @@
 """Answers about drives: the number that is nearest to its limit, and gains to write."""
 
 from fractions import Fraction
+from math import inf
 
 import pytest
 
-from bezstab.drives.answer import DriveAnswer, gains_for, judge_drive
+from bezstab.drives.answer import DriveAnswer, drive, gains_for, judge_drive
 from bezstab.drives.held_torque import verdict
 from bezstab.engines import Drive, Timing
 from bezstab.errors import InputError
@@ -94,3 +95,37 @@ def test_what_cannot_be_reached_is_refused_with_what_can() -> None:
         gains(timing, bandwidth=Fraction(reach) * Fraction("1.02"))
     with pytest.raises(InputError, match=r"--settle 0\.01 s: unstable .* Shortest safe time: \S+ s"):
         gains(timing, settle=Fraction("0.01"))
+
+
+LIMITS = [
+    ("SYM", "1", "1/4", 2 - 1 / 8, 2),  # 2 kd + kp < 4
+    ("SYM", "1/10", "3", 1 / 2, 4 - 1 / 5),
+    ("SYM", "19/10", "1/2", 7 / 4, 1 / 5),  # unstable: each is lowered until it is stable
+    ("SYM", "3", "1/4", 2 - 1 / 8, None),  # where one alone is too much the other does not help
+    ("SYM", "1/10", "5", None, 4 - 1 / 5),
+    ("SYM", "3", "5", None, None),
+    ("SYM", "0", "1/100", 2 - 1 / 200, None),  # rounding on the circle is no decay: only more kd helps
+    ("SYM", "1", "0", 2, 2),  # a damper: its velocity is judged
+    ("SYM", "4", "0", 2, None),
+    ("imex-euler", "1", "8", inf, 6),
+    ("imex-euler", "1", "1", inf, 6),
+    ("implicit-euler", "1", "1", inf, inf),
+]
+
+
+@pytest.mark.parametrize(
+    (
+        "name",
+        "kd",
+        "kp",
+        "kd_max",
+        "kp_max",
+    ),
+    LIMITS,
+)
+def test_gains_reach_the_edge_of_what_is_stable(
+    name: str, kd: str, kp: str, kd_max: float | None, kp_max: float | None
+) -> None:
+    """On an inertia of 1, with steps of 1 s, kd is alpha_hat and kp is beta_hat."""
+    found = drive(kp, kd, 1, h=1, method=name).limits
+    assert (found.kd and found.kd[1], found.kp and found.kp[1]) == pytest.approx((kd_max, kp_max))

@@ -105,7 +105,7 @@ def test_what_is_chosen_for_a_chain_is_safe_there(name: str) -> None:
 def test_a_line_to_paste_is_stable_in_a_chain_of_ten_also_if_it_were_a_tenth_stronger(name: str) -> None:
     """Whether the chain is asked about or not, and from `choose` as from what `check` gives instead."""
     engine, h = ENGINES[name], Fraction(1, 60)
-    (chosen,) = answers(Question(engine=engine, goal=usual_goal(engine, False), h=h))
+    (chosen,) = answers(Question(engine=engine, goal=usual_goal(engine), h=h))
     assert chosen.safe
     assert chosen.swept_over == "a chain of 10 equal bodies"
     assert engine.sweeping
@@ -120,7 +120,7 @@ def test_a_line_to_paste_is_stable_in_a_chain_of_ten_also_if_it_were_a_tenth_str
     given = next(answers(Question(engine=engine, values=tuple(map(Fraction, engine.values(chosen.point, h))), h=h)))
     assert given.swept_over == "one constraint alone"
     assert given.instead.setting == chosen.setting
-    (asked,) = answers(Question(engine=engine, goal=usual_goal(engine, False), h=h, chain=10))
+    (asked,) = answers(Question(engine=engine, goal=usual_goal(engine), h=h, chain=10))
     assert asked.setting == chosen.setting
 
 

@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from bezstab.engines import DRIVE_METHODS, ENGINES, Drive, engine_and_values
+from bezstab.engines import ENGINES, Drive, engine_and_values
 from bezstab.errors import InputError
 from bezstab.methods import lookup
 from bezstab.questions import Question, meant_in_seconds, usual_goal
@@ -20,8 +20,7 @@ DRIVE = Drive(Fraction(1000), Fraction(80), Fraction("0.1"))
 @pytest.mark.parametrize(
     ("asked", "message"),
     [
-        ({"methods": SYM}, "a point is needed: --alpha with --beta, --engine, or --pd"),
-        ({"methods": SYM, "point": POINT, "drive": DRIVE, "h": H}, "--pd takes the place of --alpha"),
+        ({"methods": SYM}, "a point is needed: --alpha with --beta, or --engine"),
         ({"methods": SYM, "point": POINT, "h": Fraction(0)}, "h = 0 s: expected"),
     ],
 )
@@ -30,10 +29,9 @@ def test_what_only_python_can_ask_is_refused_as_well(asked: dict[str, Any], mess
         Question(**asked)
 
 
-def test_an_engine_brings_its_method_and_a_drive_all_ways_of_applying_it() -> None:
+def test_an_engine_brings_its_method() -> None:
     of_engine = Question(engine=ENGINES["mujoco"], values=(Fraction(1, 50), Fraction(1)), h=H)
     assert [method.name for method in of_engine.methods] == ["SYM"]
-    assert [method.name for method in Question(drive=DRIVE, h=H).methods] == list(DRIVE_METHODS)
 
 
 def test_an_engine_says_itself_what_it_holds_while_steps_vary() -> None:
@@ -42,13 +40,13 @@ def test_an_engine_says_itself_what_it_holds_while_steps_vary() -> None:
     assert (steps.h_min, steps.h_max, steps.hold) == (H / 2, H, True)
 
 
-def test_the_usual_goal_is_accurate_and_of_a_drive_or_in_an_engine_robust_unless_feedback_follows_the_motion() -> None:
-    assert [usual_goal(None, False), usual_goal(None, True)] == ["accurate", "robust"]
+def test_the_usual_goal_is_accurate_and_in_an_engine_robust_unless_feedback_follows_the_motion() -> None:
+    assert usual_goal(None) == "accurate"
     mujoco = ENGINES["mujoco"]
     goals = [
-        usual_goal(ENGINES["box2d"], False),
-        usual_goal(mujoco, False),
-        usual_goal(mujoco, False, (lookup("RK4"),)),
+        usual_goal(ENGINES["box2d"]),
+        usual_goal(mujoco),
+        usual_goal(mujoco, (lookup("RK4"),)),
     ]
     assert goals == ["robust", "robust", "accurate"]
 

@@ -13,7 +13,6 @@ from typing import Literal
 import numpy as np
 import pytest
 
-from bezstab.engines import Drive
 from bezstab.methods import lookup
 from bezstab.questions import Question, answers, region_answer
 from bezstab.show import (
@@ -124,12 +123,6 @@ def test_tables_of_rows_leave_out_times_and_say_what_is_missing_by_its_kind() ->
     assert list(arrays) == ["order", "failure"]
     assert np.isnan(arrays["order"].astype(float)).all()
     assert arrays["failure"].tolist() == [""]
-
-
-def test_a_table_of_a_drive_leaves_out_accuracy() -> None:
-    drive = Drive(Fraction(200), Fraction(5), Fraction("0.1"))
-    assert "total_error" in left_out(Question(drive=drive, h=Fraction(1, 500)))
-    assert "order_left" not in left_out(ANSWER.question)
 
 
 def test_a_table_of_a_given_point_leaves_out_errors_on_a_motion_that_nobody_gave() -> None:
