@@ -18,7 +18,6 @@ ROOMS = (
     "show",
     "cli",
     "drives",
-    "mujoco",
     "paper",
 )
 """From data upwards: a room imports only from rooms before it."""

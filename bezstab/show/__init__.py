@@ -33,6 +33,7 @@ from bezstab.show.row_kinds import (
     LARGEST_STEPS,
     LIKE_POINT,
     LIKENESS,
+    LINTED,
     LISTED_METHODS,
     MEASUREMENTS,
     NAMED_METHODS,

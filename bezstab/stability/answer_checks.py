@@ -20,9 +20,8 @@ from bezstab.stability.arrays import (
     FloatArray,
     even_points,
 )
-from bezstab.stability.closed_loop import largest_modulus, largest_pole
+from bezstab.stability.closed_loop import largest_pole, spectral_radius
 from bezstab.stability.path_crossings import Path
-from bezstab.stability.pencils import Pencil
 from bezstab.stability.searches import bisected
 
 Modulus = Callable[[FloatArray, FloatArray], FloatArray]
@@ -81,7 +80,7 @@ def check_least(
         raise NumericalError(f"{method.name}: the point chosen has {least:.9g}, but {place} has {values[k]:.9g}")
 
 
-def check_critical(pencil: Pencil, alpha_hat: float, beta_hat: float, extent: Extent, cut: bool = False) -> None:
+def check_critical(method: Method, alpha_hat: float, beta_hat: float, extent: Extent, cut: bool = False) -> None:
     r"""Raise NumericalError unless the dominant pole is real and positive at a point, and smaller at no neighbour.
 
     Neighbours are where the dominant pole is double, real and positive, too (cut: and within the extent). Bisection
@@ -93,20 +92,20 @@ def check_critical(pencil: Pencil, alpha_hat: float, beta_hat: float, extent: Ex
         \  ##### /        #: two real poles
           'x----'
     """
-    name = pencil.method.name
-    here = complex(largest_pole(pencil, alpha_hat, beta_hat))
+    name = method.name
+    here = complex(largest_pole(method, alpha_hat, beta_hat))
     if abs(here) < MULTIPLE:
         return  # every pole is zero to its rounding: none is faster
     # where a rival is as large as the double pole, on one side of the point it is smaller
     beside = np.array([1 - DOUBLE, 1, 1 + DOUBLE])
-    if not _real_and_positive(largest_pole(pencil, alpha_hat * beside, beta_hat * beside**2), MULTIPLE).any():
+    if not _real_and_positive(largest_pole(method, alpha_hat * beside, beta_hat * beside**2), MULTIPLE).any():
         raise NumericalError(f"{name}: the dominant pole {here:.6g} of the critical point is not real and positive")
 
     def places(radius: FloatArray, angle: FloatArray) -> tuple[FloatArray, FloatArray]:
         return alpha_hat * (1 + radius * np.cos(angle)), beta_hat * (1 + radius * np.sin(angle))
 
     def real(radius: FloatArray, angle: FloatArray) -> BoolArray:
-        return _real_and_positive(largest_pole(pencil, *places(radius, angle)), EPS)
+        return _real_and_positive(largest_pole(method, *places(radius, angle)), EPS)
 
     angles = np.linspace(0, 2 * np.pi, NEIGHBOURS + 1)
     is_real = real(CLOSE_RINGS[:, np.newaxis], angles)
@@ -118,14 +117,14 @@ def check_critical(pencil: Pencil, alpha_hat: float, beta_hat: float, extent: Ex
         after=np.where(first, angles[k], angles[k + 1]),
     )
     alpha_hats, beta_hats = places(radius, real_end)
-    poles = largest_pole(pencil, alpha_hats, beta_hats)
+    poles = largest_pole(method, alpha_hats, beta_hats)
     # else it is another pole that becomes the larger one there
-    double = np.abs(poles - largest_pole(pencil, *places(radius, pair_end))) <= MULTIPLE * np.abs(poles)
+    double = np.abs(poles - largest_pole(method, *places(radius, pair_end))) <= MULTIPLE * np.abs(poles)
     if cut:
         double &= (alpha_hats <= extent[0][1]) & (beta_hats <= extent[1][1])
     smallest = np.abs(poles[double]).min(initial=np.inf)
     near = 1 + ROUNDING * np.linspace(-1, 1, NEIGHBOURS + 1)
-    parted = float(np.ptp(largest_modulus(pencil, alpha_hat * near, beta_hat * near[:, np.newaxis])))
+    parted = float(np.ptp(spectral_radius(method, alpha_hat * near, beta_hat * near[:, np.newaxis])))
     if smallest < abs(here) * (1 - DOUBLE) - PARTED * parted:
         raise NumericalError(f"{name}: the critical point has {abs(here):.9g}, but a neighbour has {smallest:.9g}")
 

@@ -13,13 +13,13 @@ from functools import cache, partial
 from itertools import count
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from bezstab.errors import NumericalError
 from bezstab.methods import Method, fixed_poles
 from bezstab.stability.answer_checks import check_least
-from bezstab.stability.arrays import DOUBLE, EPS, SAME, ComplexArray
+from bezstab.stability.arrays import DOUBLE, EPS, SAME, ComplexArray, FloatArray, plane_arrays
 from bezstab.stability.charts import NEAR
-from bezstab.stability.closed_loop import largest_modulus
 from bezstab.stability.far_limits import FarLimit
 from bezstab.stability.least_modulus import least_on
 from bezstab.stability.pencils import Pencil, pencil_of
@@ -110,7 +110,7 @@ def _from_grid(pencil: Pencil, stable: Region, limit: FarLimit) -> BestPoint | F
     if solved > sampled * (1 + SAME) + EPS**0.5 * (sampled < EPS**0.25):
         name = pencil.method.name
         raise NumericalError(f"{name}: |z_p| = {sampled:.6g} was sampled, but no kink as low could be solved for")
-    least, modulus = alike[0], partial(largest_modulus, pencil)
+    least, modulus = alike[0], partial(_modulus, pencil)
     here, *others = (chart.user_point(each.place) for each in alike)
     # B2 and AB2 are as fast along a whole line, where two poles have the least modulus: so it is in its middle
     end = max(others, key=partial(math.dist, here), default=here)
@@ -130,6 +130,11 @@ def _from_grid(pencil: Pencil, stable: Region, limit: FarLimit) -> BestPoint | F
         arc=bool(arc),
         multiplicity=least.multiplicity if chart.real else 1,
     )
+
+
+def _modulus(pencil: Pencil, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> FloatArray:
+    """Return the largest |z| of those poles that parameters move; shape of both, broadcast."""
+    return np.abs(pencil.largest_poles(*plane_arrays(alpha_hat, beta_hat)))
 
 
 def _different(z: ComplexArray, z_abs: float) -> tuple[complex, ...]:
@@ -152,6 +157,6 @@ def _beside_a_fixed_pole(method: Method, fixed: complex, others: BestPoint | Far
     if isinstance(others, BestPoint):
         return replace(others, method=method, fixed=fixed, z_abs=abs(fixed), meeting=(fixed,), elsewhere=(), arc=False)
     pencil = pencil_of(method, free=True)
-    t = next(t for t in (2.0**k for k in count()) if largest_modulus(pencil, *others.point(t)) < abs(fixed))
+    t = next(t for t in (2.0**k for k in count()) if _modulus(pencil, *others.point(t)) < abs(fixed))
     alpha_hat, beta_hat = others.point(t)
     return BestPoint(method, abs(fixed), alpha_hat, beta_hat, (fixed,), False, (), arc=False, fixed=fixed)

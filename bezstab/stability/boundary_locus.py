@@ -37,8 +37,7 @@ import numpy as np
 
 from bezstab.stability.arrays import DOUBLE, ROUNDING, SAME, BoolArray, FloatArray
 from bezstab.stability.locus_tracks import Arc, tracks
-from bezstab.stability.mu_pencils import MuPencil, all_inside, roots_in_mu
-from bezstab.stability.root_finding import roots_of_table
+from bezstab.stability.mu_pencils import MuPencil, all_inside, roots_in_mu, roots_of_table
 from bezstab.stability.searches import bisected, least_between
 
 ARC_POINTS = 400  # drawn per arc: chords stay within 1e-5 of the curve

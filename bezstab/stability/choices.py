@@ -16,7 +16,7 @@ from bezstab.stability.accurate_points import Within, accurate_point, default_ra
 from bezstab.stability.answer_checks import Modulus, check_critical, check_least
 from bezstab.stability.arrays import DOUBLE, SLOW, Extent, FloatArray
 from bezstab.stability.best_points import best_point
-from bezstab.stability.closed_loop import converges, largest_modulus, largest_pole, verdict
+from bezstab.stability.closed_loop import all_within, converges, largest_pole, spectral_radius, verdict
 from bezstab.stability.critical_points import critical_place
 from bezstab.stability.curve_choices import Curve, least_along, mildest_along, of_equal
 from bezstab.stability.drive_poles import drive_pole, drive_verdict
@@ -142,10 +142,9 @@ def choose(
     rate = THOUSANDFOLD ** float(largest * method.step_multiple / settle) if largest and settle else None
     box, cut = search_box(region(method))
     curve = along or (of_equal(box) if equal or goal == "gentle" else None)
-    pencil = pencil_of(method, free=True)  # a pole that no parameters move must not hide the others
     at_rest = modulus is None
-    z_abs = modulus or partial(largest_modulus, pencil)
-    within: Within = pencil.all_within if at_rest else lambda a, b, level: np.asarray(z_abs(a, b) < level)
+    z_abs = modulus or partial(spectral_radius, method)
+    within: Within = partial(all_within, method) if at_rest else lambda a, b, level: np.asarray(z_abs(a, b) < level)
     if goal == "accurate":
         settling = partial(_accurate, method, box, within, omega_h, spread, curve)
         wanted = default_rate(method, omega_h) if rate is None else rate
@@ -160,13 +159,12 @@ def choose(
             raise InputError(f"{method.name}: no {what} {words}")
         point = found
     elif goal == "gentle":
-        of_all = partial(largest_modulus, pencil_of(method)) if at_rest else z_abs
         assert curve
         what = "any setting of the engine" if along else "alpha = beta"
-        point, cut = mildest_along(curve, of_all, rate or 0.0, f"with {what} {method.name}"), False
+        point, cut = mildest_along(curve, z_abs, rate or 0.0, f"with {what} {method.name}"), False
     elif goal == "critical":
         point = _critical_point(method, box)
-        check_critical(pencil, point[0], point[1], box, cut)
+        check_critical(method, point[0], point[1], box, cut)
         if equal and not math.isclose(point[1], point[0] ** 2 / 4):
             raise InputError(
                 f"--goal critical --keep alpha=beta: the double pole of {method.name} is not at alpha = beta"
@@ -246,7 +244,7 @@ def describe_point(
     """
     _check_spread(spread)
     a, b = float(alpha_hat), float(beta_hat)
-    pole_at = partial(drive_pole, method) if of_drive else partial(largest_pole, pencil_of(method))
+    pole_at = partial(drive_pole, method) if of_drive else partial(largest_pole, method)
     proven = (drive_verdict if of_drive else verdict)(method, alpha_hat, beta_hat)
     offsets = 1 + spread * np.linspace(-1, 1, SHARES + 1)
     near_a, near_b = np.meshgrid(a * offsets, b * offsets**2)

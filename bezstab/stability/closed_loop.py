@@ -1,11 +1,18 @@
-"""Closed-loop poles over any broadcastable alpha_hat and beta_hat, and the proven verdict at one exact point."""
+"""Closed-loop poles over any broadcastable alpha_hat and beta_hat, maps of them, and the proven verdict at one point.
+
+Of a method that steps position and velocity alike they are the roots z of pi(z, mu), the polynomial of one step on
+y' = lambda y, mu = h lambda, at both roots mu of the feedback, mu^2 + alpha_hat mu + beta_hat = 0. That halves the
+degree, and keeps all digits on beta_hat = alpha_hat^2 / 4, where the roots of P pair up. Of any other method they are
+the roots of P(z; alpha_hat, beta_hat) itself.
+"""
 
 from collections.abc import Iterator
 from fractions import Fraction
-from functools import lru_cache
+from functools import cache, lru_cache
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.polynomial.polynomial import polyval, polyval2d
+from numpy.typing import ArrayLike, NDArray
 
 from bezstab.errors import NumericalError
 from bezstab.methods import (
@@ -15,11 +22,23 @@ from bezstab.methods import (
     is_schur,
     recursion_verdict,
 )
-from bezstab.stability.arrays import EPS, ComplexArray, FloatArray, plane_arrays
-from bezstab.stability.pencils import Pencil, pencil_of
-from bezstab.stability.root_finding import CHUNK
+from bezstab.stability.arrays import EPS, BoolArray, ComplexArray, FloatArray, plane_arrays
+from bezstab.stability.root_finding import (
+    CHUNK,
+    horner,
+    inside_circle,
+    larger_root,
+    largest_roots,
+    roots_of_rows,
+)
+from bezstab.stability.stretches import float_table
 
-BLOCK = 16 * CHUNK  # points whose poles are followed in one go: their work arrays stay below 50 MB
+BLOCK = 32 * CHUNK  # points whose poles are found in one go: their work arrays stay below 50 MB
+CANCELS = 0.1  # of (alpha_hat/2)^2: where the discriminant is below it, float64 would lose digits of mu
+LEADING = 4 * EPS  # of the sum of its terms' sizes: a leading coefficient below it is rounding of zero
+UNSURE = 2.0  # |z_p|: of an n-fold pole beyond all sizes rounding may leave 1e15^(1/n)
+LARGE = 1e10  # |mu|: of larger ones powers may overflow
+SPLITTER = 2.0**27 + 1  # multiplying by it parts the 53 bits of a float64 into two halves (Dekker)
 
 QUALITY = {"fast": 50, "balanced": 200, "fine": 1000}
 """Points per axis of a map (tests/bench/test_map_costs.py): B4's boundary is read off to 1e-4, 4e-6, 2e-7."""
@@ -45,11 +64,11 @@ def converges(method: Method, alpha_hat: Fraction, beta_hat: Fraction, level: Fr
 def poles(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> ComplexArray:
     """Return all closed-loop poles; complex, shape of alpha_hat and beta_hat broadcast plus (2 n,), dimensionless.
 
-    Descending by modulus. Roots of paper Eq. 17. NumericalError if a root leaves the range of float64, or is infinite,
-    where an implicit step has no solution.
+    Descending by modulus. Roots of paper Eq. 17; errors are rounding times the condition of the root. NumericalError
+    if a root leaves the range of float64, or is infinite, where an implicit step has no solution.
     """
     alpha_hat, beta_hat = plane_arrays(alpha_hat, beta_hat)
-    rows = pencil_of(method).poles(alpha_hat.ravel(), beta_hat.ravel())
+    rows = _all_poles(method, alpha_hat.ravel(), beta_hat.ravel())
     z = rows.T.reshape(*alpha_hat.shape, len(rows))
     _check_solved(method, alpha_hat, beta_hat, z)
     order = np.lexsort((-z.imag, -np.abs(z)), axis=-1)
@@ -63,7 +82,7 @@ def dominant_pole(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> 
     root leaves the range of float64, or is infinite, where an implicit step has no solution.
     """
     alpha_hat, beta_hat = plane_arrays(alpha_hat, beta_hat)
-    found = largest_pole(pencil_of(method), alpha_hat, beta_hat)
+    found = largest_pole(method, alpha_hat, beta_hat)
     _check_solved(method, alpha_hat, beta_hat, found[..., np.newaxis])
     return found
 
@@ -84,7 +103,7 @@ def spectral_radius(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike) -
     Infinite where an implicit step has no solution. NumericalError if a finite root of paper Eq. 17 leaves the range
     of float64.
     """
-    return largest_modulus(pencil_of(method), alpha_hat, beta_hat)
+    return np.abs(largest_pole(method, alpha_hat, beta_hat))
 
 
 def pole_map(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray) -> Iterator[ComplexArray]:
@@ -93,30 +112,188 @@ def pole_map(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray) -> Ite
     So a progress bar and an interrupt have something to hold on. Stacked, the blocks have shape (beta_hat.size,
     alpha_hat.size); dimensionless. NumericalError if a root of paper Eq. 17 leaves the range of float64.
     """
-    pencil = pencil_of(method)
     rows = max(1, BLOCK // alpha_hat.size)
     for start in range(0, beta_hat.size, rows):
-        yield largest_pole(pencil, alpha_hat, beta_hat[start : start + rows, np.newaxis])
+        yield largest_pole(method, alpha_hat, beta_hat[start : start + rows, np.newaxis])
 
 
-def largest_pole(pencil: Pencil, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> ComplexArray:
-    """Return what dominant_pole does, from a pencil; infinite where an implicit step has no solution."""
+def largest_pole(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> ComplexArray:
+    """Return what dominant_pole does; infinite where an implicit step has no solution."""
     alpha_hat, beta_hat = plane_arrays(alpha_hat, beta_hat)
-    alphas, betas = (each if each.ndim == 2 else each.reshape(-1, 1) for each in (alpha_hat, beta_hat))
+    alphas, betas = alpha_hat.ravel(), beta_hat.ravel()
     z = np.empty(alphas.shape, complex)
-    rows = max(1, BLOCK // max(1, alphas.shape[1]))
-    for start in range(0, len(z), rows):
-        some = slice(start, start + rows)
-        z[some] = pencil.largest_poles(alphas[some], betas[some])
+    for start in range(0, z.size, BLOCK):
+        some = slice(start, start + BLOCK)
+        z[some] = _largest_pole(method, alphas[some], betas[some])
     return _without_rounding(z).reshape(alpha_hat.shape)
-
-
-def largest_modulus(pencil: Pencil, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> FloatArray:
-    """Return what spectral_radius does, from a pencil."""
-    return np.abs(largest_pole(pencil, alpha_hat, beta_hat))
 
 
 def _without_rounding(z: ComplexArray) -> ComplexArray:
     """Return z, changed in place, with the imaginary parts that are its rounding taken off."""
     z.imag[np.abs(z.imag) < EPS * np.abs(z.real)] = 0
     return z
+
+
+# Below, alpha_hat and beta_hat are rows of points, shape (points,).
+
+
+@cache
+def mu_table(method: Method) -> FloatArray:
+    """Return pi by powers of z and of the mu of the method's own step; empty where there is none.
+
+    NumericalError if an exact coefficient leaves the range of float64.
+    """
+    try:
+        return np.array(method.scheme.mu_table, float)
+    except OverflowError:
+        raise NumericalError(f"{method.name}: products of its coefficients leave the range of float64") from None
+
+
+def feedback_roots(
+    method: Method, alpha_hat: FloatArray, beta_hat: FloatArray
+) -> tuple[ComplexArray, NDArray[np.signedinteger], ComplexArray]:
+    """Return one mu of the method's own step at each point, at which points both are real, and the other mu of these.
+
+    Of a conjugate pair it is the one with Im mu > 0, of two real ones the larger in modulus.
+    """
+    with np.errstate(all="ignore"):
+        half = alpha_hat / 2
+        square = half * half
+        discriminant = square - beta_hat
+        first = larger_root(half, discriminant)
+        close = ~(np.abs(discriminant) > CANCELS * square)
+        if close.any():
+            first[close] = _careful_root(half[close], beta_hat[close])
+        real = np.flatnonzero(first.imag == 0)
+        larger = first.real[real]
+        other = np.divide(beta_hat[real], larger, out=np.zeros(real.size), where=larger != 0)
+    multiple = float(method.step_multiple)
+    return multiple * first, real, (multiple * other).astype(complex)
+
+
+def own_feedback_root(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray, z: ComplexArray) -> ComplexArray:
+    """Return the mu that each pole z belongs to, of a method that has a mu; all of one shape."""
+    first, real, other = feedback_roots(method, alpha_hat.ravel(), beta_hat.ravel())
+    second = first.conj()
+    second[real] = other
+    both = np.stack([first, second]).reshape(2, *z.shape)
+    left_over = np.abs(polyval2d(np.broadcast_to(z, both.shape), both, mu_table(method)))
+    return np.asarray(np.take_along_axis(both, np.argmin(left_over, axis=0)[np.newaxis], axis=0)[0])
+
+
+def _careful_root(half: FloatArray, beta_hat: FloatArray) -> ComplexArray:
+    """Return the same of mu^2 + 2 half mu + beta_hat, from a discriminant that is exact until rounded.
+
+    The square keeps what its rounding takes away (T. J. Dekker, Numer. Math. 18, 1971), in units of a power of two, so
+    that it does not leave the range of float64.
+    """
+    exponent = np.maximum(np.frexp(half)[1], (np.frexp(beta_hat)[1] + 1) // 2)
+    x, y = np.ldexp(half, -exponent), np.ldexp(beta_hat, -2 * exponent)
+    shifted = SPLITTER * x
+    high = shifted - (shifted - x)
+    low = x - high
+    square = x * x
+    lost = low * low - ((square - high * high) - 2 * high * low)
+    return np.asarray(larger_root(x, (square - y) + lost) * np.ldexp(1.0, exponent))
+
+
+def _in_mu(table: FloatArray, mu: ComplexArray) -> ComplexArray:
+    """Return pi's coefficients in z, ascending; where mu is LARGE times mu^-d: a common factor moves no root."""
+    large = np.abs(mu) > LARGE
+    if not large.any():
+        rows = np.empty((len(table), mu.size), complex)
+        for k, row in enumerate(table.tolist()):
+            rows[k] = horner(row, mu)
+        return rows
+    inverse = np.divide(1, mu, out=np.zeros_like(mu), where=large)
+    small = np.where(large, 0, mu)
+    return np.stack([np.where(large, horner(row[::-1], inverse), horner(row, small)) for row in table.tolist()])
+
+
+def _in_plane(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray) -> FloatArray:
+    """Return P's coefficients in z, ascending."""
+    table = float_table(method).tolist()
+    rows = np.empty((len(table), alpha_hat.size))
+    for k, in_plane in enumerate(table):
+        rows[k] = horner([horner(row, beta_hat) for row in in_plane], alpha_hat)
+    return rows
+
+
+def _all_poles(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray) -> ComplexArray:
+    """Return all poles in any order, shape (poles, points), and errors, as `_with_infinite`."""
+    in_mu = mu_table(method)
+    with np.errstate(all="ignore"):
+        if not in_mu.size:
+            z = roots_of_rows(_in_plane(method, alpha_hat, beta_hat))
+        else:
+            first, real, other = feedback_roots(method, alpha_hat, beta_hat)
+            z = roots_of_rows(_in_mu(in_mu, np.concatenate([first, other])))
+            z, of_other = z[:, : first.size], z[:, first.size :]
+            z = np.concatenate([z, z.conj()])
+            z[len(in_mu) - 1 :, real] = of_other
+    return _with_infinite(method, alpha_hat, beta_hat, z)
+
+
+def _largest_pole(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray) -> ComplexArray:
+    """Return the largest pole, Im >= 0, and errors, as `_with_infinite`."""
+    in_mu = mu_table(method)
+    with np.errstate(all="ignore"):
+        if not in_mu.size:
+            z = largest_roots(lambda place: _in_plane(method, place.real, place.imag), alpha_hat + 1j * beta_hat)
+        else:
+            first, real, other = feedback_roots(method, alpha_hat, beta_hat)
+            z = largest_roots(lambda mu: _in_mu(in_mu, mu), np.concatenate([first, other]))
+            z, of_other = z[: first.size], z[first.size :]
+            z[real] = np.where(np.abs(of_other) > np.abs(z[real]), of_other, z[real])
+    z.imag = np.abs(z.imag)
+    return np.asarray(_with_infinite(method, alpha_hat, beta_hat, z[np.newaxis])[0])
+
+
+def _with_infinite(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray, z: ComplexArray) -> ComplexArray:
+    """Return poles in columns, changed in place: all infinite where the leading coefficient is zero to its rounding.
+
+    There an implicit step has no solution. NumericalError where another pole is not finite: it is beyond float64.
+    """
+    in_mu = mu_table(method)
+    leading = in_mu[-1] if in_mu.size else float_table(method)[-1].ravel()
+    certain = np.abs(z) < UNSURE if leading[1:].any() else np.isfinite(z)
+    unsure = np.flatnonzero(~certain.all(axis=0))
+    if not unsure.size:
+        return z
+    alpha_hat, beta_hat = alpha_hat[unsure], beta_hat[unsure]
+    with np.errstate(all="ignore"):
+        if in_mu.size:
+            first, real, other = feedback_roots(method, alpha_hat, beta_hat)
+            infinite = _vanishes(polyval(first, leading), polyval(np.abs(first), np.abs(leading)))
+            infinite[real] |= _vanishes(polyval(other, leading), polyval(np.abs(other), np.abs(leading)))
+        else:
+            in_plane = float_table(method)[-1]
+            size = polyval2d(np.abs(alpha_hat), np.abs(beta_hat), np.abs(in_plane))
+            infinite = _vanishes(polyval2d(alpha_hat, beta_hat, in_plane), size)
+    z[:, unsure[infinite]] = np.inf
+    lost = ~(infinite | np.isfinite(z[:, unsure]).all(axis=0))
+    if lost.any():
+        place = f"alpha_hat = {alpha_hat[lost][0]:.6g}, beta_hat = {beta_hat[lost][0]:.6g}"
+        raise NumericalError(f"{method.name}: at {place} a pole leaves the range of float64")
+    return z
+
+
+def _vanishes(leading: NDArray[np.inexact], size: FloatArray) -> BoolArray:
+    return np.asarray((np.abs(leading) <= LEADING * size) & np.isfinite(size))
+
+
+def all_within(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray, level: FloatArray | float) -> BoolArray:
+    """Return whether every pole has |z| < level at each point, by Schur's recursion; shape of all three, broadcast.
+
+    False where an implicit step has no solution.
+    """
+    alphas, betas, levels = (each.ravel() for each in np.broadcast_arrays(alpha_hat, beta_hat, level))
+    in_mu = mu_table(method)
+    with np.errstate(all="ignore"):
+        if not in_mu.size:
+            within = inside_circle(_in_plane(method, alphas, betas), levels)
+        else:
+            first, real, other = feedback_roots(method, alphas, betas)
+            within = inside_circle(_in_mu(in_mu, first), levels)  # of a conjugate pair both have the same moduli
+            within[real] &= inside_circle(_in_mu(in_mu, other), levels[real])
+    return within.reshape(np.broadcast_shapes(np.shape(alpha_hat), np.shape(beta_hat), np.shape(level)))

@@ -7,13 +7,13 @@ from fractions import Fraction
 from itertools import accumulate
 
 import numpy as np
+from numpy.polynomial.polynomial import polyval
 from numpy.typing import ArrayLike
 
 from bezstab.methods import Method, Verdict, closed_loop_at, closed_loop_table, recursion_verdict
 from bezstab.stability.arrays import ComplexArray, plane_arrays
 from bezstab.stability.closed_loop import largest_pole
-from bezstab.stability.pencils import pencil_of
-from bezstab.stability.root_finding import roots_of_table
+from bezstab.stability.root_finding import roots_of_rows
 
 
 def drive_verdict(method: Method, alpha_hat: Fraction, beta_hat: Fraction) -> Verdict:
@@ -32,7 +32,7 @@ def velocity_poles(method: Method, alpha_hat: ArrayLike) -> ComplexArray:
     alpha_hat, _ = plane_arrays(alpha_hat, 0.0)
     without_stiffness = [[row[0] for row in in_plane] for in_plane in closed_loop_table(method)]
     of_velocity = np.cumsum(np.array(without_stiffness, object), axis=0)[:-1]
-    z = roots_of_table(of_velocity.astype(float), alpha_hat.ravel().astype(complex)).T
+    z = roots_of_rows(polyval(alpha_hat.ravel(), of_velocity.T.astype(float))).T
     z = np.where(np.isfinite(z), z, np.inf) + 0  # of minus zero, lest a negative pole's angle be -180 degrees
     order = np.lexsort((-z.imag, -np.abs(z)), axis=-1)
     return np.take_along_axis(z, order, axis=-1).reshape(*alpha_hat.shape, -1)
@@ -45,7 +45,7 @@ def drive_pole(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> Com
     finite root of paper Eq. 17 leaves the range of float64.
     """
     alpha_hat, beta_hat = plane_arrays(alpha_hat, beta_hat)
-    found = largest_pole(pencil_of(method), alpha_hat, beta_hat)
+    found = largest_pole(method, alpha_hat, beta_hat)
     free = beta_hat == 0
     if free.any():
         found[free] = velocity_poles(method, alpha_hat[free])[:, 0]

@@ -21,9 +21,8 @@ from bezstab.stability.accurate_points import BETTER
 from bezstab.stability.arrays import FloatArray
 from bezstab.stability.best_points import BestPoint, best_point_or_reason
 from bezstab.stability.choices import search_box
-from bezstab.stability.closed_loop import largest_modulus
+from bezstab.stability.closed_loop import spectral_radius
 from bezstab.stability.forced_errors import OMEGA_H, combined_error, forced_error
-from bezstab.stability.pencils import pencil_of
 from bezstab.stability.regions import region
 from bezstab.stability.searches import checked, grid_of, lowest_minima
 
@@ -95,7 +94,7 @@ def error_front(method: Method, rates: Sequence[float] = RATES, omega_h: Fractio
 
 def _front_point(method: Method, omega_h: Fraction, rate: float, alpha_hat: float, beta_hat: float) -> FrontPoint:
     """Return a point of the front, alpha_hat and beta_hat being dimensionless, with its errors."""
-    z_abs = largest_modulus(pencil_of(method, free=True), alpha_hat, beta_hat)
+    z_abs = spectral_radius(method, alpha_hat, beta_hat)
     errors = forced_error(method, alpha_hat, beta_hat, omega_h)
     return FrontPoint(
         method=method,
@@ -130,12 +129,11 @@ def _front(
     faster rate. The last rates have none where nothing there decays so fast. NumericalError where the check finds a
     better point.
     """
-    pencil = pencil_of(method, free=True)  # a pole that no parameters move must not hide the others
 
     def objective(points: FloatArray, rate: float) -> FloatArray:
         """Return the logarithm of the error where it decays so fast, elsewhere what stands in for it."""
         alpha_hat, beta_hat = _plane(points)
-        z_abs = largest_modulus(pencil, alpha_hat, beta_hat)
+        z_abs = spectral_radius(method, alpha_hat, beta_hat)
         error = np.log(combined_error(method, alpha_hat, beta_hat, omega_h))
         return np.where(z_abs <= rate, error, TOO_SLOW + np.minimum(z_abs, SLOWEST))
 

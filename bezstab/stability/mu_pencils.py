@@ -3,7 +3,7 @@
 pi(z, mu) is the polynomial of one step on y' = lambda y, mu = h lambda. At the two roots mu of the feedback its roots z
 are the poles. Compared with the roots of P that halves the degree, needs one solve where the mu are conjugate, and
 keeps all digits on beta_hat = alpha_hat^2/4, where the roots of P pair up. On grids the largest pole is the largest
-root of P all the same, followed over the grid (real_factors), but for explicit one-step methods, whose R(mu) is
+root of P all the same, followed over the grid, but for explicit one-step methods, whose R(mu) is
 known, and next to beta_hat = alpha_hat^2/4.
 """
 
@@ -17,17 +17,16 @@ from numpy.typing import NDArray
 from bezstab.errors import NumericalError
 from bezstab.methods import Method
 from bezstab.stability.arrays import DOUBLE, EPS, SAME, BoolArray, ComplexArray, FloatArray
+from bezstab.stability.closed_loop import largest_pole
 from bezstab.stability.exact_sums import feedback_roots
-from bezstab.stability.low_degrees import largest_quadratic_root, polynomial_of_pair
-from bezstab.stability.plane_pencils import CANCELS, PlanePencil, out_of_range
-from bezstab.stability.real_factors import FEWEST
-from bezstab.stability.root_finding import horner, inside_circle, roots_of_table
+from bezstab.stability.low_degrees import quadratic_roots
+from bezstab.stability.plane_pencils import PlanePencil, out_of_range
+from bezstab.stability.root_finding import horner, inside_circle, roots_of_rows
 
 Mu = NDArray[np.inexact] | complex
 """Complex or real, one or many."""
 
 LEADING = 4 * EPS  # of the sum of its terms' sizes: a leading coefficient below it is rounding of zero
-MOST_FOLLOWED = 18  # poles: of more, whose factors lie close together, most points need all roots, and mu halves them
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -101,62 +100,32 @@ class MuPencil:
         return within
 
     def largest_poles(self, alpha_hat: FloatArray, beta_hat: FloatArray) -> ComplexArray:
-        """Return the pole of largest modulus, Im >= 0, at points of a grid or along a line; their shape.
-
-        Infinite where an implicit step has no solution. NumericalError if a finite pole leaves the range of float64.
-        """
-        explicit_one_step = self.steps == 1 and not self.implicit
-        if alpha_hat.size < FEWEST or (self.degree > MOST_FOLLOWED and not explicit_one_step):
-            return self._largest_by_mu(alpha_hat.ravel(), beta_hat.ravel()).reshape(alpha_hat.shape)
-        with np.errstate(all="ignore"):
-            if explicit_one_step:
-                z = self._larger_of_two(alpha_hat, beta_hat)
-            else:
-                z = self.plane.followed_poles(alpha_hat, beta_hat)
-            square = alpha_hat * alpha_hat / 4
-            kept = np.abs(square - beta_hat) > CANCELS * square  # else P's roots have less than 12 digits
-        rest = ~(kept & np.isfinite(z))
-        z[rest] = self._largest_by_mu(alpha_hat[rest], beta_hat[rest])
-        return z
-
-    def _larger_of_two(self, alpha_hat: FloatArray, beta_hat: FloatArray) -> ComplexArray:
-        """Return the larger pole, Im >= 0, of an explicit one-step method, z = R(mu), at each of a row of points.
-
-        From R at the sum and the product of both mu, as P's coefficients, of high degree, would lose digits.
-        """
-        in_mu = -self.table[0] / self.table[1, 0]
-        stability_function = (in_mu * self.multiple ** np.arange(in_mu.size)).tolist()  # of the user's mu
-        middle, factor = polynomial_of_pair(stability_function, alpha_hat, beta_hat)
-        return largest_quadratic_root(-middle, factor * factor * (alpha_hat * alpha_hat / 4 - beta_hat))
-
-    def _largest_by_mu(self, alpha_hat: FloatArray, beta_hat: FloatArray) -> ComplexArray:
-        """Return the dominant pole, Im >= 0, of each point of a row: of all roots of pi at both mu.
-
-        Conjugate mu have conjugate poles, so one of the two is enough; of two real mu both are looked at.
-        """
-        first_mu, second_mu = self.feedback_roots(alpha_hat, beta_hat)
-        real = first_mu.imag == 0
-        both = largest_root_in_z(self, np.concatenate([first_mu, second_mu[real]]))
-        found, others = both[: first_mu.size], both[first_mu.size :]
-        found[real] = np.where(np.abs(others) > np.abs(found[real]), others, found[real])
-        found.imag = np.abs(found.imag)
-        return found
-
-    def own_feedback_root(self, alpha_hat: FloatArray, beta_hat: FloatArray, z: ComplexArray) -> ComplexArray:
-        """Return the root mu of the feedback that each pole z belongs to; shape of all three."""
-        mu = np.stack(self.feedback_roots(alpha_hat.ravel(), beta_hat.ravel())).reshape(2, *z.shape)
-        left_over = np.abs(polyval2d(np.broadcast_to(z, mu.shape), mu, self.table))
-        return np.asarray(np.take_along_axis(mu, np.argmin(left_over, axis=0)[np.newaxis], axis=0)[0])
-
-    def turning_shift(self, alpha_hat: FloatArray, beta_hat: FloatArray, z: ComplexArray) -> ComplexArray:
-        """Return z + pi_mu / pi_z at whichever root mu of the feedback each z belongs to (turning)."""
-        slope_z, slope_mu = self.slopes(z, self.own_feedback_root(alpha_hat, beta_hat, z))
-        return np.asarray(z + slope_mu / slope_z)
+        """Return the pole of largest modulus, Im >= 0, at points of a grid or along a line; their shape."""
+        return largest_pole(self.method, alpha_hat, beta_hat)
 
     def slopes(self, z: ComplexArray, mu: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
         """Return the derivatives of pi by z and by mu; shape of both."""
         by_z, by_mu = (polyval2d(z, mu, polyder(self.table, axis=axis)) for axis in (0, 1))
         return np.asarray(by_z, complex), np.asarray(by_mu, complex)
+
+
+def roots_of_table(table: FloatArray, x: ComplexArray) -> ComplexArray:
+    """Return the roots y of sum_kj table[k, j] y^k x^j for each x; shape (table rows - 1, x.size) for a row of x.
+
+    Not finite where a root is at infinity or leaves the range of float64: that is for the caller to judge. Where
+    |x| > 1 the polynomials are taken times x^-d, lest x^d overflow: a common factor moves no root.
+    """
+    with np.errstate(all="ignore"):
+        large = np.abs(x) > 1
+        small_x = np.where(large, 0, x)
+        inverse = np.divide(1, x, out=np.zeros_like(x), where=large)
+        coefficients = np.stack([np.where(large, horner(row[::-1], inverse), horner(row, small_x)) for row in table])
+        if len(table) == 2:
+            return np.asarray(-coefficients[:1] / coefficients[1])
+        if len(table) == 3:
+            last, half, leading = coefficients.astype(complex) * np.array([[1.0], [0.5], [1.0]])
+            return quadratic_roots(half, last, np.sqrt(half * half - leading * last), leading)
+    return roots_of_rows(coefficients)
 
 
 def roots_in_z(pencil: MuPencil, mu: ComplexArray) -> ComplexArray:

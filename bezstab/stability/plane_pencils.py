@@ -9,15 +9,13 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.polynomial.polynomial import polyder, polyval3d
 
 from bezstab.errors import NumericalError
 from bezstab.methods import Method, closed_loop_table, reduced_table
 from bezstab.stability.arrays import BoolArray, ComplexArray, FloatArray
 from bezstab.stability.exact_sums import double_polynomial, double_product, double_sum, split
-from bezstab.stability.low_degrees import largest_cubic_root, largest_quadratic_root, quadratic_roots
-from bezstab.stability.real_factors import largest_factors
-from bezstab.stability.root_finding import horner, inside_circle, roots_of_rows
+from bezstab.stability.low_degrees import quadratic_roots
+from bezstab.stability.root_finding import horner, inside_circle, largest_roots, roots_of_rows
 
 CANCELS = 1e-5  # of (b/2)^2: where the discriminant is below it, its root would be good to 1e-13 or less
 
@@ -78,29 +76,10 @@ class PlanePencil:
 
         Infinite where an implicit step has no solution. NumericalError if a finite pole leaves the range of float64.
         """
-        followed = self.followed_poles(alpha_hat, beta_hat)
-        return np.asarray(self._with_infinite(followed[np.newaxis], alpha_hat, beta_hat)[0])
-
-    def followed_poles(self, alpha_hat: FloatArray, beta_hat: FloatArray) -> ComplexArray:
-        """Return the same without a check; not finite where a pole is infinite, or leaves the range of float64."""
-        with np.errstate(all="ignore"):
-            if self.degree > 3:
-                return largest_factors(self.coefficients_at, alpha_hat, beta_hat)[2]
-            return self._largest_of_few(alpha_hat, beta_hat)
-
-    def _largest_of_few(self, alpha_hat: FloatArray, beta_hat: FloatArray) -> ComplexArray:
-        """Return the largest pole of two or three, by formula."""
-        if self.degree == 2:
-            half, _, discriminant = self._quadratics(alpha_hat, beta_hat)
-            return largest_quadratic_root(half, discriminant)
-        d, c, b, leading = self.coefficients_at(alpha_hat, beta_hat)
-        return largest_cubic_root(b / leading, c / leading, d / leading)
-
-    def turning_shift(self, alpha_hat: FloatArray, beta_hat: FloatArray, z: ComplexArray) -> ComplexArray:
-        """Return z - (2 P_alpha + alpha_hat P_beta) / P_z (turning); a step of m h turns by m times as much as h."""
-        slopes = (polyder(self.table, axis=axis) for axis in range(3))
-        by_z, by_alpha, by_beta = (polyval3d(z, alpha_hat, beta_hat, slope) for slope in slopes)
-        return np.asarray(z - (2 * by_alpha + alpha_hat * by_beta) / (float(self.method.step_multiple) * by_z))
+        alphas, betas = alpha_hat.ravel(), beta_hat.ravel()
+        z = largest_roots(lambda x: np.stack(self.coefficients_at(x.real, x.imag)), alphas + 1j * betas)
+        z.imag = np.abs(z.imag)
+        return np.asarray(self._with_infinite(z[np.newaxis], alphas, betas)[0]).reshape(alpha_hat.shape)
 
     def coefficients_at(self, alpha_hat: FloatArray, beta_hat: FloatArray) -> list[FloatArray]:
         """Return P's coefficients in z, ascending, each with the shape of a row of points."""

@@ -26,7 +26,7 @@ from bezstab.errors import NumericalError
 from bezstab.methods import Method
 from bezstab.rationals import exact
 from bezstab.stability.arrays import DOUBLE, ROUNDING, SAME, BoolArray, FloatArray, even_points
-from bezstab.stability.closed_loop import converges, largest_modulus
+from bezstab.stability.closed_loop import converges
 from bezstab.stability.pencils import Pencil, pencil_of
 from bezstab.stability.quadratures import integrals
 from bezstab.stability.root_finding import TOLD
@@ -178,7 +178,7 @@ def _stable_on_line(
         return np.stack([np.full_like(along, place), along])[[axis, 1 - axis]]
 
     def modulus(points: FloatArray) -> FloatArray:
-        return largest_modulus(pencil, *on_line(points[..., 0]))
+        return np.abs(pencil.largest_poles(*on_line(points[..., 0])))
 
     stable = along[inside(*on_line(along))]
     if shape.area is None:  # what goes on may be a strip so thin that it lies between two samples

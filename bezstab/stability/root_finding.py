@@ -1,52 +1,118 @@
-"""All roots of many polynomials at once, by Aberth's iteration, and whether all are in a circle."""
+"""Roots of many polynomials at once: all by Aberth's iteration, the largest alone, and whether all are in a circle.
 
-from collections.abc import Sequence
+Polynomials are rows of coefficients, ascending along the first axis: shape (degree + 1, points).
+"""
+
+from collections.abc import Callable, Sequence
 from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bezstab.stability.arrays import SAME, BoolArray, ComplexArray, FloatArray
-from bezstab.stability.low_degrees import quadratic_roots
 
 Number = TypeVar("Number", FloatArray, ComplexArray)
 Coefficients = Sequence[Any] | NDArray[np.inexact]
+Rows = Callable[[ComplexArray], NDArray[np.inexact]]
+"""Coefficients of polynomials at places of a plane, of shape (points,)."""
 
-CHUNK = 16384  # points at a time: all the work arrays of one chunk stay in a core's cache
+CHUNK = 4096  # points at a time: the work arrays of one chunk stay in a core's cache
 ITERATIONS = 200  # Aberth's iteration needs about ten; a multiple root, where it is linear, about sixty
 LOG_OF_ZERO = -1e15  # finite, but below every logarithm of a float64
 TOLD = 1e-10  # relative: Schur's recursion tells apart what differs by more
-
-
-def roots_of_table(table: FloatArray, x: ComplexArray) -> ComplexArray:
-    """Return the roots y of sum_kj table[k, j] y^k x^j for each x; shape (table rows - 1, x.size) for a row of x.
-
-    Not finite where a root is at infinity or leaves the range of float64: that is for the caller to judge. Where
-    |x| > 1 the polynomials are taken times x^-d, lest x^d overflow: a common factor moves no root.
-    """
-    with np.errstate(all="ignore"):
-        large = np.abs(x) > 1
-        small_x = np.where(large, 0, x)
-        inverse = np.divide(1, x, out=np.zeros_like(x), where=large)
-        coefficients = np.stack([np.where(large, horner(row[::-1], inverse), horner(row, small_x)) for row in table])
-        if len(table) == 2:
-            return np.asarray(-coefficients[:1] / coefficients[1])
-    return roots_of_rows(coefficients)
+FEWEST = 256  # points: of fewer all roots are solved for
+SPACING = 4  # points along an axis to one node of the table from which their largest roots are followed
+STEPS = 4  # of Newton's method from there: the last one leaves but rounding, and its size says so
+AROUND = ((0, 0), (0, 1), (0, -1), (1, 0), (-1, 0))  # the nearest node, and its neighbours across a kink
 
 
 def roots_of_rows(coefficients: NDArray[np.inexact]) -> ComplexArray:
-    """Return the roots of sum_k a_k z^k for a row of polynomials, none of degree zero.
+    """Return all roots of polynomials of degree one or more; shape (degree, points).
 
-    Coefficients of shape (n + 1, points), roots (n, points). Not finite where one is at infinity, or beyond float64.
+    Not finite where one is at infinity, or beyond float64.
     """
-    roots = _of_degree_two if len(coefficients) == 3 else _aberth
-    at_once = CHUNK // len(coefficients)
     with np.errstate(all="ignore"):
+        if len(coefficients) == 2:
+            return np.asarray(-coefficients[:1] / coefficients[1], complex)
+        if len(coefficients) == 3 and not np.iscomplexobj(coefficients):
+            larger, last = _larger_root(coefficients), coefficients[0] / coefficients[2]
+            other = np.divide(last, larger, out=np.zeros_like(larger), where=larger != 0)
+            return np.stack([larger, np.where(larger.imag == 0, other, larger.conj())])
+        at_once = 4 * CHUNK // len(coefficients)
         chunks = [
-            roots(coefficients[:, start : start + at_once].astype(complex))
+            _aberth(coefficients[:, start : start + at_once].astype(complex))
             for start in range(0, max(1, coefficients.shape[1]), at_once)
         ]
     return np.concatenate(chunks, axis=1)
+
+
+def largest_roots(rows_at: Rows, places: ComplexArray) -> ComplexArray:
+    r"""Return the root of largest modulus of the polynomial at each of a cloud of places; both of shape (points,).
+
+        o-----o-----o     o: a node of a table over all of the cloud, whose largest root is known by the same means
+        |  .  | . . |     .: a place. Newton's method leads from the root of its nearest node to a root of its own.
+        o-----o--\--o        That no other root is larger, Schur's recursion tells of what is left, divided by it.
+        | .   |  .\ |     \: a kink, where another root becomes the largest: there a node on the other side leads to it.
+        o-----o----\o
+
+    Where neither does, as where roots meet, all are solved for. Not finite as `roots_of_rows`.
+    """
+    if places.size < FEWEST or _by_formula(rows_at(places[:1])):
+        starts = range(0, max(1, places.size), CHUNK)
+        return np.concatenate([_largest_root(rows_at(places[start : start + CHUNK])) for start in starts])
+    count = int(np.sqrt(places.size)) // SPACING + 2
+    x, y = (np.linspace(each.min(), each.max(), count) for each in (places.real, places.imag))
+    table = largest_roots(rows_at, np.add.outer(1j * y, x).ravel()).reshape(count, count)
+    with np.errstate(all="ignore"):
+        i, j = (
+            np.nan_to_num((each - axis[0]) / (axis[1] - axis[0]) + 0.5).astype(np.intp).clip(0, count - 1)
+            for each, axis in ((places.real, x), (places.imag, y))
+        )
+    z = np.empty(places.shape, complex)
+    left = np.arange(places.size)
+    for across, along in AROUND:
+        lost = np.empty(left.shape, bool)
+        for start in range(0, left.size, CHUNK):
+            some = left[start : start + CHUNK]
+            near = table[(j[some] + across) % count, (i[some] + along) % count]
+            z[some], lost[start : start + CHUNK] = _followed(rows_at(places[some]), near)
+        left = left[lost]
+    if left.size:
+        z[left] = _largest_root(rows_at(places[left]))
+    return z
+
+
+def _by_formula(rows: NDArray[np.inexact]) -> bool:
+    return len(rows) == 2 or (len(rows) == 3 and not np.iscomplexobj(rows))
+
+
+def _largest_root(rows: NDArray[np.inexact]) -> ComplexArray:
+    if _by_formula(rows) and len(rows) == 3:
+        return _larger_root(rows)
+    z = roots_of_rows(rows)
+    return np.asarray(z[np.argmax(np.abs(z), axis=0), range(z.shape[1])])
+
+
+def _larger_root(rows: NDArray[np.inexact]) -> ComplexArray:
+    """Return the larger root of real quadratics."""
+    half = 0.5 * rows[1] / rows[2]
+    return larger_root(half, half * half - rows[0] / rows[2])
+
+
+def _followed(rows: NDArray[np.inexact], near: ComplexArray) -> tuple[ComplexArray, BoolArray]:
+    """Return the roots that Newton's method reaches, and which are not settled or not proven the largest."""
+    z = near
+    with np.errstate(all="ignore"):
+        for _ in range(STEPS):
+            value, slope = horner_with_slope(rows, z)
+            step = value * slope.conj() / (slope.real**2 + slope.imag**2)  # a complex division takes ten times as long
+            z = z - step
+        rest = [rows[-1]]
+        for coefficient in rows[-2:0:-1]:
+            rest.append(coefficient + rest[-1] * z)
+        size = np.abs(z)
+        settled = np.abs(step) <= SAME * size
+    return z, ~(settled & inside_circle(rest[::-1], size * (1 + SAME)))  # the conjugate is as large
 
 
 def horner(ascending: Coefficients, x: Number) -> Any:
@@ -82,10 +148,13 @@ def horner_with_slope(ascending: Coefficients, x: Number) -> tuple[Number, Numbe
     return value, slope
 
 
-def _spread_directions(n: int) -> ComplexArray:
-    """Return n directions around the circle, none the conjugate of another; shape (n, 1)."""
-    directions: ComplexArray = np.exp(1j * (2 * np.pi * np.arange(n) / n + 0.7))[:, np.newaxis]
-    return directions
+def larger_root(half: FloatArray, discriminant: FloatArray) -> ComplexArray:
+    """Return the root of larger modulus of real quadratics z^2 + 2 half z + half^2 - discriminant, Im >= 0."""
+    z = np.empty(half.shape, complex)
+    real_square = np.maximum(discriminant, 0)  # one of the two squares is zero: without branches it takes half the time
+    np.sqrt(real_square - discriminant, out=z.imag)
+    np.negative(half + np.copysign(np.sqrt(real_square), half), out=z.real)
+    return z
 
 
 # The Newton polygon. Over k stands the point log|a_k|; above all points lies their upper hull:
@@ -115,8 +184,8 @@ def newton_polygon_starts(coefficients: ComplexArray) -> ComplexArray:
         chords = (size[lower] - size[lower + 1 :]) / np.arange(1, n - lower + 1)[:, np.newaxis]
         least = np.minimum.accumulate(chords[::-1])[::-1]  # entry i - lower: of the chords to upper > i
         np.maximum(log_radii[lower:], least, out=log_radii[lower:])
-    starts: ComplexArray = np.exp(log_radii) * _spread_directions(n)
-    return starts
+    directions = np.exp(1j * (2 * np.pi * np.arange(n) / n + 0.7))  # none the conjugate of another
+    return np.asarray(np.exp(log_radii) * directions[:, np.newaxis])
 
 
 def companion_roots(coefficients: NDArray[np.inexact]) -> ComplexArray:
@@ -133,12 +202,6 @@ def companion_roots(coefficients: NDArray[np.inexact]) -> ComplexArray:
     companion[:, :, -1] = -monic.T
     companion[~np.isfinite(monic).all(axis=0)] = 0
     return np.linalg.eigvals(companion).T.astype(complex)
-
-
-def _of_degree_two(coefficients: ComplexArray) -> ComplexArray:
-    """Return both roots of quadratics, shape (2, points)."""
-    last, half, leading = coefficients[0], coefficients[1] / 2, coefficients[2]
-    return quadratic_roots(half, last, np.sqrt(half * half - leading * last), leading)
 
 
 def _aberth(coefficients: ComplexArray) -> ComplexArray:

@@ -30,13 +30,14 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
+from numpy.polynomial.polynomial import polyder, polyval2d, polyval3d
 from numpy.typing import ArrayLike
 
 from bezstab.methods import Method
 from bezstab.stability.answer_checks import Modulus
 from bezstab.stability.arrays import ComplexArray, FloatArray
-from bezstab.stability.closed_loop import poles
-from bezstab.stability.pencils import pencil_of
+from bezstab.stability.closed_loop import mu_table, own_feedback_root, poles
+from bezstab.stability.stretches import float_table
 
 LAW_HOLDS = 0.1
 """rad, kappa h: beyond, terms of second order, a hundredth and more, count."""
@@ -86,9 +87,15 @@ def turning_shift(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike, z: 
     Complex, shape of alpha_hat, beta_hat and z broadcast, dimensionless; h is the length of the method's own step.
     Infinite at a double pole of one mu, where the change is like the root of h K. Theory: the docstring of this file.
     """
+    a, b, z = np.broadcast_arrays(alpha_hat, beta_hat, np.asarray(z, complex))
+    in_mu, multiple = mu_table(method), float(method.step_multiple)
     with np.errstate(all="ignore"):
-        at = np.broadcast_arrays(alpha_hat, beta_hat, np.asarray(z, complex))
-        return pencil_of(method).turning_shift(*at)
+        if not in_mu.size:
+            by_z, by_alpha, by_beta = (polyval3d(z, a, b, polyder(float_table(method), axis=axis)) for axis in range(3))
+            return np.asarray(z - (2 * by_alpha + a * by_beta) / (multiple * by_z))
+        mu = own_feedback_root(method, a, b, z)
+        by_z, by_mu = (polyval2d(z, mu, polyder(in_mu, axis=axis)) for axis in (0, 1))
+        return np.asarray(z + by_mu / by_z)
 
 
 def moving_pole(method: Method, kappa: float, h: float, alpha_hat: float, beta_hat: float) -> MovingPole:

@@ -23,16 +23,15 @@ from bezstab.stability import (
     mu_pencils,
     path_crossings,
     region,
+    spectral_radius,
     stability_margins,
     verdict,
 )
 from bezstab.stability.answer_checks import check_least, check_margin
 from bezstab.stability.charts import Chart
-from bezstab.stability.closed_loop import largest_modulus
 from bezstab.stability.least_modulus import Least, least_on
 from bezstab.stability.mu_pencils import deadbeat_mu
 from bezstab.stability.path_crossings import Path
-from bezstab.stability.pencils import pencil_of
 from bezstab.stability.searches import lowest_minima
 from tests.reference.made_methods import runge_kutta
 from tests.reference.settling import settling
@@ -61,7 +60,7 @@ def test_a_wrong_best_point_is_no_answer(name: str, factor: float, moved: float)
     extent = region(lookup(name)).extent
     assert right
     assert extent
-    modulus = partial(largest_modulus, pencil_of(lookup(name)))
+    modulus = partial(spectral_radius, lookup(name))
     point = moved * right.alpha_hat, right.beta_hat
     with pytest.raises(NumericalError):
         check_least(lookup(name), modulus, point, factor * right.z_abs, [extent])

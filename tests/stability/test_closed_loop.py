@@ -11,13 +11,16 @@ from bezstab.errors import NumericalError
 from bezstab.methods import (
     LinearMultistep,
     Method,
+    RungeKutta,
     closed_loop_at,
     lookup,
 )
 from bezstab.stability import dominant_pole, poles, spectral_radius, verdict
+from bezstab.stability.closed_loop import feedback_roots
 from tests.methods.kinds import EXPLICIT, FEW, IMPLICIT, MULTISTEP, SAMPLE, sampled
 from tests.reference.companion_poles import radius
 from tests.reference.fifty_digit_poles import poles_with_errors
+from tests.reference.made_methods import multistep
 from tests.reference.rationals import rationals
 from tests.reference.second_order_methods import second_order
 
@@ -140,3 +143,48 @@ def test_implicit_poles_are_the_companions_eigenvalues(name: str) -> None:
     alpha_hat, beta_hat = random.uniform(-1, 12, 400), random.uniform(-1, 30, 400)
     z_abs = spectral_radius(lookup(name), alpha_hat, beta_hat)
     assert z_abs == pytest.approx(radius(lookup(name), alpha_hat, beta_hat), rel=1e-6)  # near double poles half of them
+
+
+def both_mu(alpha_hat: float, beta_hat: float) -> tuple[complex, complex]:
+    first, real, other = feedback_roots(lookup("B4"), np.array([alpha_hat]), np.array([beta_hat]))
+    return complex(first[0]), complex(other[0] if real.size else first[0].conjugate())
+
+
+@given(st.floats(1e-6, 1e6), st.floats(-1e-12, 1e-12))
+@settings(deadline=None)
+def test_next_to_the_parabola_both_mu_keep_their_digits(alpha_hat: float, off: float) -> None:
+    beta_hat = alpha_hat**2 / 4 * (1 + off)
+    with mpmath.workdps(50):
+        p, q = mpmath.mpf(alpha_hat), mpmath.mpf(beta_hat)
+        root = mpmath.sqrt(p * p / 4 - q)
+        for mu in both_mu(alpha_hat, beta_hat):
+            error = min(abs(mu - (-p / 2 + sign * root)) for sign in (1, -1))
+            assert error <= 4 * 2.0**-52 * alpha_hat
+
+
+@pytest.mark.parametrize("point", [(1e300, 1e300), (3e307, -1e305), (1e290, 1e307), (-2e281, 4e280), (1e-300, -1e300)])
+def test_beyond_1e280_both_mu_are_as_exact_as_elsewhere(point: tuple[float, float]) -> None:
+    first, second = both_mu(*point)
+    assert first != second
+    with mpmath.workdps(700):
+        half, q = mpmath.mpf(point[0]) / 2, mpmath.mpf(point[1])
+        root = mpmath.sqrt(half * half - q)
+        for mu in (first, second):
+            errors = [abs(mu - exact) / abs(exact) for exact in (-half + root, -half - root)]
+            assert min(errors) <= 4 * 2.0**-52
+
+
+def test_coefficients_beyond_float64_are_reported() -> None:
+    huge, none = F(10) ** 90, F(0)
+    rows = tuple(tuple(huge if column == row - 1 else none for column in range(4)) for row in range(4))
+    method = Method("huge", RungeKutta(rows, (1 - huge, none, none, huge)), "constructed")  # R has huge^4 mu^4
+    with pytest.raises(NumericalError, match="huge: products of its coefficients"):
+        poles(method, 0.5, 0.1)
+
+
+def test_a_leading_coefficient_vanishes_to_its_own_rounding_alone() -> None:
+    # z^2 (1 - 7 mu / 10) - (1 - 13 mu / 10): nothing in z, from which a size could be taken; the other mu is -1
+    method = multistep("gap", "1 0 -1", "7/10 0 13/10")
+    mu = 10 / 7 * (1 + np.finfo(float).eps * np.array([-2, -1, 0, 1, 2]))
+    assert np.isinf(spectral_radius(method, 1 - mu, -mu)).all()
+    assert np.isfinite(spectral_radius(method, -3 / 7 - 1e-9, -10 / 7 - 1e-9))

@@ -3,7 +3,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from bezstab.stability.root_finding import roots_of_rows, roots_of_table
+from bezstab.stability.root_finding import roots_of_rows
 
 
 def test_roots_of_very_different_size_keep_their_digits() -> None:
@@ -15,7 +15,7 @@ def test_roots_of_very_different_size_keep_their_digits() -> None:
             for below, c in zip([Fraction(0), *product], [*product, Fraction(0)], strict=True)
         ]
     ascending = [float(c) for c in product]
-    found = roots_of_table(np.array(ascending)[:, np.newaxis], np.array([0j]))[:, 0]
+    found = roots_of_rows(np.array(ascending)[:, np.newaxis])[:, 0]
     assert np.sort(found.real) == pytest.approx(exact, rel=1e-13)
 
 
