@@ -65,6 +65,9 @@ KEPT = 5e-5
 MOVED = 0.01
 """Of the energy, in a second: what a motion may gain or lose without a word."""
 
+HARD = 0.999
+"""Of an impedance: above it the energy of a closed four-bar is that of hard constraints, to some hundredths."""
+
 SLOWER = 2
 """Slower decay takes this many times as long to settle."""
 
@@ -482,6 +485,8 @@ def _as_it_ran(answer: Answer) -> list[str]:
         said.append(
             "the method takes that, whatever the feedback" if run.culprit == "method" else "the feedback brakes"
         )
+    if answer.impedance and answer.impedance < HARD:
+        said.append(f"the run is of hard constraints: an impedance d of {answer.impedance:g} brakes besides")
     if run.sound and answer.moving and answer.moving.verdict != "converges":
         said.append("the prediction settles nothing, but the run went through")
     return said

@@ -269,6 +269,14 @@ def test_a_choice_that_does_not_weigh_the_motion_says_what_that_costs(goal: Goal
     assert "In a run of 10 s: |c| at most" in first(run).sentence
 
 
+def test_a_run_says_that_it_has_no_soft_impedance() -> None:
+    values = tuple(map(Fraction, ("-720", "-12", "0.95", "0.95")))
+    soft = Question(engine=ENGINES["mujoco"], values=values, h=Fraction(1, 100), scene="pendulum")
+    hard = replace(soft, values=(*values[:2], Fraction("0.9999"), Fraction("0.9999")))
+    words = "The run is of hard constraints: an impedance d of 0.95 brakes besides."
+    assert [words in first(question).sentence for question in (soft, hard)] == [True, False]
+
+
 def test_so_does_a_choice_for_a_chain_in_an_engine() -> None:
     chain = Question(engine=ENGINES["chipmunk"], goal="robust", h=Fraction(1, 60), omega=Fraction(6))
     assert "A body that spins about a pin at 6 rad/s loses" in first(chain).sentence
