@@ -18,6 +18,7 @@ ROOMS = (
     "show",
     "cli",
     "drives",
+    "mujoco",
     "paper",
 )
 """From data upwards: a room imports only from rooms before it."""

@@ -53,7 +53,7 @@ STRANGERS = {
 SHARED_WITH_EXTENSIONS = {"cli.options", "cli.output", "cli.shared_options"}
 """What a command outside the room `cli`, such as the paper's, is written with."""
 
-SUBJECTS = {"drives"}
+SUBJECTS = {"drives", "mujoco"}
 """Folders of one question each, with its command and its figure: each name is imported from where it is defined."""
 
 APPOINTED = {
@@ -72,7 +72,7 @@ APPOINTED = {
     "click": {path.relative_to(PACKAGE).as_posix() for path in (PACKAGE / "cli").glob("*.py")}
     | {"paper/command.py"}
     | {f"{subject}/command.py" for subject in SUBJECTS},
-    "mujoco": {"evidence/mujoco_models.py"},
+    "mujoco": {"mujoco/reading.py"},
     "distributed": {"evidence/parallel.py"},
     "joblib": {"evidence/parallel.py"},
     "numba": {"compiling.py"},

@@ -21,6 +21,7 @@ PAGES = (
     "bezstab/stability/README.md",
     "bezstab/drives/README.md",
     "bezstab/evidence/README.md",
+    "bezstab/mujoco/README.md",
     "bezstab/paper/README.md",
     "configs/logs/README.md",
     "configs/methods/README.md",
@@ -81,6 +82,7 @@ def _with_the_files_of_the_pages(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     (logging,) = re.findall(r"```python\n(.*?)```", (ROOT / "configs/logs/README.md").read_text("utf-8"), re.DOTALL)
     exec(logging, {})  # writes the logs of that page
     shutil.copy(DATA / "two_joints.xml", "robot.xml")
+    Path("run.csv").write_text("time,shoulder,elbow\n0,0,0\n0.1,0.2,0.3\n", encoding="utf-8")
     shutil.copy(DATA / "arm.urdf", "robot.urdf")
     shutil.copy(DATA / "legs.xml", "legs.xml")
 

@@ -23,7 +23,11 @@ SECTIONS: Mapping[str, Sequence[str]] = {
 }
 """What `bezstab --help` lists under which heading, in this order. The command NAME is in the file NAME_command.py."""
 
-ELSEWHERE: Mapping[str, str] = {"paper": "bezstab.paper.command", "drive": "bezstab.drives.command"}
+ELSEWHERE: Mapping[str, str] = {
+    "paper": "bezstab.paper.command",
+    "drive": "bezstab.drives.command",
+    "lint": "bezstab.mujoco.command",
+}
 """The module of each command that is an extension: nothing imports it, the group finds it by name."""
 
 NUMERICAL_TROUBLE = 3

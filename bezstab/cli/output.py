@@ -92,16 +92,38 @@ def show_answers(columns: Sequence[Column[Item]], answers: Sequence[Item], sente
         return
     many = len(answers) > 1
     shown = [each for each in columns if each.heading and (every_column or each.brief or (each.apart and many))]
-    cells = [[each.text(answer) for each in shown] for answer in answers]
-    headings = [each.heading for each in shown]
-    known = [place for place in range(len(shown)) if any(row[place] != MISSING for row in cells)]
-    answer = table([[row[place] for place in known] for row in (headings, *cells)], form)
+    answer = _table_of(shown, answers)
     if form == "text" and not (many and fits(answer, text_width())):
+        headings = [each.heading for each in shown]
+        cells = [[each.text(answer) for each in shown] for answer in answers]
         blocks = zip(sentences, cells, strict=True)
         answer = "\n\n".join(
             lines_below(sentence, list(zip(headings, row, strict=True)), text_width()) for sentence, row in blocks
         )
     click.echo(answer)
+
+
+def show_tables(parts: Sequence[tuple[Sequence[Column[Any]], Sequence[Any]]]) -> None:
+    """Print answers of several kinds: a table of each that there are, below an empty line; as JSON and CSV one list.
+
+    There every row has the keys of all kinds.
+    """
+    form = chosen_format()
+    if not for_reading():
+        rows = [row_of(columns, answer) for columns, answers in parts for answer in answers]
+        click.echo(render(rows, [], form))
+        return
+    for columns, answers in parts:
+        if answers:
+            click.echo(f"\n{_table_of([each for each in columns if each.heading], answers)}")
+
+
+def _table_of(columns: Sequence[Column[Item]], answers: Sequence[Item]) -> str:
+    """Return a table of those columns that have something to show of some answer."""
+    cells = [[each.text(answer) for each in columns] for answer in answers]
+    known = [place for place in range(len(columns)) if any(row[place] != MISSING for row in cells)]
+    headings = [each.heading for each in columns]
+    return table([[row[place] for place in known] for row in (headings, *cells)], chosen_format())
 
 
 def show_groups(groups: Sequence[tuple[str, Sequence[Row]]], kind: RowKind, without: Collection[str] = ()) -> None:

@@ -40,9 +40,6 @@ if TYPE_CHECKING:
         measurement_summary,
         random_points,
     )
-    from bezstab.evidence.mujoco_controllers import MotorGains
-    from bezstab.evidence.mujoco_lint import linted_model
-    from bezstab.evidence.mujoco_models import model_data, read_mujoco_model
     from bezstab.evidence.parallel import Arrays, KeptResults, completed_chunks, joblib_is_installed
     from bezstab.evidence.probed_poles import (
         Likeness,

@@ -33,7 +33,6 @@ from bezstab.show.row_kinds import (
     LARGEST_STEPS,
     LIKE_POINT,
     LIKENESS,
-    LINTED,
     LISTED_METHODS,
     MEASUREMENTS,
     NAMED_METHODS,

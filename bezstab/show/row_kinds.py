@@ -848,25 +848,6 @@ LARGEST_STEPS = RowKind(
     fields=(ROLE, *STEPS_OF_CHOICES.fields),
     sentence=step_sentence,
 )
-# printed by `lint`
-LINTED = RowKind(
-    "an element of a model",
-    fields=(
-        text("element", "Name of the element of a model", "element"),
-        text("kind", "What the element is", "kind"),
-        SETTING.hidden,
-        text("judged", "Which of its points is judged, and why", "judged"),
-        ALPHA_HAT,
-        BETA_HAT,
-        text("map", "Method whose region judges the element", "map"),
-        VERDICT,
-        SAFE,
-        Z_ABS,
-        H_FACTOR,
-        text("advice", "What to write instead", "advice", null="where nothing is to be changed"),
-    ),
-    sometimes=("alpha_hat", "beta_hat", "map", "verdict", "safe", "z_abs"),
-)
 # printed by `engines`
 ENGINES_LISTED = RowKind(
     "an engine",
@@ -1213,7 +1194,6 @@ ROW_KINDS: Mapping[str, Sequence[RowKind]] = {
         CHECKED,
         LARGEST_STEPS,
     ),
-    "lint": (LINTED,),
     "engines": (ENGINES_LISTED,),
     "chains": (CHAINS,),
     "simulate": (SIMULATIONS,),

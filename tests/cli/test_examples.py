@@ -19,7 +19,7 @@ from bezstab.show import ROW_KINDS, json_schema, shown_width
 from tests.cli.running import DATA, run
 
 SMALL = "--figure none --table none"
-WITHOUT_ROWS = {"schema", "paper", "drive"}
+WITHOUT_ROWS = {"schema", "paper", "drive", "lint"}
 
 EXAMPLES = (
     "poles --alpha 0.5 --beta 0.1",
@@ -39,7 +39,6 @@ EXAMPLES = (
     "check --engine mujoco=0.02,1 --h 0.002",
     "check --engine bullet=0.2 --h 1/60 --chain 3 --mass-ratio 10",
     "check --method SYM --alpha 1 --beta 0.5 --h 0.01 --scene driven_four_bar",
-    "lint two_joints.xml",
     "probe pendulum.csv --alpha 2/3 --beta 1/4 --method SYM --method RK4",
     "probe pendulum.csv --method SYM --h 1/120",
     "chains --engine bullet=0.2 --h 1/60 --to 3 --figure none",

@@ -14,9 +14,10 @@ import numpy as np
 
 from bezstab.engines import MOST_IMPEDANCE
 from bezstab.errors import InputError
-from bezstab.evidence.mujoco_models import INTEGRATORS, mujoco_module, silent
 from bezstab.mechanism import GROUND, Body, Mechanism, Revolute, Scene, constraint_errors, perturbed_state
 from bezstab.methods import Method, lookup
+from bezstab.mujoco.reading import mujoco_module, silent
+from bezstab.mujoco.solrefs import METHODS
 from bezstab.stability import FloatArray, bisected, region, spectral_radius
 from bezstab.units import feedback_gains
 
@@ -62,9 +63,9 @@ def mujoco_witnesses(mechanism: Mechanism, h: float) -> Iterator[Witnessed]:
 
     InputError without MuJoCo, or for a scene that is not made of revolute joints and gravity alone.
     """
-    mujoco = mujoco_module("the witness")
+    mujoco = mujoco_module()
     for integrator in RUN_WITH:
-        method = lookup(INTEGRATORS[integrator])
+        method = lookup(METHODS[integrator])
         for boundary, times in product(_boundary_points(method), TIMES):
             alpha_hat, beta_hat = (times * boundary).tolist()
             model = mujoco.MjModel.from_xml_string(model_xml(mechanism.scene, integrator, h, alpha_hat, beta_hat))

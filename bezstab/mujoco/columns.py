@@ -1,0 +1,46 @@
+"""What is printed of a model: the columns of its states, of the suspects, and of the settings of constraints."""
+
+import math
+from collections.abc import Sequence
+
+from bezstab.mujoco.linting import Judged, Suspect
+from bezstab.mujoco.solrefs import Feedback
+from bezstab.show import Column
+
+
+def _largest_step(judged: Judged) -> str | None:
+    """Return the largest safe step in words; None where there is none."""
+    if judged.h_limit is None:
+        return "none" if judged.kind == "unsafe" else None
+    return "any" if math.isinf(judged.h_limit) else f"{judged.h_limit:.4g}"
+
+
+STATES: Sequence[Column[Judged]] = (
+    Column("", "row", lambda _: "state", "what the row is about"),
+    Column("at", "at", lambda judged: judged.at, "qpos0, a keyframe, a row of a log"),
+    Column("errors", "errors", lambda judged: judged.kind, "decays, neutral, falls by itself, unsafe or not smooth"),
+    Column("|z|", "z_abs", lambda judged: judged.z_abs, "a step multiplies errors by it, at most"),
+    Column("falls (1/s)", "rate", lambda judged: judged.rate, "how fast it falls by itself", "1/s", ".3g"),
+    Column("safe up to h (s)", "largest_step", _largest_step, "largest safe step, also any or none", "s"),
+)
+
+SUSPECTS: Sequence[Column[Suspect]] = (
+    Column("", "row", lambda _: "element", "what the row is about"),
+    Column("element", "element", lambda suspect: suspect.element, "element of the model"),
+    Column("kind", "kind", lambda suspect: suspect.kind, "what the element or the setting is"),
+    Column("|z| alone", "z_abs_alone", lambda suspect: suspect.z_abs_alone, "|z| with this element alone"),
+    Column("|z| without", "z_abs_without", lambda suspect: suspect.z_abs_without, "|z| without this element"),
+    Column("to blame", "blamed", lambda suspect: suspect.blamed, "errors grow with it alone, or not without it"),
+)
+
+SETTINGS: Sequence[Column[Feedback]] = (
+    Column("", "row", lambda _: "setting", "what the row is about"),
+    Column("setting", "setting", lambda feedback: feedback.setting, "solref and solimp"),
+    Column("of", "kind", lambda feedback: feedback.kinds, "what the element or the setting is"),
+    Column("", "count", lambda feedback: feedback.count, "how many constraints have the setting"),
+    Column("α̂", "alpha_hat", lambda feedback: feedback.alpha_hat, "dimensionless damping"),
+    Column("β̂", "beta_hat", lambda feedback: feedback.beta_hat, "dimensionless stiffness"),
+    Column("|z|", "z_abs", lambda feedback: feedback.z_abs, "a step multiplies errors by it, at most"),
+    Column("verdict", "verdict", lambda feedback: feedback.verdict, "what errors do, proven"),
+    Column("MuJoCo", "notes", lambda feedback: feedback.notes or None, "what MuJoCo makes of the setting"),
+)

@@ -1,0 +1,71 @@
+"""The command that judges a MuJoCo model: lint."""
+
+from collections.abc import Sequence
+from fractions import Fraction
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from bezstab.cli import shared_options as shared
+from bezstab.cli.options import NUMBER, ParsedType
+from bezstab.cli.output import progress, show_tables, show_text
+from bezstab.errors import InputError
+from bezstab.rationals import rational
+
+if TYPE_CHECKING:  # so that `bezstab --help`, which lists this command, loads nothing that computes
+    from bezstab.mujoco.controllers import Gains
+
+
+def _gains(text: str) -> "Gains":
+    """Return the gains that hip.*=200,5 says."""
+    from bezstab.mujoco.controllers import Gains
+
+    pattern, equals, numbers = text.rpartition("=")
+    gains = numbers.split(",")
+    if not (pattern and equals and len(gains) == 2):
+        raise InputError(f"{text!r}: expected NAME=KP,KD")
+    return Gains(pattern, *map(rational, gains))
+
+
+@click.command()
+@click.argument("model", type=click.Path(path_type=Path))
+@click.option("--at", multiple=True, help="Look there: qpos0, a keyframe, or a CSV log of qpos. Repeatable [all].")
+@click.option(
+    "--pd",
+    "gains",
+    type=ParsedType("name=kp,kd", _gains),
+    multiple=True,
+    help="A controller's gains on the motors, else the joints, of that name or regular expression. Repeatable.",
+)
+@click.option("--every", type=int, default=1, help="With --pd: the torque is computed every so many steps.")
+@click.option("--late", type=NUMBER, default="0", help="With --pd: the torque is applied so many steps late.")
+@click.option("--deep", is_flag=True, help="Judge constraints past solimp's width, too.")
+@shared.form
+def lint(
+    model: Path, at: Sequence[str], gains: "Sequence[Gains]", every: int, late: Fraction, deep: bool, **_: object
+) -> int:
+    """Judge a MuJoCo model at its timestep: exit status 1 if unsafe.
+
+    MODEL is MuJoCo's XML or a URDF. MuJoCo's own step is differenced around each state: qpos0, every keyframe, or
+    those of --at. A log has rows of qpos, or of qpos and qvel; the worst is shown.
+
+    Errors that only a smaller step, or another gain, keeps from growing are "unsafe". A mechanism may also fall by
+    itself, at any step. Contacts and limits that just begin at a state are judged twice: touching, and touching
+    nothing. The last table shows each solref as Baumgarte's feedback.
+
+    Exit status: 1 if unsafe somewhere, else 3 if not smooth somewhere, else 0. Needs mujoco 3.7 or later.
+
+    Example: bezstab lint robot.xml
+    """
+    from bezstab.engines import Timing
+    from bezstab.mujoco.columns import SETTINGS, STATES, SUSPECTS
+    from bezstab.mujoco.linting import lint as linted_model
+
+    timing = Timing(every, late)
+    if timing != Timing() and not gains:
+        raise InputError("--every and --late need --pd: they are about a controller")
+    linted = linted_model(model, at, gains, timing, deep=deep, shown=progress)
+    show_text(linted.sentence)
+    show_tables([(STATES, linted.judged), (SUSPECTS, linted.suspects), (SETTINGS, linted.feedbacks)])
+    return linted.status

@@ -1,0 +1,126 @@
+"""Whether errors grow at a state, and what makes them: the step, or the mechanism itself.
+
+    r(h) = ln |z| / h       falls by itself    r keeps its value as h shrinks: at h/2 and h/4 it is no smaller
+                            unsafe             a smaller step lessens it
+
+Poles are compared in order, the fastest first. Where a step damps, as MuJoCo's with implicit damping, r rises to its
+limit as h shrinks.
+"""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from bezstab.mujoco.robots import Robot, State
+from bezstab.mujoco.steps import step_at
+from bezstab.stability import FloatArray
+
+Kind = Literal["decays", "neutral", "falls by itself", "unsafe", "not smooth"]
+
+ROUNDING = 1e-6
+"""Of |z| by differences; what grows by less a step is neutral."""
+
+SAME_RATE = 0.1
+"""Relative: rates that differ by less are one, and what grows so much more slowly than a robot falls is no matter."""
+
+RESOLVED = np.exp(0.5)
+"""|z|: what grows faster in a step is not resolved, and its rate no limit, whatever it does as the step shrinks."""
+
+DOUBLINGS = 10
+"""Of the step, or halvings: what is safe a thousand times as long is safe, what is not a thousand times as short is
+not."""
+
+BISECTIONS = 10
+"""To a thousandth."""
+
+
+@dataclass(frozen=True, eq=False)
+class Growth:
+    """What errors do at a state: |z| of a step, None where nothing holds; `rate` (1/s) of what falls by itself.
+
+    `own` are the rates (1/s) at which the mechanism itself falls; None where no small step resolves them.
+    """
+
+    kind: Kind
+    z_abs: float | None
+    rate: float | None = None
+    own: FloatArray | None = None
+
+
+def growth_at(robot: Robot, state: State) -> Growth:
+    """Return what errors do around a state."""
+    step = step_at(robot, state)
+    if not step.smooth:
+        return Growth("not smooth", None)
+    moduli = step.moduli()
+    none = np.zeros(0)
+    if not len(moduli):
+        return Growth("neutral", None, own=none)
+    z_abs = float(moduli[0])
+    if z_abs <= 1 + ROUNDING:
+        return Growth("decays" if z_abs < 1 - ROUNDING else "neutral", z_abs, own=none)
+    own = _own_rates(robot, state, moduli)
+    rates = _rates(moduli, robot.h)
+    if own is None or _exceeds(rates, own, robot.h):
+        return Growth("unsafe", z_abs, own=own)
+    return Growth("falls by itself", z_abs, float(rates[0]), own)
+
+
+def _own_rates(robot: Robot, state: State, moduli: FloatArray) -> FloatArray | None:
+    """Return at which rates (1/s) the mechanism itself falls: those that are there at half and a quarter of a step.
+
+    The step is halved until it resolves every growing pole; None where none does.
+    """
+    for halvings in range(DOUBLINGS):
+        if not len(moduli) or moduli[0] < RESOLVED:
+            break
+        moduli = step_at(robot, state, 0.5 ** (halvings + 1)).moduli()
+    else:
+        return None
+    shorter, shortest = (_rates_at(robot, state, 0.5 ** (halvings + more)) for more in (1, 2))
+    both = min(len(shorter), len(shortest))
+    return np.maximum(shorter[:both], shortest[:both])
+
+
+def _rates_at(robot: Robot, state: State, factor: float) -> FloatArray:
+    return _rates(step_at(robot, state, factor).moduli(), factor * robot.h)
+
+
+def _rates(moduli: FloatArray, h: float) -> FloatArray:
+    return np.asarray(np.log(moduli[moduli > 1]) / h)
+
+
+def _exceeds(rates: FloatArray, own: FloatArray, h: float) -> bool:
+    """Return whether some rate is larger than the mechanism's own, each compared with that of its place."""
+    length = max(len(rates), len(own))
+    first, second = (np.pad(each, (0, length - len(each))) for each in (rates, own))
+    beside = SAME_RATE * own[:1].sum() + ROUNDING / h
+    return bool((first > (1 + SAME_RATE) * second + beside).any())
+
+
+def stable_factor(robot: Robot, state: State, growth: Growth) -> float | None:
+    """Return up to how many times the step is safe at a state.
+
+    It is below one where the step is unsafe. None where no step is small enough; infinity where any is.
+    """
+
+    def unsafe(factor: float) -> bool:
+        assert growth.own is not None
+        return _exceeds(_rates_at(robot, state, factor), growth.own, robot.h)
+
+    if growth.own is None:
+        return None
+    powers = range(1, DOUBLINGS + 1)
+    if growth.kind == "unsafe":
+        safe = next((0.5**power for power in powers if not unsafe(0.5**power)), None)
+    else:
+        lost = next((2.0**power for power in powers if unsafe(2.0**power)), None)
+        safe = lost / 2 if lost else np.inf
+    if safe is None or safe == np.inf:
+        return safe
+    ends = [safe, 2 * safe]
+    for _ in range(BISECTIONS):
+        middle = float(np.sqrt(ends[0] * ends[1]))
+        ends[unsafe(middle)] = middle
+    return ends[0]

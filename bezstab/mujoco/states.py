@@ -1,0 +1,165 @@
+"""Where a model is looked at: qpos0, its keyframes, the rows of a log, a pose; and where it settles."""
+
+import re
+from collections.abc import Iterator, Sequence
+from copy import copy
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from bezstab.errors import InputError
+from bezstab.mujoco.controllers import name_of
+from bezstab.mujoco.robots import Robot, State
+from bezstab.mujoco.steps import NUDGE
+from bezstab.stability import FloatArray
+
+QPOS0 = "qpos0"
+
+SETTLING = 1.0
+"""s"""
+
+DAMPING = 20.0
+"""1/s, of all velocities while a model settles."""
+
+AT_REST = 1e-9
+"""m, rad: where no step moves anything by more, a model has settled."""
+
+SHORTER = (1, 4, 16)
+"""By these the step is divided until a model settles that is unsafe at its own."""
+
+EDGE = 10 * NUDGE
+"""m, rad: nearer to an end of its range a joint is at it."""
+
+REACH = 2e-4
+"""m, rad: so far into its limit it is moved. There a nudge of its velocity does not lift it off."""
+
+
+def model_states(mujoco: Any, model: Any) -> list[State]:
+    """Return qpos0 and every keyframe; controls of a keyframe that are all zero are none."""
+    return [State(QPOS0, np.array(model.qpos0)), *(_keyframe(mujoco, model, key) for key in range(model.nkey))]
+
+
+def _keyframe(mujoco: Any, model: Any, key: int) -> State:
+    controls = np.array(model.key_ctrl[key])
+    return State(
+        name_of(mujoco, model, "key", key),
+        np.array(model.key_qpos[key]),
+        np.array(model.key_qvel[key]),
+        np.array(model.key_act[key]),
+        controls if controls.any() else None,
+        (np.array(model.key_mpos[key]).reshape(-1, 3), np.array(model.key_mquat[key]).reshape(-1, 4)),
+    )
+
+
+def chosen_states(mujoco: Any, model: Any, at: Sequence[Any]) -> list[State]:
+    """Return the states of names, of paths of logs, and of arrays (qpos, or qpos and qvel); all of the model's if none.
+
+    InputError for a name that is none, and for a log or an array of another width.
+    """
+    known = {state.name: state for state in model_states(mujoco, model)}
+    found: list[State] = []
+    for each in at:
+        if isinstance(each, str) and each in known:
+            found.append(known[each])
+        elif isinstance(each, str | Path) and Path(each).is_file():
+            found += _logged(model, Path(each))
+        elif isinstance(each, str | Path):
+            raise InputError(f"--at {each}: no keyframe and no file; the states of the model: {', '.join(known)}")
+        else:
+            found.append(_state(model, "the pose", np.asarray(each, float).ravel()))
+    return found or list(known.values())
+
+
+def _state(model: Any, name: str, values: FloatArray) -> State:
+    if len(values) not in (model.nq, model.nq + model.nv):
+        expected = f"nq = {model.nq}, or nq + nv = {model.nq + model.nv}"
+        raise InputError(f"{name}: {len(values)} numbers, expected {expected}")
+    return State(name, values[: model.nq], values[model.nq :] if len(values) > model.nq else None)
+
+
+def _logged(model: Any, path: Path) -> Iterator[State]:
+    """Yield a state for each row of a CSV file; a column called t or time is its time, else it has its number."""
+    try:
+        lines = path.read_text(encoding="utf-8").splitlines()
+    except (OSError, ValueError) as error:
+        raise InputError(f"--at {path}: {error}") from None
+    rows = [re.split(r"[,;\s]+", line.strip(" #,;\t")) for line in lines if line.strip(" #,;\t")]
+    times = None
+    if rows and any(re.match("[A-Za-z_]", cell) and cell.lower() not in ("nan", "inf") for cell in rows[0]):
+        names, *rows = rows
+        times = next((place for place, name in enumerate(names) if name.lower() in ("t", "time")), None)
+    if not rows:
+        raise InputError(f"--at {path}: no rows")
+    for number, cells in enumerate(rows, start=1):
+        try:
+            values = np.array([float(cell) for cell in cells])
+        except ValueError:
+            raise InputError(f"--at {path}, row {number}: expected numbers") from None
+        name = f"{path.name} row {number}"
+        if times is not None and times < len(values):
+            name += f" ({values[times]:g} s)"
+            values = np.delete(values, times)
+        if not np.isfinite(values).all():
+            raise InputError(f"--at {path}, row {number}: expected finite numbers")
+        yield replace(_state(model, name, values), log=path.name)
+
+
+def touching(robot: Robot, state: State) -> Iterator[State]:
+    """Yield states near one at which more touches than a nudge can end: in its limits, then after some settling."""
+    inside = replace(state, name=f"{state.name}, touching", positions=_within_limits(robot, state.positions))
+    yield inside
+    settled = _settled(robot, inside)
+    if settled is not None:
+        yield settled
+
+
+def touching_nothing(robot: Robot, state: State) -> tuple[Robot, State]:
+    """Return the same without any contact and limit."""
+    disabled = robot.mujoco.mjtDisableBit
+    model = copy(robot.model)
+    model.opt.disableflags |= disabled.mjDSBL_CONTACT | disabled.mjDSBL_LIMIT
+    return replace(robot, model=model), replace(state, name=f"{state.name}, touching nothing")
+
+
+def _within_limits(robot: Robot, positions: FloatArray) -> FloatArray:
+    """Return positions with every joint that is at an end of its range a little beyond it."""
+    model, joints = robot.model, robot.mujoco.mjtJoint
+    positions = positions.copy()
+    one = np.isin(model.jnt_type, (joints.mjJNT_HINGE, joints.mjJNT_SLIDE)) & (model.jnt_limited != 0)
+    for joint in np.flatnonzero(one).tolist():
+        place = model.jnt_qposadr[joint]
+        for end, outwards in zip(model.jnt_range[joint], (-1, 1), strict=True):
+            edge = end - outwards * model.jnt_margin[joint]
+            if abs(positions[place] - edge) < EDGE:
+                positions[place] = edge + outwards * REACH
+    return positions
+
+
+def _settled(robot: Robot, state: State) -> State | None:
+    """Return where a state settles within a second, its velocities damped; None where it does not stay finite."""
+    mujoco, model = robot.mujoco, robot.model
+    h = robot.h
+    for shorter in SHORTER:
+        data = robot.data_at(replace(state, velocities=None))
+        data.qfrc_applied[:] = 0
+        model.opt.timestep = h / shorter
+        kept = np.exp(-DAMPING * model.opt.timestep)
+        steps = int(SETTLING / model.opt.timestep)
+        for _ in range(steps):
+            mujoco.mj_step(model, data)
+            data.qvel[:] *= kept
+            moved = np.abs(data.qvel).max(initial=0.0) * model.opt.timestep
+            if not moved < 1 or moved < AT_REST:
+                break
+        model.opt.timestep = h
+        if np.isfinite(data.qpos).all() and moved < 1:
+            return replace(
+                state,
+                positions=np.array(data.qpos),
+                velocities=None,
+                activations=np.array(data.act),
+                controls=np.array(data.ctrl),
+            )
+    return None

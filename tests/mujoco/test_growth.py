@@ -1,0 +1,92 @@
+"""What falls by itself falls at the rate of its equation, at any step; what a smaller step mends is unsafe."""
+
+from fractions import Fraction
+from math import log, sqrt
+from typing import Any
+
+import numpy as np
+import pytest
+
+from bezstab.mujoco.controllers import Gains
+from bezstab.mujoco.growth import Growth, growth_at, stable_factor
+from bezstab.mujoco.robots import Robot
+from bezstab.stability import Timing
+from tests.mujoco.models import INTEGRATORS, WEIGHTLESS, mjcf
+from tests.mujoco.test_steps import at_qpos0, model_of, robot_of
+
+mujoco: Any = pytest.importorskip("mujoco")
+
+POLE = """<body><joint name="foot" axis="0 1 0" {}/><inertial pos="0 0 .5" mass="2" diaginertia=".1 .1 .1"/></body>"""
+FALLS = sqrt(2 * 10 * 0.5 / (0.1 + 2 * 0.5**2))  # m g l / I
+"""1/s, of the pole that stands on its foot."""
+
+
+def found(text: str, *gains: Gains, timing: Timing | None = None) -> tuple[Robot, Growth]:
+    robot = robot_of(model_of(text), *gains, timing=timing)
+    return robot, growth_at(robot, at_qpos0(robot))
+
+
+@pytest.mark.parametrize("integrator", INTEGRATORS)
+@pytest.mark.parametrize("h", [0.02, 0.01, 0.005])
+def test_an_inverted_pendulum_falls_by_itself_and_so_do_runs(integrator: str, h: float) -> None:
+    text = mjcf(POLE.format(""), integrator=integrator, h=h, gravity=-10)
+    _, growth = found(text)
+    assert growth.kind == "falls by itself"
+    assert growth.rate is not None
+    assert growth.rate == pytest.approx(FALLS, rel=1e-2)
+    model = model_of(text)
+    data = mujoco.MjData(model)
+    data.qpos[:], data.qvel[:] = 1e-6, 1e-6 * FALLS
+    steps = int(1 / h)
+    for _ in range(steps):
+        mujoco.mj_step(model, data)
+    assert log(data.qpos[0] / 1e-6) == pytest.approx(growth.rate * steps * h, rel=1e-2)
+
+
+def test_what_grows_because_the_torque_is_late_is_unsafe_though_no_step_is_short_enough_to_end_it() -> None:
+    """Without damping the rate is that of h: kp h late / 2 I."""
+    gains = Gains("foot", Fraction(100), Fraction(0))
+    _, growth = found(mjcf(POLE.format("")), gains, timing=Timing(1, Fraction(1)))
+    assert growth.kind == "unsafe"
+    _, held = found(mjcf(POLE.format("")), Gains("foot", Fraction(100), Fraction(1)), timing=Timing(1, Fraction(1)))
+    assert held.kind == "decays"
+
+
+@pytest.mark.parametrize("kv", [400, 4000])
+def test_a_drive_beyond_its_limit_is_unsafe_and_its_largest_step_is_the_maps(kv: float) -> None:
+    """2 alpha_hat + beta_hat < 4 with alpha_hat = kv h / I, also on a pole that falls besides."""
+    drive = f'<actuator><position joint="foot" kp="50" kv="{kv}"/></actuator>'
+    for gravity, stiffness in ((0.0, 50.0), (-10.0, 40.0)):
+        robot, growth = found(mjcf(POLE.format(""), drive, h=0.02, gravity=gravity))
+        assert growth.kind == "unsafe"
+        h = 0.02 * float(stable_factor(robot, at_qpos0(robot), growth) or 0)
+        assert 2 * kv * h / 0.6 + stiffness * h**2 / 0.6 == pytest.approx(4, rel=2e-3)
+        assert h < 0.02
+
+
+def test_a_pole_that_a_weak_drive_lets_fall_falls_by_itself() -> None:
+    """kp < m g l; and an arm that its drives hold up where gravity pulls sideways does not fall."""
+    drive = '<actuator><position joint="foot" kp="{}" kv="1"/></actuator>'
+    for kp, kind in ((5, "falls by itself"), (15, "decays")):
+        assert found(mjcf(POLE.format(""), drive.format(kp), gravity=-10))[1].kind == kind
+
+
+def test_a_free_body_and_a_ball_that_rolls_are_neutral_and_so_is_a_pendulum_without_friction() -> None:
+    body = f'<body pos="0 0 1"><freejoint/><geom size=".1" pos=".1 0 .2" {WEIGHTLESS}/></body>'
+    assert found(mjcf(body, gravity=-10))[1].kind == "neutral"
+    pendulum = POLE.format("").replace("0 0 .5", "0 0 -.5")
+    growth = found(mjcf(pendulum, gravity=-10))[1]
+    assert growth.kind == "neutral"
+    assert growth.z_abs == pytest.approx(1, abs=1e-9)
+    floor = '<geom type="plane" size="1 1 .1"/>'
+    ball = f'{floor}<body pos="0 0 .0999"><freejoint/><geom size=".1"/></body>'
+    assert found(mjcf(ball, gravity=-10))[1].kind in ("neutral", "decays")
+
+
+def test_what_falls_and_has_a_drive_beyond_its_limit_is_unsafe() -> None:
+    """Two poles beside each other: the slower growth of the second is none of the mechanism's own."""
+    second = POLE.format("").replace('name="foot"', 'name="second"')
+    drive = '<actuator><velocity joint="second" kv="301"/></actuator>'
+    robot, growth = found(mjcf(POLE.format("") + second, drive, gravity=-10))
+    assert growth.kind == "unsafe"
+    assert np.isfinite(stable_factor(robot, at_qpos0(robot), growth) or np.inf)

@@ -1,0 +1,78 @@
+"""What MuJoCo refuses is one line; URDFs of ROS packages are read without their meshes; memory is enlarged."""
+
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from bezstab.errors import InputError
+from bezstab.mujoco.linting import lint
+from bezstab.mujoco.reading import loaded_model, mujoco_module
+from tests.mujoco.test_steps import model_of
+
+mujoco: Any = pytest.importorskip("mujoco")
+
+MARBLES = "".join(f'<body pos="{number / 100} 0 0"><freejoint/><geom size=".1"/></body>' for number in range(20))
+"""Two hundred pairs of them touch."""
+LITTLE = f'<mujoco><size memory="60K"/><worldbody>{MARBLES}</worldbody></mujoco>'
+URDF = """<robot name="leg"><link name="hip"/><link name="shank">{}
+  <collision><geometry><mesh filename="package://leg_description/meshes/shank.stl"/></geometry></collision></link>
+<joint name="knee" type="revolute"><parent link="hip"/><child link="shank"/><axis xyz="0 1 0"/>
+  <limit lower="-2" upper="2" effort="30" velocity="20"/><dynamics damping="0.1"/></joint></robot>"""
+INERTIA = """<inertial><origin xyz="0 0 -0.1"/><mass value="0.2"/>
+  <inertia ixx="0.001" iyy="0.001" izz="0.0001" ixy="0" ixz="0" iyz="0"/></inertial>"""
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "words"),
+    [
+        ("none.xml", None, "No such file"),
+        ("wrong.xml", "<mujoco><oops/></mujoco>", "oops"),
+        ("nan.xml", '<mujoco><option timestep="nan"/></mujoco>', "timestep = nan"),
+        ("includes.xml", '<mujoco><include file="nowhere.xml"/></mujoco>', "nowhere.xml"),
+        ("massless.urdf", URDF.format(""), "no mass and no inertia: shank"),
+    ],
+)
+def test_what_mujoco_refuses_is_one_line(name: str, text: str | None, words: str, tmp_path: Path) -> None:
+    path = tmp_path / name
+    if text is not None:
+        path.write_text(text, encoding="utf-8")
+    with pytest.raises(InputError, match=words) as caught:
+        loaded_model(path)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_urdf_of_a_ros_package_is_read_without_its_meshes(tmp_path: Path) -> None:
+    path = tmp_path / "leg.urdf"
+    path.write_text(URDF.format(INERTIA), encoding="utf-8")
+    found = lint(path)
+    assert found.status == 0
+    assert "Contacts not judged: meshes left out." in found.sentence
+    assert [each.kinds for each in found.feedbacks] == ["joint limit"]
+    assert [(each.kind, each.at) for each in found.judged] == [("decays", "qpos0")]
+
+
+def test_memory_is_enlarged_before_a_model_is_refused(tmp_path: Path) -> None:
+    """A file's own; that of a model that is loaded already cannot be."""
+    path = tmp_path / "marbles.xml"
+    path.write_text(LITTLE, encoding="utf-8")
+    assert loaded_model(path).model.narena > 60 * 1024
+    with pytest.raises(InputError, match="give it more"):
+        loaded_model(model_of(LITTLE))
+
+
+def test_a_loaded_model_is_left_as_it_was() -> None:
+    model = model_of("<mujoco><option iterations='3' solver='PGS'/><worldbody/></mujoco>")
+    loaded = loaded_model(model)
+    assert (model.opt.iterations, model.opt.solver) == (3, mujoco.mjtSolver.mjSOL_PGS)
+    assert loaded.model.opt.solver == mujoco.mjtSolver.mjSOL_NEWTON
+
+
+def test_without_mujoco_or_with_an_old_one_the_message_says_what_to_get(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(mujoco, "__version__", "3.6.0")
+    with pytest.raises(InputError, match=r"lint needs mujoco 3\.7 or later, found 3\.6\.0"):
+        mujoco_module()
+    monkeypatch.setitem(sys.modules, "mujoco", None)
+    with pytest.raises(InputError, match=r"bezstab\[mujoco\]"):
+        mujoco_module()

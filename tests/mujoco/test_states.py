@@ -1,0 +1,106 @@
+"""Where a model is looked at: its keyframes, rows of a log, a pose; and what begins to touch there is judged twice."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from bezstab.errors import InputError
+from bezstab.mujoco.linting import lint
+from bezstab.mujoco.states import chosen_states
+from tests.mujoco.models import mjcf
+from tests.mujoco.test_steps import model_of
+
+mujoco: Any = pytest.importorskip("mujoco")
+
+ARM = """<mujoco><option timestep="0.002"/><worldbody>
+  <body name="upper"><joint name="shoulder" axis="0 1 0"/>
+    <inertial pos=".15 0 0" mass=".02" diaginertia="1e-4 1e-4 1e-4"/>
+    <body name="fore" pos=".3 0 0"><joint name="elbow" axis="0 1 0"/>
+      <inertial pos="0 0 .3" mass="1" diaginertia="1e-4 1e-4 1e-4"/></body></body></worldbody>
+<actuator><position name="shoulder" joint="shoulder" kp="20" kv="2"/>
+  <position name="elbow" joint="elbow" kp="20" kv="2"/></actuator>
+<keyframe><key name="home" qpos="0 1.5707963" ctrl="0 1.5707963"/></keyframe></mujoco>"""
+"""Safe at qpos0; at its own keyframe one step multiplies errors by 30.4."""
+
+
+def test_all_keyframes_are_looked_at_and_those_that_are_chosen() -> None:
+    """A run from the keyframe confirms it: 1e-6 grows to 293 in five steps (30.4 squared, then it saturates)."""
+    found = lint(model_of(ARM))
+    assert [(each.at, each.kind) for each in found.judged] == [("qpos0", "decays"), ("home", "unsafe")]
+    assert found.worst.z_abs == pytest.approx(30.3787, rel=1e-5)
+    assert found.status == 1
+    assert {each.element for each in found.suspects if each.blamed} == {"actuator 'elbow'", "actuator 'shoulder'"}
+    model = model_of(ARM)
+    ends = []
+    for kick in (0.0, 1e-9):
+        data = mujoco.MjData(model)
+        mujoco.mj_resetDataKeyframe(model, data, 0)
+        data.qpos[1] += kick
+        for _ in range(5):
+            mujoco.mj_step(model, data)
+        ends.append(data.qvel.copy())
+    assert np.abs(ends[1] - ends[0]).max() > 1e-9 * 30.0**4
+    assert [each.at for each in lint(model, ["qpos0"]).judged] == ["qpos0"]
+    assert lint(model, ["qpos0"]).status == 0
+
+
+def test_the_worst_row_of_a_log_is_named_with_its_time(tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    angles = np.linspace(0, 1.5, 31)
+    lines = [f"{0.1 * row:.6g},0,{angle:.6g},0,0" for row, angle in enumerate(angles)]
+    path.write_text("\n".join(["# time,q0,q1,v0,v1", *lines]), encoding="utf-8")
+    found = lint(model_of(ARM), [path])
+    (row,) = found.judged
+    assert row.at == "log.csv row 31 (3 s)"
+    assert row.kind == "unsafe"
+    alone = lint(model_of(ARM), [[0, 1.5]])
+    assert row.z_abs == pytest.approx(alone.worst.z_abs, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("at", "words"),
+    [
+        (["hom"], "--at hom: no keyframe and no file; the states of the model: qpos0, home"),
+        ([[1, 2, 3]], "the pose: 3 numbers, expected nq = 2, or nq . nv = 4"),
+        (["wide.csv"], "wide.csv row 2: 3 numbers, expected nq = 2, or nq . nv = 4"),
+        (["empty.csv"], "empty.csv: no rows"),
+        (["words.csv"], "words.csv, row 1: expected numbers"),
+        (["nan.csv"], "nan.csv, row 1: expected finite numbers"),
+    ],
+)
+def test_a_state_that_is_none_is_one_line(at: Any, words: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    files = {"wide": "1,2\n1,2,3", "empty": "a,b\n", "words": "a,b\nc,d", "nan": "1,nan"}
+    for name, text in files.items():
+        Path(f"{name}.csv").write_text(text, encoding="utf-8")
+    with pytest.raises(InputError, match=words):
+        chosen_states(mujoco, model_of(ARM), at)
+
+
+def test_a_foot_that_just_touches_is_judged_on_the_ground_and_in_the_air() -> None:
+    """The ground's solref is safe and slower than the drive; a leg that stands at its limit is in it and off it."""
+    floor = '<geom type="plane" size="1 1 .1"/>'
+    leg = (
+        '<body pos="0 0 .5"><joint name="rail" type="slide" axis="0 0 1"/><geom size=".05" mass="1"/>'
+        '<body pos="0 0 -.2"><joint name="knee" type="slide" axis="0 0 1" {}/><geom size=".1" mass=".2" pos="0 0 -.2"/>'
+        "</body></body>"
+    )
+    drive = '<actuator><position joint="knee" kp="3000" kv="50"/></actuator>'
+    found = lint(model_of(mjcf(floor + leg.format(""), drive, h=0.002, gravity=-9.81)))
+    assert [each.at for each in found.judged] == ["qpos0, touching", "qpos0, touching nothing"]
+    assert {each.kind for each in found.judged} == {"decays"}
+    assert found.status == 0
+    weak = drive.replace("3000", "100").replace("50", "2")  # a stronger one leaves its limit faster than that pushes
+    limited = lint(model_of(mjcf(leg.format('limited="true" range="0 1"'), weak, h=0.002)))
+    on, off = limited.judged
+    assert (on.kind, off.kind) == ("decays", "decays")
+    assert on.z_abs != pytest.approx(off.z_abs, abs=1e-3)
+
+
+def test_where_a_spring_begins_it_is_not_smooth() -> None:
+    slack = '<tendon><fixed stiffness="900" springlength="0 1"><joint joint="x" coef="1"/></fixed></tendon>'
+    world = '<body><joint name="x" type="slide"/><geom size=".1" mass="1"/></body>'
+    found = lint(model_of(mjcf(world, slack)))
+    assert (found.worst.kind, found.status) == ("not smooth", 3)
