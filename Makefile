@@ -57,8 +57,8 @@ witnesses: .venv/tested  ## engines that are not ours, run: PyBullet, pymunk, Bo
 	$(BIN)/pip install --quiet --editable '.[witnesses]'
 	$(BIN)/python -m pytest tests/witnesses tests/evidence/test_mujoco_witness.py
 
-extremes: .venv/installed  ## what holds at the extremes; the tests run the short form
-	$(BIN)/bezstab extremes
+extremes: .venv/tested  ## what holds at the extremes, in minutes, into figures/extremes.md
+	$(BIN)/python -m tests.extremes.write_page
 
 lint: .venv/tested  ## style, format and types
 	$(BIN)/ruff check .

@@ -76,10 +76,7 @@ APPOINTED = {
     "distributed": {"evidence/parallel.py"},
     "joblib": {"evidence/parallel.py"},
     "numba": {"compiling.py"},
-    "mpmath": {
-        *("evidence/extremes.py", "evidence/root_digits.py"),
-        *("stability/forced_errors.py", "stability/path_crossings.py"),
-    },
+    "mpmath": {"stability/forced_errors.py", "stability/path_crossings.py"},
 }
 """The files that may import a library when they run; for types anybody may."""
 

@@ -59,8 +59,8 @@ def prompted(session: str) -> str:
 
 QUICK = ("check --method SYM", "check --engine bullet", "choose --method SYM", "chains", "methods", "poles", "lint")
 SESSIONS = [session for page in PAGES for session in sessions(page)]
-GOLDEN = ("extremes --short", "paper -o figures")
-"""Commands of pages that others run: tests/evidence/test_extremes.py, tests/paper/test_command.py."""
+GOLDEN = ("paper -o figures",)
+"""Commands of pages that others run: tests/paper."""
 
 INLINE = sorted({command for page in PAGES for command in commands(page)} - {*GOLDEN})
 

@@ -17,7 +17,7 @@ from bezstab.errors import InputError, NumericalError
 SECTIONS: Mapping[str, Sequence[str]] = {
     "Maps": ("poles", "region", "methods"),
     "Choose": ("choose", "check", "drive", "lint", "engines", "chains"),
-    "Evidence": ("simulate", "verify", "probe", "tradeoff", "extremes"),
+    "Evidence": ("simulate", "verify", "probe", "tradeoff"),
     "Programs": ("schema",),
     "Paper": ("paper",),
 }

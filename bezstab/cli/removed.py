@@ -12,6 +12,7 @@ WENT: Mapping[str, str] = {
     "region --pd": "see `bezstab drive --figure png`",
     "poles --pd": "see `bezstab drive`",
     "family": "see `region --compare` for the regions, and `methods NAME` for order and error constant",
+    "extremes": "see `make extremes`, which writes figures/extremes.md, and the slow tests",
     "paper --format": "what came of the paper's claims stands in figures/LEDGER.md",
 }
 """Of commands ("family") and options ("verify --witness") that were removed: what gives their answer now."""

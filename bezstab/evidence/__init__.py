@@ -22,7 +22,6 @@ if TYPE_CHECKING:
         reference_run,
         swept_runs,
     )
-    from bezstab.evidence.extremes import Check, extreme_checks
     from bezstab.evidence.logs import (
         UNEVEN,
         Log,

@@ -27,7 +27,6 @@ from bezstab.show.row_kinds import (
     CHECKED,
     CHOICES,
     ENGINES_LISTED,
-    EXTREMES,
     FIELDS,
     FRONTS,
     LARGEST_STEPS,

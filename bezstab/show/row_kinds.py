@@ -1171,17 +1171,6 @@ FRONTS = RowKind(
         ),
     ),
 )
-# printed by `extremes`
-EXTREMES = RowKind(
-    "a check",
-    fields=(
-        GROUP,
-        text("case", "What was looked at", "case"),
-        text("expected", "What must come out, stated beforehand", "expected"),
-        text("seen", "What came out", "seen"),
-        truth("held", "Whether what came out is what was expected", "held", form="NO"),
-    ),
-)
 ROW_KINDS: Mapping[str, Sequence[RowKind]] = {
     "poles": (POLES,),
     "region": (REGIONS,),
@@ -1206,7 +1195,6 @@ ROW_KINDS: Mapping[str, Sequence[RowKind]] = {
         SWEPT,
         FRONTS,
     ),
-    "extremes": (EXTREMES,),
 }
 """The kinds of rows that each command prints."""
 

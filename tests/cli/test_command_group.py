@@ -28,7 +28,7 @@ def test_help_has_a_heading_for_each_group_and_a_whole_sentence_for_each_command
     assert (bare.exit_code, bare.stdout, bare.stderr) == (0, run("--help").stdout, "")
 
 
-@pytest.mark.parametrize("name", [name for name in NAMES if name != "extremes"])  # it takes minutes
+@pytest.mark.parametrize("name", NAMES)
 @pytest.mark.slow
 def test_the_example_in_the_help_runs(name: str) -> None:
     example = re.search(r"Example: bezstab ((?:[^\n]|\n  \S)*)", run(name, "--help").stdout)

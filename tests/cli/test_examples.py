@@ -51,7 +51,6 @@ EXAMPLES = (
     "verify --scene driven_four_bar --h 0.01 --alpha 0.5 --beta 0.1 --floquet",
     f"tradeoff --scene pendulum --method SYM --h 0.01 --h 0.02 --time 0.1 --workers 1 {SMALL}",
     "tradeoff --predicted --method SYM --level 0.9 --h 0.01 --omega 2 --table none",
-    "extremes --short",
 )
 """Together they print every kind of row."""
 QUICK = ("poles --alpha 1", "check --method SYM --alpha 2 --beta 2", "probe", "engines", "simulate")
@@ -79,7 +78,6 @@ def test_every_command_that_prints_rows_has_a_schema_and_an_example() -> None:
         Draft202012Validator.check_schema(schema)
 
 
-@pytest.mark.usefixtures("_few_extremes")
 @pytest.mark.parametrize(
     "example",
     [pytest.param(each, marks=() if each.startswith(QUICK) else pytest.mark.slow) for each in EXAMPLES],

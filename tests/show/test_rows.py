@@ -58,7 +58,7 @@ METHOD = Field("method", "Name of the method", "method", kind="text")
 
 def test_one_line_makes_a_column_a_key_and_its_documentation() -> None:
     new = Field("solves", "Whether it is implicit", "solves", kind="truth", path="method.scheme.implicit")
-    kind = replace(row_kinds.EXTREMES, fields=(METHOD, new))
+    kind = replace(row_kinds.POLES, fields=(METHOD, new))
     rows = [cells(kind.fields, SimpleNamespace(method=lookup("bdf2")))]
     assert render(rows, kind.columns(rows), "text").split() == ["method", "solves", "bdf2", "yes"]
     assert render(rows, [], "csv").splitlines() == ["method,solves", "bdf2,True"]

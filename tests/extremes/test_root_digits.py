@@ -3,7 +3,7 @@
 import mpmath as mp
 import pytest
 
-from bezstab.evidence import root_digits
+from tests.extremes import root_digits
 
 SHARE = mp.mpf("1e-8")
 """By which each coefficient is moved: the rest is of second order."""

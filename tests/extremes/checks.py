@@ -1,0 +1,262 @@
+"""What is left of the digits at the extremes: each kind of check says beforehand what must come out, then looks.
+
+References have a hundred digits: roots by Newton's method (`root_digits`), multipliers by the generated code in that
+arithmetic.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from itertools import product
+from typing import Any
+
+import mpmath as mp
+import numpy as np
+
+from bezstab.errors import NumericalError
+from bezstab.evidence.kicks import kicked_fates
+from bezstab.mechanism import (
+    compiled_mechanism,
+    constraint_errors,
+    even_steps,
+    initial_state,
+    load_scene,
+    march,
+    observe,
+    runs_compiled,
+    simulate,
+    state_function,
+)
+from bezstab.methods import LinearMultistep, Method, lookup, rho_and_sigma
+from bezstab.stability import critical_damping_limit, poles
+from bezstab.units import feedback_gains
+from tests.extremes.root_digits import DIGITS, pole_digits
+
+H = 1e-3  # s
+POINT = (0.3, 0.04)  # alpha_hat, beta_hat: inside every region but those of AB6 and up
+STIFF = 5000.0  # 1/s, alpha = beta: so strong that the largest steps are still small for the motion
+SINGULAR_ANGLE = np.pi / 2  # of the crank, where the equal slider-crank's slider meets the pivot
+ROUNDING_OF_RUNS = 1e-14  # m: |c| of a run that is exact but for the rounding of half a metre, some hundred times
+MULTISTEP = (*(f"B{n}" for n in range(2, 13)), *(f"AB{n}" for n in range(2, 9)))
+SIZES = (1e-300, 1e-150, 1e-10, 1.0, 1e10, 1e150, 1e300)  # of alpha_hat and beta_hat: to both ends of float64's range
+
+
+@dataclass(frozen=True)
+class Found:
+    """What came out of a case, in words, and by how much it is better than it must be: below zero it is not."""
+
+    seen: str
+    margin: float
+
+
+@dataclass(frozen=True)
+class Extreme:
+    """A kind of check: what must come out, what looks, the cases that `make extremes` looks at, and those of tests."""
+
+    what: str
+    expected: str
+    check: Callable[..., Found]
+    cases: Sequence[tuple[Any, ...]]
+    sample: Sequence[tuple[Any, ...]]
+
+
+def sizes_of_parameters(name: str, *sizes: float) -> Found:
+    """Poles at every pair of sizes keep what their condition numbers leave, or are reported to overflow."""
+    found, refused = [], 0
+    for point in product(sizes, sizes):
+        try:
+            found.append((pole_digits(lookup(name), *point), point))
+        except NumericalError as error:
+            if "leaves the range" not in str(error):
+                return Found(f"{error} at {point}", -1.0)
+            refused += 1
+    worst, (a, b) = min(found, key=lambda pair: pair[0].margin)
+    seen = f"{worst.digits:.1f} digits at ({a:g}, {b:g}); {refused} of {len(sizes) ** 2} reported as overflow"
+    return Found(seen, worst.margin)
+
+
+def double_mu(name: str) -> Found:
+    """At alpha_hat² = 4 beta_hat both mu are one, and so are the poles of each, pair by pair."""
+    return _digits_at(lookup(name), (0.25, 0.015625), 12.0)
+
+
+def double_root(name: str) -> Found:
+    """At d mu/dz = 0, rho' sigma = rho sigma', two roots meet; rounding alpha_hat, beta_hat parts them by 1e-8."""
+    mapping = rho_and_sigma(lookup(name))
+    assert mapping
+    rho, sigma = (np.array(part[::-1], float) for part in mapping)
+    branch = np.roots(np.polysub(np.polymul(np.polyder(rho), sigma), np.polymul(rho, np.polyder(sigma))))
+    mu = np.polyval(rho, branch) / np.polyval(sigma, branch)
+    # Where a branch point is a root at 0, or mu is infinite or huge, nothing is to be learnt.
+    usable = (np.abs(mu) < 1e3) & (np.abs(branch) > 1e-3)
+    chosen = mu[np.argmax(np.where(usable, np.abs(mu), 0))]
+    return _digits_at(lookup(name), (-2 * float(chosen.real), float(abs(chosen) ** 2)), 5.0)
+
+
+def _digits_at(method: Method, point: tuple[float, float], least: float) -> Found:
+    kept = pole_digits(method, *point)
+    return Found(f"{kept.digits:.1f} digits", min(kept.digits - least, kept.margin))
+
+
+def triple_root() -> Found:
+    """pi(z, -1/2) = (z - 1/2)^3 at alpha_hat = 1, beta_hat = 1/4, exactly: rounding parts the three by 1e-5."""
+    rho, sigma = (tuple(map(Fraction, text.split())) for text in ("1 -7/4 3/4 0", "0 1/2 0 -1/4"))
+    z = poles(Method("triple", LinearMultistep(rho, sigma), "constructed"), 1.0, 0.25)
+    digits = float(-np.log10(np.abs(z - 0.5).max() / 0.5))
+    return Found(f"{digits:.1f} digits", digits - 4.5)
+
+
+def growth_of_runs(name: str, count: int, stabilized: bool = True) -> tuple[float, float]:
+    """Return the largest |c| (m) of the last tenth of a run of so many steps, and that over the first tenth's."""
+    mechanism, method = compiled_mechanism(load_scene("slider_crank")), lookup(name)
+    gains = feedback_gains(*POINT, H) if stabilized else (0.0, 0.0)
+    start, compiled = np.concatenate(initial_state(mechanism)), runs_compiled(method, count)
+    every_step = even_steps(H, count, gains)
+    blocks = march(mechanism, method, every_step, start, compiled=compiled)  # whose states need not be kept
+    positions = (block.states[:, : mechanism.size].T for block in blocks)
+    sizes = np.concatenate([np.abs(constraint_errors(mechanism, 0.0, q)).max(axis=0) for q in positions])
+    at_first, at_last = sizes[: count // 10].max(), sizes[-count // 10 :].max()
+    return float(at_last), float(at_last / max(at_first, ROUNDING_OF_RUNS))
+
+
+def long_run(name: str, count: int) -> Found:
+    """With feedback c does not grow over millions of steps."""
+    left, growth = growth_of_runs(name, count)
+    return Found(f"{growth:.2g} times as much, {left:.0e} m", 1.5 - growth)
+
+
+def long_run_without_feedback(name: str, count: int) -> Found:
+    """Without feedback it does."""
+    left, growth = growth_of_runs(name, count, stabilized=False)
+    return Found(f"{growth:.2g} times as much, {left:.0e} m", growth - 5)
+
+
+def step(name: str, times: float) -> Found:
+    """With alpha and beta in 1/s held, a kick decays below the largest stable step and grows above it."""
+    method = lookup(name)
+    limit = critical_damping_limit(method)
+    assert limit
+    h = times * limit / STIFF
+    point = (np.array([2 * h * STIFF]), np.array([(h * STIFF) ** 2]))
+    grows, undecided = kicked_fates(compiled_mechanism(load_scene("slider_crank")), method, h, *point, 3000)
+    seen = "neither" if undecided[0] else "it grows" if grows[0] else "it decays"
+    return Found(seen, 1.0 if seen == ("it grows" if times > 1 else "it decays") else -1.0)
+
+
+def passage(h: float) -> Found:
+    """The crank turns through the singular angle: the run names the step in which it came nearest, or fails."""
+    mechanism = compiled_mechanism(load_scene("slider_crank_equal"))
+    run = simulate(mechanism, lookup("B4"), h, 2.0, feedback_gains(*POINT, h))
+    if run.failure:
+        return Found(run.failure, 1.0)
+    passed = float(np.interp(SINGULAR_ANGLE, run.q[:, 0], run.t))
+    seen = f"least pivot {run.least_pivot:.0e} at t = {run.pivot_time:.4g} s (passed at {passed:.4g} s)"
+    return Found(seen, min(1 - run.least_pivot / h, 2 - abs(run.pivot_time - passed) / h))
+
+
+def on_the_singularity() -> Found:
+    """A run that starts in the singular configuration fails and says why."""
+    mechanism = compiled_mechanism(load_scene("slider_crank_equal"))
+    state = np.array([np.pi / 2, 0.0, 0.175, -np.pi / 2, 0.0]), np.zeros(5)
+    failure = simulate(mechanism, lookup("B4"), H, 0.1, (0.0, 0.0), state).failure or "no failure"
+    return Found(failure, 1.0 if "singular configuration" in failure else -1.0)
+
+
+def speed(rpm: int) -> Found:
+    """However fast the crank turns, c stays within what truncation errors of order three make of it."""
+    h, rate = 1e-4, rpm * np.pi / 30
+    mechanism = compiled_mechanism(replace(load_scene("slider_crank"), velocity={"crank.theta": rate}))
+    gains = feedback_gains(*POINT, h)
+    run = simulate(mechanism, lookup("B4"), h, 0.5, gains)
+    if run.failure:
+        return Found(run.failure, -1.0)
+    c = float(observe(mechanism, run.t, run.q, run.v, *gains).c_max)
+    allowed = 100 * (h * max(rate, 10.0)) ** 3  # m: local errors of order three, amplified by 1 / beta_hat = 25
+    return Found(f"|c| at most {c:.0e} m", 1 - c / allowed)
+
+
+def mass_ratio(ratio: float) -> Found:
+    """Multipliers in float64 against the same elimination in a hundred digits; rounding the state costs them five."""
+    scene = load_scene("slider_crank")
+    *others, slider = scene.bodies
+    mechanism = compiled_mechanism(replace(scene, bodies=(*others, replace(slider, mass=ratio * others[-1].mass))))
+    gains, m = feedback_gains(*POINT, H), len(mechanism.constraints)
+    q, v = initial_state(mechanism)
+    seen = observe(mechanism, np.zeros(1), q[np.newaxis], v[np.newaxis], *gains).multipliers[0]
+    with mp.workdps(DIGITS):
+        precise = list(map(mp.mpf, (0, *gains, *q.tolist(), *v.tolist())))
+        right = state_function(mechanism, "observations", mp.mp)(precise)[2 * m : 3 * m]
+        error = max(abs(a - b) for a, b in zip(seen.tolist(), right, strict=True))
+        digits = float(-mp.log10(error / max(map(abs, right)) + mp.mpf(10) ** -17))
+    return Found(f"{digits:.1f} digits", digits - 11)
+
+
+LEAVES = "15 digits less those of each pole's condition number"
+
+EXTREMES = (
+    Extreme(
+        "α̂, β̂ from 1e-300 to 1e300, each with each",
+        f"{LEAVES}, or overflow reported",
+        sizes_of_parameters,
+        cases=[(name, *SIZES) for name in (*MULTISTEP, "B1", "ABM2", "ABM3", "ABM4", "RK4", "SIE")],
+        sample=[("B4", 1e-300, 1.0, 1e300), ("ABM4", 1.0), ("RK4", 1e-300, 1e-10, 1.0, 1e300)],
+    ),
+    Extreme(
+        "double μ: α̂² = 4β̂",
+        f"12 digits, and {LEAVES}",
+        double_mu,
+        cases=[(name,) for name in (*MULTISTEP, "B1", "ABM2", "ABM3", "ABM4", "RK4", "SIE")],
+        sample=[("B6",), ("AB4",), ("ABM4",)],
+    ),
+    Extreme(
+        "double roots z",
+        f"5 digits, and {LEAVES}",
+        double_root,
+        cases=[(name,) for name in MULTISTEP],
+        sample=[("B4",), ("AB4",)],
+    ),
+    Extreme("a triple root z", "4.5 digits", triple_root, cases=[()], sample=[()]),
+    Extreme(
+        "long runs, by their steps",
+        "the largest |c| of the last tenth is at most 1.5 times that of the first",
+        long_run,
+        cases=[(name, 10**7) for name in ("B4", "AB4", "SYM")],
+        sample=[("B4", 10**5), ("SYM", 10**5)],
+    ),
+    Extreme(
+        "long runs without feedback",
+        "the largest |c| of the last tenth is at least five times that of the first",
+        long_run_without_feedback,
+        cases=[("B4", 10**7)],
+        sample=[("B4", 10**5)],
+    ),
+    Extreme(
+        "steps, by the largest stable one",
+        "a kick's error decays below one, and grows above",
+        step,
+        cases=list(product(("B4", "AB4", "RK4", "SYM"), (0.5, 0.9, 0.99, 1.01, 1.1, 2.0, 10.0))),
+        sample=[("B4", 10.0), ("AB4", 1.01), ("RK4", 0.99), ("SYM", 0.9)],
+    ),
+    Extreme(
+        "a singular configuration passed, by the step (s)",
+        "a failure, or a least pivot below it in the step of the passage",
+        passage,
+        cases=[(1e-2,), (1e-3,), (1e-4,)],
+        sample=[(1e-2,), (1e-3,)],
+    ),
+    Extreme("a start in it", "a failure that says so", on_the_singularity, cases=[()], sample=[()]),
+    Extreme(
+        "cranks, by their speed (rpm)",
+        "no failure, and |c| within the truncation error",
+        speed,
+        cases=[(0,), (10,), (100,), (300,), (1000,), (3000,)],
+        sample=[(0,), (3000,)],
+    ),
+    Extreme(
+        "mass ratios",
+        "11 digits of the multipliers",
+        mass_ratio,
+        cases=[(10.0**k,) for k in range(-6, 7, 2)],
+        sample=[(1e-6,), (1e6,)],
+    ),
+)
