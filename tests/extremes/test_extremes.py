@@ -37,7 +37,7 @@ def off(*arguments: Any) -> Observation:
     return replace(seen, multipliers=seen.multipliers * (1 + 1e-8))
 
 
-SIZES = partial(checks.sizes_of_parameters, "B4", 1.0)
+SIZES = partial(checks.sizes_of_parameters, "B4", (1.0,))
 
 
 @pytest.mark.parametrize(

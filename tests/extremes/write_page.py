@@ -21,7 +21,7 @@ def row(extreme: Extreme) -> str:
     found = {case: extreme.check(*case) for case in extreme.cases}
     held = sum(each.margin >= 0 for each in found.values())
     case, nearest = min(found.items(), key=lambda item: item[1].margin)
-    named = ", ".join(str(part) if isinstance(part, str) else f"{part:g}" for part in case[:2])
+    named = ", ".join(str(part) if isinstance(part, str) else f"{part:g}" for part in case)
     seen = f"{named}: {nearest.seen}" if named else nearest.seen
     return (
         " | ".join(("", extreme.what, extreme.expected, f"{held} of {len(found)}", seen, ""))
