@@ -31,6 +31,7 @@ if TYPE_CHECKING:
         verify,
     )
     from bezstab.drives.answer import drive
+    from bezstab.mujoco.linting import lint
     from bezstab.show import plot
     from bezstab.units import from_dimensionless, to_dimensionless
 
@@ -47,6 +48,7 @@ __all__ = [
     "feedback_cost",
     "from_dimensionless",
     "largest_step",
+    "lint",
     "method",
     "plot",
     "poles",

@@ -8,10 +8,11 @@ from typing import Any
 import pytest
 
 import bezstab
+from bezstab.errors import InputError
 from bezstab.goals import GOALS, Goal
 from bezstab.lazy import imported_for_types
 from bezstab.show import answer_row, render
-from tests.cli.running import rows, run
+from tests.cli.running import DATA, rows, run
 
 TESTS = Path(__file__).parent
 
@@ -101,3 +102,16 @@ def test_a_drive_is_judged_as_on_the_command_line() -> None:
     assert (answer.verdict, answer.z_abs, answer.used_up) == (row["verdict"], row["z_abs"], row["used_up"])
     assert answer.limits.late == row["late_max"]
     assert answer.limits.kd == (row["kd_min"], row["kd_max"])
+
+
+def test_a_mujoco_model_is_judged_as_on_the_command_line_from_a_path_or_loaded() -> None:
+    mujoco = pytest.importorskip("mujoco")
+    path = DATA / "legs.xml"
+    typed, *_ = rows("lint", str(path), "--pd hip.*=200,5 --every 4 --late 1")
+    for model in (path, mujoco.MjModel.from_xml_path(str(path))):
+        linted = bezstab.lint(model, pd={"hip.*": (200, 5)}, every=4, late=1)
+        assert (linted.worst.kind, linted.status) == ("decays", 0)
+        assert linted.worst.z_abs == typed["z_abs"]
+        assert linted.sentence.startswith(("legs.xml is safe", "the model is safe"))
+    with pytest.raises(InputError, match=r"^pd knee: matches no motor"):
+        bezstab.lint(path, pd={"knee": (1, 1)})

@@ -3,7 +3,9 @@
 import math
 from collections.abc import Sequence
 
-from bezstab.mujoco.linting import Judged, Suspect
+from bezstab.mujoco.blame import Suspect
+from bezstab.mujoco.linting import Judged
+from bezstab.mujoco.remedies import Remedy
 from bezstab.mujoco.solrefs import Feedback
 from bezstab.show import Column
 
@@ -31,6 +33,13 @@ SUSPECTS: Sequence[Column[Suspect]] = (
     Column("|z| alone", "z_abs_alone", lambda suspect: suspect.z_abs_alone, "|z| with this element alone"),
     Column("|z| without", "z_abs_without", lambda suspect: suspect.z_abs_without, "|z| without this element"),
     Column("to blame", "blamed", lambda suspect: suspect.blamed, "errors grow with it alone, or not without it"),
+)
+
+REMEDIES: Sequence[Column[Remedy]] = (
+    Column("", "row", lambda _: "remedy", "what the row is about"),
+    Column("write", "write", lambda remedy: remedy.write, "what makes every unsafe state safe, checked by the step"),
+    Column("for", "element", lambda remedy: remedy.element, "element of the model"),
+    Column("|z| then", "z_abs", lambda remedy: remedy.z_abs, "a step multiplies errors by it, at most"),
 )
 
 SETTINGS: Sequence[Column[Feedback]] = (

@@ -59,13 +59,20 @@ def lint(
     Example: bezstab lint robot.xml
     """
     from bezstab.engines import Timing
-    from bezstab.mujoco.columns import SETTINGS, STATES, SUSPECTS
-    from bezstab.mujoco.linting import lint as linted_model
+    from bezstab.mujoco.columns import REMEDIES, SETTINGS, STATES, SUSPECTS
+    from bezstab.mujoco.linting import linted_model
 
     timing = Timing(every, late)
     if timing != Timing() and not gains:
         raise InputError("--every and --late need --pd: they are about a controller")
     linted = linted_model(model, at, gains, timing, deep=deep, shown=progress)
     show_text(linted.sentence)
-    show_tables([(STATES, linted.judged), (SUSPECTS, linted.suspects), (SETTINGS, linted.feedbacks)])
+    show_tables(
+        [
+            (STATES, linted.judged),
+            (SUSPECTS, linted.suspects),
+            (REMEDIES, linted.remedies),
+            (SETTINGS, linted.feedbacks),
+        ]
+    )
     return linted.status

@@ -1,30 +1,25 @@
 """The question and its answer: is a MuJoCo model safe at its time step, where, and what makes it unsafe?"""
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-import numpy as np
-
+from bezstab.arguments import Number, exact_number, in_keywords, whole_number
 from bezstab.engines import Timing
 from bezstab.errors import InputError
+from bezstab.mujoco.blame import Shown, Suspect, suspects_at
 from bezstab.mujoco.controllers import Gains, controlled, uncontrolled
-from bezstab.mujoco.elements import acting, without
+from bezstab.mujoco.elements import Element
 from bezstab.mujoco.growth import Growth, Kind, growth_at, stable_factor
 from bezstab.mujoco.reading import Loaded, loaded_model, silent
+from bezstab.mujoco.remedies import Remedy, remedies
 from bezstab.mujoco.robots import Robot, State
 from bezstab.mujoco.solrefs import METHODS, Feedback, feedbacks
 from bezstab.mujoco.states import chosen_states, touching, touching_nothing
-from bezstab.mujoco.steps import NUDGE, moved_by_step, step_at
+from bezstab.mujoco.steps import NUDGE, step_at
 
 MOST_DOFS = 400
 """That are judged: the eigenvalues of twice as many are found within a second, those of a robot in no time."""
-
-SEEN = 1e-2
-"""Relative: an element that changes what a growing error becomes by less is not to blame for it."""
-
-MOST_SUSPECTS, MOST_DIRECTIONS = 12, 8
-"""Elements whose part is found, and directions by which they are: enough for a robot with a leg or two at fault."""
 
 MOST_WITH_LIMITS = 10
 """States, each with its own largest safe step; of a log's rows it is found for the worst."""
@@ -56,20 +51,6 @@ class Judged:
 
 
 @dataclass(frozen=True)
-class Suspect:
-    """An element that acts on what grows: |z| with it alone, and with all but it, None where nothing holds.
-
-    `blamed`: it grows with this element alone, or not without it.
-    """
-
-    element: str
-    kind: str
-    z_abs_alone: float | None
-    z_abs_without: float | None
-    blamed: bool
-
-
-@dataclass(frozen=True)
 class Linted:
     """What was found of a model: h in s; every state, the worst of them, and the suspects there if it is unsafe.
 
@@ -84,34 +65,57 @@ class Linted:
     worst: Judged
     accuracy: float | None
     suspects: tuple[Suspect, ...]
+    remedies: tuple[Remedy, ...]
     feedbacks: tuple[Feedback, ...]
     sentence: str
     status: int
 
 
-Shown = Callable[[Iterable[Any], str, int], Iterable[Any]]
-"""Yields some items, while it shows how many of them are done."""
-
-
 def lint(
-    source: Any,
+    model: Any,
+    *,
     at: Sequence[Any] = (),
-    gains: Sequence[Gains] = (),
-    timing: Timing | None = None,
+    pd: Mapping[str, tuple[Number, Number]] | None = None,
+    every: int = 1,
+    late: Number = 0,
+    deep: bool = False,
+) -> Linted:
+    """Return whether a MuJoCo model is safe at its timestep: what errors do at its states, and what to write.
+
+    model: an mjModel, which is left as it is, or the path of an MJCF or URDF file.
+    at: names of keyframes, "qpos0", paths of CSV logs, arrays (qpos, or qpos and qvel); by default qpos0
+        and all keyframes.
+    pd: (kp, kd) in SI units of a controller outside the model, by the name of a motor or a joint, or a
+        regular expression.
+    every: the controller computes its force every so many steps. late: it is applied so many steps late.
+    deep: judge constraints past solimp's width, too.
+
+    Returns a Linted; `sentence` is the answer in words, `worst` the state that decides, `remedies` what to
+    write.
+
+    InputError for what cannot be read or is not there. Source: eigenvalues of MuJoCo's own step, by centred
+    differences.
+    """
+    with in_keywords():
+        gains = [Gains(pattern, *(exact_number(value, "pd") for value in both)) for pattern, both in (pd or {}).items()]
+        timing = Timing(whole_number(every, "every"), exact_number(late, "late"))
+        return linted_model(model, at, gains, timing, deep=deep)
+
+
+def linted_model(
+    source: Any,
+    at: Sequence[Any],
+    gains: Sequence[Gains],
+    timing: Timing,
     *,
     deep: bool = False,
     shown: Shown = lambda items, _label, _length: items,
 ) -> Linted:
-    """Return what errors do in a model at its states: an mjModel, or the path of an MJCF or URDF file.
-
-    `at`: names of keyframes, qpos0, paths of logs, arrays (qpos, or qpos and qvel); by default qpos0 and all keyframes.
-    `gains` and `timing` are those of a controller outside the model. `deep` judges constraints past solimp's width,
-    too. InputError for what cannot be read or is not there.
-    """
+    """Return the same; while it takes long, `shown` shows how far it is."""
     loaded = loaded_model(source)
     mujoco, model = loaded.mujoco, loaded.model
     drives = controlled(mujoco, model, gains)
-    robot = Robot(mujoco, model, drives, timing or Timing())
+    robot = Robot(mujoco, model, drives, timing)
     states = chosen_states(mujoco, model, at)
     if model.nv > MOST_DOFS:
         raise InputError(f"{loaded.name}: {model.nv} degrees of freedom, at most {MOST_DOFS} are judged")
@@ -121,16 +125,25 @@ def lint(
         worst = min(found, key=_badness)
         if many:
             worst = replace(worst, h_factor=stable_factor(worst.robot, worst.state, worst.growth))
-        suspects = _suspects(worst, shown) if worst.growth.kind in ("unsafe", "falls by itself") else []
+        suspects: list[tuple[Element, Suspect]] = []
+        if worst.growth.kind in ("unsafe", "falls by itself"):
+            suspects = suspects_at(worst.robot, worst.state, worst.growth, shown)
         if worst.growth.kind == "falls by itself":
-            suspects = [each for each in suspects if each.blamed and each.kind in SELF_MADE]
+            suspects = [each for each in suspects if each[1].blamed and each[1].kind in SELF_MADE]
             if suspects:  # a gain of the wrong sign pushes away at any step
                 worst = replace(worst, growth=replace(worst.growth, kind="unsafe", rate=None), h_factor=None)
         found = [worst if each.state is worst.state else each for each in found]
         accuracy = _accuracy(worst)
+        unsafe = [each for each in found if each.growth.kind == "unsafe"]
+        written: list[Remedy] = []
+        if unsafe:
+            limits = [each.h_factor * robot.h for each in unsafe if each.h_factor is not None]
+            blamed = [element for element, suspect in suspects if suspect.blamed]
+            there = [(each.robot, each.state) for each in sorted(unsafe, key=_badness)[:MOST_WITH_LIMITS]]
+            written = remedies(there, blamed, min(limits, default=None), shown)
     settings = tuple(feedbacks(mujoco, model, deep=deep))
     rough = any(each.growth.kind == "not smooth" for each in found)
-    unsafe = worst.growth.kind == "unsafe" or any(each.unsafe for each in settings)
+    is_unsafe = bool(unsafe) or any(each.unsafe for each in settings)
     return Linted(
         name=loaded.name,
         h=robot.h,
@@ -138,10 +151,11 @@ def lint(
         judged=tuple(each.judged() for each in found if not each.state.log or each is worst),
         worst=worst.judged(),
         accuracy=accuracy,
-        suspects=tuple(suspects),
+        suspects=tuple(suspect for _, suspect in suspects),
+        remedies=tuple(written),
         feedbacks=settings,
         sentence=_sentence(loaded, robot, worst.judged(), settings),
-        status=1 if unsafe else 3 if rough else 0,
+        status=1 if is_unsafe else 3 if rough else 0,
     )
 
 
@@ -215,28 +229,3 @@ def _accuracy(found: _Found) -> float | None:
         return None
     moduli = step_at(found.robot, found.state, nudge=2 * NUDGE).moduli()
     return abs(float(moduli[0]) - found.growth.z_abs)
-
-
-def _suspects(found: _Found, shown: Shown) -> list[Suspect]:
-    """Return the elements without which growing errors change, and what each does alone; those to blame first."""
-    robot, state = found.robot, found.state
-    directions = step_at(robot, state).growing()[:, :MOST_DIRECTIONS]
-    whole = moved_by_step(robot, state, directions)
-    sizes = np.linalg.norm(whole, axis=0)
-    elements = acting(robot, state)
-    effects = []
-    for element in elements:
-        with without(robot, [element]) as rest:
-            change = moved_by_step(rest, state, directions) - whole
-        effects.append(float((np.linalg.norm(change, axis=0) / sizes).max(initial=0.0)))
-    order = [place for place in np.argsort(effects)[::-1].tolist() if effects[place] > SEEN * max(effects)]
-    chosen = [elements[place] for place in order[:MOST_SUSPECTS]]
-    suspects = []
-    for element in shown(chosen, "elements", len(chosen)):
-        with without(robot, [element]) as rest:
-            less = growth_at(rest, state)
-        with without(robot, [other for other in elements if other is not element]) as alone:
-            only = growth_at(alone, state)
-        blamed = less.kind not in (found.growth.kind, "unsafe") or only.kind == "unsafe"
-        suspects.append(Suspect(element.name, element.kind, only.z_abs, less.z_abs, blamed))
-    return sorted(suspects, key=lambda each: not each.blamed)

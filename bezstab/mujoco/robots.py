@@ -77,6 +77,13 @@ class Robot:
         data.qacc_warmstart[:] = data.qacc
         return data
 
+    def mass_at(self, data: Any) -> FloatArray:
+        """Return the mass matrix of data after `mj_forward`, armatures in it; shape (dofs, dofs), SI units."""
+        mass = np.zeros((self.model.nv, self.model.nv))
+        for row, unit in zip(mass, np.eye(self.model.nv), strict=True):
+            self.mujoco.mj_mulM(self.model, data, row, unit)  # symmetric: rows are columns
+        return mass
+
     def _keep_apart(self) -> None:
         """Let MuJoCo leave out the contacts of pairs that are kept apart."""
 

@@ -111,7 +111,8 @@ class _Differenced:
         dofs = self.robot.model.nv
         matrix, bends = self.along(np.eye(self.size))
         weights = np.eye(self.size)
-        weights[:dofs, :dofs] = weights[dofs : 2 * dofs, dofs : 2 * dofs] = self._root_of_mass()
+        root = np.linalg.cholesky(self.robot.mass_at(self.base)).T
+        weights[:dofs, :dofs] = weights[dofs : 2 * dofs, dofs : 2 * dofs] = root
         weighted = np.linalg.solve(weights.T, (weights @ matrix).T).T
         return Step(np.asarray(weighted, float), weights, self.every, smooth=not bends[: 2 * dofs].any())
 
@@ -126,13 +127,6 @@ class _Differenced:
         bends = np.abs(forward + backward).max(axis=1, initial=0.0)
         sizes = np.maximum(2 * self.nudge, np.abs(difference).max(axis=1, initial=0.0))
         return difference.T / (2 * self.nudge), np.asarray(bends > ROUGH * sizes)
-
-    def _root_of_mass(self) -> FloatArray:
-        model, mujoco = self.robot.model, self.robot.mujoco
-        mass = np.zeros((model.nv, model.nv))
-        for row, unit in zip(mass, np.eye(model.nv), strict=True):
-            mujoco.mj_mulM(model, self.base, row, unit)  # symmetric: rows are columns
-        return np.asarray(np.linalg.cholesky(mass).T)
 
     def _after(self, nudge: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return positions after the steps from a nudged state, and all else: h v, activations, pending forces."""

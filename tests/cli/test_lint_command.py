@@ -39,7 +39,7 @@ def test_rows_for_programs_have_all_keys() -> None:
     result = run("lint", str(DATA / "two_joints.xml"), "--format json")
     found = json.loads(result.stdout)
     assert result.exit_code == 1
-    assert {row["row"] for row in found} == {"state", "element", "setting"}
+    assert {row["row"] for row in found} == {"state", "element", "remedy", "setting"}
     assert len({tuple(row) for row in found}) == 1
     (blamed,) = [row["element"] for row in found if row["blamed"]]
     assert blamed == "actuator 'servo'"
