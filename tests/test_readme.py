@@ -57,7 +57,7 @@ def prompted(session: str) -> str:
     return session.partition("\n")[0].removeprefix("$ bezstab ")
 
 
-QUICK = ("check --method SYM", "check --engine bullet", "choose --method SYM", "chains", "methods", "poles", "lint")
+QUICK = ("check --method SYM", "check --engine bullet", "choose --method SYM", "chains", "methods own", "poles", "lint")
 SESSIONS = [session for page in PAGES for session in sessions(page)]
 GOLDEN = ("paper -o figures",)
 """Commands of pages that others run: tests/paper."""

@@ -38,7 +38,7 @@ def test_a_run_knows_its_error_its_cost_and_its_order(name: str) -> None:
         assert least <= run.evaluations / round(DURATION / run.h) <= most
 
 
-@pytest.mark.parametrize("name", ["RK4", "B4"])
+@pytest.mark.parametrize("name", [pytest.param("RK4", marks=pytest.mark.slow), "B4"])
 def test_its_own_choice_at_each_step_costs_no_order(name: str) -> None:
     *_, fine = swept(name, (8e-4, 1.6e-3))
     assert fine.order == pytest.approx(accuracy(lookup(name))[0], abs=0.2)
@@ -129,6 +129,7 @@ def test_the_front_is_what_no_pair_excludes_by_ascending_cost(points: list[Point
     assert front == sorted(set(front))
 
 
+@pytest.mark.slow
 def test_the_reference_has_the_digits_it_claims() -> None:
     # one coordinate, by quadrature with 30 digits: see tests/mechanism/test_runner.py
     true = reference_run(load_scene("slider_crank"), 1e-3, 2.3456)

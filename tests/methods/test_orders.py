@@ -135,6 +135,7 @@ def test_measured_orders_of_second_order_and_implicit_methods(name: str) -> None
         assert abs(measured_order(scheme, kind, count=128 if order <= 3 else 64) - order) < 0.3
 
 
+@pytest.mark.slow
 def test_the_order_of_a_method_of_many_steps_or_stages_is_found() -> None:
     """Explicit Euler a hundred steps back, and 22 stages of equal Euler steps: far more than any built-in method."""
     long = multistep("long", "1 -1" + 99 * " 0", "0 1" + 99 * " 0")

@@ -10,6 +10,7 @@ from numpy.polynomial.polynomial import polyval
 from numpy.typing import NDArray
 
 from bezstab.methods import accuracy, lookup, rho_and_sigma
+from bezstab.stability import best_point, region
 
 CIRCLE = np.exp(1j * np.linspace(0, np.pi, 4097)[1:])
 LENGTH = 4 / np.expm1(2)  # -mu(-1)
@@ -43,3 +44,18 @@ def test_the_numbers_of_its_region() -> None:
     assert max(2 * LENGTH, -2 * x.min()) == pytest.approx(1.252141, abs=5e-7)
     assert np.abs(mu(CIRCLE)).max() ** 2 == pytest.approx(0.741419, abs=5e-7)
     assert mu(0.687350).real == pytest.approx(mu(-0.687350).real, abs=1e-5)
+
+
+@pytest.mark.slow
+def test_the_regions_of_the_methods_tend_to_it() -> None:
+    """As L + c/m + d/m² + ..., m = n - 1: a polynomial through the methods gives L."""
+    m = np.arange(2, 12)
+    found = []
+    for method in (lookup(f"B{n}") for n in m + 1):
+        shape, best = region(method), best_point(method)
+        assert shape.area
+        assert shape.extent
+        assert best
+        found.append((shape.area, shape.extent[0][1], best.z_abs))
+    limits = np.polynomial.polynomial.polyfit(1 / m, found, len(m) - 1)[0]
+    assert limits == pytest.approx([0.61962308, 2 * LENGTH, 0.68734989], abs=1e-7)

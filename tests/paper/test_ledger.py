@@ -130,6 +130,7 @@ def test_figs_2_and_3_bezier_regions_shrink_less_than_those_of_adams_and_symplec
     assert {name: area(name) for name in at_equal_cost} == pytest.approx(at_equal_cost, abs=5e-4)
 
 
+@pytest.mark.slow
 def test_introduction_adams_moulton_is_far_more_stable_unless_it_is_corrected_once() -> None:
     areas = {"AM3": 120.45, "AM4": 20.10, "ABM3@2": 0.419, "ABM4@2": 0.181}
     assert {name: area(name) for name in areas} == pytest.approx(areas, rel=3e-3)

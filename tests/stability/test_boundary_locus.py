@@ -15,6 +15,7 @@ def test_an_edge_that_several_roots_reach_together_is_reported() -> None:
         region(method)
 
 
+@pytest.mark.slow
 def test_an_arc_shorter_than_the_sampling_is_found() -> None:
     """Just above the least |z_p| = 0.79880 the region is a sliver between two arcs, of 2e-3 and 5e-3 rad."""
     sliver = multistep("sliver", "1 -7/8 13/24 -2/3 -1/4 1/4", "0 -7/2 9/2 -1 5/2 -23/24")

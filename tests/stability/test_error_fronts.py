@@ -50,9 +50,8 @@ def hold_what_they_say(front: Sequence[FrontPoint], omega_h: Fraction) -> None:
         assert slower <= faster * (1 + PROMISED)  # the least |z_p| may be at alpha = 0, which no other point is
 
 
-@pytest.mark.parametrize("name", ["RK4", "SYM"])
-def test_each_point_decays_as_fast_as_is_said_and_forces_what_is_said(name: str) -> None:
-    hold_what_they_say(error_front(lookup(name)), OMEGA_H)
+def test_each_point_decays_as_fast_as_is_said_and_forces_what_is_said() -> None:
+    hold_what_they_say(error_front(lookup("SYM"), [0.95, 0.8]), OMEGA_H)
 
 
 @pytest.mark.parametrize("name", TRADED)
@@ -119,4 +118,4 @@ def test_a_search_that_ends_elsewhere_is_no_answer(monkeypatch: pytest.MonkeyPat
 
     monkeypatch.setattr(error_fronts, "lowest_minima", off)
     with pytest.raises(NumericalError, match="another point is better"):
-        error_front(lookup("B4"), [0.9])
+        error_front(lookup("SYM"), [0.9])
