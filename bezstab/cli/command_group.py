@@ -18,7 +18,6 @@ SECTIONS: Mapping[str, Sequence[str]] = {
     "Maps": ("poles", "region", "methods"),
     "Choose": ("choose", "check", "drive", "lint", "engines", "chains"),
     "Evidence": ("simulate", "verify", "probe", "tradeoff"),
-    "Programs": ("schema",),
     "Paper": ("paper",),
 }
 """What `bezstab --help` lists under which heading, in this order. The command NAME is in the file NAME_command.py."""

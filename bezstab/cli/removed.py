@@ -11,6 +11,7 @@ WENT: Mapping[str, str] = {
     "choose --bandwidth": "see `bezstab drive`",
     "region --pd": "see `bezstab drive --figure png`",
     "poles --pd": "see `bezstab drive`",
+    "schema": "a table says what each key means, and its unit: bezstab/show/keys.csv",
     "family": "see `region --compare` for the regions, and `methods NAME` for order and error constant",
     "extremes": "see `make extremes`, which writes figures/extremes.md, and the slow tests",
     "paper --format": "what came of the paper's claims stands in figures/LEDGER.md",

@@ -60,7 +60,6 @@ from bezstab.show.rows import (
     row_in_seconds,
     whole_row,
 )
-from bezstab.show.schemas import json_schema
 from bezstab.show.sentences import one_pole_sentence
 from bezstab.show.tables import Format, block, fits, lines_below, render, shown_width, table, wrapped
 

@@ -1,4 +1,4 @@
-"""A field of a row: its key, heading, form, unit and meaning. Rows, tables and schemas derive from it."""
+"""A field of a row: its key, heading, form, unit and meaning. Rows, tables and the table of keys derive from it."""
 
 from __future__ import annotations
 
@@ -8,8 +8,7 @@ import unicodedata
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from pkgutil import resolve_name
-from typing import Any, Literal, get_args
+from typing import Any, Literal
 
 Value = str | float | int | Sequence[float] | Sequence[Sequence[str]] | None
 Row = Mapping[str, Any]
@@ -66,10 +65,9 @@ class Field:
 
     A table shows it in a column below `heading`, unless that is empty, in its `form`, or as the `text` made of the row.
     Where there is no value the column shows what `otherwise` makes of the row, by default a dash. `unit` is "" where it
-    has none. `null` says when there is no value, "" for never. `values_of` names the types that list all that a text
-    can be, such as "evidence.MovingVerdict", with a space between two. `path` leads to it in the result by attributes
-    and places, such as "margins.alpha.0", or "t.-1" for the last time. In a result where no path begins like this, and
-    without a path, it is the attribute that has the key's name.
+    has none. `null` says when there is no value. `path` leads to it in the result by attributes and places, such as
+    "margins.alpha.0", or "t.-1" for the last time. In a result where no path begins like this, and without a path, it
+    is the attribute that has the key's name.
     """
 
     key: str
@@ -81,20 +79,7 @@ class Field:
     otherwise: Text | None = None
     unit: str = ""
     null: str = ""
-    values_of: str = ""
     path: str = ""
-
-    @property
-    def description(self) -> str:
-        """The meaning with the unit, and when there is no value, as one text."""
-        unit = f", in {self.unit}" if self.unit else ""
-        return f"{self.meaning}{unit}{f'; null {self.null}' if self.null else ''}."
-
-    @property
-    def values(self) -> tuple[str, ...]:
-        """All that a text can be, where there are few; loads what has the types that say so."""
-        types = [resolve_name(f"bezstab.{name}") for name in self.values_of.split()]
-        return tuple(dict.fromkeys(value for each in types for value in get_args(each)))
 
     def cell(self, row: Row) -> str:
         """Return what the column of this field shows of a row, on one line; a dash where there is no value."""
@@ -161,14 +146,12 @@ def column(heading: str, key: str, form: str = "") -> Field:
 class RowKind:
     """One kind of row that a command prints: what it is, the fields it always has, and those that options add.
 
-    `sometimes` are keys that are null in some rows of this kind, though elsewhere they never are. The `sentence` says
-    in words what a row says in numbers, if anything.
+    The `sentence` says in words what a row says in numbers, if anything.
     """
 
     title: str
     fields: tuple[Field, ...]
     added: tuple[Field, ...] = ()
-    sometimes: tuple[str, ...] = ()
     sentence: Text = lambda _: ""
 
     def columns(self, rows: Sequence[Row], without: Collection[str] = ()) -> list[Field]:

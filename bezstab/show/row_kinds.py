@@ -1,7 +1,7 @@
 """Every field of every row, and which fields the rows of each command have: the one place that says so.
 
-A new column is a line here: a `Field` among those of its kind of row. Rows, tables, CSV, JSON, the JSON Schema and the
-documentation of keys (`bezstab schema`) take it from there.
+A new column is a line here: a `Field` among those of its kind of row. Rows, tables, CSV, JSON and the table of keys
+(keys.csv) take it from there.
 """
 
 from collections.abc import Mapping, Sequence
@@ -109,7 +109,7 @@ PREDICTED_Z_REAL, PREDICTED_Z_IMAG, PREDICTED_Z_ABS, PREDICTED_Z_ANGLE_DEG = pol
 MEASURED_Z_REAL, MEASURED_Z_IMAG, MEASURED_Z_ABS, MEASURED_Z_ANGLE_DEG = pole_fields(
     "measured", "measured in the simulation", null=NOT_MEASURED
 )
-VERDICT = text("verdict", "What errors do, proven on the numbers as typed", "verdict", values_of="methods.Verdict")
+VERDICT = text("verdict", "What errors do, proven on the numbers as typed: converges, marginal or diverges", "verdict")
 SAFE = truth("safe", "Whether every error is proven to shrink; with --scene, on the moving mechanism as well")
 KAPPA = number(
     "kappa",
@@ -206,7 +206,7 @@ TIMES_LEAST_VELOCITY = number(
     null=NOT_COMPARED,
     path="cost.times_least_velocity",
 )
-ROLE = text("role", "Whether the point was given, or is what to take instead", values_of="questions.CheckedRole")
+ROLE = text("role", "Whether the point was given, or is what to take instead")
 H_FACTOR = number(
     "h_factor",
     "Factor on h up to which this alpha and beta are stable",
@@ -245,7 +245,7 @@ FACTORIZATIONS = integer(
     "Factorizations of C_q M^-1 C_q^T in the whole run: one for each evaluation, and those of projections",
     "factorizations",
 )
-STABILISE = text("stabilise", "What holds the constraints", "held by", values_of="stabilising.Stabilise")
+STABILISE = text("stabilise", "What holds the constraints", "held by")
 C_MAX = number("c_max", "Largest constraint error", "largest |c| (m, rad)", ".2e", unit="m or rad")
 CDOT_MAX = number(
     "cdot_max", "Largest rate of the constraint error", "largest |ċ| (m/s, rad/s)", ".2e", unit="m/s or rad/s"
@@ -269,13 +269,11 @@ PREDICTED_VERDICT = text(
     "predicted_verdict",
     "Verdict predicted for the mechanism at rest",
     "predicted verdict",
-    values_of="methods.Verdict",
 )
 MEASURED_VERDICT = text(
     "measured_verdict",
     "Verdict of the simulation",
     "measured verdict",
-    values_of="evidence.MeasuredVerdict",
 )
 REASON = text(
     "reason",
@@ -312,7 +310,6 @@ MOVING_VERDICT = text(
     "moving_verdict",
     "What errors do on the moving mechanism",
     "moving verdict",
-    values_of="stability.MovingVerdict",
     path="verdict",
 )
 MOVING = (
@@ -469,7 +466,6 @@ VARYING = (
         "varying",
         "Whether errors decay for every sequence of steps",
         "varying steps",
-        values_of="stability.Varying",
     ),
     number("varying_h_min", "Smallest step of such a sequence", unit="s", path="h_min"),
     number("varying_h_max", "Largest step of such a sequence", unit="s", path="h_max"),
@@ -629,7 +625,6 @@ REGIONS = RowKind(
             "stable_for_all",
             "Whether all alpha_hat, beta_hat > 0 are stable",
             "all α, β stable",
-            values_of="stability.StableForAll",
         ),
         number(
             "unconditional_damping_ratio",
@@ -827,7 +822,6 @@ CHECKED = RowKind(
     "a point, or what to take instead",
     fields=(ROLE, *CHOICES.fields),
     added=(*CHOICES.added, APPLIED, EXCLUDES.hidden),
-    sometimes=("excludes",),
     sentence=IN_WORDS,
 )
 # printed by `choose --omega` without --h
@@ -857,7 +851,6 @@ ENGINES_LISTED = RowKind(
             "level",
             "Where the engine's feedback acts",
             "level",
-            values_of="engines.Level",
         ),
         METHOD,
         text("parameters", "What the engine calls the feedback's parameters", "parameters"),
@@ -872,7 +865,6 @@ ENGINES_LISTED = RowKind(
             text=lambda row: SPINNING[row["energy_class"]],
             otherwise=lambda row: "by the integrator" if row["level"] == "acceleration" else MISSING,
             null="where the integrator decides, or nothing spins",
-            values_of="engines.EnergyClass",
         ),
         ENERGY_RATE,
         text(
@@ -890,7 +882,6 @@ ENGINES_LISTED = RowKind(
         text("swept_source", "Where it is from how the engine sweeps", null=NO_SWEEPS, path="sweeping.source"),
         text("swept_excludes", "What is left out of how it sweeps", null=NO_SWEEPS, path="sweeping.excludes"),
     ),
-    sometimes=("method",),
 )
 # printed by `simulate`
 SIMULATIONS = RowKind(
@@ -1088,10 +1079,6 @@ PROBED = RowKind(
         REASON,
     ),
     added=(*LIKENESS, *LIKE_POINT[1:]),
-    sometimes=(
-        "samples",
-        *(field.key for field in (*POLE, REASON, *LIKENESS, *LIKE_POINT)),
-    ),
 )
 # printed by `tradeoff`
 SWEPT = RowKind(
@@ -1146,7 +1133,6 @@ SWEPT = RowKind(
         truth("cheapest", "Whether it costs least of all runs with a trajectory error within --tolerance", "cheapest"),
         FAILURE,
     ),
-    sometimes=("z_abs",),
 )
 # printed by `tradeoff --predicted`
 FRONTS = RowKind(

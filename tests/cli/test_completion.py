@@ -24,7 +24,7 @@ def completions(words: str, kind: str = "plain") -> list[str]:
         ("simulate --scene ", list(shipped_scenes())),
         ("choose --engine ", list(ENGINES)),
         ("check --engine muj", ["mujoco="]),
-        ("sche", ["schema"]),
+        ("trad", ["tradeoff"]),
         ("engines --al", ["--alpha"]),
         ("poles --alpha 1", []),
     ],
