@@ -466,16 +466,16 @@ def probe(
     c: samples of one constraint error in any unit, shape (samples,), or (samples, responses) of one
         system.
     minus: another run of that shape, to subtract. differenced: c is such a difference already.
-    methods: which integrators to compare; all built-in ones unless given.
+    methods: which integrators to compare; of less than two, the ten most used too.
     With a point, `alpha_hat` and `beta_hat`, or `alpha` and `beta` in 1/s with `h` in s, the pole of
-    each method there is compared. Without a point the points are found at which each of `methods` has
-    that pole.
+    each method there is compared. Without a point the one is found at which each of `methods` has that
+    pole.
     every: steps of h from one sample to the next.
     turning: how fast the directions of the constraints turn, in 1/s; needs h.
 
-    Returns a Probe. `found.pole` is the pole a sample, dimensionless; `found.reason` says why where
-    there is none, and then nothing is compared. `likenesses` has the methods, the nearest first, and
-    `fitting` the names of those that fit. `points` has the points, where none was given.
+    Returns a Probe. `pole` is the pole a sample, dimensionless; `reason` says why there is no answer.
+    `likenesses` has the methods, the nearest first, and `fitting` the names of those that have the
+    pole. `points` has the points, where none was given.
 
     InputError unless point, shapes and h fit together. Source: linear prediction (Prony).
     """
@@ -486,7 +486,7 @@ def probe(
         point=_point_if_given(point),
         methods=tuple(map(_method, methods or ())),
         every=every,
-        h=None if h is None else real_number(h, "h"),
+        h=None if h is None else exact_number(h, "h"),
         turning=None if turning is None else exact_number(turning, "turning"),
     )
     c = stability.real_array(c, "c")

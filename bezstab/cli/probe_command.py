@@ -1,36 +1,32 @@
 """The command that tells from a log which integrator and which feedback made it: probe."""
 
-import sys
+from collections.abc import Sequence
 from fractions import Fraction
-from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 import click
 
 from bezstab import evidence, questions
 from bezstab.cli.asking import asked, show_point, show_sentences
-from bezstab.cli.options import NUMBER, changed, command, flag, option
+from bezstab.cli.options import NUMBER, changed, command, option
 from bezstab.cli.output import for_reading, show_rows
-from bezstab.errors import InputError
-from bezstab.show import LIKE_POINT, LIKENESS, PROBED, cells, likeness_sentence, nearest, row_in_seconds
+from bezstab.errors import NumericalError
+from bezstab.show import LIKE_POINT, LIKENESS, PROBED, cells, row_in_seconds
 
 
 @command(
-    option("--column columns", str, "A column by name or number, from 1 [all]. Repeatable.", multiple=True),
-    option("--time", str, "The column of times in s, by name or number [t or time, if there is one]."),
+    option("--column columns", str, "A column by name [all but t or time]. Repeatable.", multiple=True),
     option(
         "--minus",
-        click.Path(path_type=Path, allow_dash=True),
+        click.File("rb"),
         "The log of another run, to subtract: one without the kick, or with the opposite kick.",
     ),
-    flag("--jointly", "Fit one pole to all columns together."),
-    option("--every", click.IntRange(1, 10000), "The integrator takes so many steps from one row to the next [1]."),
-    changed("h", help="Step size of the integrator in s, for α and β in 1/s and a column of times."),
-    "point",
-    changed(
-        "methods",
-        help="A method to compare with [all built-in ones]; without --alpha one whose α and β to find. Repeatable.",
+    option(
+        "--every", click.IntRange(1, 10000), "The integrator takes so many steps from one row to the next.", default=1
     ),
+    changed("h", help="Step size of the integrator in s, for α and β in 1/s and --turning."),
+    "point",
+    changed("methods", help="A method to compare with; of less than two, the ten most used too. Repeatable."),
     option(
         "--turning",
         NUMBER,
@@ -38,57 +34,45 @@ from bezstab.show import LIKE_POINT, LIKENESS, PROBED, cells, likeness_sentence,
     ),
     "form",
 )
-@click.argument("log", type=click.Path(path_type=Path, allow_dash=True))
-def probe(**typed: Any) -> None:
+@click.argument("log", type=click.File("rb"))
+def probe(
+    log: BinaryIO, minus: BinaryIO | None, columns: Sequence[str], h: Fraction | None, every: int, **typed: Any
+) -> None:
     """Tell from a simulator's log which integrator made it.
 
-    LOG is a CSV file, or - for standard input, with a row for each step from the kick on. Prints the pole with
-    which the error in each column decays.
+    LOG is a CSV file, or - for standard input, with names in the first line and a row for each step from the kick on.
+    Prints the pole with which the error in each column decays.
 
-    With --alpha and --beta it compares that pole with every method's and prints the nearest first: all methods that
-    fit, and a few that do not (JSON and CSV have all). Without them it prints the α and β that the pole means under
-    --method. In a noisy log it uses the pole that rises above the noise, if there is one. Exit status 3 if no pole
-    can be told, if nothing fits any column, or if a motion may move the poles of all that fits by more than methods
-    differ; a message says why.
+    With --alpha and --beta it prints which methods have that pole there, without them the α and β that it means under
+    --method. Exit status 3 if no column has an answer; a message says why.
 
     Example: bezstab probe log.csv --minus unkicked.csv --alpha 1 --beta 0.25
     """
-    found = list(questions.log_answers(asked(_question, **typed)))
+    question = asked(questions.PoleQuestion, h=h, every=every, **typed)
+    kicked = evidence.read_log(log, float(every * h) if h else None)
+    other = evidence.read_log(minus, kicked.row_step) if minus else None
+    found = []
+    for name in columns or kicked.errors:
+        pole = evidence.probed_pole(kicked.column(name), other.column(name) if other else None)
+        found.append(questions.Probe(question, name, pole))
+    show_point({"h": h, **typed}, question.point, found)
     fits = [PROBED.row(answer.found, column=answer.column) for answer in found]
-    shown = nearest if for_reading() else list
-    likenesses = [
-        {"column": answer.column, **cells(LIKENESS, one)} for answer in found for one in shown(answer.likenesses)
-    ]
-    points = [
-        {"column": answer.column, **row_in_seconds(LIKE_POINT, one, answer.question.h)}
+    beside = [
+        {"column": answer.column, **cells(LIKENESS, one, {"told": one.method.name in answer.fitting})}
+        for answer in found
+        for one in answer.likenesses
+    ] + [
+        {"column": answer.column, **row_in_seconds(LIKE_POINT, one, float(h) if h else None)}
         for answer in found
         for one in answer.points
     ]
-    show_point(typed, found[0].question.point)
     if for_reading():
         show_rows(PROBED, fits)
-        for rows in filter(None, (likenesses, points)):
+        if beside:
             click.echo()
-            show_rows(PROBED, rows, ("reason",))
-        for answer in found:
-            point = answer.question.point
-            said = [likeness_sentence(answer.likenesses, point)] if answer.likenesses and point else answer.remarks
-            show_sentences(f"{answer.column}: {sentence}" for sentence in said)
+            show_rows(PROBED, beside, ("reason",))
+        show_sentences(answer.sentence for answer in found if answer.pole)
     else:
-        show_rows(PROBED, [*fits, *likenesses, *points])
-    questions.check_told(found)
-
-
-def _question(log: Path, minus: Path | None, h: Fraction | None, **typed: Any) -> "questions.PoleQuestion":
-    """Return the question about logs in files."""
-    kicked, other = _read(log), None if minus is None else _read(minus)
-    return questions.PoleQuestion(log=kicked, minus=other, h=None if h is None else float(h), **typed)
-
-
-def _read(path: Path) -> "evidence.Log":
-    """Return the log in a file, or on standard input for the path -."""
-    if str(path) != "-":
-        return evidence.read_log(path)
-    if sys.stdin is None:  # as Python has it where it was closed
-        raise InputError("standard input is closed: there is no log to read")
-    return evidence.log_from(sys.stdin.buffer, "standard input")
+        show_rows(PROBED, [*fits, *beside])
+    if all(answer.reason for answer in found):
+        raise NumericalError("; ".join(f"{answer.column}: {answer.reason}" for answer in found))

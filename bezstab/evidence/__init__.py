@@ -22,16 +22,7 @@ if TYPE_CHECKING:
         reference_run,
         swept_runs,
     )
-    from bezstab.evidence.logs import (
-        UNEVEN,
-        Log,
-        error_columns,
-        log_from,
-        looks_absolute,
-        read_log,
-        row_step,
-        time_column,
-    )
+    from bezstab.evidence.logs import Log, read_log
     from bezstab.evidence.measured_poles import (
         MeasuredVerdict,
         Measurement,
@@ -41,13 +32,15 @@ if TYPE_CHECKING:
     )
     from bezstab.evidence.parallel import Arrays, KeptResults, completed_chunks, joblib_is_installed
     from bezstab.evidence.probed_poles import (
+        TURNED,
         Likeness,
         LikePoint,
         ProbedPole,
         kicked_responses,
         likenesses,
-        points_like,
+        point_like,
         probed_pole,
+        told,
     )
     from bezstab.evidence.verdict_maps import VerdictMap, map_rows, simulated_verdicts, verdict_map
 

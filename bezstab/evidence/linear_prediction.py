@@ -54,6 +54,9 @@ SAMPLES = 400
 RESIDUAL = 1e-4
 """Relative, of a recursion that is believed. The least order that reaches it is taken, so that noise is not fitted."""
 
+LESS = 0.1
+"""Of the residual: a longer recursion that leaves so much over shows poles, not noise."""
+
 STANDARD_ERRORS = 3.0
 """That are stated, and beyond which nothing is taken for chance: 99.7 % of normal errors are less."""
 
@@ -163,25 +166,33 @@ def fit_window(samples: FloatArray, order: int, start: int = 0) -> Fit | None:
 
     A recursion of p terms is tried only on 2p + 2 samples and more, so that there are more equations than unknowns.
     """
+    fit = None
     for terms in range(1, order + 1):
         if len(samples) < 2 * terms + 2:
-            return None
+            break
         # Each row is an equation: p samples and the one after them. Rows are scaled to their largest entry, so that
         # decay does not hide the later ones.
         rows = sliding_window_view(samples, terms + 1)
         largest = np.abs(rows).max(axis=1, keepdims=True)
         if not largest.all():
-            return None
+            break
         rows = rows / largest
         before, after = rows[:, :terms], rows[:, terms]
         coefficients = np.linalg.lstsq(before, after, rcond=None)[0]
         left_over = before @ coefficients - after
         residual = float(np.linalg.norm(left_over) / np.linalg.norm(after))
-        if residual < RESIDUAL:
-            poles = _poles_with_amplitude(samples, np.roots([1.0, *-coefficients[::-1]]).astype(complex))
-            error = _formal_error(before, left_over, coefficients, poles[0])
-            return Fit(poles, residual, start, len(samples), STANDARD_ERRORS * error)
-    return None
+        if residual > (LESS * fit.residual if fit else RESIDUAL):
+            if fit:
+                break
+            continue
+        roots = np.roots([1.0, *-coefficients[::-1]]).astype(complex)
+        poles = _poles_with_amplitude(samples, roots)
+        error = STANDARD_ERRORS * _formal_error(before, left_over, coefficients, poles[0])
+        error += _off_if_two(roots, poles[0], residual, len(samples))
+        if fit:  # a shorter one has fitted, too
+            error += abs(poles[0] - fit.pole)
+        fit = Fit(poles, residual, start, len(samples), error)
+    return fit
 
 
 def _formal_error(before: FloatArray, left_over: FloatArray, coefficients: FloatArray, pole: complex) -> float:
@@ -194,6 +205,19 @@ def _formal_error(before: FloatArray, left_over: FloatArray, coefficients: Float
     deviation = np.linalg.norm(left_over) / np.sqrt(len(left_over) - terms)
     response = (pole ** np.arange(terms) / slope) @ np.linalg.pinv(before)
     return float(deviation * np.linalg.norm(response))
+
+
+def _off_if_two(roots: ComplexArray, pole: complex, residual: float, samples: int) -> float:
+    """Return how far the largest of the roots may be off as two close poles look like one, or one like two.
+
+    Of (a + b k) z^k neighbours have a ratio that changes by (b / a)^2 from row to row: that is hidden where it comes to
+    less than what is left over. Two roots whose powers part by less than a factor e over the window, or by less than a
+    radian, may be one pole twice.
+    """
+    hidden = STANDARD_ERRORS * abs(pole) * np.sqrt(residual / samples)
+    distances = np.abs(roots - pole)
+    close = distances[distances * samples < abs(pole)]
+    return float(hidden + close.max())
 
 
 def _poles_with_amplitude(samples: FloatArray, z: ComplexArray) -> tuple[complex, ...]:

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from bezstab.questions.answering import Answer, CheckedRole, LargestStep, answers, engine_energy_rate
     from bezstab.questions.chains import ChainMap, chain_map
     from bezstab.questions.growing_runs import growing_run
-    from bezstab.questions.log_probes import PoleQuestion, Probe, check_told, log_answers
+    from bezstab.questions.log_probes import PoleQuestion, Probe
     from bezstab.questions.motions import ReferenceMotion, check_speed, motion_of
     from bezstab.questions.question import Question, meant_in_seconds, methods_for, usual_goal
     from bezstab.questions.regions import MapAnswer, MapQuestion, RegionAnswer, region_answer

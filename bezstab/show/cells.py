@@ -65,13 +65,6 @@ def step_text(row: Row) -> str:
     return formatted(limit, ".4g")
 
 
-def fits_text(row: Row) -> str:
-    """Return whether a method fits a log: yes, NO, or that this cannot be told."""
-    if not row["fits"]:
-        return MISSING if row["fits"] is None else "NO"
-    return "yes" if row["told"] else "not told"
-
-
 def method_and_alias_text(row: Row) -> str:
     """Return a method's name, and in parentheses the shortest that it is called elsewhere, if there is room for it."""
     names = row["other_names"].split(", ") if row["other_names"] else [""]

@@ -13,8 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from fractions import Fraction
 
-    from bezstab.engines import Point
-    from bezstab.evidence import Likeness, Measurement
+    from bezstab.evidence import Measurement
     from bezstab.questions import Answer, ReferenceMotion
     from bezstab.stability import BestPoint, FarLimit, VaryingSteps
 
@@ -23,15 +22,6 @@ COSTLY = 10.0
 
 GAIN = 0.95
 """Of an error: what is not below is called no gain."""
-
-NAMED = 3
-"""Excluded methods that a sentence names; of more it gives the number and the nearest."""
-
-MOVED = "a motion may move their poles by more than methods differ, most where two nearly meet"
-"""Why that a method fits may be no answer."""
-
-FASTER = 3.0
-"""Times what is allowed for: so much faster a mechanism may turn than somebody guessed."""
 
 MOST_LISTED = 20  # times in a message
 
@@ -238,55 +228,6 @@ def exact_rate_words(measurement: Measurement) -> str:
         return f"Exact rates of {name}: along the motion of the mechanism."
     shown = "What is shown is how errors grow over the run."
     return f"No rate of {name} is exact: the motion does not begin anew. {shown}"
-
-
-def likeness_sentence(like: Sequence[Likeness], point: Point) -> str:
-    """Return in words which methods a measured pole fits at a point, the nearest first, and which are excluded."""
-    at = f"({float(point[0]):.6g}, {float(point[1]):.6g})"
-    fitting, untold = [one for one in like if one.told], [one for one in like if one.fits and not one.told]
-    if not fitting:
-        return _cannot_be_told(untold, at) if untold else _nothing_fits(like[0], at)
-    first, excluded = fitting[0], [one for one in like if not one.fits]
-    lesser = "" if first.dominant else ", by a lesser pole of it"
-    words = f"this behaves like {first.method.name} at {at} to {max(first.distance, first.error):.1g}{lesser}"
-    listed = {
-        "not to be told from it": [one.method.name for one in fitting[1:]],
-        f"not told, as {MOVED}": _some(untold),
-        "excluded": [one.method.name for one in excluded[:NAMED]],
-    }
-    words += "".join(f"; {what}: {', '.join(names)}" for what, names in listed.items() if names)
-    if len(excluded) <= NAMED:
-        return f"{words}."
-    return f"{words} and {len(excluded) - NAMED} others, the nearest {excluded[0].distance:.1g} off."
-
-
-def _cannot_be_told(untold: Sequence[Likeness], at: str) -> str:
-    """Return in words that all that fits does so because more is allowed than methods differ by."""
-    names, allowed = ", ".join(_some(untold)), max(one.allowed for one in untold)
-    return (
-        f"what this is at {at} cannot be told: only {names} would fit, as {MOVED} (here up to {allowed:.1g}). "
-        "Say how fast the mechanism turns (--turning), or log a run with another α or β."
-    )
-
-
-def _some(methods: Sequence[Likeness]) -> list[str]:
-    """Return the names of the nearest methods, and how many others there are."""
-    others = [f"{len(methods) - NAMED} others"] if len(methods) > NAMED else []
-    return [one.method.name for one in methods[:NAMED]] + others
-
-
-def _nothing_fits(nearest: Likeness, at: str) -> str:
-    """Return in words that nothing fits, or that it cannot be told: where the motion may well be faster than said."""
-    off = f"the nearest is {nearest.method.name}, {nearest.distance:.1g} off where {nearest.allowed:.1g} is allowed"
-    if nearest.distance - nearest.error < FASTER * (nearest.allowed - nearest.error):
-        return (
-            f"what this is at {at} cannot be told: {off}, and it would fit if the mechanism turned up to {FASTER:.0f} "
-            "times as fast as is allowed for (--turning)."
-        )
-    return (
-        f"nothing fits at {at}: {off}. Is α, β or h another, does the mechanism turn much faster (--turning), or are "
-        "there several steps from row to row (--every)?"
-    )
 
 
 def passages_words(times: Sequence[float]) -> str:

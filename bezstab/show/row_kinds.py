@@ -14,7 +14,6 @@ from bezstab.show.cells import (
     any_or_missing,
     any_speed,
     constant_text,
-    fits_text,
     method_and_alias_text,
     modulus_words,
     order_text,
@@ -493,18 +492,8 @@ LIKENESS = (
     PREDICTED_Z_ANGLE_DEG,
     number("distance", "Distance of the fitted pole from that of the method", "distance", ".1e"),
     number("allowed", "Largest distance that still fits", "allowed", ".1e"),
-    truth("dominant", "Whether the method's nearest pole is its dominant one"),
-    truth(
-        "fits",
-        "Whether the log may be the method's: it agrees with it within its uncertainty",
-        "fits",
-        text=fits_text,
-    ),
-    truth(
-        "told",
-        "Whether it fits and that is an answer: it is none where a motion may move the pole by more than methods "
-        "differ, as where two poles nearly meet",
-    ),
+    truth("fits", "Whether the log may be the method's: it agrees with it within its uncertainty", "fits"),
+    truth("told", "Whether that is an answer: it is none where more is allowed than methods differ by"),
 )
 # what `probe` adds for each method whose point it finds
 LIKE_POINT = (

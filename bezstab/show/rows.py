@@ -37,9 +37,6 @@ from bezstab.show.row_kinds import (
 )
 from bezstab.units import alpha_and_beta
 
-EXCLUDED_SHOWN = 5
-"""Methods that do not fit and are shown where people read, the nearest; rows for programs have all."""
-
 OF_A_MOTION = ("total_error", "velocity_error", "times_least", "times_least_velocity")
 OF_ONE_ALONE = (
     *("worst", "settle_steps", "settle_seconds", "h_limit"),
@@ -51,7 +48,7 @@ if TYPE_CHECKING:  # so that a small row does not load what makes the large ones
     from collections.abc import Iterable
 
     from bezstab.engines import Engine
-    from bezstab.evidence import Likeness, LikePoint
+    from bezstab.evidence import LikePoint
     from bezstab.questions import Answer, ChainMap, LargestStep, MapAnswer, Question, RegionAnswer
     from bezstab.stability import FrontPoint
 
@@ -158,12 +155,6 @@ def _nowhere(answer: RegionAnswer) -> str | None:
     if not answer.region.fixed_poles:
         return None
     return f"stable nowhere: a pole stays at {pole_place(answer.region.fixed_poles[0])} whatever α̂ and β̂"
-
-
-def nearest(likenesses: Sequence[Likeness]) -> list[Likeness]:
-    """Return of methods, the nearest first, those that fit and a few that do not."""
-    excluded = [one for one in likenesses if not one.fits]
-    return [*(one for one in likenesses if one.fits), *excluded[:EXCLUDED_SHOWN]]
 
 
 def row_in_seconds(fields: Sequence[Field], point: FrontPoint | LikePoint, h: float | None) -> Row:

@@ -1,85 +1,73 @@
-"""Logs of runs that were chosen at random, as a user's simulator would write them: with nine digits."""
+"""Logs of runs at points that were chosen at random, kicked up and down, as a user's simulator would write them."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
-from itertools import chain, pairwise
+from itertools import pairwise
 
 import numpy as np
 
 from bezstab.evidence.kicks import kicked_motions
 from bezstab.evidence.measured_poles import SURROUNDINGS
-from bezstab.mechanism import (
-    Mechanism,
-    compiled_mechanism,
-    constraint_jacobian,
-    load_scene,
-    shipped_scenes,
-    turning_normals,
-)
+from bezstab.mechanism import Mechanism, compiled_mechanism, constraint_jacobian, load_scene, turning_normals
 from bezstab.mechanism.motions import motion
-from bezstab.methods import REGISTRY, Method, lookup
+from bezstab.methods import REGISTRY, Method
 from bezstab.rationals import exact
 from bezstab.stability import FloatArray, region, spectral_radius, window
 
 H = 1e-3  # s
-DIGITS = 9
 LARGEST = 1.0  # m: beyond it a simulator has long stopped
 KICK, SMALL_KICK = 1e-4, 1e-8  # m: the smaller one where it grows
-LASTS = 0.25  # s: of a log of 250 rows
-FORMS = ("up and down", "kicked and not", "one run")
-BREAKS_DOWN = "andrews"  # at this step
+ROWS = 250
+LASTS = ROWS * H  # s
+POINTS = 5
+SCENES = ("pendulum", "four_bar", "driven_four_bar", "slider_crank_300rpm")
 
 
 @dataclass(frozen=True)
-class RandomLog:
-    """A method, a point and a scene, and what their run has written; `minus` is None where one run is all there is.
+class KickedLog:
+    """A method, a point and a scene, and c_1 of its runs, kicked up and down, in m, shape (rows,).
 
     `turning` is how fast the directions of the constraints turn in that scene, at most, in 1/s.
     """
 
-    method: Method
+    method: str
     scene: str
     alpha_hat: Fraction
     beta_hat: Fraction
-    form: str
     turning: float
-    c: FloatArray
-    minus: FloatArray | None
+    up: FloatArray
+    down: FloatArray
 
 
-def random_logs(count: int, seed: int, rows: int) -> Iterator[RandomLog]:
-    """Yield logs of random methods at random points in and around their regions, in random scenes, always the same."""
-    random = np.random.default_rng(seed)
-    names = list(REGISTRY)
-    scenes = [name for name in sorted(shipped_scenes()) if name != BREAKS_DOWN]
-    for _ in range(count):
-        method, scene = lookup(str(random.choice(names))), str(random.choice(scenes))
-        low, high = np.transpose(window(region(method)))
-        margin = SURROUNDINGS * (high - low)
-        alpha_hat, beta_hat = np.round(random.uniform(low - margin, high + margin), 6).tolist()
-        form = str(random.choice(FORMS))
-        up, down, alone = _written(method, scene, alpha_hat, beta_hat, rows)
-        minus = {"up and down": down, "kicked and not": alone, "one run": None}[form]
-        yield RandomLog(method, scene, exact(alpha_hat), exact(beta_hat), form, _turning(scene), up, minus)
+def rounded(c: FloatArray, digits: int) -> FloatArray:
+    """Return numbers as they are written with so many digits."""
+    return np.array([float(f"{value:.{digits}g}") for value in c])
 
 
-def _written(method: Method, scene: str, alpha_hat: float, beta_hat: float, rows: int) -> FloatArray:
-    """Return c_1 kicked up, kicked down and not kicked, rounded to DIGITS, until a run is useless; shape (3, rows)."""
-    stable = float(spectral_radius(method, alpha_hat, beta_hat)) < 1
-    kicks = (KICK if stable else SMALL_KICK, 0.0)
-    written: list[list[float]] = []
-    with np.errstate(all="ignore"):
-        blocks = kicked_motions(
-            _mechanism(scene), method, H, np.array([alpha_hat]), np.array([beta_hat]), kicks, rows - 1
-        )
-        for c in chain.from_iterable(c for c, _ in blocks):
-            row = [float(c[0, 0, 0, 0]), float(c[0, 1, 0, 0]), float(c[0, 0, 1, 0])]
-            if not np.abs(row).max() < LARGEST:
-                break
-            written.append([float(f"{value:.{DIGITS}g}") for value in row])
-    return np.array(written).reshape(-1, 3).T
+def kicked_logs(method: Method) -> Iterator[KickedLog]:
+    """Yield logs of a method at random points in and around its region, in two scenes, always the same.
+
+    One point of each scene is critically damped, as users like it: two poles meet there.
+    """
+    place = list(REGISTRY).index(method.name)
+    random = np.random.default_rng(place)
+    low, high = np.transpose(window(region(method)))
+    margin = SURROUNDINGS * (high - low)
+    for scene in (SCENES[place % 4], SCENES[(place + 1 + place // 4 % 3) % 4]):
+        a, b = np.round(random.uniform(low - margin, high + margin, (POINTS, 2)), 6).T
+        a[0] = round(random.uniform(0.02, 0.3), 6)
+        b[0] = a[0] ** 2 / 4
+        with np.errstate(all="ignore"):
+            blocks = kicked_motions(_mechanism(scene), method, H, a, b, (KICK, SMALL_KICK), ROWS - 1)
+            c = np.concatenate([c[:, 0] for c, _ in blocks])
+        for k, point in enumerate(zip(a.tolist(), b.tolist(), strict=True)):
+            grows = float(spectral_radius(method, *point)) >= 1
+            runs = c[:, :, int(grows), k]
+            usable = np.logical_and.accumulate((np.abs(runs) < LARGEST).all(axis=1))
+            up, down = runs[usable].T
+            yield KickedLog(method.name, scene, exact(point[0]), exact(point[1]), _turning(scene), up, down)
 
 
 @cache

@@ -1,33 +1,39 @@
-"""A log that is exactly a method's decay has that method's pole, whatever the step from row to row."""
+"""A response that is exactly a method's decay has that method's pole, whatever the step from row to row."""
 
 from fractions import Fraction
 
 import numpy as np
 import pytest
 
-from bezstab.evidence import Log
+from bezstab.errors import InputError
+from bezstab.evidence import probed_pole
 from bezstab.methods import lookup
-from bezstab.questions import PoleQuestion, log_answers
+from bezstab.questions import PoleQuestion, Probe
 from bezstab.stability import dominant_pole
 
 POINT = (Fraction(1, 2), Fraction(1, 4))
 SYM, RK4 = lookup("SYM"), lookup("RK4")
 
 
-def decay(every: int = 1) -> Log:
-    """Return times with a step of 0.01 s and the error of SYM at the point, of which every so many steps are logged."""
-    steps = every * np.arange(100)
+def answer(every: int = 1, **asked: object) -> Probe:
+    """Return the answer for the error of SYM at the point, of which every so many steps are logged."""
     z = complex(dominant_pole(SYM, *map(float, POINT)))
-    return Log("log", ("t", "c"), np.stack([0.01 * steps, (z**steps).real], axis=-1))
+    c = (z ** (every * np.arange(100))).real
+    return Probe(PoleQuestion(every=every, **asked), "c", probed_pole(c, 0 * c))  # type: ignore[arg-type]
 
 
-def test_the_method_that_made_a_log_is_the_nearest() -> None:
-    (answer,) = log_answers(PoleQuestion(log=decay(), point=POINT, methods=(RK4, SYM)))
-    assert [one.method for one in answer.likenesses] == [SYM, RK4]
-    assert (answer.column, answer.told, answer.fits) == ("c", True, True)
+def test_the_method_that_made_a_log_has_its_pole() -> None:
+    found = answer(point=POINT, methods=(RK4, SYM), turning=Fraction(0), h=Fraction(1, 100))
+    assert [one.method for one in found.likenesses] == [SYM, RK4]
+    assert (found.fitting, found.reason) == (("SYM",), "")
 
 
 def test_without_a_point_it_is_found() -> None:
-    (answer,) = log_answers(PoleQuestion(log=decay(every=2), h=0.01, methods=(SYM,)))
-    places = [(point.alpha_hat, point.beta_hat) for point in answer.points]
-    assert any(place == pytest.approx((0.5, 0.25), rel=1e-6) for place in places)
+    (point,) = answer(every=2, methods=(SYM,)).points
+    assert (point.alpha_hat, point.beta_hat) == pytest.approx((0.5, 0.25), rel=1e-6)
+
+
+def test_rows_are_a_whole_number_of_a_methods_own_steps_apart() -> None:
+    assert PoleQuestion(every=10, methods=(lookup("RK4@5"),)).compared
+    with pytest.raises(InputError, match="--every 6: expected a multiple of 5"):
+        PoleQuestion(every=6, methods=(lookup("RK4@5"),))
