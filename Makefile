@@ -22,7 +22,8 @@ figures: .venv/installed  ## draw what the README shows, into figures/
 	$(BIN)/bezstab drive --kp 200 --kd 5 --inertia 0.1 --h 0.002 --every 4 --late 1 --method SYM --figure png -o figures
 	$(BIN)/bezstab verify --map 60 --method AB4 --table none -o figures
 	$(BIN)/bezstab paper -o figures
-	$(BIN)/bezstab chains --engine chipmunk=0.0017970103 --h 1/60 -o figures --format json > /dev/null
+	$(BIN)/bezstab chain --engine chipmunk=0.0017970103 --h 1/60 --bodies 20 --mass-ratio 10 --figure png -o figures \
+	    > /dev/null || test $$? = 1
 	$(BIN)/bezstab region --method RK4 --accuracy --table none -o figures
 	$(BIN)/bezstab region --method SYM --motion --table none -o figures
 	$(BIN)/bezstab tradeoff --table none -o figures

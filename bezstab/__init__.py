@@ -30,6 +30,7 @@ if TYPE_CHECKING:
         verdict,
         verify,
     )
+    from bezstab.chains.answer import chain
     from bezstab.drives.answer import drive
     from bezstab.mujoco.linting import lint
     from bezstab.show import plot
@@ -41,6 +42,7 @@ __getattr__ = lazy_names(__name__)
 
 __all__ = [
     "best_point",
+    "chain",
     "check",
     "choose",
     "dominant_pole",

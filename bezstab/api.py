@@ -55,9 +55,6 @@ class AboutFeedback(TypedDict, total=False):
     omega_h: Number | None
     scene: str | Scene | None
     speed: Number
-    chain: int | None
-    mass_ratio: Number | None
-    iterations: int | None
 
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -243,10 +240,6 @@ def choose(
         and kd to set.
     scene, speed: a mechanism that moves so many times as fast as given there; `moving` says what the
         motion changes.
-    chain, mass_ratio, iterations: with an engine that solves its constraints one after another, in
-        sweeps: a straight chain of so many bodies, the last so many times as heavy, solved in so many
-        sweeps. The answer is at most what such a chain, or the scene, allows with the spread to spare.
-        Without both it is for a chain of 10 equal bodies.
 
     Returns an Answer, dimensionless: `alpha_hat`, `beta_hat`, `pole`, `margins`, `safe` and all else
     that `check` says. `from_dimensionless` turns it into alpha and beta in 1/s.
@@ -299,10 +292,6 @@ def check(
     omega, omega_h: how fast the motion is, in 1/s or in rad a step, for `cost`: only where one of them
         or a scene is given, it says how many times the least error it is.
     scene, speed: a mechanism that moves so many times as fast as given there.
-    chain, mass_ratio, iterations: with an engine that solves its constraints one after another, in
-        sweeps: a straight chain of so many bodies, the last so many times as heavy, solved in so many
-        sweeps. Without a chain or a scene such an engine's answer is about one constraint alone;
-        `swept_over` says so.
 
     Returns an Answer, dimensionless. If there are several, as of the ways of applying a drive, it is
     the first that is not safe. `sentence` says it in words, and begins the repr. `verdict` is proven.
@@ -546,9 +535,9 @@ def _first_unsafe(answers: Iterable[questions.Answer]) -> questions.Answer:
 
 
 READ: Mapping[str, Callable[[Any, str], Any]] = {
-    **dict.fromkeys(("h", "h_min", "h_max", "omega", "omega_h", "speed", "mass_ratio", "settle"), exact_number),
+    **dict.fromkeys(("h", "h_min", "h_max", "omega", "omega_h", "speed", "settle"), exact_number),
     **dict.fromkeys(("late", "filter_seconds", "duration", "perturb"), exact_number),
-    **dict.fromkeys(("chain", "iterations"), whole_number),
+    **dict.fromkeys(("iterations",), whole_number),
     "spread": real_number,
     "scene": _scene,
     "methods": lambda given, _name: (method(given),),

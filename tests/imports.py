@@ -17,6 +17,7 @@ ROOMS = (
     "questions",
     "show",
     "cli",
+    "chains",
     "drives",
     "mujoco",
     "paper",

@@ -19,6 +19,7 @@ PAGES = (
     "README.md",
     "bezstab/README.md",
     "bezstab/stability/README.md",
+    "bezstab/chains/README.md",
     "bezstab/drives/README.md",
     "bezstab/evidence/README.md",
     "bezstab/mujoco/README.md",
@@ -33,7 +34,7 @@ PAGES = (
 
 ON_A_PIPE = {"COLUMNS": None}
 """Environment in which nothing says how wide a line may be."""
-UNSAFE = ("check", "choose", "drive", "lint")
+UNSAFE = ("check", "chain", "choose", "drive", "lint")
 """Commands whose exit status is 1 where what they judge is unsafe."""
 PLACEHOLDER = re.compile(r"\b(COMMAND|LOG|MODEL|NAME|PATH|FILE)\b")
 """Words that stand for something else: what holds one is no command to type."""
@@ -57,7 +58,7 @@ def prompted(session: str) -> str:
     return session.partition("\n")[0].removeprefix("$ bezstab ")
 
 
-QUICK = ("check --method SYM", "check --engine bullet", "choose --method SYM", "chains", "methods own", "poles", "lint")
+QUICK = ("check --method SYM", "check --engine bullet", "choose --method SYM", "chain", "methods own", "poles", "lint")
 SESSIONS = [session for page in PAGES for session in sessions(page)]
 GOLDEN = ("paper -o figures",)
 """Commands of pages that others run: tests/paper."""

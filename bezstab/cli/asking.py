@@ -104,7 +104,7 @@ def show_below(question: "questions.Question", found: "Sequence[questions.Answer
 def say_what_is_left_out(engine: Engine, *, many: bool = False) -> None:
     """Say on standard error what the conversion of an engine's values leaves out, for one constraint or for many."""
     swept = "; it solves each constraint by itself, in sweeps: chains of them may diverge all the same"
-    ask = ": ask with --chain" if engine.sweeping else ""
+    ask = ": ask `bezstab chain`" if engine.sweeping else ""
     say(f"{engine.name}: left out: {engine.excludes}{swept + ask if engine.sweeps and not many else ''}")
     if many and engine.sweeping:
         say(f"{engine.name}: sweeps are its {engine.sweeping.word}; of them left out: {engine.sweeping.excludes}")

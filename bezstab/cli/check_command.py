@@ -25,7 +25,6 @@ OF_EVERY_STEP = {"--alpha", "--beta", "--physical", "--method", "--format", "--s
 @command(
     "methods",
     "given_point",
-    "swept",
     *("omega", "h_min", "h_max", "hold"),
     changed("scene", help="Is it safe for this mechanism as it moves? Needs --h."),
     "speed",
@@ -53,9 +52,8 @@ def check(**typed: Any) -> bool:
     values, such as clamps, is applied first. What the conversion leaves out is printed. The largest step is for the
     engine's values as they are. What `choose` gives instead is a line to paste. Many engines solve their constraints
     one after another, in sweeps. The answer is then about one constraint alone: a chain of them may diverge all the
-    same. With --chain, safe means stable for so many bodies in a straight chain. Its last body is --mass-ratio times
-    as heavy, and a step makes --iterations sweeps. With --scene, safe means so for the constraints of that mechanism at
-    its start, in the order of its file.
+    same (`bezstab chain`). With --scene, the constraints of that mechanism are checked in its initial position, in the
+    order of the file.
 
     Example: bezstab check --method RK2 --h 0.002 --alpha 50 --beta 50 --physical
     """

@@ -36,7 +36,6 @@ from bezstab.show import CHOICES, STEPS_OF_CHOICES, answer_row, left_out, spare_
     ),
     option("--keep equal", click.Choice(["alpha=beta"]), "Only points with α = β."),
     "engine",
-    "swept",
     changed("scene", help="Choose for this mechanism as it moves."),
     "speed",
     changed("duration", help="With --scene: how long it is run, in s [10 s, or 10,000 steps if that is less]."),
@@ -46,7 +45,7 @@ def choose(goal: Goal | None, equal: str | None, **typed: Any) -> bool:
     """Recommend α and β for an integrator and its step size.
 
     The answer is proven stable, and its margins are printed. You may ask for more: that it is safe as a mechanism
-    moves (--scene), for steps that vary (--h-min), or in a chain of bodies (--chain). Exit status 1 if that is not
+    moves (--scene), or for steps that vary (--h-min). Exit status 1 if that is not
     proven.
 
     On a mechanism that moves, feedback makes errors of its own. The default goal, accurate, makes them as small as it
@@ -65,9 +64,9 @@ def choose(goal: Goal | None, equal: str | None, **typed: Any) -> bool:
     points that are equally good the one with the least α̂ and β̂ is taken.
 
     With --h-min, "varying steps" says whether errors decay for every sequence of steps up to --h-max. Many engines
-    solve their constraints one after another, in sweeps. Their answer is at most the strongest feedback that the
-    constraints of --chain or --scene, by default a chain of 10 equal bodies, allow with --spread to spare, at
-    --iterations sweeps. Below it is what one constraint alone would get, and how many sweeps that takes.
+    solve their constraints one after another, in sweeps. Their answer is limited to feedback that a chain of 10 equal
+    bodies, or --scene, tolerates with --spread to spare. The line below shows the answer for a single constraint.
+    Other chains: `bezstab chain`.
 
     Example: bezstab choose --method B4 --h 0.001
     """

@@ -16,7 +16,7 @@ from bezstab.errors import InputError, NumericalError
 
 SECTIONS: Mapping[str, Sequence[str]] = {
     "Maps": ("poles", "region", "methods"),
-    "Choose": ("choose", "check", "drive", "lint", "engines", "chains"),
+    "Choose": ("choose", "check", "drive", "lint", "engines", "chain"),
     "Evidence": ("simulate", "verify", "probe", "tradeoff"),
     "Paper": ("paper",),
 }
@@ -24,6 +24,7 @@ SECTIONS: Mapping[str, Sequence[str]] = {
 
 ELSEWHERE: Mapping[str, str] = {
     "paper": "bezstab.paper.command",
+    "chain": "bezstab.chains.command",
     "drive": "bezstab.drives.command",
     "lint": "bezstab.mujoco.command",
 }
@@ -78,7 +79,11 @@ class BezstabGroup(click.Group):
 
         logging.getLogger("matplotlib").setLevel(logging.ERROR)
         try:
-            return super().invoke(ctx)
+            result = super().invoke(ctx)
+            from bezstab.cli.output import say_notes  # which loads more than --help needs
+
+            say_notes()
+            return result
         except BrokenPipeError:  # the reader, such as `head`, has seen enough; click itself would exit with 1
             _give_up_output()
             sys.exit(READER_GONE)

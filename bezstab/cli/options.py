@@ -12,7 +12,7 @@ from typing import Any, get_args
 import click
 from click.shell_completion import CompletionItem
 
-from bezstab.cli.output import Files, Work, say
+from bezstab.cli.output import NOTES, Files, Work
 from bezstab.compiling import COMPILED_CHOICE, compiler
 from bezstab.engines import ENGINES, Engine, Point, engine_and_values, engine_named
 from bezstab.errors import InputError
@@ -98,10 +98,6 @@ def _sequence(text: str) -> list[Fraction]:
     return sequence
 
 
-NOTES = "bezstab.notes"
-"""Where the running command keeps what is to be said beside its answer, but not beside a mistake."""
-
-
 def _engine_values(text: str) -> EngineValues:
     """Return an engine and its values; note which they are, to be said beside an answer, if its defaults are taken."""
     engine, values = engine_and_values(text)
@@ -117,6 +113,7 @@ POSITIVE = ParsedType("number", _positive)
 SECONDS = ParsedType("seconds", partial(_within_squares, unit="s"))
 SPEED = ParsedType("number", partial(_within_squares, unit="times the scene's own speed"))
 SEQUENCE = ParsedType("steps", _sequence)
+NUMBERS = ParsedType("number,number,...", lambda text: tuple(map(rational, text.split(","))))
 METHOD = ParsedType("method", lookup, lambda: REGISTRY)
 SHARE = ParsedType("number", lambda text: float(rational(text)))
 ENGINE = ParsedType("name", engine_named, lambda: ENGINES)
@@ -303,15 +300,6 @@ GROUPS: Mapping[str, tuple[str | Option | Rule, ...]] = {
             excludes=("--alpha", "--beta", "--physical", "--hold", "--omega"),
         ),
     ),
-    "swept": (
-        option("--chain", int, "With --engine: ask about a straight chain of so many bodies."),
-        option("--mass-ratio", NUMBER, "With --chain: the last body is so many times as heavy as each other one [1]."),
-        option(
-            "--iterations",
-            int,
-            "With --chain or --scene: the number of sweeps over all constraints in a step [the engine's own number].",
-        ),
-    ),
     "picture": (
         "output",
         "figure",
@@ -379,10 +367,7 @@ def command(*options: str | Option | Rule) -> Callable[[Function], click.Command
             for parameter, kind in GATHERED.items():
                 if own := {field.name: typed.pop(field.name) for field in fields(kind) if field.name in typed}:
                     typed[parameter] = kind(**own)
-            result = function(**typed)
-            for note in click.get_current_context().meta.get(NOTES, []):
-                say(note)
-            return result
+            return function(**typed)
 
         return click.command(params=[each() for each in every if not isinstance(each, Rule)])(checked)
 

@@ -156,6 +156,16 @@ def show_command(command: str) -> None:
     click.echo(f"{CONTINUED}\n".join(lines))
 
 
+NOTES = "bezstab.notes"
+"""Where the running command keeps what is to be said beside its answer, but not beside a mistake."""
+
+
+def say_notes() -> None:
+    """Say on standard error what the running command has kept to be said beside its answer."""
+    for note in click.get_current_context().meta.get(NOTES, []):
+        say(note)
+
+
 def say(message: str) -> None:
     """Print a message on standard error, in one line; if that cannot be written, go on."""
     with suppress(OSError):

@@ -596,7 +596,7 @@ def _chosen(
         return found
     strongest = swept.strongest(question.spread)
     if strongest is None:
-        words = f"no feedback is stable in {swept.constraints.words}: ask with more --iterations"
+        words = f"no feedback is stable in {swept.constraints.words}"
         raise InputError(f"{swept.engine.name}: {words}")
     if found.beta_hat <= strongest[1] * (1 + READ_BACK):  # as is all of the curve but its end, which is not tried
         return found

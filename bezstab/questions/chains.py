@@ -7,7 +7,7 @@ from functools import partial
 
 import numpy as np
 
-from bezstab.engines import Engine, Point, check_iterations
+from bezstab.engines import Engine, Point
 from bezstab.errors import InputError
 from bezstab.mechanism import Scene, compiled_mechanism, constraint_jacobian, initial_state
 from bezstab.questions.motions import name_of, scene_at_speed
@@ -51,14 +51,9 @@ class Constraints:
 ALONE = Constraints("one constraint alone", np.ones((1, 1)), (0,))
 
 
-def constraints_of_chain(bodies: int, mass_ratio: Fraction | None = None) -> Constraints:
-    """Return the links of a straight chain, from the world on, its last body `mass_ratio` (None: 1) times as heavy.
-
-    InputError for numbers that are no chain.
-    """
-    ratio = 1.0 if mass_ratio is None else float(mass_ratio)
-    last = " equal bodies" * (bodies > 1) if ratio == 1 else f" with the last body {ratio:g} times as heavy"
-    return Constraints(f"a chain of {bodies}{last}", chain(bodies, ratio), tuple(range(bodies)))
+def constraints_of_chain(bodies: int) -> Constraints:
+    """Return the links of a straight chain of equal bodies, from the world on; InputError for a number out of range."""
+    return Constraints(f"a chain of {bodies}{' equal bodies' * (bodies > 1)}", chain(bodies), tuple(range(bodies)))
 
 
 def constraints_of(scene: str | Scene, speed: Fraction) -> Constraints:
@@ -71,43 +66,6 @@ def constraints_of(scene: str | Scene, speed: Fraction) -> Constraints:
     masses = inverse_effective_masses(np.diag(mechanism.mass), constraint_jacobian(mechanism, 0.0, q))
     words = f"{name_of(scene)} at its start, with its {len(mechanism.joints)} constraints"
     return Constraints(words, masses, mechanism.joints)
-
-
-def check_sweeps(
-    bodies: int | None,
-    mass_ratio: Fraction | None,
-    iterations: int | None,
-    engine: Engine | None,
-    scene: str | Scene | None = None,
-    speed: Fraction = Fraction(1),
-) -> None:
-    """Raise InputError if a question has a chain or a number of sweeps, and no engine that is known to sweep.
-
-    InputError, too, for numbers that are no chain, and if there is nothing to sweep over. Errors as `load_scene`.
-    """
-    if bodies is not None:
-        constraints_of_chain(bodies, mass_ratio)
-    elif mass_ratio is not None:
-        raise InputError("--mass-ratio needs --chain: it says how heavy the last body of the chain is")
-    if iterations is not None:
-        check_iterations(iterations)
-    if bodies is not None and scene:
-        raise InputError("--chain and --scene are two mechanisms: give one")
-    if iterations is not None and bodies is None and not scene:
-        raise InputError("--iterations needs --chain or --scene: one constraint alone needs one sweep only")
-    if bodies is None and iterations is None:
-        return
-    option = "--iterations" if bodies is None else "--chain"
-    if engine is None:
-        raise InputError(f"{option} needs --engine: it asks how that engine sweeps over its constraints")
-    if not engine.sweeps:
-        raise InputError(
-            f"{option}: {engine.name} solves all constraints together: many are as stable as one, so ask without it"
-        )
-    if engine.sweeping is None:
-        raise InputError(f"{option}: how {engine.name} sweeps over its constraints is not known here")
-    if scene and len(compiled_mechanism(scene_at_speed(scene, speed)).joints) == 1:
-        raise InputError(f"--iterations: {name_of(scene)} has one constraint alone: there is nothing to sweep over")
 
 
 @dataclass(frozen=True)
@@ -189,28 +147,3 @@ class SweptConstraints:
         """Return the values for a share of the strongest feedback that is `spread` stronger, at most for all of it."""
         point = self._point_at(min(share * (1 + spread), 1.0))
         return [rational(value) for value in self.engine.values(point, self.h)]
-
-
-@dataclass(frozen=True)
-class ChainMap:
-    """What an engine's sweeps make of chains of 1 to so many bodies, the last one `mass_ratio` times as heavy.
-
-    `z_abs` has shape (bodies, sweeps): the factor by which a step multiplies the error, in the row of n bodies with 1,
-    2, ... sweeps. `stable_iterations` are the fewest stable sweeps by bodies, None where none that is tried is.
-    """
-
-    mass_ratio: float
-    z_abs: FloatArray
-    stable_iterations: tuple[int | None, ...]
-
-
-def chain_map(
-    engine: Engine, values: tuple[Fraction, ...], h: Fraction, mass_ratio: Fraction, bodies: int, sweeps: int
-) -> ChainMap:
-    """Return the map of an engine with such values at a step of h (s); errors as `check_sweeps`."""
-    check_sweeps(bodies, mass_ratio, sweeps, engine)
-    chains = [
-        SweptConstraints(engine, h, constraints_of_chain(links, mass_ratio), sweeps) for links in range(1, bodies + 1)
-    ]
-    z_abs = [[each.growth(values, so_many).factor for so_many in range(1, sweeps + 1)] for each in chains]
-    return ChainMap(float(mass_ratio), np.array(z_abs), tuple(each.fewest(values) for each in chains))

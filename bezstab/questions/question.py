@@ -14,7 +14,7 @@ from bezstab.errors import InputError
 from bezstab.goals import SETTLING, UP_TO_LONGEST, Goal
 from bezstab.mechanism import Mechanism, Scene, TurningNormals, compiled_mechanism
 from bezstab.methods import Method, check_one_step, lookup
-from bezstab.questions.chains import USUAL_CHAIN, SweptConstraints, check_sweeps, constraints_of, constraints_of_chain
+from bezstab.questions.chains import USUAL_CHAIN, SweptConstraints, constraints_of, constraints_of_chain
 from bezstab.questions.motions import (
     ReferenceMotion,
     check_speed,
@@ -87,8 +87,6 @@ class Question:
     settle: Fraction | None = None
     equal: bool = False
     chain: int | None = None
-    mass_ratio: Fraction | None = None
-    iterations: int | None = None
 
     def __post_init__(self) -> None:
         for name in ("h", "h_min", "h_max"):
@@ -103,7 +101,6 @@ class Question:
                 object.__setattr__(self, "h", OMEGA_H / self.omega)
         check_speed(self.scene, self.speed)
         self._check_duration()
-        check_sweeps(self.chain, self.mass_ratio, self.iterations, self.engine, self.scene, self.speed)
         object.__setattr__(self, "methods", methods_for(self.methods, self.engine))
         if self.steps:
             for method in self.methods:
@@ -223,10 +220,10 @@ class Question:
         if self.engine is None or self.engine.sweeping is None or self.h is None:
             return None
         if self.chain is not None:
-            found = constraints_of_chain(self.chain, self.mass_ratio)
+            found = constraints_of_chain(self.chain)
         elif self.scene is None or len((found := constraints_of(self.scene, self.speed)).joints) == 1:
             return None
-        return SweptConstraints(self.engine, self.h, found, self.iterations or self.engine.sweeping.iterations)
+        return SweptConstraints(self.engine, self.h, found, self.engine.sweeping.iterations)
 
     @property
     def warnings(self) -> list[str]:

@@ -22,7 +22,6 @@ from bezstab.show.result_sentences import (
     varying_words,
 )
 from bezstab.show.row_kinds import (
-    CHAINS,
     CHECKED,
     CHOICES,
     ENGINES_LISTED,
@@ -46,7 +45,6 @@ from bezstab.show.row_kinds import (
 )
 from bezstab.show.rows import (
     answer_row,
-    chain_rows,
     engine_row,
     largest_step_row,
     left_out,
@@ -72,7 +70,6 @@ if TYPE_CHECKING:
         write_arrays,
     )
     from bezstab.show.map_figures import (
-        chains_figure,
         comparison_figure,
         map_figure,
         verdict_figure,

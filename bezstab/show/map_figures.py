@@ -1,4 +1,4 @@
-"""Figures of maps: |z_p| over the plane, the error that is forced there, chains of bodies."""
+"""Figures of maps: |z_p| over the plane, the error that is forced there."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.colors import FuncNorm, ListedColormap, Normalize
+from matplotlib.colors import FuncNorm, ListedColormap
 from matplotlib.contour import QuadContourSet
 from matplotlib.figure import Figure
 from matplotlib.path import Path
@@ -23,7 +23,6 @@ from bezstab.show.style import (
     DASHES,
     DIVERGES,
     cells,
-    column_figure,
     line_at,
     mark_in_alpha_and_beta,
     new_axes,
@@ -68,13 +67,9 @@ PARTS = 300
 """Of each chord of a boundary, which is straight on other axes alone: the last is thinner than a line."""
 
 
-LIGHTEST = 1.05
-"""|z|: above, an error is a hundred times as large within a hundred steps, and shades no longer change."""
-
 if TYPE_CHECKING:  # so that a picture of the plane does not load what runs mechanisms
-    from bezstab.engines import Engine
     from bezstab.evidence import VerdictMap
-    from bezstab.questions import ChainMap, MapAnswer, MapQuestion
+    from bezstab.questions import MapAnswer, MapQuestion
 
 
 def map_figure(answer: MapAnswer, z: ComplexArray) -> Figure:
@@ -285,36 +280,3 @@ def verdict_figure(verdicts: VerdictMap, region: Region) -> Figure:
             x, y = verdicts.alpha_hat[columns], verdicts.beta_hat[rows]
             axes.plot(x, y, "x", color=ACCENT, markersize=3, label="disagree")
         return with_legend(figure)
-
-
-def chains_figure(engine: Engine, title: str, maps: Sequence[ChainMap]) -> Figure:
-    """Return a map for each ratio of masses: sweeps across, bodies upwards, |z| as shade, and the line |z| = 1.
-
-    The dashed line is at the engine's own number of sweeps.
-    """
-    assert engine.sweeping
-    own = engine.sweeping.iterations
-    with styled():
-        figure = column_figure(0.55 + 0.5 * len(maps))
-        rows = figure.subplots(len(maps), 1, sharex=True, squeeze=False)[:, 0]
-        shades = Normalize(min(one.z_abs.min() for one in maps), LIGHTEST)
-        for axes, one in zip(rows, maps, strict=True):
-            bodies, sweeps = (np.arange(1.0, count + 1) for count in one.z_abs.shape)
-            image = cells(axes, sweeps, bodies, one.z_abs, cmap="cividis", norm=shades)
-            # a cell is as wide as a sweep and as high as a body: the line runs along the edges of cells
-            edge = [np.nan if fewest is None else fewest - 0.5 for fewest in one.stable_iterations]
-            axes.step(
-                [*edge, edge[-1]],
-                np.arange(0.5, len(edge) + 1),
-                color="black",
-                linewidth=1.6,
-                label="$|z| = 1$: stable to the right",
-            )
-            axes.axvline(own, color=ACCENT, linestyle="--", label=f"its own {own} sweeps")
-            axes.set_title(f"last body {one.mass_ratio:g} times as heavy" if one.mass_ratio != 1 else "equal masses")
-            axes.yaxis.set_major_locator(MaxNLocator(5, integer=True))
-            axes.set(ylabel="bodies", xlim=(0.5, len(sweeps) + 0.5), ylim=(0.5, len(bodies) + 0.5))
-        rows[-1].set_xlabel("sweeps in a step")
-        figure.suptitle(title)
-        figure.colorbar(image, ax=list(rows), label="$|z|$ a step", extend="max")
-        return with_legend(figure, handles=rows[0].lines)

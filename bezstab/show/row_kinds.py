@@ -24,7 +24,6 @@ from bezstab.show.cells import (
 )
 from bezstab.show.fields import MISSING, Field, RowKind, column, integer, number, text, truth
 from bezstab.show.sentences import (
-    chain_sentence,
     measurement_sentence,
     method_sentence,
     region_sentence,
@@ -693,23 +692,6 @@ NAMED_METHODS = RowKind(
     ),
     sentence=whole_method_sentence,
 )
-# printed by `chains`
-CHAINS = RowKind(
-    "a chain of bodies in an engine that sweeps",
-    fields=(
-        number(
-            "chain_mass_ratio",
-            "Mass of the last body of the chain over that of each other",
-            "last mass",
-            path="mass_ratio",
-        ),
-        integer("chain_bodies", "Bodies of the chain, the first held by the world", "bodies"),
-        SWEPT_ITERATIONS,
-        SWEPT_Z_ABS,
-        STABLE_ITERATIONS,
-    ),
-    sentence=chain_sentence,
-)
 # printed by `choose`
 CHOICES = RowKind(
     "a choice",
@@ -1159,7 +1141,6 @@ ROW_KINDS: Mapping[str, Sequence[RowKind]] = {
         LARGEST_STEPS,
     ),
     "engines": (ENGINES_LISTED,),
-    "chains": (CHAINS,),
     "simulate": (SIMULATIONS,),
     "verify": (
         MEASUREMENTS,

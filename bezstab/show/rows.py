@@ -17,7 +17,6 @@ from bezstab.show.result_sentences import best_point_words, falling_words
 from bezstab.show.row_kinds import (
     ACCURACY,
     APPLIED,
-    CHAINS,
     CHECKED,
     CHOICES,
     ENGINE_H_LIMIT,
@@ -49,7 +48,7 @@ if TYPE_CHECKING:  # so that a small row does not load what makes the large ones
 
     from bezstab.engines import Engine
     from bezstab.evidence import LikePoint
-    from bezstab.questions import Answer, ChainMap, LargestStep, MapAnswer, Question, RegionAnswer
+    from bezstab.questions import Answer, LargestStep, MapAnswer, Question, RegionAnswer
     from bezstab.stability import FrontPoint
 
 
@@ -161,17 +160,6 @@ def row_in_seconds(fields: Sequence[Field], point: FrontPoint | LikePoint, h: fl
     """Return the row of a point with a step (s), and with alpha and beta (1/s); None without a step."""
     alpha, beta = alpha_and_beta(point.alpha_hat, point.beta_hat, h)
     return cells(fields, point, {"h": h, "alpha": alpha, "beta": beta})
-
-
-def chain_rows(engine: Engine, found: ChainMap) -> list[Row]:
-    """Return a row for each number of bodies of a map, with the engine's own number of sweeps."""
-    assert engine.sweeping
-    own = engine.sweeping.iterations
-    of_bodies = enumerate(zip(found.z_abs[:, own - 1], found.stable_iterations, strict=True), start=1)
-    return [
-        CHAINS.row(found, chain_bodies=bodies, swept_iterations=own, swept_z_abs=z_abs, stable_iterations=fewest)
-        for bodies, (z_abs, fewest) in of_bodies
-    ]
 
 
 def engine_row(

@@ -4,7 +4,7 @@ import math
 
 from bezstab.show.cells import order_text, safe_step_text
 from bezstab.show.fields import Row, formatted
-from bezstab.words import change_words, counted, seconds_words
+from bezstab.words import counted, seconds_words
 
 
 def step_sentence(row: Row) -> str:
@@ -80,14 +80,3 @@ def verdict_map_sentence(row: Row) -> str:
         return f"{row['method']}: none of {row['runs']} runs gave a verdict."
     given = f"{row['judged_runs']} of {row['runs']} runs gave a verdict, {row['agreeing']} as predicted"
     return f"{row['method']}: {given}; {row['disagreeing']} that are not too close to call differ."
-
-
-def chain_sentence(row: Row) -> str:
-    """Return from how many sweeps a chain is stable, and what a step does with the engine's own number of them."""
-    z_abs, stable = row["swept_z_abs"], row["stable_iterations"]
-    enough = "with no number that was tried" if stable is None else f"from {counted(stable, 'sweep')}"
-    heavier = "" if row["chain_mass_ratio"] == 1 else f", the last {row['chain_mass_ratio']:g} times as heavy"
-    own = counted(row["swept_iterations"], "sweep")
-    bodies = counted(row["chain_bodies"], "body", "bodies")
-    change = change_words(z_abs, "converges" if z_abs < 1 else "diverges")
-    return f"{bodies}{heavier}: stable {enough}. With {own} {change}."

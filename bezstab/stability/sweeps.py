@@ -78,14 +78,18 @@ def inverse_effective_masses(mass: FloatArray, jacobian: FloatArray) -> FloatArr
 def swept_growth(inverse_masses: FloatArray, step: SweptStep, joints: Sequence[int] | None = None) -> Growth:
     """Return by what factor a step multiplies the errors of constraints with such inverse effective masses.
 
-    `inverse_masses` is A = J M^-1 J', shape (m, m), of constraints of which none follows from others, in their order.
-    `joints` are the numbers of their joints, rising: those of one joint are solved together; None: each by itself.
-    NumericalError where a number leaves float64's range.
+    `inverse_masses` is A = J M^-1 J', shape (m, m), of constraints in their order. One may follow from others, as the
+    last of a straight chain between two walls: errors that no motion makes are left out. `joints` are the numbers of
+    their joints, rising: those of one joint are solved together; None: each by itself. InputError where a constraint
+    follows from others and impulses are softened. NumericalError where a number leaves float64's range.
     """
     scale = 1 / np.sqrt(np.diag(inverse_masses))
     scaled = scale[:, None] * inverse_masses * scale  # sweeps do the same; its diagonal is one
     values, vectors = np.linalg.eigh(scaled)
-    root = np.sqrt(values)[:, None] * vectors.T  # root' root = A
+    made = values > ROUNDINGS * EPS * len(values)  # by motions
+    if not made.all() and any(isinstance(stage, Pass) and stage.softness for stage in step.stages):
+        raise InputError("constraints that follow from others are not judged where the engine softens impulses")
+    root = np.sqrt(values[made])[:, None] * vectors.T[made]  # root' root = A
     number = np.arange(len(scaled)) if joints is None else np.array(joints)
     matrix = _step_matrix(scaled, root, number, step)
     if not np.isfinite(matrix).all():
@@ -94,7 +98,7 @@ def swept_growth(inverse_masses: FloatArray, step: SweptStep, joints: Sequence[i
 
 
 def _step_matrix(inverse_masses: FloatArray, root: FloatArray, joints: NDArray[np.intp], step: SweptStep) -> FloatArray:
-    """Return the matrix of a step over errors, rates and impulses, shape (3 m, 3 m), for a root with root' root = A.
+    """Return the matrix of a step over errors, rates and impulses, shape (3 r, 3 r), for a root (r, m): root' root = A.
 
     Errors and rates are root' of its first two thirds, impulses p with root p the last: there A is the identity.
     """
@@ -130,8 +134,10 @@ def _sweeps(
     triangle = diagonal * (1 + one_pass.softness) / one_pass.relaxation + below
     added = root @ np.linalg.solve(triangle, root.T)  # P
     identity = np.eye(len(root))
-    inverse = np.linalg.inv(root)
-    softened = identity + one_pass.softness * inverse.T @ diagonal @ inverse  # B
+    softened = identity  # B
+    if one_pass.softness:
+        inverse = np.linalg.inv(root)
+        softened = identity + one_pass.softness * inverse.T @ diagonal @ inverse
     one_sweep = np.block([[identity - added @ softened, added], [np.zeros_like(identity), identity]])
     of_old, of_wanted = np.split(np.linalg.matrix_power(one_sweep, one_pass.sweeps)[: len(root)], 2, axis=1)
     return of_old, of_wanted

@@ -16,8 +16,8 @@ from bezstab.show import ROW_KINDS, RowKind, shown_width
 from tests.cli.running import DATA
 
 SMALL = "--figure none --table none"
-WITHOUT_ROWS = {"paper", "drive", "lint"}
-"""The paper's command writes tables; drive and lint have columns of their own."""
+WITHOUT_ROWS = {"paper", "chain", "drive", "lint"}
+"""The paper's command writes tables; chain, drive and lint have columns of their own."""
 
 TYPES = {
     **dict.fromkeys(("numbers", "text rows"), list),
@@ -44,11 +44,10 @@ EXAMPLES = (
     "check --method SYM --method RK2 --alpha 2 --beta 2",
     "check --method SYM --alpha 2 --beta 100 --physical --h-min 0.00917 --h-max 1/60",
     "check --engine mujoco=0.02,1 --h 0.002",
-    "check --engine bullet=0.2 --h 1/60 --chain 3 --mass-ratio 10",
+    "choose --engine bullet --h 1/60",
     "check --method SYM --alpha 1 --beta 0.5 --h 0.01 --scene driven_four_bar",
     "probe pendulum.csv --alpha 2/3 --beta 1/4 --method SYM --method RK4",
     "probe pendulum.csv --method SYM --h 1/120",
-    "chains --engine bullet=0.2 --h 1/60 --to 3 --figure none",
     "engines",
     "engines --alpha 1 --beta 0.2 --h 0.002",
     f"simulate --scene pendulum --method SYM --time 0.02 {SMALL}",

@@ -3,7 +3,7 @@
 from dataclasses import replace
 from fractions import Fraction
 from functools import partial
-from math import log, sqrt
+from math import sqrt
 from typing import Any
 
 import numpy as np
@@ -75,19 +75,6 @@ def test_of_one_constraint_alone_nothing_is_said_to_grow_without_limit() -> None
     answer = first(Question(methods=SYM, engine=brax, values=(Fraction(1, 2),), h=Fraction(1, 100)))
     assert ": safe for one constraint alone. An error falls to a thousandth in 0.2 s (20 steps)." in answer.sentence
     assert "grow" not in answer.sentence
-
-
-@pytest.mark.slow
-def test_a_chain_that_settles_slowly_is_said_to() -> None:
-    """A hundred times the mass at the end of six bodies in Jolt: minutes."""
-    values = (Fraction(1, 5),)
-    chain = Question(engine=ENGINES["jolt"], values=values, h=Fraction(1, 60), chain=6, mass_ratio=Fraction(100))
-    answer = first(chain)
-    assert answer.safe
-    assert answer.swept
-    seconds = log(1e-3) / log(answer.swept.growth.factor) / 60
-    assert f"An error falls slowly: to a thousandth in {seconds:.3g} s (" in answer.sentence
-    assert seconds > 200
 
 
 def test_instead_is_what_choose_gives() -> None:

@@ -1,0 +1,206 @@
+"""Is a chain of bodies stable in an engine that sweeps over its constraints, with how many sweeps, and what to set?
+
+world --o--[m]--o--[m]--o--[m]          links of a straight chain, swept from the world on; with both ends pinned
+                                        one more holds the last body
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+
+import numpy as np
+
+from bezstab.arguments import Number, exact_number, in_keywords, whole_number
+from bezstab.engines import Engine, check_iterations, engine_and_values
+from bezstab.errors import InputError
+from bezstab.questions.chains import Constraints, SweptConstraints
+from bezstab.stability import FloatArray, inverse_effective_masses, steps_to_settle
+from bezstab.stability.sweeps import LARGEST_RATIO, MOST_BODIES
+from bezstab.units import check_step
+from bezstab.words import change_words, counted, decay_words
+
+SPREAD = 0.1
+"""The share by which the setting to paste may be stronger and the chain still be stable."""
+
+SWEEPS_DRAWN = 50
+
+
+@dataclass(frozen=True)
+class Links:
+    """A straight chain along its own line: the masses of its bodies from the world on, in any unit.
+
+    With `both_ends` the last body is held by the world, too. InputError for masses that are no chain.
+    """
+
+    masses: tuple[Fraction, ...]
+    both_ends: bool = False
+
+    def __post_init__(self) -> None:
+        if not 1 <= len(self.masses) <= MOST_BODIES:
+            raise InputError(f"--bodies {len(self.masses)}: expected 1 to {MOST_BODIES} bodies")
+        least, most = min(self.masses), max(self.masses)
+        if least <= 0 or most > LARGEST_RATIO * least:
+            raise InputError(f"--masses: expected positive masses, at most {LARGEST_RATIO:g} times the least")
+
+    @property
+    def words(self) -> str:
+        """What the chain is: a chain of 10 with the last body 10 times as heavy."""
+        last = self.masses[-1] / self.masses[0]
+        if len(set(self.masses)) == 1:
+            words = f"a chain of {len(self.masses)} equal bodies" if len(self.masses) > 1 else "a chain of 1"
+        elif len(set(self.masses[:-1])) == 1:
+            words = f"a chain of {len(self.masses)} with the last body {float(last):g} times as heavy"
+        else:
+            words = f"a chain of masses {', '.join(f'{float(mass):g}' for mass in self.masses)}"
+        return f"{words}, pinned at both ends" if self.both_ends else words
+
+    def constraints(self) -> Constraints:
+        """Return its links as constraints in the order in which they are swept over."""
+        count = len(self.masses)
+        jacobian = np.eye(count) - np.eye(count, k=-1)  # each link: where its body is, less where the one before is
+        if self.both_ends:
+            jacobian = np.vstack([jacobian, -np.eye(count)[-1]])
+        inverse_masses = inverse_effective_masses(np.diag([float(mass) for mass in self.masses]), jacobian)
+        return Constraints(self.words, inverse_masses, tuple(range(len(jacobian))))
+
+
+def links(bodies: int, mass_ratio: Fraction = Fraction(1), *, both_ends: bool = False) -> Links:
+    """Return a chain of so many bodies, the last one `mass_ratio` times as heavy as each other one."""
+    if not 1 / LARGEST_RATIO <= mass_ratio <= LARGEST_RATIO:
+        raise InputError(f"--mass-ratio {float(mass_ratio):g}: expected {1 / LARGEST_RATIO:g} to {LARGEST_RATIO:g}")
+    return Links((*[Fraction(1)] * (bodies - 1), mass_ratio)[: max(bodies, 0)], both_ends)
+
+
+@dataclass(frozen=True, repr=False)
+class ChainAnswer:
+    """All that is known of a chain in an engine with such values, at a step of h (s) with so many sweeps.
+
+    `z_abs` is the factor by which a step multiplies its errors in the long run, computed and off by at most `accuracy`;
+    `alone_z_abs` that of one constraint alone. `stable_iterations`: from how many sweeps errors decay; None if
+    from none that is tried. `setting`: the strongest values with which this chain is stable even if they were SPREAD
+    stronger; None where there are none, or where the engine has nothing to set. `sentence`: the answer in words.
+    """
+
+    engine: Engine
+    values: tuple[Fraction, ...]
+    h: Fraction
+    links: Links
+    iterations: int
+    safe: bool
+    z_abs: float
+    accuracy: float
+    alone_z_abs: float
+    settle_steps: int | None
+    stable_iterations: int | None
+    setting: str | None
+    sentence: str = field(compare=False)
+
+    def __repr__(self) -> str:
+        return f"{self.sentence} [{self.engine.name}, |z| = {self.z_abs:.6g}]"
+
+    def __bool__(self) -> bool:
+        return self.safe
+
+
+@in_keywords()
+def chain(
+    engine: str,
+    *,
+    h: Number,
+    bodies: int = 10,
+    mass_ratio: Number = 1,
+    masses: Sequence[Number] | None = None,
+    both_ends: bool = False,
+    iterations: int | None = None,
+) -> ChainAnswer:
+    """Return whether a straight chain of bodies is stable in an engine that sweeps over its constraints.
+
+    engine: its name, with its values as on the command line: "chipmunk=0.0018"; without them its defaults.
+    h: the step in s.
+    bodies, mass_ratio: so many bodies, the last so many times as heavy as each other one.
+    masses: those of all bodies from the world on, in any unit, in place of the two.
+    both_ends: whether the last body is held by the world, too.
+    iterations: sweeps in a step; by default the engine's own number.
+
+    Returns a ChainAnswer. What is swept is linear and along the chain's own line.
+
+    InputError for an engine that does not sweep, or of which it is not known how, and for numbers that are no chain.
+    NumericalError if rounding leaves open whether errors decay.
+    """
+    named, values = engine_and_values(engine)
+    whole = links(whole_number(bodies, "bodies"), exact_number(mass_ratio, "mass_ratio"), both_ends=both_ends)
+    if masses is not None:
+        whole = Links(tuple(exact_number(mass, "masses") for mass in masses), both_ends)
+    sweeps = None if iterations is None else whole_number(iterations, "iterations")
+    return judge_chain(named, values, exact_number(h, "h"), whole, sweeps)
+
+
+def judge_chain(
+    engine: Engine, values: tuple[Fraction, ...], h: Fraction, chained: Links, iterations: int | None = None
+) -> ChainAnswer:
+    """Return what a step of h (s) does to the errors of a chain; errors as `chain`."""
+    swept = swept_links(engine, h, chained, iterations)
+    found = swept.answer(values)
+    safe = found.growth.decays
+    answer = ChainAnswer(
+        engine=engine,
+        values=values,
+        h=h,
+        links=chained,
+        iterations=swept.iterations,
+        safe=safe,
+        z_abs=found.growth.factor,
+        accuracy=found.growth.accuracy,
+        alone_z_abs=found.alone,
+        settle_steps=steps_to_settle(found.growth.factor) if safe else None,
+        stable_iterations=found.stable_iterations,
+        setting=_setting(swept),
+        sentence="",
+    )
+    return replace(answer, sentence=_sentence(answer))
+
+
+def swept_links(engine: Engine, h: Fraction, chained: Links, iterations: int | None) -> SweptConstraints:
+    """Return a chain in an engine that sweeps over it; InputError if it does not sweep, or it is not known how."""
+    check_step(h, "h")
+    if not engine.sweeps:
+        raise InputError(f"{engine.name} solves all constraints together, so a chain is as stable as one constraint")
+    if engine.sweeping is None:
+        raise InputError(f"how {engine.name} sweeps over its constraints is not known here")
+    sweeps = engine.sweeping.iterations if iterations is None else iterations
+    check_iterations(sweeps)
+    return SweptConstraints(engine, h, chained.constraints(), sweeps)
+
+
+def _setting(swept: SweptConstraints) -> str | None:
+    """Return the line to paste of the strongest feedback that a chain allows; None if there is none, or none to set."""
+    if not (swept.engine.curve and swept.engine.parameters):
+        return None
+    strongest = swept.strongest(SPREAD)
+    return None if strongest is None else swept.engine.setting(strongest, swept.h)
+
+
+def _sentence(answer: ChainAnswer) -> str:
+    """Return whether a chain is stable, how fast its errors fall or grow, and from how many sweeps it is stable."""
+    judged = f"{answer.engine.name}, {answer.links.words}, {counted(answer.iterations, 'sweep')}"
+    change = change_words(answer.z_abs, "converges" if answer.safe else "diverges")
+    if answer.settle_steps:
+        change = decay_words(answer.settle_steps, float(answer.h))
+    enough = "No number of sweeps that was tried is stable"
+    if answer.stable_iterations is not None:
+        enough = f"It is stable from {counted(answer.stable_iterations, 'sweep')}"
+    sentence = f"{judged}: {'safe' if answer.safe else 'not safe'}. {change[0].upper()}{change[1:]}. {enough}."
+    if answer.setting and not answer.safe:
+        sentence += f" With these sweeps {answer.setting} is stable, with {SPREAD:.0%} to spare."
+    return sentence
+
+
+def chain_map(
+    engine: Engine, values: tuple[Fraction, ...], h: Fraction, longest: int, mass_ratio: Fraction, *, both_ends: bool
+) -> FloatArray:
+    """Return the factors by which a step multiplies errors, for chains of 1 to `longest` bodies with 1 to 50 sweeps.
+
+    Shape (longest, SWEEPS_DRAWN). Errors as `chain`.
+    """
+    chains = [swept_links(engine, h, links(n, mass_ratio, both_ends=both_ends), 1) for n in range(1, longest + 1)]
+    return np.array([[each.growth(values, sweeps + 1).factor for sweeps in range(SWEEPS_DRAWN)] for each in chains])

@@ -1,0 +1,52 @@
+"""What is printed of a chain: its columns."""
+
+from collections.abc import Sequence
+
+from bezstab.chains.answer import ChainAnswer
+from bezstab.show import Column
+
+COLUMNS: Sequence[Column[ChainAnswer]] = (
+    Column("engine", "engine", lambda answer: answer.engine.name, "engine that sweeps over its constraints"),
+    Column("safe", "safe", lambda answer: answer.safe, "whether errors decay by more than rounding"),
+    Column(
+        "|z| a step", "z_abs", lambda answer: answer.z_abs, "a step multiplies errors by it", form=".6f", brief=True
+    ),
+    Column("accuracy of |z|", "accuracy", lambda answer: answer.accuracy, "how far that may be off", form=".1g"),
+    Column(
+        "|z| of one alone",
+        "alone_z_abs",
+        lambda answer: answer.alone_z_abs,
+        "the same for one constraint alone, with as many sweeps",
+        form=".6f",
+        brief=True,
+    ),
+    Column(
+        "settles in (s)",
+        "settle_seconds",
+        lambda answer: None if answer.settle_steps is None else answer.settle_steps * float(answer.h),
+        "time until an error is a thousandth; null where it does not fall",
+        unit="s",
+        form=".4g",
+        brief=True,
+    ),
+    Column("bodies", "bodies", lambda answer: len(answer.links.masses), "bodies of the chain"),
+    Column("masses", "masses", lambda answer: [float(mass) for mass in answer.links.masses], "from the world on"),
+    Column("both ends", "both_ends", lambda answer: answer.links.both_ends, "whether both ends are pinned"),
+    Column("h", "h", lambda answer: float(answer.h), "step", unit="s"),
+    Column("sweeps", "iterations", lambda answer: answer.iterations, "sweeps over all constraints in a step"),
+    Column(
+        "stable from (sweeps)",
+        "stable_iterations",
+        lambda answer: answer.stable_iterations,
+        "fewest sweeps with which errors decay; null if none that was tried",
+        brief=True,
+    ),
+    Column(
+        "setting for this chain",
+        "setting",
+        lambda answer: answer.setting,
+        "strongest values that leave a tenth to spare; null where there are none, or nothing to set",
+        brief=True,
+    ),
+    Column("", "sentence", lambda answer: answer.sentence, "the answer in words"),
+)

@@ -1,0 +1,100 @@
+"""Answers about chains: loops over links that know no matrices, the number of sweeps, what to set."""
+
+from fractions import Fraction
+from math import log
+
+import numpy as np
+import pytest
+
+from bezstab.chains.answer import SPREAD, Links, chain, judge_chain, links
+from bezstab.engines import ENGINES, engine_and_values
+from bezstab.errors import InputError
+from bezstab.stability import FloatArray
+
+H = Fraction(1, 60)
+
+
+def test_a_chain_decides_whether_an_answer_is_safe() -> None:
+    unsafe, safe = (chain("chipmunk", h=H, bodies=10, mass_ratio=10, iterations=sweeps) for sweeps in (None, 12))
+    assert (unsafe.safe, unsafe.stable_iterations, safe.safe) == (False, 12, True)
+    assert unsafe.z_abs == pytest.approx(1.00494, abs=1e-5)  # as pymunk's own
+    assert unsafe.alone_z_abs == pytest.approx(0.9)
+    assert repr(safe).startswith("chipmunk, a chain of 10 with the last body 10 times as heavy, 12 sweeps: safe.")
+
+
+def test_the_engines_own_sweeps_are_taken_unless_others_are_asked_about() -> None:
+    answer = chain("ode=0.2", h=H, bodies=2)
+    assert answer.iterations == 20
+    assert answer.alone_z_abs == pytest.approx(0.8, abs=1e-9)
+
+
+@pytest.mark.slow
+def test_a_chain_that_settles_slowly_is_said_to() -> None:
+    """A hundred times the mass at the end of six bodies in Jolt: minutes."""
+    answer = chain("jolt=0.2", h=H, bodies=6, mass_ratio=100)
+    assert answer.safe
+    seconds = log(1e-3) / log(answer.z_abs) / 60
+    assert f"An error falls slowly: to a thousandth in {seconds:.3g} s (" in answer.sentence
+    assert seconds > 200
+
+
+@pytest.mark.parametrize("name", [name for name, each in ENGINES.items() if each.sweeping and each.defaults])
+def test_its_setting_is_stable_also_if_it_were_a_tenth_stronger(name: str) -> None:
+    """And stronger by a fifth it is not, unless it is all that the engine can express."""
+    engine, values = engine_and_values(name)
+    answer = judge_chain(engine, values, H, links(6, Fraction(20)))
+    if not engine.parameters or answer.setting is None:
+        return
+    assert engine.curve
+    written = [Fraction(part.split("=")[-1].strip(" ,);f")) for part in answer.setting.split(",")[:1]]
+    point = engine.applied((*written, *values[1:]), H).point
+    stronger = point[0], point[1] * Fraction(1 + SPREAD)
+    try:
+        pushed = tuple(map(Fraction, engine.values(stronger, H)))
+    except InputError:  # it has no words for so strong a feedback
+        pushed = (*written, *values[1:])
+    assert judge_chain(engine, pushed, H, links(6, Fraction(20))).safe
+
+
+def loops(masses: tuple[float, ...], sweeps: int, share: float) -> FloatArray:
+    """Return the matrix of a step of hard sweeps with warm start over a chain between two walls, link by link."""
+    count = len(masses)
+    ends = [(link - 1, link) for link in range(count)] + [(count - 1, None)]
+
+    def error(values: FloatArray, link: int) -> float:
+        before, after = ends[link]
+        return float((values[after] if after is not None else 0.0) - (values[before] if before >= 0 else 0.0))
+
+    def push(values: FloatArray, link: int, impulse: float) -> None:
+        before, after = ends[link]
+        if after is not None:
+            values[after] += impulse / masses[after]
+        if before >= 0:
+            values[before] -= impulse / masses[before]
+
+    def step(state: FloatArray) -> FloatArray:
+        x, v, impulses = state[:count].copy(), state[count : 2 * count].copy(), state[2 * count :].copy()
+        for link in range(count + 1):
+            push(v, link, impulses[link])
+        for _ in range(sweeps):
+            for link, (before, after) in enumerate(ends):
+                inverse = sum(1 / masses[end] for end in (before, after) if end is not None and end >= 0)
+                impulse = -(error(v, link) + share * error(x, link)) / inverse
+                push(v, link, impulse)
+                impulses[link] += impulse
+        return np.concatenate([x + v, v, impulses])
+
+    return np.array([step(column) for column in np.eye(3 * count + 1)]).T
+
+
+@pytest.mark.parametrize("masses", [("1", "1", "1"), ("1", "1", "5"), ("2", "1", "7", "1", "3", "1")])
+@pytest.mark.parametrize("sweeps", [1, 3, 8])
+def test_a_chain_between_two_walls_is_what_loops_over_its_links_do(masses: tuple[str, ...], sweeps: int) -> None:
+    """Of the loops one eigenvalue is 1: the tension that pulls at both walls, which no motion changes."""
+    engine = ENGINES["chipmunk"]
+    exact = tuple(map(Fraction, masses))
+    share = 0.1
+    answer = judge_chain(engine, (Fraction("0.9") ** 60,), H, Links(exact, both_ends=True), sweeps)
+    moduli = np.abs(np.linalg.eigvals(loops(tuple(map(float, exact)), sweeps, share)))
+    others = np.delete(moduli, np.argmin(np.abs(moduli - 1)))
+    assert answer.z_abs == pytest.approx(others.max(), abs=1e-6)
