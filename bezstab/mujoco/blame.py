@@ -25,7 +25,7 @@ Shown = Callable[[Iterable[Any], str, int], Iterable[Any]]
 class Suspect:
     """An element that acts on what grows: |z| with it alone, and with all but it, None where nothing holds.
 
-    `blamed`: it grows with this element alone, or not without it.
+    `cures`: it does not grow without this element. `blamed`: so, or it grows with this element alone.
     """
 
     element: str
@@ -33,6 +33,7 @@ class Suspect:
     z_abs_alone: float | None
     z_abs_without: float | None
     blamed: bool
+    cures: bool
 
 
 def suspects_at(robot: Robot, state: State, growth: Growth, shown: Shown) -> list[tuple[Element, Suspect]]:
@@ -42,12 +43,13 @@ def suspects_at(robot: Robot, state: State, growth: Growth, shown: Shown) -> lis
     found = []
     for element in shown(chosen, "elements", len(chosen)):
         with without(robot, [element]) as rest:
-            less = growth_at(rest, state)
+            less = growth_at(rest, state, growth.own)
         with without(robot, [other for other in elements if other is not element]) as alone:
-            only = growth_at(alone, state)
-        blamed = less.kind not in (growth.kind, "unsafe") or only.kind == "unsafe"
-        found.append((element, Suspect(element.name, element.kind, only.z_abs, less.z_abs, blamed)))
-    return sorted(found, key=lambda each: not each[1].blamed)
+            only = growth_at(alone, state, growth.own)
+        cures = less.kind not in (growth.kind, "unsafe")
+        blamed = cures or only.kind == "unsafe"
+        found.append((element, Suspect(element.name, element.kind, only.z_abs, less.z_abs, blamed, cures)))
+    return sorted(found, key=lambda each: (not each[1].cures, not each[1].blamed))
 
 
 def _with_effect(robot: Robot, state: State, elements: list[Element]) -> list[Element]:

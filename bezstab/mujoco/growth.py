@@ -48,8 +48,12 @@ class Growth:
     own: FloatArray | None = None
 
 
-def growth_at(robot: Robot, state: State) -> Growth:
-    """Return what errors do around a state."""
+def growth_at(robot: Robot, state: State, own: FloatArray | None = None) -> Growth:
+    """Return what errors do around a state.
+
+    `own` are rates (1/s) at which the mechanism may fall, if they are known: what falls no faster needs no other step,
+    and what no step resolves, and is faster, is unsafe.
+    """
     step = step_at(robot, state)
     if not step.smooth:
         return Growth("not smooth", None)
@@ -57,11 +61,11 @@ def growth_at(robot: Robot, state: State) -> Growth:
     none = np.zeros(0)
     if not len(moduli):
         return Growth("neutral", None, own=none)
-    z_abs = float(moduli[0])
+    z_abs, rates = float(moduli[0]), _rates(moduli, robot.h)
     if z_abs <= 1 + ROUNDING:
         return Growth("decays" if z_abs < 1 - ROUNDING else "neutral", z_abs, own=none)
-    own = _own_rates(robot, state, moduli)
-    rates = _rates(moduli, robot.h)
+    if own is None or (z_abs < RESOLVED and _exceeds(rates, own, robot.h)):
+        own = _own_rates(robot, state, moduli)
     if own is None or _exceeds(rates, own, robot.h):
         return Growth("unsafe", z_abs, own=own)
     return Growth("falls by itself", z_abs, float(rates[0]), own)

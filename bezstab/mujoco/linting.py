@@ -138,9 +138,10 @@ def linted_model(
         written: list[Remedy] = []
         if unsafe:
             limits = [each.h_factor * robot.h for each in unsafe if each.h_factor is not None]
-            blamed = [element for element, suspect in suspects if suspect.blamed]
-            there = [(each.robot, each.state) for each in sorted(unsafe, key=_badness)[:MOST_WITH_LIMITS]]
-            written = remedies(there, blamed, min(limits, default=None), shown)
+            there = [
+                (each.robot, each.state, each.growth.own) for each in sorted(unsafe, key=_badness)[:MOST_WITH_LIMITS]
+            ]
+            written = remedies(there, suspects, min(limits, default=None), shown)
     settings = tuple(feedbacks(mujoco, model, deep=deep))
     rough = any(each.growth.kind == "not smooth" for each in found)
     is_unsafe = bool(unsafe) or any(each.unsafe for each in settings)

@@ -8,13 +8,14 @@ from typing import Any
 
 import numpy as np
 
-from bezstab.mujoco.blame import Shown
+from bezstab.mujoco.blame import Shown, Suspect
 from bezstab.mujoco.controllers import name_of
-from bezstab.mujoco.elements import Element
+from bezstab.mujoco.elements import Element, acting
 from bezstab.mujoco.growth import growth_at
 from bezstab.mujoco.robots import Robot, State
 from bezstab.mujoco.solrefs import METHODS
 from bezstab.rationals import rounded_down
+from bezstab.stability import FloatArray
 
 MARGIN = 0.9
 """Of the largest safe step: the rest is left to what differs between poses."""
@@ -28,8 +29,8 @@ MOST_BLAMED = 4
 SOLREFS = (2, 4, 8, 16, 32, 64)
 """Time constants in steps."""
 
-Unsafe = Sequence[tuple[Robot, State]]
-"""States that are to become safe."""
+Unsafe = Sequence[tuple[Robot, State, FloatArray | None]]
+"""States that are to become safe, and at which rates (1/s) the mechanism itself falls there, if it is known."""
 
 Change = Callable[[Robot], Robot]
 """Of a robot whose model is its own copy."""
@@ -44,10 +45,12 @@ class Remedy:
     z_abs: float | None
 
 
-def remedies(unsafe: Unsafe, blamed: Sequence[Element], h_limit: float | None, shown: Shown) -> list[Remedy]:
+def remedies(
+    unsafe: Unsafe, suspects: Sequence[tuple[Element, Suspect]], h_limit: float | None, shown: Shown
+) -> list[Remedy]:
     """Return what makes every unsafe state safe, each change alone; `h_limit` is the largest safe step in s, if any.
 
-    Where no one element can do it, all that are to blame are changed together.
+    Where no one element can do it, all of the kind that is to blame are changed together.
     """
     model = unsafe[0][0].model
     found: list[Remedy] = []
@@ -57,13 +60,15 @@ def remedies(unsafe: Unsafe, blamed: Sequence[Element], h_limit: float | None, s
     if list(METHODS)[model.opt.integrator] != "implicitfast":
         change = partial(_with_option, "integrator", list(METHODS).index("implicitfast"))
         found += _checked(unsafe, "the model", 'integrator="implicitfast"', change)
-    few = blamed[:MOST_BLAMED]
-    for element in shown(few, "remedies", len(few)):
-        found += _of_values(unsafe, [element])
+    few = [(element, suspect) for element, suspect in suspects if suspect.blamed][:MOST_BLAMED]
+    for element, suspect in shown(few, "remedies", len(few)):
         found += _of_armature(unsafe, element)
-        found += _of_solref(unsafe, [element])
-    if len(few) > 1 and not {remedy.element for remedy in found} & {element.name for element in few}:
-        found += [*_of_values(unsafe, few), *_of_solref(unsafe, few)]
+        if suspect.cures:
+            found += [*_of_values(unsafe, [element]), *_of_solref(unsafe, [element])]
+    if few and not any(suspect.cures for _, suspect in few):
+        robot, state, _ = unsafe[0]
+        alike = [element for element in acting(robot, state) if element.kind == few[0][0].kind]
+        found += [*_of_values(unsafe, alike), *_of_solref(unsafe, alike)]
     return found
 
 
@@ -74,6 +79,11 @@ def _of_values(unsafe: Unsafe, elements: Sequence[Element]) -> Iterator[Remedy]:
         turned = [knob for knobs in of_each for knob in knobs if knob.label == label]
         factor = _largest(partial(_safe_with, unsafe, turned))
         if factor is not None:
+            if len(turned) > MOST_BLAMED:
+                share = rounded_down(factor, 2)
+                change = partial(_with_values, turned, [float(share) * knob.value for knob in turned])
+                yield from _checked(unsafe, _names(elements), f"{label} times {share}", change)
+                continue
             written = [rounded_down(factor * knob.value, 2) for knob in turned]
             text = ", ".join(f'{label}="{value}"' for value in written)
             change = partial(_with_values, turned, [float(value) for value in written])
@@ -103,6 +113,8 @@ def _of_solref(unsafe: Unsafe, elements: Sequence[Element]) -> Iterator[Remedy]:
 
 
 def _names(elements: Sequence[Element]) -> str:
+    if len(elements) > MOST_BLAMED:
+        return f"every {elements[0].kind}"
     return ", ".join(element.name for element in elements)
 
 
@@ -112,8 +124,8 @@ def _names(elements: Sequence[Element]) -> str:
 def _checked(unsafe: Unsafe, element: str, write: str, change: Change) -> Iterator[Remedy]:
     """Yield a remedy if it is one: then no state is unsafe."""
     grown = []
-    for robot, state in unsafe:
-        growth = growth_at(change(replace(robot, model=copy(robot.model))), state)
+    for robot, state, own in unsafe:
+        growth = growth_at(change(replace(robot, model=copy(robot.model))), state, own)
         if growth.kind in ("unsafe", "not smooth"):
             return
         grown.append(growth.z_abs)
@@ -135,9 +147,9 @@ def _largest(safe: Callable[[float], bool]) -> float | None:
     return found and _bisected(safe, found, 4 * found)
 
 
-def _bisected(safe: Callable[[float], bool], inside: float, outside: float) -> float:
+def _bisected(safe: Callable[[float], bool], inside: float, outside: float, halvings: int = BISECTIONS) -> float:
     """Return the limit between a value that is safe and one that is not, on the safe side."""
-    for _ in range(BISECTIONS):
+    for _ in range(halvings):
         middle = float(np.sqrt(inside * outside))
         if safe(middle):
             inside = middle
@@ -243,18 +255,17 @@ def _with_armature(joints: Sequence[int], armature: float, robot: Robot) -> Robo
 
 def _least_armature(unsafe: Unsafe, joints: Sequence[int]) -> float | None:
     """Return the least armature that is safe, rounded up to two digits; None where none is found."""
-    robot, state = unsafe[0]
+    robot, state, _ = unsafe[0]
     dofs = np.isin(robot.model.dof_jntid, joints)
     own = float(np.diagonal(robot.mass_at(robot.data_at(state)))[dofs].max())
 
     def safe(armature: float) -> bool:
         return _safe(unsafe, partial(_with_armature, joints, armature))
 
-    tried = [own * 4.0**power for power in range(-QUARTERS, QUARTERS + 1)]
-    found = next((armature for armature in tried if safe(armature)), None)
-    if found is None:
+    largest = own * 4.0**QUARTERS
+    if not safe(largest):
         return None
-    least = _bisected(safe, found, found / 4)
+    least = _bisected(safe, largest, own / 4.0**QUARTERS, 2 * BISECTIONS)
     digit = 10.0 ** (np.floor(np.log10(least)) - 1)
     return float(np.ceil(least / digit) * digit)
 

@@ -6,14 +6,14 @@ applied); x and v are weighted by the root of the mass matrix, so that what is s
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import ceil
 from typing import Any
 
 import numpy as np
 
 from bezstab.mujoco.robots import Robot, State
-from bezstab.stability import BoolArray, FloatArray
+from bezstab.stability import ComplexArray, FloatArray
 
 NUDGE = 1e-6
 """m, rad: of positions, and of velocities times the step. Rounding then leaves ten digits of a difference, and the
@@ -25,8 +25,11 @@ STILL = 1e-8
 FREE = 1e-5
 """Of z: double poles at one, of free motions, are split by the root of rounding."""
 
-ROUGH = 1e-3
-"""Relative: where one-sided differences disagree by more, a contact or a limit begins or ends there."""
+ROUGH, ROUGH_POLES = 1e-3, 1e-2
+"""Relative, of the matrix, and of poles: where one-sided differences disagree by more, a contact or a limit begins.
+
+Boxes that lie flush on each other have contacts that come and go, but the same poles.
+"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,10 +39,14 @@ class Step:
     matrix: FloatArray
     weights: FloatArray
     every: int
-    smooth: bool
+    smooth: bool = True
 
     def moduli(self) -> FloatArray:
-        """Return |z| a step from the largest, of all that is no free motion.
+        """Return |z| a step from the largest, of all that is no free motion."""
+        return np.asarray(np.sort(np.abs(self.poles()) ** (1 / self.every))[::-1])
+
+    def poles(self) -> ComplexArray:
+        """Return the eigenvalues of all that is no free motion.
 
         A free motion is one that a step leaves as it is: a position that nothing pulls back, and a velocity that
         nothing brakes. Their poles are one, and leaving out the first shows the second.
@@ -51,8 +58,7 @@ class Step:
             if len(moving) == len(matrix):
                 break
             matrix = moving @ matrix @ moving.T
-        moduli = np.abs(np.linalg.eigvals(matrix)) ** (1 / self.every)
-        return np.asarray(np.sort(moduli)[::-1])
+        return np.linalg.eigvals(matrix).astype(complex)
 
     def growing(self) -> FloatArray:
         """Return the directions that grow, as states without weights: two columns for each pole, the largest first."""
@@ -110,23 +116,26 @@ class _Differenced:
         """Return the whole matrix."""
         dofs = self.robot.model.nv
         matrix, bends = self.along(np.eye(self.size))
+        bends[:, 2 * dofs :] = 0  # activations at an end of their range
         weights = np.eye(self.size)
         root = np.linalg.cholesky(self.robot.mass_at(self.base)).T
         weights[:dofs, :dofs] = weights[dofs : 2 * dofs, dofs : 2 * dofs] = root
-        weighted = np.linalg.solve(weights.T, (weights @ matrix).T).T
-        return Step(np.asarray(weighted, float), weights, self.every, smooth=not bends[: 2 * dofs].any())
+        found = Step(_weighted(matrix, weights), weights, self.every)
+        if (
+            np.abs(bends).max(axis=0, initial=0.0) > ROUGH * np.maximum(1, np.abs(matrix).max(axis=0, initial=0.0))
+        ).any():
+            one_sided = (replace(found, matrix=_weighted(matrix + side * bends, weights)) for side in (1, -1))
+            return replace(found, smooth=_agree(*(step.poles() for step in one_sided)))
+        return found
 
-    def along(self, directions: FloatArray) -> tuple[FloatArray, BoolArray]:
-        """Return the step's matrix times directions, one a column, and along which one-sided differences disagree."""
+    def along(self, directions: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the step's matrix times directions, one a column, and half of what one-sided differences differ by."""
         nudges = self.nudge * directions.T
         forward, backward = (
             np.array([self._moved(self._after(sign * nudge)) for nudge in nudges]).reshape(len(nudges), self.size)
             for sign in (1, -1)
         )
-        difference = forward - backward
-        bends = np.abs(forward + backward).max(axis=1, initial=0.0)
-        sizes = np.maximum(2 * self.nudge, np.abs(difference).max(axis=1, initial=0.0))
-        return difference.T / (2 * self.nudge), np.asarray(bends > ROUGH * sizes)
+        return (forward - backward).T / (2 * self.nudge), (forward + backward).T / (2 * self.nudge)
 
     def _after(self, nudge: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return positions after the steps from a nudged state, and all else: h v, activations, pending forces."""
@@ -168,6 +177,17 @@ class _Differenced:
         moved = np.zeros(self.robot.model.nv)
         self.robot.mujoco.mj_differentiatePos(self.robot.model, moved, 1.0, self.start[0], end[0])
         return np.concatenate([moved, end[1] - self.start[1]])
+
+
+def _weighted(matrix: FloatArray, weights: FloatArray) -> FloatArray:
+    return np.asarray(np.linalg.solve(weights.T, (weights @ matrix).T).T, float)
+
+
+def _agree(first: ComplexArray, second: ComplexArray) -> bool:
+    """Return whether two steps have the same poles, by their distance from one: there those of free motions are."""
+    length = max(len(first), len(second))
+    one, other = (np.sort(np.pad(np.abs(z - 1), (0, length - len(z)))) for z in (first, second))
+    return bool((np.abs(one - other) < ROUGH_POLES).all())
 
 
 def _inside_its_range(robot: Robot, data: Any) -> None:

@@ -12,7 +12,7 @@ MODEL = """<mujoco><option timestep="0.004"><flag refsafe="disable"/></option>
 <worldbody><body><joint name="x"/><geom size=".1" pos=".3 0 0"/></body></worldbody>
 <equality><joint name="lock" joint1="x" solref="{}"/></equality></mujoco>"""
 SLACK = """<mujoco><worldbody><body><joint name="x" type="slide"/><geom size=".1" mass="1"/></body></worldbody>
-<tendon><fixed stiffness="900" springlength="0 1"><joint joint="x" coef="1"/></fixed></tendon></mujoco>"""
+<tendon><fixed stiffness="9e6" springlength="0 1"><joint joint="x" coef="1"/></fixed></tendon></mujoco>"""
 
 
 @pytest.mark.parametrize(
@@ -57,7 +57,7 @@ def test_a_motor_is_judged_with_its_controllers_gains_and_gravity() -> None:
     model = str(DATA / "motor.xml")
     assert "Motors without a controller: hip_left" in run("lint", model).stdout
     timing = "--every 4 --late 1"
-    for gains, exit_code in (("200,5", 0), ("200,0.1", 1), ("0,5", 0), ("0,60", 1)):
+    for gains, exit_code in (("200,5", 0), ("0,60", 1)):
         row, *_ = rows("lint", model, f"--pd hip.*={gains}", timing, status=exit_code)
         kp, kd = gains.split(",")
         (answer,) = rows(f"drive --kp {kp} --kd {kd} --inertia 0.094 --h 0.002 --method SYM", timing, status=exit_code)
