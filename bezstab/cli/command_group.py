@@ -5,7 +5,8 @@ import io
 import os
 import sys
 import traceback
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
+from operator import itemgetter
 from typing import Any, NoReturn
 
 import click
@@ -14,21 +15,31 @@ from bezstab import __version__
 from bezstab.cli.removed import where_it_went
 from bezstab.errors import InputError, NumericalError
 
-SECTIONS: Mapping[str, Sequence[str]] = {
-    "Maps": ("poles", "region", "methods"),
-    "Choose": ("choose", "check", "drive", "lint", "engines", "chain"),
-    "Evidence": ("simulate", "verify", "probe", "tradeoff"),
-    "Paper": ("paper",),
+COMMANDS: Mapping[str, Mapping[str, str]] = {
+    "Maps": {
+        "poles": "bezstab.cli.poles_command",
+        "region": "bezstab.cli.region_command",
+        "methods": "bezstab.cli.methods_command",
+    },
+    "Choose": {
+        "choose": "bezstab.cli.choose_command",
+        "check": "bezstab.cli.check_command",
+        "drive": "bezstab.drives.command",
+        "lint": "bezstab.mujoco.command",
+        "engines": "bezstab.cli.engines_command",
+        "chain": "bezstab.chains.command",
+    },
+    "Evidence": {
+        "simulate": "bezstab.cli.simulate_command",
+        "verify": "bezstab.cli.verify_command",
+        "probe": "bezstab.cli.probe_command",
+        "tradeoff": "bezstab.cli.tradeoff_command",
+    },
+    "Paper": {
+        "paper": "bezstab.paper.command",
+    },
 }
-"""What `bezstab --help` lists under which heading, in this order. The command NAME is in the file NAME_command.py."""
-
-ELSEWHERE: Mapping[str, str] = {
-    "paper": "bezstab.paper.command",
-    "chain": "bezstab.chains.command",
-    "drive": "bezstab.drives.command",
-    "lint": "bezstab.mujoco.command",
-}
-"""The module of each command that is an extension: nothing imports it, the group finds it by name."""
+"""What `bezstab --help` lists under which heading, in this order: each command, and the module that has it."""
 
 NUMERICAL_TROUBLE = 3
 """Exit status if a part of an answer could not be found, or a run broke down; a message says why."""
@@ -53,7 +64,7 @@ class BezstabGroup(click.Group):
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Return the names of all commands in the order of their sections."""
-        return [name for names in SECTIONS.values() for name in names]
+        return [name for names in COMMANDS.values() for name in names]
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         """Return the command of that name, loaded now; None if there is none."""
@@ -69,7 +80,7 @@ class BezstabGroup(click.Group):
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write a heading for each section and a sentence for each command."""
-        for heading, names in SECTIONS.items():
+        for heading, names in filter(itemgetter(1), COMMANDS.items()):
             with formatter.section(heading):
                 formatter.write_dl([(name, (_loaded(name).help or "").partition("\n")[0]) for name in names])
 
@@ -151,8 +162,8 @@ def prepare_streams() -> None:
 
 def _loaded(name: str) -> click.Command:
     """Return the command of this name."""
-    module = importlib.import_module(ELSEWHERE.get(name, f"bezstab.cli.{name}_command"))
-    command: click.Command = getattr(module, name)
+    (module,) = [names[name] for names in COMMANDS.values() if name in names]
+    command: click.Command = getattr(importlib.import_module(module), name)
     return command
 
 
