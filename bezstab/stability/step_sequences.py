@@ -5,7 +5,8 @@ Each step stable alone is not enough: products of different matrices may grow. I
     one step of the range            that does not decay alone refutes, and is all that can where steps commute
     a quadratic form                 that every step makes smaller (lyapunov_quadratics)
     a sequence of steps              whose product grows (growing_sequences)
-    a polygon                        that every step maps into its inside (lyapunov_polygons)
+
+Between the two it is not known: there is no such form, and no sequence was found.
 
 Runge-Kutta and one-step linear methods step y by R(hA) with one and the same A as long as alpha and beta stay: all
 their steps commute, and any sequence of steps that decay alone decays.
@@ -24,7 +25,6 @@ from bezstab.errors import InputError
 from bezstab.methods import Method, StepMatrix, step_matrix
 from bezstab.stability.arrays import FloatArray
 from bezstab.stability.growing_sequences import growing_words, grows, growth_of
-from bezstab.stability.lyapunov_polygons import invariant_polygon
 from bezstab.stability.lyapunov_quadratics import (
     centred_form,
     determinant,
@@ -34,12 +34,12 @@ from bezstab.stability.lyapunov_quadratics import (
 from bezstab.stability.positive_polynomials import positivity
 
 Varying = Literal["proven", "refuted", "not known"]
-Certificate = Literal["commuting", "quadratic", "polygon"]
+Certificate = Literal["commuting", "quadratic"]
 
 FIGURES = 4  # significant digits of the steps in a sequence
 LEAST_FRAME = 0.3  # of beta: as far as a frame for overdamped feedback is still stretched
 SAMPLES = 40  # of the range, evenly spaced; the proofs are of all of it
-SAMPLED_SHARE = 512  # the shortest step sampled, as a share of the longest: polygons of shorter ones differ by less
+SAMPLED_SHARE = 512  # the shortest step sampled, as a share of the longest
 LONGEST_RANGE = Fraction(10**12)  # h_max / h_min: beyond, steps so short are as good as zero
 
 
@@ -47,11 +47,11 @@ LONGEST_RANGE = Fraction(10**12)  # h_max / h_min: beyond, steps so short are as
 class VaryingSteps:
     """What sequences of steps from h_min to h_max (s) do at one point of a method.
 
-    `kind` is how it was proven: "commuting" (every single step decays, and steps commute), or by a `certificate` whose
-    numbers belong to the state (c, h_max cdot) or, of a method that stores an acceleration, (c, h_max cdot,
-    h_max^2 cddot): a "quadratic" form, by rows, or a "polygon", by the corners of one half, the others being their
-    negatives. `sequence` holds the steps (s) of a sequence that does not decay when repeated, and `growth` is by how
-    many times errors are larger after each round of it, in float64: infinite where a step of it has no solution.
+    `kind` is how it was proven: "commuting" (every single step decays, and steps commute), or "quadratic", by the rows
+    of a form, the `certificate`, of the state (c, h_max cdot) or, of a method that stores an acceleration, (c, h_max
+    cdot, h_max^2 cddot). `sequence` holds the steps (s) of a sequence that does not decay when repeated, and `growth`
+    is by how many times errors are larger after each round of it, in float64: infinite where a step of it has no
+    solution.
     """
 
     varying: Varying
@@ -110,13 +110,7 @@ def varying_steps(
         if proves_decay(exact_form, matrix, shortest):
             return replace(unknown, varying="proven", kind="quadratic", certificate=tuple(map(tuple, exact_form)))
     word = _growing_word(matrix, h_min, h_max)
-    if word:
-        return refuted(word)
-    if matrix.size == 2 and form is not None:
-        corners = invariant_polygon(matrix, np.array(samples, np.float64), matrices, form, shortest)
-        if corners is not None:
-            return replace(unknown, varying="proven", kind="polygon", certificate=tuple(map(tuple, corners)))
-    return unknown
+    return refuted(word) if word else unknown
 
 
 def _single_step(matrix: StepMatrix, shortest: Fraction) -> Fraction | bool:

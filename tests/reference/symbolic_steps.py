@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from fractions import Fraction
-from itertools import pairwise
 
 import sympy as sp
 
@@ -32,23 +31,6 @@ def form_decreases(form: sp.Matrix, step: sp.Matrix, low: Fraction, high: Fracti
     left = form - step.T * form * step
     minors = [form[0, 0], form.det(), left[0, 0], left.det()]
     return all(positive(minor, low, high) for minor in minors)
-
-
-def polygon_is_entered(corners: Sequence[sp.Matrix], step: sp.Matrix, low: Fraction, high: Fraction) -> bool:
-    """Return whether the polygon of the corners and their negatives is convex, and each step maps corners inside."""
-    ring = [*corners, *(-corner for corner in corners)]
-    ring.append(ring[0])
-
-    def cross(a: sp.Matrix, b: sp.Matrix) -> sp.Expr:
-        return a[0] * b[1] - a[1] * b[0]
-
-    edges = [(first, second - first) for first, second in pairwise(ring)]
-    turns = [cross(edge, following) > 0 for (_, edge), (_, following) in pairwise([*edges, edges[0]])]
-    once = all(cross(corners[0], corner) > 0 for corner in corners[1:])
-    inside = (
-        positive(cross(edge, step * corner - first), low, high) for corner in corners for first, edge in edges
-    )  # fmt: skip
-    return all(turns) and once and all(inside)
 
 
 def spectral_radius(step: sp.Matrix, sequence: Sequence[Fraction]) -> sp.Expr:
