@@ -1,7 +1,7 @@
 """Run the command line, as `bezstab` and as `python -m bezstab`."""
 
 try:
-    from bezstab.stopping import end_when_told, ignore_signals
+    from bezstab.stopping import end_if_told, stop_when_told
 except KeyboardInterrupt:  # so early that there is no handler yet; earlier still, the interpreter itself is starting
     import os
 
@@ -14,17 +14,17 @@ except KeyboardInterrupt:  # so early that there is no handler yet; earlier stil
 
 def run() -> None:
     """Run the command line of sys.argv and exit; standard streams that were closed are opened or refused first."""
-    end_when_told()
-    from bezstab.cli.command_group import one_thread_for_algebra, prepare_streams
-
-    one_thread_for_algebra()
-    prepare_streams()
-    from bezstab.cli import main
-
     try:
+        stop_when_told()
+        from bezstab.cli.command_group import one_thread_for_algebra, prepare_streams
+
+        one_thread_for_algebra()
+        prepare_streams()
+        from bezstab.cli import main
+
         main()
     finally:
-        ignore_signals()
+        end_if_told()
 
 
 if __name__ == "__main__":

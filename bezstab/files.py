@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Any, BinaryIO, TypeVar
 
 from bezstab.errors import InputError
-from bezstab.stopping import if_stopped
 
 Parsed = TypeVar("Parsed")
 
@@ -50,13 +49,12 @@ def write_whole(path: Path, write: Callable[[BinaryIO], object]) -> None:
     content = io.BytesIO()
     write(content)
     temporary = path.with_name(f".{path.name}.{os.urandom(4).hex()}")
-    with if_stopped(lambda: temporary.unlink(missing_ok=True)):
-        try:
-            with temporary.open("xb") as file:
-                file.write(content.getbuffer())
-            temporary.replace(path)
-        except OSError as error:
-            raise InputError(f"cannot write {path}: {error.strerror}") from None
-        finally:
-            with suppress(OSError):  # as where its directory has become a file
-                temporary.unlink()
+    try:
+        with temporary.open("xb") as file:
+            file.write(content.getbuffer())
+        temporary.replace(path)
+    except OSError as error:
+        raise InputError(f"cannot write {path}: {error.strerror}") from None
+    finally:
+        with suppress(OSError):  # as where its directory has become a file
+            temporary.unlink()

@@ -1,29 +1,35 @@
-"""Processes that end when they are told to: what they do first, what they finish first."""
+"""Processes that end when they are told to: by what line and status, and after what."""
 
 import signal
 import subprocess
 import sys
 from pathlib import Path
+from textwrap import indent
 
 import pytest
 
-from bezstab.stopping import FROM_TERMINALS, WORDS, signals_deferred
+from bezstab.evidence.parallel import _deaf_to_terminals
 
 ROOT = Path(__file__).parent.parent
 START = """
 import os, signal, sys
 for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
     signal.signal(number, signal.SIG_DFL)
-from bezstab.stopping import if_stopped, signals_deferred, end_when_told
-end_when_told()
+from bezstab.stopping import Stopped, end_if_told, stop_when_told
+stop_when_told()
 number = signal.Signals[sys.argv[1]]
+try:
 """
 
 
 def run(code: str, name: str) -> "subprocess.CompletedProcess[str]":
     """Run code in a process of its own that ends when it is told to; `number` is the signal called `name`."""
     return subprocess.run(
-        [sys.executable, "-c", START + code, name], cwd=ROOT, capture_output=True, text=True, check=False
+        [sys.executable, "-c", f"{START}{indent(code, '    ')}\nfinally:\n    end_if_told()", name],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=False,
     )
 
 
@@ -56,37 +62,37 @@ def test_even_where_python_would_forget_an_exception() -> None:
     assert (ended.returncode, ended.stdout, ended.stderr) == (130, "", "bezstab: interrupted\n")
 
 
-def test_what_is_to_be_done_first_is_done_last_in_first_out_whatever_fails() -> None:
+def test_what_must_not_be_left_behind_goes_first_whatever_else_comes() -> None:
     ended = run(
         """
-with if_stopped(lambda: os.write(2, b"never\\n")):
-    pass
-with if_stopped(lambda: os.write(2, b"outer\\n")), if_stopped(lambda: 1 / 0):
-    with if_stopped(lambda: os.write(2, b"inner\\n")):
-        signal.raise_signal(number)
-""",
-        "SIGTERM",
-    )
-    assert ended.stderr.split() == ["inner", "outer", "bezstab:", "terminated"]
-
-
-def test_a_section_is_finished_first() -> None:
-    ended = run(
-        """
-with signals_deferred():
-    with signals_deferred():
-        os.kill(os.getpid(), number)
-    print("finished", flush=True)
+try:
+    signal.raise_signal(number)
+except Exception:
+    print("an error")
+finally:
+    print("gone", flush=True)
 print("never")
 """,
         "SIGTERM",
     )
-    assert (ended.returncode, ended.stdout) == (143, "finished\n")
+    assert (ended.returncode, ended.stdout, ended.stderr) == (143, "gone\n", "bezstab: terminated\n")
 
 
-def test_a_process_that_is_started_in_a_section_does_not_hear_ctrl_c() -> None:
+def test_what_a_library_makes_of_it_is_no_error() -> None:
+    ended = run(
+        "try:\n    signal.raise_signal(number)\nexcept BaseException:\n    raise ImportError from None", "SIGINT"
+    )
+    assert (ended.returncode, ended.stderr) == (130, "bezstab: interrupted\n")
+
+
+def test_a_run_that_was_not_told_ends_as_it_does() -> None:
+    ended = run("raise SystemExit(3)", "SIGINT")
+    assert (ended.returncode, ended.stdout, ended.stderr) == (3, "", "")
+
+
+def test_a_process_that_is_started_for_chunks_does_not_hear_a_terminal() -> None:
     ask = "import signal; print(sorted(signal.pthread_sigmask(signal.SIG_BLOCK, [])))"
-    with signals_deferred():
+    with _deaf_to_terminals():
         blocked = subprocess.run([sys.executable, "-c", ask], capture_output=True, text=True, check=True).stdout
-    assert blocked == f"{sorted(FROM_TERMINALS)}\n"
-    assert not set(WORDS) & signal.pthread_sigmask(signal.SIG_BLOCK, [])
+    assert blocked == f"{sorted((signal.SIGINT, signal.SIGHUP))}\n"
+    assert not signal.pthread_sigmask(signal.SIG_BLOCK, [])

@@ -14,6 +14,7 @@ import click
 from bezstab import __version__
 from bezstab.cli.removed import where_it_went
 from bezstab.errors import InputError, NumericalError
+from bezstab.stopping import end_if_told
 
 COMMANDS: Mapping[str, Mapping[str, str]] = {
     "Maps": {
@@ -118,6 +119,7 @@ class BezstabGroup(click.Group):
             _complain(f"{error.filename}: {error.strerror}" if error.filename else error.strerror or str(error))
             sys.exit(2)
         except Exception:  # a defect of this program: Python would exit with 1, "unsafe", though nothing was judged
+            end_if_told()  # which a library has made an error of
             traceback.print_exc()
             _complain("this is a defect of bezstab: no verdict")
             sys.exit(DEFECT)

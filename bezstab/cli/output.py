@@ -30,7 +30,7 @@ from bezstab.show import (
     visible,
     wrapped,
 )
-from bezstab.stopping import if_stopped
+from bezstab.stopping import Stopped
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -240,7 +240,7 @@ def progress(items: Iterable[Item], label: str | None, length: int | None = None
     """
     hidden = not (label and sys.stderr.isatty())
     bar = click.progressbar(items, length=length, label=visible(label or ""), hidden=hidden, file=sys.stderr)
-    with bar, if_stopped(bar.render_finish):  # which shows the cursor again
+    with bar:  # which hides the cursor, and shows it again
         yield from bar
 
 
@@ -272,8 +272,11 @@ def results_of_chunks(
     if not work.resume:
         kept.discard()
     output_directory(kept.folder)
-    with if_stopped(partial(say, f"bezstab: what is finished lies in {kept.folder}: --resume goes on from there")):
+    try:
         arriving = completed_chunks(compute, chunks, kept, work.workers, work.scheduler)
         results = dict(progress(arriving, path.name, len(chunks)))
         yield [results[number] for number in range(len(chunks))]
+    except Stopped:
+        say(f"bezstab: what is finished lies in {kept.folder}: --resume goes on from there")
+        raise
     kept.discard()

@@ -5,6 +5,7 @@ import logging
 import multiprocessing
 import multiprocessing.resource_tracker
 import os
+import signal
 import threading
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -21,7 +22,6 @@ from numpy.typing import NDArray
 
 from bezstab.errors import InputError, NumericalError
 from bezstab.files import output_directory, write_whole
-from bezstab.stopping import if_stopped, signals_deferred
 
 Chunk = TypeVar("Chunk")
 Arrays = Mapping[str, NDArray[np.generic]]
@@ -107,7 +107,7 @@ def completed_chunks(
     with _cluster(scheduler) if scheduler else _processes():
         count = min(workers or cpu_count(), len(left)) or 1
         jobs = (delayed(_numbered)(work, number, chunks[number], os.getpid()) for number in left)
-        with parallel_config("dask" if scheduler else "loky", n_jobs=count), signals_deferred():  # processes start
+        with parallel_config("dask" if scheduler else "loky", n_jobs=count), _deaf_to_terminals():  # processes start
             arriving = Parallel(return_as="generator_unordered", pre_dispatch="all")(jobs)
         with closing(arriving):  # which ends what processes still do
             for number, result in arriving:
@@ -123,18 +123,28 @@ def _numbered(work: Callable[[Chunk], Arrays], number: int, chunk: Chunk, parent
 
 @contextmanager
 def _processes() -> Iterator[None]:
-    """End all processes that this one has started if a signal ends the run inside; NumericalError if one is lost."""
+    """Let no process outlive what is inside; NumericalError if one is lost."""
     _start_cleaners()
-
-    def end_processes() -> None:
+    try:
+        yield
+    except BrokenProcessPool:
+        raise NumericalError(LOST_WORKER) from None
+    finally:
         for process in multiprocessing.active_children():
             process.terminate()
 
-    with if_stopped(end_processes):
-        try:
-            yield
-        except BrokenProcessPool:
-            raise NumericalError(LOST_WORKER) from None
+
+@contextmanager
+def _deaf_to_terminals() -> Iterator[None]:
+    """Block what a terminal sends to every process of a command: processes that are started inside never hear it."""
+    if os.name != "posix":
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGINT, signal.SIGHUP))
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def _start_cleaners() -> None:
