@@ -59,14 +59,16 @@ def tradeoff(predicted: bool, point: TypedPoint, work: Work, files: Files, **typ
 
     Without --alpha and --beta each step size has its own point: that of the goal accurate, for the scene's motion or
     for --omega. If α̂ and β̂ stay the same while h shrinks, methods with stages lose order. "In the later half" of a run
-    the error of the start has died away. What remains is the error that the feedback makes; compare "predicted".
+    the error of the start has died away. What remains is the error that the feedback makes, and the work that its
+    multipliers do on it, which takes the trajectory off; compare "predicted".
 
     --stabilise projection replaces feedback by projection onto the constraints after each step. --against projection
     makes both, feedback at the advised points and, with --alpha and --beta, at that one too. It draws the errors of
     trajectory, constraints and energy at equal cost, in factorizations of C_q M⁻¹ C_qᵀ.
 
     --predicted simulates nothing. It prints the least error that a method's feedback makes on a motion, for each
-    |z_p|. The motion is --omega, or a --scene with one --h; else it turns by ωh = 0.01. Writes tradeoff_predicted.csv.
+    |z_p|, and what that feedback does to the motion's energy. The motion is --omega, or a --scene with one --h; else it
+    turns by ωh = 0.01. Writes tradeoff_predicted.csv.
 
     Example: bezstab tradeoff --method B4 --method AB4 --h 0.002 --h 0.004 --time 2
     """
@@ -98,4 +100,4 @@ def _show_fronts(files: Files, levels: Sequence[Fraction], **typed: Any) -> None
     rows = [show.row_in_seconds(show.FRONTS.fields, point, h) for front in fronts for point in front]
     files.write(files.path("tradeoff", "predicted"), None, lambda: show.untimed_arrays(rows))
     show_rows(show.FRONTS, rows)
-    show_text(show.combined_words(question.motion))
+    show_text(show.combined_words(question.motion) + show.energy_words(question.motion))

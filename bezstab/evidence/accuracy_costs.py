@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bezstab.errors import InputError, NumericalError
-from bezstab.evidence.forced_runs import predicted_errors, settled_error
+from bezstab.evidence.forced_runs import predicted_errors, settled_error, settled_work
 from bezstab.mechanism import (
     Motion,
     Scene,
@@ -113,10 +113,11 @@ class Run:
 
     measured_error is the largest |c| in the later half, where the start has died away, None of a run that failed;
     predicted_error what the feedback forces there (forced_runs.py), None where errors do not decay, or the motion
-    cannot be followed for longer than the run. Processor time in s: the median of the repeats, the least and the
-    largest. `stabilise` is what holds the constraints, `advised` whether the point is the choice of the goal accurate;
-    z_abs is None where there is no feedback. `factorizations` counts those of S = C_q M^-1 C_q^T, one for each
-    evaluation, and those of projections.
+    cannot be followed for longer than the run. measured_work and predicted_work (J) are what the multipliers do there
+    on those errors: what the energy gains by the feedback, but for the torque of stages. Processor time in s: the
+    median of the repeats, the least and the largest. `stabilise` is what holds the constraints, `advised` whether the
+    point is the choice of the goal accurate; z_abs is None where there is no feedback. `factorizations` counts those of
+    S = C_q M^-1 C_q^T, one for each evaluation, and those of projections.
     """
 
     method: Method
@@ -128,6 +129,8 @@ class Run:
     c_max: float
     measured_error: float | None
     predicted_error: float | None
+    measured_work: float | None
+    predicted_work: float | None
     c_rms: float
     cdot_max: float
     cdot_rms: float
@@ -238,6 +241,7 @@ def _measured_run(sweep: Sweep, h: float, larger: Run | None = None) -> Run:
     *_, energy_drift = energy_balance(seen, h * float(method.step_multiple))
     z_abs = float(spectral_radius(method, *point)) if sweep.stabilise == "baumgarte" else None
     whole = not run.failure
+    forced = _predicted(sweep, h, point) if z_abs is not None and z_abs < 1 else (None, None)
     trajectory_error = float(np.abs(run.q - sweep.reference.along.at(run.t)[0]).max()) if whole else None
     return Run(
         method=method,
@@ -248,7 +252,9 @@ def _measured_run(sweep: Sweep, h: float, larger: Run | None = None) -> Run:
         trajectory_error=trajectory_error,
         c_max=seen.c_max,
         measured_error=settled_error(seen, run.t) if whole else None,
-        predicted_error=_predicted_error(sweep, h, point) if z_abs is not None and z_abs < 1 else None,
+        predicted_error=forced[0],
+        measured_work=settled_work(seen, run.t) if whole else None,
+        predicted_work=forced[1],
         c_rms=float(np.sqrt((seen.c**2).mean())),
         cdot_max=seen.cdot_max,
         cdot_rms=float(np.sqrt((seen.cdot**2).mean())),
@@ -272,13 +278,13 @@ def _observed_order(larger: Run | None, h: float, error: float | None, reference
     return float(np.log(larger.trajectory_error / error) / np.log(larger.h / h))
 
 
-def _predicted_error(sweep: Sweep, h: float, point: tuple[float, float]) -> float | None:
-    """Return the largest |c| (SI) that the feedback forces in the later half of a run; None where that is not known."""
+def _predicted(sweep: Sweep, h: float, point: tuple[float, float]) -> tuple[float, float] | tuple[None, None]:
+    """Return the largest |c| (SI) and the work (J) of the later half of a run; None where they are not known."""
     try:
-        (error,) = predicted_errors(compiled_mechanism(sweep.scene), sweep.method, h, [point], sweep.duration)
+        (forced,) = predicted_errors(compiled_mechanism(sweep.scene), sweep.method, h, [point], sweep.duration)
     except (InputError, NumericalError):  # the motion is followed for longer than the run
-        return None
-    return error
+        return None, None
+    return forced
 
 
 def _timed_run(sweep: Sweep, h: float, gains: tuple[float, float]) -> tuple[Trajectory, list[float]]:

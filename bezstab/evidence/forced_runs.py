@@ -22,6 +22,8 @@ from bezstab.mechanism import (
     Observation,
     along_normals,
     motion,
+    multiplier_work,
+    observe,
     turned_across,
 )
 from bezstab.methods import Method, leading_error, turning_error
@@ -42,19 +44,33 @@ def settled_error(seen: Observation, t: FloatArray) -> float:
     return float(seen.largest_c[t >= COMPARED * t[-1]].max())
 
 
+def settled_work(seen: Observation, t: FloatArray) -> float:
+    """Return the work of the multipliers on the constraint errors in the same half of a run (J)."""
+    work = multiplier_work(seen)
+    return float(work[-1] - work[np.searchsorted(t, COMPARED * t[-1])])
+
+
 def predicted_errors(
     mechanism: Mechanism, method: Method, h: float, points: Sequence[tuple[float, float]], duration: float
-) -> list[float]:
-    """Return the largest constraint errors (SI) that points force in the later half of runs over `duration` (s).
+) -> list[tuple[float, float]]:
+    """Return the largest constraint error (SI) that each point forces in the later half of a run over `duration` (s).
 
-    InputError and NumericalError as `motion`.
+    And the work (J) of the motion's own multipliers on it in that time, -lambda dc/dt, which the energy gains by the
+    feedback. InputError and NumericalError as `motion`.
     """
     along = motion(mechanism, FOLLOWED * duration)
     times = along.t[:-1]
     later_half = (times >= COMPARED * duration) & (times <= duration)
     compared = np.ones(times.shape, dtype=bool) if along.closed else later_half
     errors = _errors_along(mechanism, method, h, points, along)
-    return [float(np.abs(error[compared]).max()) for error in errors]
+    multipliers = observe(mechanism, times, along.q[:-1], along.v[:-1], 0.0, 0.0).multipliers
+    later = np.linspace(COMPARED * duration, duration, len(times))
+    found = []
+    for error in errors:
+        power = -(multipliers * np.gradient(error, along.t[1], axis=0)).sum(axis=1)
+        mean = np.interp(later, times, power, period=along.duration if along.closed else None).mean()
+        found.append((float(np.abs(error[compared]).max()), float(mean * (1 - COMPARED) * duration)))
+    return found
 
 
 def _errors_along(

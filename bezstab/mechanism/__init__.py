@@ -17,7 +17,7 @@ from bezstab.mechanism.constraint_normals import (
 from bezstab.mechanism.equations import Mechanism, T, compiled_mechanism
 from bezstab.mechanism.generated_code import accelerations, lane_function, state_function
 from bezstab.mechanism.motions import Motion, motion, motion_over, regular_motion
-from bezstab.mechanism.observation import Observation, energy_balance, observe, singular_passages
+from bezstab.mechanism.observation import Observation, energy_balance, multiplier_work, observe, singular_passages
 from bezstab.mechanism.programs import even_steps, program_of
 from bezstab.mechanism.runner import Start, Trajectory, march, resume, simulate
 from bezstab.mechanism.scene_files import load_scene, shipped_scenes

@@ -1075,6 +1075,22 @@ SWEPT = RowKind(
         C_MAX,
         MEASURED_ERROR,
         PREDICTED_ERROR,
+        number(
+            "measured_work",
+            "Work of the multipliers on constraint errors in the later half of the run, which its energy gains",
+            "measured work (J)",
+            ".2e",
+            unit="J",
+            null="if the run failed",
+        ),
+        number(
+            "predicted_work",
+            "That work as predicted to leading order, with nothing fitted",
+            "predicted work (J)",
+            ".2e",
+            unit="J",
+            null="where predicted_error is",
+        ),
         number("c_rms", "Root mean square of the constraint error", "rms c (m, rad)", ".1e", unit="m or rad"),
         CDOT_MAX,
         number(
@@ -1125,6 +1141,13 @@ FRONTS = RowKind(
             "The largest constraint error that is forced at any rate and velocity_error, such shares, added up",
             "both",
             ".2e",
+        ),
+        number(
+            "energy_growth",
+            "Growth of energy in a revolution of a motion whose rate varies by 30 %, as a share of it",
+            "energy gained",
+            ".2e",
+            null="where that is not known",
         ),
     ),
 )

@@ -17,6 +17,7 @@ import numpy as np
 
 from bezstab.errors import InputError, NumericalError
 from bezstab.methods import Method
+from bezstab.motion import motion_energy
 from bezstab.stability.accurate_points import BETTER
 from bezstab.stability.arrays import FloatArray
 from bezstab.stability.best_points import BestPoint, best_point_or_reason
@@ -55,7 +56,8 @@ class FrontPoint:
     """The point of least combined error among those with |z_p| <= z_abs_below; z_abs is its own |z_p|.
 
     Errors are shares of the amplitudes of a motion of omega_h rad a step: total_error of q, velocity_error of the
-    velocity, and combined_error as `combined_error` adds them up.
+    velocity, and combined_error as `combined_error` adds them up. energy_growth is what a revolution adds to the energy
+    of such a motion, as a share of it (motion/modulated_circle.py), nan where that is not known.
     """
 
     method: Method
@@ -67,6 +69,7 @@ class FrontPoint:
     total_error: float
     velocity_error: float
     combined_error: float
+    energy_growth: float
 
 
 def error_front(method: Method, rates: Sequence[float] = RATES, omega_h: Fraction = OMEGA_H) -> list[FrontPoint]:
@@ -106,6 +109,7 @@ def _front_point(method: Method, omega_h: Fraction, rate: float, alpha_hat: floa
         total_error=float(errors.total),
         velocity_error=float(errors.velocity),
         combined_error=float(combined_error(method, alpha_hat, beta_hat, omega_h)),
+        energy_growth=2 * np.pi * float(motion_energy(method, alpha_hat, beta_hat, float(omega_h)).growth()),
     )
 
 

@@ -46,6 +46,15 @@ def test_its_own_choice_at_each_step_costs_no_order(name: str) -> None:
     assert (fine.alpha_hat, fine.beta_hat) == (chosen.alpha_hat, chosen.beta_hat)
 
 
+@pytest.mark.parametrize(("name", "within"), [("AB2", 0.03), ("B4", 0.03), ("AB4", 0.03), ("SYM", 0.2)])
+def test_so_is_the_work_that_the_energy_gains_by_it(name: str, within: float) -> None:
+    """To leading order, which of symplectic Euler is the first power of the step."""
+    for run in swept(name, (8e-4, 1.6e-3), SOFT):
+        assert run.measured_work
+        assert run.measured_work == pytest.approx(run.predicted_work, rel=within)
+        assert run.energy_drift / run.measured_work > 1  # the method's own is beside it, of the same sign here
+
+
 @pytest.mark.parametrize(("name", "within"), [("B4", 0.01), ("AB4", 0.01), ("SYM", 0.01), ("RK4", 0.35)])
 def test_in_the_later_half_of_a_run_the_constraint_error_is_the_predicted_one(name: str, within: float) -> None:
     """Of RK4 at its gentle choice, whose errors curved constraints change the most, within a third.

@@ -41,7 +41,7 @@ def errors(name: str, scene: str, h: float, shares: Sequence[float], duration: f
     """Yield the predicted and the measured error (m, rad) at shares of the robust alpha and beta."""
     mechanism, method = compiled_mechanism(load_scene(scene)), lookup(name)
     points = [robust_point(name, share) for share in shares]
-    for point, predicted in zip(points, predicted_errors(mechanism, method, h, points, duration), strict=True):
+    for point, (predicted, _) in zip(points, predicted_errors(mechanism, method, h, points, duration), strict=True):
         run = simulated(mechanism, method, h=h, duration=duration, alpha_hat=point[0], beta_hat=point[1])
         assert run.failure is None
         yield predicted, settled_error(run, run.t)

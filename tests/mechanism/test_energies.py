@@ -116,3 +116,13 @@ def test_of_midpoint_the_torque_of_stages_is_beside_the_multipliers_work() -> No
     predicted = run.energy[0] * float(motion_energy(lookup("RK2"), 0.4, 0.04, 0.06).rotation) * 12
     assert run.energy_drift[-1] - run.multiplier_work[-1] == pytest.approx(predicted, rel=0.05)
     assert predicted > 1e-4
+
+
+def test_growth_takes_a_motion_off_its_course_by_half_pi_times_the_revolutions_squared() -> None:
+    """Of the angle of the same rotation, what its second difference has: a rate that is off from the start has none."""
+    at_rest = {"position": {"bob.x": 1.0, "bob.y": 0.0}, "velocity": {"bob.y": 3.0}}
+    run = run_of(pendulum(gravity=[0, 0], initial=at_rest), "RK2", h=0.01, duration=12.0)
+    growth = 2 * np.pi * float(motion_energy(lookup("RK2"), 0.2, 0.01, 0.03).rotation)
+    first, middle, last = np.unwrap(np.arctan2(run.q[:, 1], run.q[:, 0]))[[200, 700, 1200]]
+    revolutions = (middle - first) / (2 * np.pi)
+    assert last - 2 * middle + first == pytest.approx(np.pi * growth * revolutions**2, rel=0.05)

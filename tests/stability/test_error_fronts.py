@@ -10,6 +10,7 @@ import pytest
 
 from bezstab.errors import InputError, NumericalError
 from bezstab.methods import lookup
+from bezstab.motion import motion_energy
 from bezstab.stability import (
     FrontPoint,
     best_point,
@@ -41,6 +42,8 @@ def hold_what_they_say(front: Sequence[FrontPoint], omega_h: Fraction) -> None:
         assert spectral_radius(point.method, *there) <= point.z_abs_below + 1e-3
         errors = forced_error(point.method, *there, omega_h)
         assert (point.total_error, point.velocity_error) == (float(errors.total), float(errors.velocity))
+        growth = motion_energy(point.method, *there, float(omega_h)).growth()
+        assert point.energy_growth == pytest.approx(2 * np.pi * float(growth), nan_ok=True)
         sampled = forced_error(point.method, *there, omega_h, sampled=True)
         without = forced_error(point.method, 0.0, 0.0, omega_h, sampled=True)
         assert point.combined_error == sampled.total + np.maximum(0.0, sampled.velocity - without.velocity)
