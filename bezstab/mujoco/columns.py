@@ -4,6 +4,7 @@ import math
 from collections.abc import Sequence
 
 from bezstab.mujoco.blame import Suspect
+from bezstab.mujoco.energy import Kept
 from bezstab.mujoco.linting import Judged
 from bezstab.mujoco.remedies import Remedy
 from bezstab.mujoco.solrefs import Feedback
@@ -40,6 +41,19 @@ REMEDIES: Sequence[Column[Remedy]] = (
     Column("write", "write", lambda remedy: remedy.write, "what makes every unsafe state safe, checked by the step"),
     Column("for", "element", lambda remedy: remedy.element, "element of the model"),
     Column("|z| then", "z_abs", lambda remedy: remedy.z_abs, "a step multiplies errors by it, at most"),
+)
+
+ENERGIES: Sequence[Column[Kept]] = (
+    Column("", "row", lambda _: "energy", "what the row is about"),
+    Column("from", "at", lambda kept: kept.at, "qpos0, a keyframe, a row of a log"),
+    Column("with", "setting", lambda kept: kept.setting, "solref and solimp"),
+    Column(
+        "energy kept in 1 s",
+        "kept",
+        lambda kept: kept.kept,
+        "share of the energy that a second keeps, without drives and friction; null where the run breaks down",
+        form=".2%",
+    ),
 )
 
 SETTINGS: Sequence[Column[Feedback]] = (

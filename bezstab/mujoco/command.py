@@ -28,6 +28,14 @@ def _gains(text: str) -> "Gains":
     return Gains(pattern, *map(rational, gains))
 
 
+def _rate(text: str) -> tuple[str, float]:
+    """Return the joint and the rate that crank=20 says."""
+    joint, equals, rate = text.rpartition("=")
+    if not (joint and equals):
+        raise InputError(f"{text!r}: expected JOINT=RATE")
+    return joint, float(rational(rate))
+
+
 @click.command()
 @click.argument("model", type=click.Path(path_type=Path))
 @click.option("--at", multiple=True, help="Look there: qpos0, a keyframe, or a CSV log of qpos. Repeatable [all].")
@@ -40,10 +48,23 @@ def _gains(text: str) -> "Gains":
 )
 @click.option("--every", type=int, default=1, help="With --pd: the torque is computed every so many steps.")
 @click.option("--late", type=NUMBER, default="0", help="With --pd: the torque is applied so many steps late.")
+@click.option(
+    "--spin",
+    type=ParsedType("joint=rate", _rate),
+    multiple=True,
+    help="Run a second from a joint's rate (rad/s or m/s) at the first state: what is kept of the energy? Repeatable.",
+)
 @click.option("--deep", is_flag=True, help="Judge constraints past solimp's width, too.")
 @shared.form
 def lint(
-    model: Path, at: Sequence[str], gains: "Sequence[Gains]", every: int, late: Fraction, deep: bool, **_: object
+    model: Path,
+    at: Sequence[str],
+    gains: "Sequence[Gains]",
+    every: int,
+    late: Fraction,
+    spin: Sequence[tuple[str, float]],
+    deep: bool,
+    **_: object,
 ) -> int:
     """Judge a MuJoCo model at its timestep: exit status 1 if unsafe.
 
@@ -59,19 +80,20 @@ def lint(
     Example: bezstab lint robot.xml
     """
     from bezstab.engines import Timing
-    from bezstab.mujoco.columns import REMEDIES, SETTINGS, STATES, SUSPECTS
+    from bezstab.mujoco.columns import ENERGIES, REMEDIES, SETTINGS, STATES, SUSPECTS
     from bezstab.mujoco.linting import linted_model
 
     timing = Timing(every, late)
     if timing != Timing() and not gains:
         raise InputError("--every and --late need --pd: they are about a controller")
-    linted = linted_model(model, at, gains, timing, deep=deep, shown=progress)
+    linted = linted_model(model, at, gains, timing, deep=deep, spin=dict(spin), shown=progress)
     show_text(linted.sentence)
     show_tables(
         [
             (STATES, linted.judged),
             (SUSPECTS, linted.suspects),
             (REMEDIES, linted.remedies),
+            (ENERGIES, linted.kept),
             (SETTINGS, linted.feedbacks),
         ]
     )

@@ -4,12 +4,13 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from bezstab.arguments import Number, exact_number, in_keywords, whole_number
+from bezstab.arguments import Number, exact_number, in_keywords, real_number, whole_number
 from bezstab.engines import Timing
 from bezstab.errors import InputError
 from bezstab.mujoco.blame import Shown, Suspect, suspects_at
 from bezstab.mujoco.controllers import Gains, controlled, uncontrolled
 from bezstab.mujoco.elements import Element
+from bezstab.mujoco.energy import Kept, energy_kept, spun
 from bezstab.mujoco.growth import Growth, Kind, growth_at, stable_factor
 from bezstab.mujoco.reading import Loaded, loaded_model, silent
 from bezstab.mujoco.remedies import Remedy, remedies
@@ -55,7 +56,8 @@ class Linted:
     """What was found of a model: h in s; every state, the worst of them, and the suspects there if it is unsafe.
 
     `accuracy` is by how much |z| of the worst changes with twice the nudge. `feedbacks` are the settings of
-    constraints. `status` is the exit status of the command.
+    constraints, `kept` what a second keeps of the energy of states that move. `status` is the exit status of the
+    command.
     """
 
     name: str
@@ -67,6 +69,7 @@ class Linted:
     suspects: tuple[Suspect, ...]
     remedies: tuple[Remedy, ...]
     feedbacks: tuple[Feedback, ...]
+    kept: tuple[Kept, ...]
     sentence: str
     status: int
 
@@ -79,6 +82,7 @@ def lint(
     every: int = 1,
     late: Number = 0,
     deep: bool = False,
+    spin: Mapping[str, Number] | None = None,
 ) -> Linted:
     """Return whether a MuJoCo model is safe at its timestep: what errors do at its states, and what to write.
 
@@ -89,6 +93,8 @@ def lint(
         regular expression.
     every: the controller computes its force every so many steps. late: it is applied so many steps late.
     deep: judge constraints past solimp's width, too.
+    spin: rates of joints (rad/s or m/s) at the first of the states, from which a second is run to see
+        what is kept of the energy; so it is from states that have velocities.
 
     Returns a Linted; `sentence` is the answer in words, `worst` the state that decides, `remedies` what to
     write.
@@ -99,7 +105,8 @@ def lint(
     with in_keywords():
         gains = [Gains(pattern, *(exact_number(value, "pd") for value in both)) for pattern, both in (pd or {}).items()]
         timing = Timing(whole_number(every, "every"), exact_number(late, "late"))
-        return linted_model(model, at, gains, timing, deep=deep)
+        rates = {joint: real_number(rate, "spin") for joint, rate in (spin or {}).items()}
+        return linted_model(model, at, gains, timing, deep=deep, spin=rates)
 
 
 def linted_model(
@@ -109,6 +116,7 @@ def linted_model(
     timing: Timing,
     *,
     deep: bool = False,
+    spin: Mapping[str, float] | None = None,
     shown: Shown = lambda items, _label, _length: items,
 ) -> Linted:
     """Return the same; while it takes long, `shown` shows how far it is."""
@@ -120,6 +128,8 @@ def linted_model(
     if model.nv > MOST_DOFS:
         raise InputError(f"{loaded.name}: {model.nv} degrees of freedom, at most {MOST_DOFS} are judged")
     with silent(mujoco):
+        moving = [spun(robot, states[0], spin)] if spin else states
+        kept = tuple(shown(energy_kept(robot, moving), "energy", len(moving)))
         many = len(states) > MOST_WITH_LIMITS
         found = [each for state in shown(states, "states", len(states)) for each in _looked_at(robot, state, not many)]
         worst = min(found, key=_badness)
@@ -155,12 +165,13 @@ def linted_model(
         suspects=tuple(suspect for _, suspect in suspects),
         remedies=tuple(written),
         feedbacks=settings,
-        sentence=_sentence(loaded, robot, worst.judged(), settings),
+        kept=kept,
+        sentence=_sentence(loaded, robot, worst.judged(), settings, kept),
         status=1 if is_unsafe else 3 if rough else 0,
     )
 
 
-def _sentence(loaded: Loaded, robot: Robot, worst: Judged, settings: Iterable[Feedback]) -> str:
+def _sentence(loaded: Loaded, robot: Robot, worst: Judged, settings: Iterable[Feedback], kept: Sequence[Kept]) -> str:
     """Return the answer in words."""
     unsafe = [each for each in settings if each.unsafe]
     match worst.kind:
@@ -178,6 +189,10 @@ def _sentence(loaded: Loaded, robot: Robot, worst: Judged, settings: Iterable[Fe
             answer = "is safe: no error grows"
     step = f"timestep {robot.h:g} s, integrator {INTEGRATORS[robot.model.opt.integrator]}"
     notes = [loaded.left_out] if loaded.left_out else []
+    if kept and kept[0].kept is not None:
+        notes.append(f"a second without drives and friction keeps {100 * kept[0].kept:.4g} % of its energy")
+    elif kept:
+        notes.append(f"without drives and friction it breaks down within a second at {kept[0].at}")
     if alone := uncontrolled(robot.mujoco, robot.model, robot.drives):
         notes.append(f"motors without a controller: {', '.join(alone)}: --pd NAME=KP,KD judges them with one")
     return " ".join([f"{loaded.name} {answer} ({step}).", *(f"{note[0].upper()}{note[1:]}." for note in notes)])
