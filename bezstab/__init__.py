@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from bezstab.drives.answer import drive
     from bezstab.mujoco.linting import lint
     from bezstab.show import plot
+    from bezstab.step_sequences.answer import steps
     from bezstab.units import from_dimensionless, to_dimensionless
 
 __version__ = "0.2.0"
@@ -60,6 +61,7 @@ __all__ = [
     "scene",
     "simulate",
     "spectral_radius",
+    "steps",
     "to_dimensionless",
     "verdict",
     "verify",

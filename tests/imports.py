@@ -19,6 +19,7 @@ ROOMS = (
     "cli",
     "chains",
     "drives",
+    "step_sequences",
     "mujoco",
     "paper",
 )

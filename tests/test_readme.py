@@ -21,6 +21,7 @@ PAGES = (
     "bezstab/stability/README.md",
     "bezstab/chains/README.md",
     "bezstab/drives/README.md",
+    "bezstab/step_sequences/README.md",
     "bezstab/evidence/README.md",
     "bezstab/mujoco/README.md",
     "bezstab/paper/README.md",
@@ -34,7 +35,7 @@ PAGES = (
 
 ON_A_PIPE = {"COLUMNS": None}
 """Environment in which nothing says how wide a line may be."""
-UNSAFE = ("check", "chain", "choose", "drive", "lint")
+UNSAFE = ("check", "chain", "choose", "drive", "lint", "steps")
 """Commands whose exit status is 1 where what they judge is unsafe."""
 PLACEHOLDER = re.compile(r"\b(COMMAND|LOG|MODEL|NAME|PATH|FILE)\b")
 """Words that stand for something else: what holds one is no command to type."""

@@ -25,6 +25,7 @@ COMMANDS: Mapping[str, Mapping[str, str]] = {
     "Choose": {
         "choose": "bezstab.cli.choose_command",
         "check": "bezstab.cli.check_command",
+        "steps": "bezstab.step_sequences.command",
         "drive": "bezstab.drives.command",
         "lint": "bezstab.mujoco.command",
         "engines": "bezstab.cli.engines_command",

@@ -16,8 +16,8 @@ from bezstab.show import ROW_KINDS, RowKind, shown_width
 from tests.cli.running import DATA
 
 SMALL = "--figure none --table none"
-WITHOUT_ROWS = {"paper", "chain", "drive", "lint"}
-"""The paper's command writes tables; chain, drive and lint have columns of their own."""
+WITHOUT_ROWS = {"paper", "chain", "drive", "lint", "steps"}
+"""The paper's command writes tables; chain, drive, lint and steps have columns of their own."""
 
 TYPES = {
     **dict.fromkeys(("numbers", "text rows"), list),

@@ -1,0 +1,234 @@
+"""Does every sequence of steps in a range let errors decay, and with which feedback does it?
+
+method, alpha and beta, h_min, h_max          →   judge_steps   →   StepsAnswer
+method, h_min, h_max                          →   proven_choice   →   StepsAnswer
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+from itertools import groupby
+
+from bezstab.arguments import Number, exact_number, in_keywords
+from bezstab.engines import Engine, Point, engine_and_values
+from bezstab.errors import InputError
+from bezstab.goals import Goal
+from bezstab.methods import Method, check_one_step, lookup
+from bezstab.questions import methods_for
+from bezstab.stability import Varying, VaryingSteps, choose, varying_steps
+from bezstab.step_sequences.growing_runs import growing_run
+from bezstab.units import alpha_and_beta, check_step, feedback_gains, to_dimensionless
+
+GOALS: Sequence[Goal] = ("robust", "fastest", "critical")
+"""Of `choose`, in the order in which they are tried."""
+
+SAME_GAINS = 1e-9
+"""Of gains in 1/s and 1/s^2: roots and powers that engines take are rounded to float64."""
+
+
+@dataclass(frozen=True)
+class Steps:
+    """A range of steps (s) and how feedback follows them: alpha and beta stay, or with `hold` alpha_hat and beta_hat.
+
+    InputError for a range without a step.
+    """
+
+    h_min: Fraction
+    h_max: Fraction
+    hold: bool = False
+
+    def __post_init__(self) -> None:
+        check_step(self.h_min, "--h-min")
+        check_step(self.h_max, "--h-max")
+        if self.h_max < self.h_min:
+            raise InputError(f"--h-min {float(self.h_min):g}: expected at most --h-max, {float(self.h_max):g} s")
+
+
+@dataclass(frozen=True, repr=False)
+class StepsAnswer:
+    """Whether errors decay for every sequence of steps in a range.
+
+    `alpha_hat` and `beta_hat` are those of the longest step. `goal`: the goal of `choose` that gave them; None where
+    they were given. `found`: the proof, or the sequence that refutes. `shown_by`: the line of `simulate` that shows
+    errors grow; None unless refuted, and where no run shows it. `sentence`: the answer in words.
+    """
+
+    method: Method
+    alpha_hat: Fraction
+    beta_hat: Fraction
+    steps: Steps
+    goal: Goal | None
+    found: VaryingSteps
+    shown_by: str | None
+    sentence: str = field(compare=False)
+
+    def __repr__(self) -> str:
+        return self.sentence
+
+    def __bool__(self) -> bool:
+        return self.safe
+
+    @property
+    def verdict(self) -> Varying:
+        """What is known of all sequences."""
+        return self.found.varying
+
+    @property
+    def safe(self) -> bool:
+        """Whether every sequence is proven to let errors decay."""
+        return self.verdict == "proven"
+
+
+@in_keywords()
+def steps(
+    method: str | Method | None = None,
+    *,
+    h_min: Number,
+    h_max: Number,
+    alpha: Number | None = None,
+    beta: Number | None = None,
+    hold: bool = False,
+    engine: str | None = None,
+) -> StepsAnswer:
+    """Return whether errors decay for every sequence of steps from h_min to h_max (s).
+
+    method: your integration method; with an engine, by default its own.
+    alpha, beta: in 1/s, the same for all steps. With `hold` alpha_hat and beta_hat, the same for all steps. Without
+        them, the first feedback of `choose` (goals robust, fastest, critical, at h_max) that is proven for these steps;
+        if none is, the answer is about the first.
+    engine: an engine with its values in their place, such as "bullet=0.2"; whether it holds is then known.
+
+    Returns a StepsAnswer.
+
+    InputError for a method of several steps, whose coefficients assume equal steps; for an engine whose values change
+    alpha and beta as well as alpha_hat and beta_hat with the step; for numbers out of range. Source: Liberzon,
+    Switching in Systems and Control, chapter 2.
+    """
+    named, values = (None, None) if engine is None else engine_and_values(engine)
+    given = () if method is None else (method if isinstance(method, Method) else lookup(method),)
+    numbers = [None if each is None else exact_number(each, name) for each, name in ((alpha, "alpha"), (beta, "beta"))]
+    asked = Steps(exact_number(h_min, "h_min"), exact_number(h_max, "h_max"), hold)
+    (answer,) = answers(given, asked, *numbers, engine=named, values=values)
+    return answer
+
+
+def answers(
+    methods: tuple[Method, ...],
+    asked: Steps,
+    alpha: Fraction | None = None,
+    beta: Fraction | None = None,
+    *,
+    engine: Engine | None = None,
+    values: tuple[Fraction, ...] | None = None,
+) -> list[StepsAnswer]:
+    """Return an answer for each method, without methods for the engine's own; arguments and errors as `steps`."""
+    methods = methods_for(methods, engine)
+    if engine and values is not None:
+        if alpha is not None or beta is not None or asked.hold:
+            raise InputError("--engine takes the place of --alpha, --beta and --hold")
+        point, asked = engine_point(engine, values, asked)
+        return [judge_steps(method, point, asked) for method in methods]
+    if alpha is None and beta is None:
+        return [proven_choice(method, asked) for method in methods]
+    if alpha is None or beta is None:
+        raise InputError("--alpha and --beta go together: without both, `choose` is asked")
+    point = (alpha, beta) if asked.hold else to_dimensionless(alpha, beta, asked.h_max)
+    return [judge_steps(method, point, asked) for method in methods]
+
+
+def engine_point(engine: Engine, values: tuple[Fraction, ...], asked: Steps) -> tuple[Point, Steps]:
+    """Return what an engine makes of its values at the longest step, and how its feedback follows the steps.
+
+    InputError where its values mean neither the same alpha and beta nor the same alpha_hat and beta_hat at both ends of
+    the range, as those do that are clamped to the step.
+    """
+    shortest, longest = (engine.applied(values, h) for h in (asked.h_min, asked.h_max))
+    if shortest.points == longest.points:
+        return longest.point, replace(asked, hold=True)
+    gains = [
+        [float(gain) for point in applied.points for gain in feedback_gains(*point, h)]
+        for applied, h in ((shortest, asked.h_min), (longest, asked.h_max))
+    ]
+    if not all(math.isclose(*each, rel_tol=SAME_GAINS) for each in zip(*gains, strict=True)):
+        raise InputError(
+            f"--engine: {engine.name} makes of these values neither the same α and β nor the same α̂ and β̂ at steps of "
+            f"{float(asked.h_min):g} and {float(asked.h_max):g} s"
+        )
+    return longest.point, asked
+
+
+def judge_steps(method: Method, point: Point, asked: Steps, goal: Goal | None = None) -> StepsAnswer:
+    """Return whether errors decay for every sequence of steps; the point is that of the longest one."""
+    found = varying_steps(method, *point, h=asked.h_max, h_min=asked.h_min, h_max=asked.h_max, hold=asked.hold)
+    answer = StepsAnswer(
+        method=method,
+        alpha_hat=point[0],
+        beta_hat=point[1],
+        steps=asked,
+        goal=goal,
+        found=found,
+        shown_by=growing_run(method, point, found),
+        sentence="",
+    )
+    return replace(answer, sentence=_sentence(answer))
+
+
+def proven_choice(method: Method, asked: Steps) -> StepsAnswer:
+    """Return the answer about the first of `choose`'s feedbacks that is proven; about the first one if none is."""
+    check_one_step(method)
+    tried = []
+    for goal in GOALS:
+        chosen = choose(method, goal, h=asked.h_max, margins=False)
+        answer = judge_steps(method, chosen.point, asked, goal)
+        if answer.safe:
+            return answer
+        tried.append(answer)
+    first = tried[0]
+    return replace(first, sentence=f"{first.sentence} Nor is another feedback of `choose` proven for these steps.")
+
+
+def _sentence(answer: StepsAnswer) -> str:
+    """Return what was judged, the verdict, and why.
+
+    SYM, α = 2 1/s, β = 100 1/s, steps from 0.00917 s to 0.0166667 s: refuted. Each round of 0.00917 s, then 0.0166667
+    s multiplies the error by 1.78.
+    """
+    asked = answer.steps
+    if asked.hold:
+        feedback = f"α̂ = {float(answer.alpha_hat):.6g}, β̂ = {float(answer.beta_hat):.6g} at every step"
+    else:
+        rates = zip("αβ", alpha_and_beta(answer.alpha_hat, answer.beta_hat, asked.h_max), strict=True)
+        feedback = ", ".join(f"{name} = {rate:.6g} 1/s" for name, rate in rates if rate is not None)
+    if answer.goal:
+        feedback += f" (goal {answer.goal} of `choose`)"
+    judged = f"{answer.method.name}, {feedback}, steps from {_seconds(asked.h_min)} to {_seconds(asked.h_max)}"
+    return f"{judged}: {answer.verdict}. {_why(answer.found)}."
+
+
+def _why(found: VaryingSteps) -> str:
+    """Return what proves that errors decay, or a sequence that lets them grow."""
+    if found.sequence:
+        return _growing(found.sequence, found.growth or 1)
+    match found.kind:
+        case "quadratic":
+            return "Errors decay in every sequence: a quadratic form falls with each step"
+        case "commuting":
+            return "Errors decay in every sequence: each step decays alone, and steps commute"
+        case _:
+            return "Each step decays alone, but neither a proof for all sequences nor one that grows was found"
+
+
+def _growing(sequence: Sequence[Fraction], growth: float) -> str:
+    """Return what each round of a sequence does to errors; how much they grow where three digits show it."""
+    if len(sequence) == 1:
+        return f"A step of {_seconds(sequence[0])} alone does not decay"
+    repeated = [(_seconds(step), len(list(same))) for step, same in groupby(sequence)]
+    sequence_words = ", then ".join(step if count == 1 else f"{count} of {step}" for step, count in repeated)
+    factor = f"{growth:.3g}"
+    what = f"multiplies the error by {factor}" if float(factor) > 1 else "does not let the error decay"
+    return f"Each round of {sequence_words} {what}"
+
+
+def _seconds(step: Fraction) -> str:
+    return f"{float(step):.6g} s"
