@@ -203,10 +203,10 @@ def _sentence(answer: StepsAnswer) -> str:
     if answer.goal:
         feedback += f" (goal {answer.goal} of `choose`)"
     judged = f"{answer.method.name}, {feedback}, steps from {_seconds(asked.h_min)} to {_seconds(asked.h_max)}"
-    return f"{judged}: {answer.verdict}. {_why(answer.found)}."
+    return f"{judged}: {answer.verdict}. {why_words(answer.found)}."
 
 
-def _why(found: VaryingSteps) -> str:
+def why_words(found: VaryingSteps) -> str:
     """Return what proves that errors decay, or a sequence that lets them grow."""
     if found.sequence:
         return _growing(found.sequence, found.growth or 1)

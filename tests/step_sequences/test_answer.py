@@ -1,0 +1,98 @@
+"""Answers about steps that vary: given feedback, an engine's values, and feedback that is proven."""
+
+import importlib
+from fractions import Fraction
+from math import inf
+
+import pytest
+
+import bezstab
+from bezstab.engines import engine_and_values
+from bezstab.errors import InputError
+from bezstab.methods import lookup
+from bezstab.stability import VaryingSteps
+from bezstab.step_sequences.answer import Steps, engine_point, proven_choice, steps, why_words
+
+H_MIN, H_MAX = Fraction(1, 240), Fraction(1, 60)
+
+
+def test_the_name_in_python_is_the_function_also_once_the_command_is_loaded() -> None:
+    importlib.import_module("bezstab.step_sequences.command")
+    assert bezstab.steps is steps
+
+
+def test_feedback_in_1_s_is_that_of_the_longest_step() -> None:
+    answer = steps("SYM", alpha=2, beta=100, h_min=0.00917, h_max="1/60")
+    assert (answer.alpha_hat, answer.beta_hat) == (Fraction(1, 15), Fraction(25, 9))
+    assert not answer
+    assert repr(answer) == (
+        "SYM, α = 2 1/s, β = 100 1/s, steps from 0.00917 s to 0.0166667 s: refuted. Each round of 0.00917 s, then "
+        "0.0166667 s multiplies the error by 1.78."
+    )
+
+
+def test_held_feedback_is_the_same_at_every_step() -> None:
+    answer = steps("SYM", alpha=1, beta="1/2", h_min=0.005, h_max=0.01, hold=True)
+    assert (answer.alpha_hat, answer.beta_hat) == (Fraction(1), Fraction(1, 2))
+    assert answer.safe
+    assert "α̂ = 1, β̂ = 0.5 at every step" in answer.sentence
+
+
+@pytest.mark.parametrize(
+    ("engine", "hold"),
+    [
+        ("bullet=0.2", True),  # its ERP is a share of the error, whatever the step
+        ("mujoco=0.5,1", False),  # its time constant is in s
+    ],
+)
+def test_whether_an_engine_holds_is_known_from_its_values(engine: str, hold: bool) -> None:
+    named, values = engine_and_values(engine)
+    point, asked = engine_point(named, values, Steps(H_MIN, H_MAX))
+    assert asked.hold == hold
+    assert point == named.applied(values, H_MAX).point
+
+
+def test_an_engine_that_does_neither_is_refused() -> None:
+    with pytest.raises(InputError, match="chipmunk makes of these values neither"):
+        steps(engine="chipmunk=0.0018", h_min=H_MIN, h_max=H_MAX)
+
+
+def test_feedback_is_found_that_is_proven_where_there_is_some() -> None:
+    """Of SYM, held over a thousandfold range, robust is refuted and fastest, (1, 1), proven."""
+    asked = Steps(Fraction(1, 10**5), Fraction(1, 100), hold=True)
+    found = proven_choice(lookup("SYM"), asked)
+    assert (found.goal, found.verdict) == ("fastest", "proven")
+    assert (float(found.alpha_hat), float(found.beta_hat)) == pytest.approx((1, 1))
+    none = proven_choice(lookup("generalized-alpha"), asked)
+    assert (none.goal, none.verdict) == ("robust", "refuted")
+    assert none.sentence.endswith("Nor is another feedback of `choose` proven for these steps.")
+
+
+def test_what_is_refused() -> None:
+    for arguments, message in (
+        ({"h_min": 2, "h_max": 1}, "h_min 2: expected at most h_max, 1 s"),
+        ({"h_min": 0, "h_max": 1}, "h_min = 0"),
+        ({"h_min": 1, "h_max": 1, "alpha": 1}, "alpha and beta go together"),
+        ({"h_min": 1, "h_max": 1, "engine": "bullet=0.2", "hold": True}, "engine takes the place"),
+        ({"h_min": 1, "h_max": 1, "method": "B4"}, "assume that these are of equal length"),
+        ({"h_min": 1, "h_max": 1, "method": "B4", "alpha": 1, "beta": 1}, "assume that these are of equal length"),
+    ):
+        with pytest.raises(InputError, match=message):
+            steps(**{"method": "SYM", **arguments})  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("sequence", "growth", "words"),
+    [
+        ((2, 1, 1), 1.777, "Each round of 2 s, then 2 of 1 s multiplies the error by 1.78"),
+        ((2, 1), 1.000001, "Each round of 2 s, then 1 s does not let the error decay"),
+        ((2, 1), None, "Each round of 2 s, then 1 s does not let the error decay"),
+        ((2, 1), inf, "Each round of 2 s, then 1 s multiplies the error by inf"),
+        ((2,), 3.0, "A step of 2 s alone does not decay"),
+    ],
+)
+def test_a_sequence_in_words(sequence: tuple[int, ...], growth: float | None, words: str) -> None:
+    found = VaryingSteps(
+        "refuted", Fraction(1), Fraction(2), hold=True, sequence=tuple(map(Fraction, sequence)), growth=growth
+    )
+    assert why_words(found) == words
