@@ -4,6 +4,7 @@ kp, kd, inertia, h, method, timing          →   judge_drive   →   DriveAnswe
 inertia, h, methods, timing, bandwidth      →   gains_for            →   Drive
 """
 
+import cmath
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -13,7 +14,7 @@ from typing import Any, Literal
 import numpy as np
 
 from bezstab.arguments import Number, exact_number, in_keywords, whole_number
-from bezstab.drives.held_torque import spectral_radius, verdict
+from bezstab.drives.held_torque import dominant_pole, verdict
 from bezstab.drives.limits import Limits, limits
 from bezstab.engines import DRIVE_METHODS, FRESH, Drive, Timing, timing_of
 from bezstab.errors import InputError
@@ -23,7 +24,7 @@ from bezstab.stability import first_where, steps_to_settle
 from bezstab.units import check_step
 from bezstab.words import change_words, counted, decay_words, gains_words, seconds_words
 
-UsedUp = Literal["gains", "rate", "delay", "rate and delay", "kp", "kd", "too little kd"]
+UsedUp = Literal["gains", "rate", "delay", "rate and delay", "kp", "kd", "too little kd", "ki"]
 """Why a drive is unstable; for a stable one, which of its numbers is nearest to its limit."""
 
 CAUSES: Mapping[UsedUp, str] = {
@@ -37,9 +38,16 @@ NEAREST: Mapping[UsedUp, str] = {
     "kp": "kp is nearest to its limit",
     "kd": "kd is nearest to its limit",
     "too little kd": "kd is nearest to its limit, the lower one",
+    "ki": "ki is nearest to its limit",
     "rate": "the time between two torques is nearest to its limit",
     "delay": "the delay is nearest to its limit",
 }
+
+
+GAINS = ("kp", "kd", "inertia", "ki")
+
+TENTH = 10.0
+"""Falls tenfold: as quick as an eye sees it."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -47,9 +55,12 @@ class DriveAnswer:
     """All that is known of a drive (SI units) whose torque a method applies, fresh, held or late.
 
     `verdict` is proven: what errors do, without kp those of the velocity. `z_abs` is the factor by which each step
-    multiplies them; `fresh_z_abs` the same if each step computed the torque and applied it. `settle_steps`: steps until
-    an error is a thousandth; None where it does not fall. `applied`: what this way of applying a drive is called, None
-    for a method that engines do not apply drives with. `sentence`: the answer in words.
+    multiplies them; `fresh_z_abs` the same if each step computed the torque and applied it. `damping_ratio` is that of
+    an oscillator that decays as errors do: without kd what the integrator alone adds, negative where it drives.
+    `tenth_steps` and `settle_steps`: steps until an error is a tenth, a thousandth; None where it does not fall.
+    `sag`: how far from its target it rests under a `load`, in rad (or m), 0 with ki; None without a load. `applied`:
+    what this way of applying a drive is called, None for a method that engines do not apply drives with. `sentence`:
+    the answer in words.
     """
 
     drive: Drive
@@ -60,7 +71,11 @@ class DriveAnswer:
     verdict: Verdict
     z_abs: float
     fresh_z_abs: float
+    damping_ratio: float | None
+    tenth_steps: int | None
     settle_steps: int | None
+    load: Fraction | None
+    sag: float | None
     limits: Limits
     used_up: UsedUp | None
     sentence: str = field(compare=False)
@@ -84,19 +99,23 @@ def drive(
     inertia: Number,
     *,
     h: Number,
+    ki: Number = 0,
     method: str | Method = "SYM",
     every: int = 1,
     late: Number = 0,
     filter_seconds: Number = 0,
+    load: Number | None = None,
 ) -> DriveAnswer:
     """Return whether a joint's drive is safe: torque = -kp (q - target) - kd q' on an inertia, in SI units.
 
+    ki: of an integral part, -ki times the integral of q - target; needs kp.
     h: the step of the physics in s.
     method: how the torque is applied: "SYM" (explicit), "imex-euler" (implicit in the velocity),
         "stable-pd", "implicit-euler" (fully implicit); for a fresh torque any method.
     every: the torque is computed every so many steps, and held; 1 to 100.
     late: it is applied so many steps late, or a fraction of them; 0 to 100.
     filter_seconds: time constant in s of a first-order filter of the measured velocity; 0 for none.
+    load: a steady torque or force on the joint (N m or N): how far it sags.
 
     Returns a DriveAnswer. A limit of the torque is not judged.
 
@@ -107,18 +126,45 @@ def drive(
     timing = timing_of(
         step, whole_number(every, "every"), exact_number(late, "late"), exact_number(filter_seconds, "filter_seconds")
     )
-    gains = Drive(exact_number(kp, "kp"), exact_number(kd, "kd"), exact_number(inertia, "inertia"))
-    return judge_drive(gains, step, method if isinstance(method, Method) else lookup(method), timing)
+    gains = Drive(*(exact_number(gain, name) for gain, name in zip((kp, kd, inertia, ki), GAINS, strict=True)))
+    named = method if isinstance(method, Method) else lookup(method)
+    return judge_drive(gains, step, named, timing, None if load is None else exact_number(load, "load"))
 
 
-def judge_drive(drive: Drive, h: Fraction, method: Method, timing: Timing = FRESH) -> DriveAnswer:
+def rates(
+    h: Fraction | None, physics: Fraction | None, every: int | None, controller: Fraction | None
+) -> tuple[Fraction, int]:
+    """Return the step of the physics (s) and how many of them a torque is held, each given so or as a rate (Hz).
+
+    InputError where one is given in two ways or none, and for a controller that does not divide the physics.
+    """
+    if (h is None) == (physics is None):
+        raise InputError("give --h, the step in s, or --physics, its rate in Hz")
+    step = h if h is not None else 1 / (physics or Fraction(1))
+    if controller is None:
+        return step, 1 if every is None else every
+    if every is not None:
+        raise InputError("give --every or --controller, not both")
+    held = 1 / (step * controller)
+    if held.denominator != 1:
+        hertz = f"{float(1 / step):g} Hz"
+        raise InputError(f"--controller {float(controller):g} Hz: the physics, {hertz}, is no multiple of it")
+    return step, int(held)
+
+
+def judge_drive(
+    drive: Drive, h: Fraction, method: Method, timing: Timing = FRESH, load: Fraction | None = None
+) -> DriveAnswer:
     """Return whether a drive is safe with steps of h (s), and how far each of its numbers may go alone.
 
-    InputError for a step that is not positive, and if the method cannot apply a torque that is held or late.
+    InputError for a step that is not positive, if the method cannot apply a torque that is held or late, and
+    for a load without kp.
     """
     check_step(h, "h")
-    point = drive.point(h)
-    found, z_abs = verdict(method, *point, timing), float(spectral_radius(method, *point, timing))
+    if load is not None and not drive.kp:
+        raise InputError("--load needs --kp: without stiffness nothing holds the load")
+    found, pole = verdict(drive, h, method, timing), dominant_pole(drive, h, method, timing)
+    z_abs = abs(pole)
     ends = limits(drive, h, method, timing)
     used_up = _nearest_limit(drive, timing, ends) if found == "converges" else _cause(drive, h, method, timing, ends)
     answer = DriveAnswer(
@@ -129,8 +175,12 @@ def judge_drive(drive: Drive, h: Fraction, method: Method, timing: Timing = FRES
         applied=DRIVE_METHODS.get(method.name),
         verdict=found,
         z_abs=z_abs,
-        fresh_z_abs=float(spectral_radius(method, *point, FRESH)),
+        fresh_z_abs=abs(dominant_pole(drive, h, method, FRESH)),
+        damping_ratio=damping_ratio(pole),
+        tenth_steps=steps_to_settle(z_abs, TENTH) if found == "converges" else None,
         settle_steps=steps_to_settle(z_abs) if found == "converges" else None,
+        load=load,
+        sag=None if load is None else 0.0 if drive.ki else float(load / drive.kp),
         limits=ends,
         used_up=used_up,
         sentence="",
@@ -138,15 +188,32 @@ def judge_drive(drive: Drive, h: Fraction, method: Method, timing: Timing = FRES
     return replace(answer, sentence=_sentence(answer))
 
 
+def damping_ratio(pole: complex) -> float | None:
+    """Return the damping ratio of an oscillator whose errors a step multiplies by a pole; None for poles 0 and 1."""
+    if pole in (0, 1):
+        return None
+    exponent = cmath.log(pole)
+    return -exponent.real / abs(exponent)
+
+
+def sag_words(sag: float) -> str:
+    """Return where a joint rests that is off by so much (rad, or m of a slider)."""
+    if not sag:
+        return "at its target"
+    return f"{math.degrees(sag):.3g}° (of a slider {1000 * sag:.3g} mm) from its target"
+
+
 def _cause(drive: Drive, h: Fraction, method: Method, timing: Timing, ends: Limits) -> UsedUp:
     """Return the cause of instability: the drive would be stable without it, or with another number in its place."""
 
     def stable(**changed: Any) -> bool:
-        return verdict(method, *drive.point(h), replace(timing, **changed)) == "converges"
+        return verdict(drive, h, method, replace(timing, **changed)) == "converges"
 
     if timing == FRESH:
         if ends.kd:
             return "kd" if drive.kd > ends.kd[0] else "too little kd"
+        if ends.ki and drive.ki > ends.ki[1]:
+            return "ki"
         return "kp" if ends.kp else "gains"
     if not stable(every=1, late=Fraction(0), filter_steps=Fraction(0)):
         return "gains"
@@ -164,6 +231,8 @@ def _nearest_limit(drive: Drive, timing: Timing, ends: Limits) -> UsedUp | None:
     if ends.kd and kd > 0:
         ratios["kd"] = ends.kd[1] / kd
         ratios["too little kd"] = kd / ends.kd[0] if ends.kd[0] else math.inf
+    if ends.ki and drive.ki:
+        ratios["ki"] = ends.ki[1] / float(drive.ki)
     if ends.every and timing != FRESH:
         ratios["rate"] = (ends.every + 1) / timing.every
     if ends.late is not None and timing.late:
@@ -185,7 +254,9 @@ def _sentence(answer: DriveAnswer) -> str:
     change = change_words(answer.z_abs, answer.verdict, what)
     if answer.settle_steps:
         change = decay_words(answer.settle_steps, h, what)
-    sentence = f"{judged}: {'safe' if answer.safe else 'not safe'}. {change[0].upper()}{change[1:]}.{_one_gain(drive)}"
+    sentence = f"{judged}: {'safe' if answer.safe else 'not safe'}. {change[0].upper()}{change[1:]}.{_one_gain(answer)}"
+    if answer.sag is not None and answer.safe:
+        sentence += f" Under {float(answer.load or 0):.4g} N m it rests {sag_words(answer.sag)}."
     changes = ", ".join(_changes(answer))
     if not answer.safe:
         remedy = f"It is stable with one of these alone: {changes}." if changes else "No single change makes it stable."
@@ -197,13 +268,17 @@ def _sentence(answer: DriveAnswer) -> str:
     return f"{sentence} It stays stable with one of these alone: {changes}{nearest}."
 
 
-def _one_gain(drive: Drive) -> str:
+def _one_gain(answer: DriveAnswer) -> str:
     """Return what is to be known of a drive that has one gain alone; nothing of another one."""
+    drive = answer.drive
     if not (drive.kp or drive.kd):
         return " Without kp and kd nothing is driven."
     if not drive.kp:
         return " Without kp this is a damper: nothing holds the position, so the velocity is judged."
-    return "" if drive.kd else " Without kd this is a spring: nothing but the integrator damps."
+    if drive.kd:
+        return ""
+    added = "" if answer.damping_ratio is None else f": its damping ratio is {answer.damping_ratio:.4g}"
+    return f" Without kd this is a spring: nothing but the integrator damps{added}."
 
 
 def _changes(answer: DriveAnswer) -> list[str]:
@@ -219,6 +294,8 @@ def _changes(answer: DriveAnswer) -> list[str]:
         changes.append(
             f"kd {f'from {_digits(least)} ' if least else ''}{'on' if math.isinf(most) else f'up to {_digits(most)}'}"
         )
+    if ends.ki and math.isfinite(ends.ki[1]):
+        changes.append(f"ki {'lowered' if drive.ki > ends.ki[1] else 'up'} to {_digits(ends.ki[1])}")
     if ends.inertia and ends.inertia[0]:
         changes.append(
             f"inertia {'raised to' if drive.inertia < ends.inertia[0] else 'from'} {_digits(ends.inertia[0])} on"
@@ -281,9 +358,7 @@ def gains_for(
         drive = _critically_damped(omega_h / float(h), inertia)
         more = exact(MARGIN)
         stronger = (replace(drive, kp=more * drive.kp), replace(drive, kd=more * drive.kd))
-        return all(
-            verdict(method, *each.point(h), timing) == "converges" for method in methods for each in (drive, *stronger)
-        )
+        return all(verdict(each, h, method, timing) == "converges" for method in methods for each in (drive, *stronger))
 
     if holds(wanted * float(h)):
         return _critically_damped(wanted, inertia)

@@ -20,7 +20,8 @@ def _end(stretch: Stretch | None, place: int) -> float | None:
     return stretch[place] if stretch and math.isfinite(stretch[place]) and stretch[place] else None
 
 
-KP, KD, INERTIA = "N m/rad or N/m", "N m s/rad or N s/m", "kg m² or kg"
+KP, KD, KI = "N m/rad or N/m", "N m s/rad or N s/m", "N m/(rad s) or N/(m s)"
+INERTIA, LOAD = "kg m² or kg", "N m or N"
 
 COLUMNS: Sequence[Column[DriveAnswer]] = (
     Column("method", "method", lambda answer: answer.method.name, "integration method", apart=True),
@@ -34,6 +35,21 @@ COLUMNS: Sequence[Column[DriveAnswer]] = (
         lambda answer: answer.fresh_z_abs,
         "the same if each step computes and applies the torque",
         form=".6f",
+    ),
+    Column(
+        "damping ratio",
+        "damping_ratio",
+        lambda answer: answer.damping_ratio,
+        "of an oscillator that decays so; without kd what the integrator adds, negative where it drives",
+        form=".4g",
+    ),
+    Column(
+        "a tenth in (s)",
+        "tenth_seconds",
+        lambda answer: None if answer.tenth_steps is None else answer.tenth_steps * float(answer.h),
+        "time until an error is a tenth",
+        unit="s",
+        form=".4g",
     ),
     Column(
         "settles in (steps)",
@@ -55,6 +71,10 @@ COLUMNS: Sequence[Column[DriveAnswer]] = (
     Column("kd", "kd", lambda answer: float(answer.drive.kd), "damping", unit=KD),
     Column("kd from", "kd_min", lambda answer: _end(answer.limits.kd, 0), "smallest stable kd", KD, ".4g", True),
     Column("kd to", "kd_max", lambda answer: _end(answer.limits.kd, 1), "largest stable kd", KD, ".4g", True),
+    Column("ki", "ki", lambda answer: float(answer.drive.ki), "integral gain", unit=KI),
+    Column("ki to", "ki_max", lambda answer: _end(answer.limits.ki, 1), "largest stable ki", KI, ".4g", True),
+    Column("load", "load", lambda answer: None if answer.load is None else float(answer.load), "steady load", LOAD),
+    Column("sag", "sag", lambda answer: answer.sag, "how far from its target it rests under the load", "rad or m"),
     Column("inertia", "inertia", lambda answer: float(answer.drive.inertia), "inertia", unit=INERTIA),
     Column(
         "inertia from",

@@ -8,10 +8,25 @@ from pathlib import Path
 import click
 
 from bezstab.cli import shared_options as shared
-from bezstab.cli.options import NUMBER, POSITIVE
+from bezstab.cli.options import NUMBER, POSITIVE, SECONDS, ParsedType
 from bezstab.cli.output import Files, show_answers, show_text
 from bezstab.errors import InputError
 from bezstab.methods import Method, lookup
+from bezstab.rationals import rational
+
+Late = tuple[Fraction, bool]
+"""A delay, and whether it is in seconds, not steps."""
+
+
+def _late(text: str) -> Late:
+    """Return a delay in steps ("1.5") or in seconds ("5ms")."""
+    for unit, size in (("ms", Fraction(1, 1000)), ("s", Fraction(1))):
+        if text.endswith(unit):
+            return rational(text.removesuffix(unit)) * size, True
+    return rational(text), False
+
+
+LATE = ParsedType("steps, or 5ms", _late)
 
 POINTS = 200
 """Along each axis of the figure."""
@@ -20,47 +35,58 @@ POINTS = 200
 @click.command()
 @click.option("--kp", type=NUMBER, help="Stiffness, N m/rad or N/m.")
 @click.option("--kd", type=NUMBER, help="Damping, N m s/rad or N s/m.")
+@click.option("--ki", type=NUMBER, default="0", help="Integral gain, N m/(rad s) or N/(m s).")
 @click.option("--inertia", type=POSITIVE, required=True, help="Inertia that the drive feels, kg m² or kg.")
-@shared.h
+@click.option("--h", type=SECONDS, help="Step of the physics in s; or --physics.")
+@click.option("--physics", type=POSITIVE, help="Rate of the physics in Hz, in place of --h.")
 @click.option("--bandwidth", type=NUMBER, help="Find critically damped gains of this natural frequency in Hz.")
 @click.option("--settle", type=NUMBER, help="Find critically damped gains that settle in so many s.")
 @shared.methods
-@click.option("--every", type=int, default=1, help="The torque is computed every so many steps and held in between.")
-@click.option("--late", type=NUMBER, default="0", help="The torque is applied so many steps late; fractions too.")
+@click.option("--every", type=int, help="The torque is computed every so many steps and held in between [1].")
+@click.option("--controller", type=POSITIVE, help="Rate of the controller in Hz, in place of --every.")
+@click.option("--late", type=LATE, default="0", help="The torque is applied so many steps late, or 5ms; fractions too.")
 @click.option(
     "--filter", "filter_seconds", type=NUMBER, default="0", help="Time constant in s of a filter of the velocity."
 )
+@click.option("--load", type=NUMBER, help="A steady load, N m or N: how far does the joint sag?")
 @shared.output_options
 def drive(
     kp: Fraction | None,
     kd: Fraction | None,
+    ki: Fraction,
     inertia: Fraction,
-    h: Fraction,
+    h: Fraction | None,
+    physics: Fraction | None,
     bandwidth: Fraction | None,
     settle: Fraction | None,
     methods: Sequence[Method],
-    every: int,
-    late: Fraction,
+    every: int | None,
+    controller: Fraction | None,
+    late: Late,
     filter_seconds: Fraction,
+    load: Fraction | None,
     output: Path,
     figure: str,
     **_: object,
 ) -> bool:
     """Judge a joint's drive: exit status 0 if safe, 1 if not.
 
-    The torque is -kp (q - target) - kd q'. Without --method all four ways to apply it are judged: explicit (SYM),
+    The torque is -kp (q - target) - kd q', and with --ki an integral part. Without --method all four ways to apply it
+    are judged: explicit (SYM),
     implicit in velocity (imex-euler), stable PD (stable-pd), fully implicit (implicit-euler). Yours is most often SYM.
 
     A contact of stiffness k and damping c between bodies of reduced mass m is --kp k --kd c --inertia m.
 
     Example: bezstab drive --kp 200 --kd 5 --inertia 0.1 --h 0.002 --every 4 --late 1
     """
-    from bezstab.drives.answer import gains_for, judge_drive
+    from bezstab.drives.answer import gains_for, judge_drive, rates
     from bezstab.drives.columns import COLUMNS, NOT_JUDGED, timing_words, ways_words
     from bezstab.engines import DRIVE_METHODS, FRESH, Drive, timing_of
 
     ways = tuple(methods) or tuple(map(lookup, DRIVE_METHODS))
-    timing = timing_of(h, every, late, filter_seconds)
+    h, every = rates(h, physics, every, controller)
+    number, seconds = late
+    timing = timing_of(h, every, number / h if seconds else number, filter_seconds)
     if bandwidth is not None or settle is not None:
         if kp is not None or kd is not None:
             raise InputError("--bandwidth and --settle find gains: leave out --kp and --kd")
@@ -69,10 +95,10 @@ def drive(
     elif kp is None or kd is None:
         raise InputError("give --kp and --kd, or --bandwidth, or --settle")
     else:
-        judged = Drive(kp, kd, inertia)
+        judged = Drive(kp, kd, inertia, ki)
     files = Files(output, figure)
     files.check_output()
-    answers = [judge_drive(judged, h, method, timing) for method in ways]
+    answers = [judge_drive(judged, h, method, timing, load) for method in ways]
     if timing != FRESH:
         show_text(f"{timing_words(timing, float(h))}\n")
     if len(answers) > 1:

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from bezstab.drives.answer import DriveAnswer
 from bezstab.drives.columns import timing_words
-from bezstab.drives.held_torque import drive_map
+from bezstab.drives.held_torque import closed_loop, drive_map
 from bezstab.show import plot
 from bezstab.show.style import ABOVE_THE_AXES, ACCENT, new_axes, styled, title_lines, with_legend
 
@@ -20,7 +20,8 @@ def drive_figure(answer: DriveAnswer, points: int) -> Figure:
     """
     drive, h = answer.drive, float(answer.h)
     alpha_hat, beta_hat = map(float, drive.point(answer.h))
-    found = drive_map(answer.method, answer.timing, points, (alpha_hat, beta_hat))
+    loop = closed_loop(drive, answer.h, answer.method, answer.timing)
+    found = drive_map(loop, answer.timing, points, (alpha_hat, beta_hat), law=not drive.ki)
     kp_of_one, kd_of_one = drive.gains(1.0, 1.0, h)
     kd, kp = kd_of_one * found.alpha_hat, kp_of_one * found.beta_hat
     of_method = title_lines(answer.applied or answer.method.name, f"h = {h:g} s")

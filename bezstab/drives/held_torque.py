@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from bezstab.engines import FRESH, Timing
+from bezstab.engines import FRESH, Drive, Timing
 from bezstab.errors import InputError
 from bezstab.methods import Assignment, Combination, Evaluation, Method, Quantity, SecondOrder, Verdict
 from bezstab.rationals import ONE
@@ -58,11 +58,11 @@ RK4 is the explicit way in an engine whose steps move a mass under a constant fo
 
 
 @cache
-def held_method(way: str, timing: Timing) -> Method:
+def held_method(way: str, timing: Timing, integral: Fraction = Fraction(0)) -> Method:
     """Return the drive as a method whose step goes from one computation of the torque to the next.
 
-    `way` is one of SEEN. KeyError for another. Exact. Its equations are in units of its own step, of which a step of
-    the physics is dt.
+    `way` is one of SEEN. KeyError for another. Exact. Its equations are in units of its own step H = every h, of which
+    a step of the physics is dt. `integral` is ki H^3 / inertia, by which the summed error is multiplied.
     """
     seen, dt = SEEN[way], Fraction(1, timing.every)
     shares = [timing.applied(step) for step in range(timing.every)]
@@ -90,34 +90,48 @@ def held_method(way: str, timing: Timing) -> Method:
         old = (1 - gain, Quantity("filtered", 0))
         equations.append(Assignment(filtered, (old, *combination(gain * seen_v))))
         velocity = ((ONE, filtered),)
-    equations.append(Evaluation(Quantity("a", 0), combination(seen_x), velocity))
+    if not integral:
+        equations.append(Evaluation(Quantity("a", 0), combination(seen_x), velocity))
+    else:  # a = -alpha_hat v - beta_hat x - integral sum of x
+        summed, pd = Quantity("sum", 1), Quantity("pd", 0)
+        equations.append(Assignment(summed, ((ONE, Quantity("sum", 0)), *combination(seen_x))))
+        equations.append(Evaluation(pd, combination(seen_x), velocity))
+        equations.append(Assignment(Quantity("a", 0), ((ONE, pd), (-integral, summed))))
     return Method(way, SecondOrder(tuple(equations)), "", Fraction(timing.every))
 
 
-def closed_loop(method: Method, timing: Timing) -> Method:
-    """Return the method that a drive is: a fresh one the integrator itself; InputError if it cannot be held or late."""
-    if timing == FRESH:
+def closed_loop(drive: Drive, h: Fraction, method: Method, timing: Timing) -> Method:
+    """Return the method that a drive with steps of h (s) is: a fresh one without ki is the integrator itself.
+
+    InputError for a method that cannot apply a torque that is held, late, or has an integral part.
+    """
+    if timing == FRESH and not drive.ki:
         return method
     if method.name not in SEEN:
-        raise InputError(f"--method {method.name}: a torque that is held or late goes with {', '.join(SEEN)}")
-    return held_method(method.name, timing)
+        raise InputError(f"--method {method.name}: a torque that is held or late, or ki, goes with {', '.join(SEEN)}")
+    return held_method(method.name, timing, drive.ki * (timing.every * h) ** 3 / drive.inertia)
 
 
-def verdict(method: Method, alpha_hat: Fraction, beta_hat: Fraction, timing: Timing) -> Verdict:
-    """Return whether the drive converges, without kp its velocity, proven by Schur's test."""
-    return drive_verdict(closed_loop(method, timing), alpha_hat, beta_hat)
+def verdict(drive: Drive, h: Fraction, method: Method, timing: Timing) -> Verdict:
+    """Return whether the drive converges, without kp its velocity, proven by Schur's test; errors as `closed_loop`."""
+    return drive_verdict(closed_loop(drive, h, method, timing), *drive.point(h))
 
 
-def spectral_radius(
-    method: Method, alpha_hat: ArrayLike | Fraction, beta_hat: ArrayLike | Fraction, timing: Timing
-) -> FloatArray:
+def dominant_pole(drive: Drive, h: Fraction, method: Method, timing: Timing) -> complex:
+    """Return the dominant pole of a step of the physics, without kp that of the velocity; errors as `closed_loop`."""
+    loop = closed_loop(drive, h, method, timing)
+    pole = complex(drive_pole(loop, *(np.asarray(float(each)) for each in drive.point(h))))
+    return pole ** (1 / float(loop.step_multiple))
+
+
+def spectral_radius(loop: Method, alpha_hat: ArrayLike | Fraction, beta_hat: ArrayLike | Fraction) -> FloatArray:
     """Return the factor by which each step of the physics multiplies the error: |z_p| of `every` steps, its root.
 
     Without kp it is the velocity that is multiplied so. Shape of alpha_hat and beta_hat broadcast, in float64: of a
     pole near others as many digits are lost as its condition says.
     """
-    pole = drive_pole(closed_loop(method, timing), np.asarray(alpha_hat, float), np.asarray(beta_hat, float))
-    return np.asarray(np.abs(pole) ** (1 / timing.every))
+    pole = drive_pole(loop, np.asarray(alpha_hat, float), np.asarray(beta_hat, float))
+    return np.asarray(np.abs(pole) ** (1 / float(loop.step_multiple)))
 
 
 def law_bounds(way: str, alpha_hat: Any, timing: Timing) -> tuple[Any, ...]:
@@ -177,21 +191,21 @@ FINER = 20
 """Points along each axis at which it is found to a twentieth."""
 
 
-def drive_map(method: Method, timing: Timing, points: int, own: tuple[float, float]) -> DriveMap:
+def drive_map(loop: Method, timing: Timing, points: int, own: tuple[float, float], *, law: bool = True) -> DriveMap:
     """Return |z_p| of a drive over all gains that are stable, `points` along each axis.
 
     The map also holds the drive's `own` point (alpha_hat, beta_hat).
     """
 
     def moduli(alpha_hat: FloatArray, beta_hat: FloatArray) -> FloatArray:
-        return spectral_radius(method, alpha_hat, beta_hat[:, np.newaxis], timing)
+        return spectral_radius(loop, alpha_hat, beta_hat[:, np.newaxis])
 
     alpha_hat, beta_hat = LOOKED_AT
     for count in (FINER, points):
         rows, columns = np.nonzero(moduli(alpha_hat, beta_hat) < 1)
         alpha_hat = _axis(alpha_hat, columns, own[0], count)
         beta_hat = _axis(beta_hat, rows, own[1], count)
-    bounds = law_bounds(method.name, alpha_hat, timing)
+    bounds = law_bounds(loop.name, alpha_hat, timing) if law else ()
     return DriveMap(alpha_hat, beta_hat, moduli(alpha_hat, beta_hat), np.minimum.reduce(bounds) if bounds else None)
 
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from bezstab.drives.held_torque import SEEN, spectral_radius, verdict
+from bezstab.drives.held_torque import SEEN, closed_loop, spectral_radius, verdict
 from bezstab.engines import MOST_STEPS, Drive, Timing
 from bezstab.methods import Method
 from bezstab.stability import SLOW, BoolArray, FloatArray, first_where
@@ -23,13 +23,14 @@ FACTORS = np.geomspace(1e-8, 1e8, 756)
 class Limits:
     """How far each number may go alone (SI units).
 
-    `kp`, `kd`, `inertia`, `h` (s): the stretch that holds the drive's own number, else the one nearest to it; None
-    where there is none. `every`, `late`: the last whole numbers of steps up to which all are proven stable; None where
-    the least, 1 and 0, is not, and for a method that cannot be held or late.
+    `kp`, `kd`, `ki`, `inertia`, `h` (s): the stretch that holds the drive's own number, else the one nearest to it;
+    None where there is none, and of ki without one. `every`, `late`: the last whole numbers of steps up to which all
+    are proven stable; None where the least, 1 and 0, is not, and for a method that cannot be held or late.
     """
 
     kp: Stretch | None
     kd: Stretch | None
+    ki: Stretch | None
     inertia: Stretch | None
     h: Stretch | None
     every: int | None
@@ -38,26 +39,68 @@ class Limits:
 
 def limits(drive: Drive, h: Fraction, method: Method, timing: Timing) -> Limits:
     """Return how far each number may go: by |z_p| in float64, whole steps by proven verdicts."""
-    point = drive.point(h)
-    a, b = map(float, point)
+    loop = closed_loop(drive, h, method, timing)
+    a, b = map(float, drive.point(h))
     kp_of_one, kd_of_one = drive.gains(1.0, 1.0, float(h))
 
     def decays(alpha_hat: FloatArray | float, beta_hat: FloatArray | float) -> BoolArray:
-        stable: BoolArray = spectral_radius(method, alpha_hat, beta_hat, timing) < 1 - SLOW
+        stable: BoolArray = spectral_radius(loop, alpha_hat, beta_hat) < 1 - SLOW
         return stable
 
-    def stable(**changed: Any) -> bool:
-        return verdict(method, *point, replace(timing, **changed)) == "converges"
+    def stable_with(changed: Drive, step: Fraction = h, **timed: Any) -> bool:
+        return verdict(changed, step, method, replace(timing, **timed)) == "converges"
 
+    if drive.ki:  # the closed loop itself depends on these
+        inertia = _around(drive.inertia, lambda some: stable_with(replace(drive, inertia=some)))
+        step = _around(h, lambda some: stable_with(drive, some))
+        ki = _around(drive.ki, lambda some: stable_with(replace(drive, ki=some)))
+    else:
+        inertia = _times(float(drive.inertia), _stable_stretch(1.0, lambda some: decays(a / some, b / some)))
+        step = _times(float(h), _stable_stretch(1.0, lambda some: decays(a * some, b * some**2)))
+        ki = None
     in_steps = method.name in SEEN
     return Limits(
         kp=_times(kp_of_one, _stable_stretch(b, lambda some: decays(a, some))),
         kd=_times(kd_of_one, _stable_stretch(a, lambda some: decays(some, b))),
-        inertia=_times(float(drive.inertia), _stable_stretch(1.0, lambda some: decays(a / some, b / some))),
-        h=_times(float(h), _stable_stretch(1.0, lambda some: decays(a * some, b * some**2))),
-        every=_last_stable(lambda every: stable(every=every), least=1) if in_steps else None,
-        late=_last_stable(lambda late: stable(late=Fraction(late)), least=0) if in_steps else None,
+        ki=ki,
+        inertia=inertia,
+        h=step,
+        every=_last_stable(lambda every: stable_with(drive, every=every), least=1) if in_steps else None,
+        late=_last_stable(lambda late: stable_with(drive, late=Fraction(late)), least=0) if in_steps else None,
     )
+
+
+WIDENING = Fraction(3, 2)
+"""From one number to the next farther one, where each takes a closed loop of its own."""
+
+FARTHEST = 30
+"""So many: a factor of 2e5."""
+
+
+def _around(own: Fraction, stable: Callable[[Fraction], bool]) -> Stretch | None:
+    """Return the stretch of proven stable numbers around a drive's own, else the nearest one; None if there is none."""
+    far = [WIDENING**power for power in range(FARTHEST)]
+    numbers = [own / factor for factor in far[:0:-1]] + [own * factor for factor in far]
+    held = [stable(number) for number in numbers]
+    places = [place for place, each in enumerate(held) if each]
+    if not places:
+        return None
+    first = last = min(places, key=lambda place: abs(place - FARTHEST + 1))
+    while first > 0 and held[first - 1]:
+        first -= 1
+    while last < len(held) - 1 and held[last + 1]:
+        last += 1
+    low = _turn(numbers[first - 1], numbers[first], stable) if first else 0.0
+    high = _turn(numbers[last + 1], numbers[last], stable) if last < len(held) - 1 else np.inf
+    return low, high
+
+
+def _turn(unstable: Fraction, inside: Fraction, stable: Callable[[Fraction], bool]) -> float:
+    """Return the last stable number between one that is not and one that is, to a part in a million."""
+    while abs(unstable - inside) > abs(inside) / 10**6:
+        middle = Fraction(float(unstable + inside) / 2)
+        unstable, inside = (unstable, middle) if stable(middle) else (middle, inside)
+    return float(inside)
 
 
 def _stable_stretch(own: float, decays: Callable[[FloatArray], BoolArray]) -> Stretch | None:

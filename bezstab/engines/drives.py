@@ -32,21 +32,25 @@ DRIVE_METHODS = {
 class Drive:
     """A joint's gains and the inertia that they act on, in units that go together (N m/rad, N m s/rad, kg m^2).
 
-    InputError for an inertia that is not positive.
+    With `ki` (N m/(rad s)) the torque has an integral part. InputError for an inertia that is not positive, and for ki
+    without kp.
     """
 
     kp: Fraction
     kd: Fraction
     inertia: Fraction
+    ki: Fraction = Fraction(0)
 
     def __post_init__(self) -> None:
         if self.inertia <= 0:
             raise InputError(f"inertia {float(self.inertia):g}: expected above 0")
+        if self.ki and not self.kp:
+            raise InputError("--ki needs --kp: without it the integral alone drives the joint, and it never settles")
 
     def point(self, h: Fraction) -> Point:
         """Return (alpha_hat, beta_hat) at a step of h seconds; InputError outside float64's range."""
         alpha_hat, beta_hat = from_feedback_gains(self.kd / self.inertia, self.kp / self.inertia, h)
-        return within_float64(alpha_hat, "--pd: α̂ = kd h/inertia"), within_float64(beta_hat, "--pd: β̂ = kp h²/inertia")
+        return within_float64(alpha_hat, "--kd: α̂ = kd h/inertia"), within_float64(beta_hat, "--kp: β̂ = kp h²/inertia")
 
     def gains(self, alpha_hat: float, beta_hat: float, h: float) -> tuple[float, float]:
         """Return (kp, kd) that are the point (alpha_hat, beta_hat) on this inertia at a step of h seconds."""

@@ -95,11 +95,11 @@ class Choice:
         return 2 * steps(self.method) if z_abs < DOUBLE else steps_to_settle(z_abs)
 
 
-def steps_to_settle(z_abs: float) -> int | None:
-    """Return after how many steps z_abs^k is a thousandth; None unless errors decay as far as rounding can tell."""
+def steps_to_settle(z_abs: float, fall: float = 1000.0) -> int | None:
+    """Return after how many steps z_abs^k has fallen so far; None unless errors decay as far as rounding can tell."""
     if 1 - z_abs < SLOW:
         return None
-    return math.ceil(math.log(THOUSANDFOLD) / math.log(z_abs)) if z_abs > 0 else 1
+    return math.ceil(-math.log(fall) / math.log(z_abs)) if z_abs > 0 else 1
 
 
 def choose(

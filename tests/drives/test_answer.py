@@ -1,11 +1,11 @@
 """Answers about drives: the number that is nearest to its limit, and gains to write."""
 
 from fractions import Fraction
-from math import inf
+from math import atan, inf, log, pi
 
 import pytest
 
-from bezstab.drives.answer import DriveAnswer, drive, gains_for, judge_drive
+from bezstab.drives.answer import DriveAnswer, drive, gains_for, judge_drive, rates
 from bezstab.drives.held_torque import verdict
 from bezstab.engines import Drive, Timing
 from bezstab.errors import InputError
@@ -74,8 +74,7 @@ def test_gains_for_a_bandwidth_are_critically_damped_and_safe_with_a_margin(timi
     assert float(drive.kp) == pytest.approx(0.1 * (2 * 3.14159265 * 5) ** 2, rel=5e-3)
     for factor in (Fraction(1), Fraction(5, 4)):
         for kp, kd in ((factor * drive.kp, drive.kd), (drive.kp, factor * drive.kd)):
-            point = Drive(kp, kd, INERTIA).point(H)
-            assert verdict(SYM, *point, timing) == "converges"
+            assert verdict(Drive(kp, kd, INERTIA), H, SYM, timing) == "converges"
 
 
 def test_a_time_to_settle_is_a_bandwidth() -> None:
@@ -129,3 +128,36 @@ def test_gains_reach_the_edge_of_what_is_stable(
     """On an inertia of 1, with steps of 1 s, kd is alpha_hat and kp is beta_hat."""
     found = drive(kp, kd, 1, h=1, method=name).limits
     assert (found.kd and found.kd[1], found.kp and found.kp[1]) == pytest.approx((kd_max, kp_max))
+
+
+def test_an_undamped_spring_shows_what_the_integrator_adds() -> None:
+    """Implicit Euler, 5 Hz at 60 Hz: a damping ratio of -omega h / 2 = -0.2618 is neutral."""
+    omega, h = 2 * pi * 5, 1 / 60
+    answer = drive(omega**2, 0, 1, h="1/60", method="implicit-euler")
+    exponent = complex(log(1 + (omega * h) ** 2) / 2, atan(omega * h))  # z = 1 / (1 - i omega h)
+    assert answer.damping_ratio == pytest.approx(exponent.real / abs(exponent), rel=1e-9)
+    assert drive(omega**2, -2 * 0.2617 * omega, 1, h="1/60", method="implicit-euler").safe
+    assert not drive(omega**2, -2 * 0.2619 * omega, 1, h="1/60", method="implicit-euler").safe
+
+
+def test_a_load_sags_by_its_share_of_the_stiffness_and_an_integral_takes_it_back() -> None:
+    assert drive(200, 5, "0.1", h="0.002", load=3).sag == pytest.approx(0.015)
+    assert "it rests 0.859° (of a slider 15 mm) from its target" in drive(200, 5, "0.1", h="0.002", load=3).sentence
+    assert drive(200, 5, "0.1", ki=10, h="0.002", load=3).sag == 0
+    with pytest.raises(InputError, match="load needs kp"):
+        drive(0, 5, "0.1", h="0.002", load=3)
+
+
+def test_least_inertia_and_largest_integral_gain_are_where_the_verdict_turns() -> None:
+    """kd = 5 at 2 ms, explicit: 2 kd h + kp h^2 < 4 inertia."""
+    assert drive(0, 5, 1, h="0.002").limits.inertia == pytest.approx((0.005, inf))
+    found = drive(200, 5, "0.1", ki=1000, h="0.002").limits.ki
+    assert found
+    for factor, safe in ((0.999, True), (1.001, False)):
+        assert drive(200, 5, "0.1", ki=found[1] * factor, h="0.002").safe is safe
+
+
+def test_rates_are_steps() -> None:
+    assert rates(None, Fraction(1000), None, Fraction(200)) == (Fraction(1, 1000), 5)
+    with pytest.raises(InputError, match="no multiple"):
+        rates(None, Fraction(1000), None, Fraction(300))

@@ -34,7 +34,7 @@ def test_the_edge_parts_what_is_proven_stable_from_what_is_not() -> None:
     cell = np.array([(right - left) / 40, (top - bottom) / 40])
     for kd, kp in points[::10]:
         nearby = [
-            verdict(SYM, *Drive(Fraction(kp + up), Fraction(kd + across), DRIVE.inertia).point(H), timing)
+            verdict(Drive(Fraction(kp + up), Fraction(kd + across), DRIVE.inertia), H, SYM, timing)
             for across in (-cell[0], 0, cell[0])
             for up in (-cell[1], 0, cell[1])
             if kd + across > 0 and kp + up > 0

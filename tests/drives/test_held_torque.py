@@ -5,12 +5,15 @@ from math import floor, pi, sin
 
 import numpy as np
 import pytest
+import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from bezstab.drives.held_torque import (
     SEEN,
     STRONGEST,
+    closed_loop,
+    dominant_pole,
     drive_map,
     held_method,
     law_bounds,
@@ -20,6 +23,7 @@ from bezstab.drives.held_torque import (
 from bezstab.drives.limits import Limits, limits
 from bezstab.engines import DRIVE_METHODS, Drive, Timing
 from bezstab.methods import closed_loop_at, lookup
+from bezstab.stability import FloatArray
 
 ONE = Fraction(1)
 POSITIVE = st.fractions(Fraction(1, 100), 4, max_denominator=1000)
@@ -34,7 +38,17 @@ def test_a_fresh_drive_has_the_polynomial_of_its_method(way: str, a: Fraction, b
 
 
 def converges(way: str, a: Fraction, b: Fraction, timing: Timing) -> bool:
-    return verdict(lookup(way), a, b, timing) == "converges"
+    return said(way, a, b, timing) == "converges"
+
+
+def said(way: str, a: Fraction, b: Fraction, timing: Timing) -> str:
+    """Return the verdict of a drive of inertia 1 with steps of 1 s: its gains are the point."""
+    return verdict(Drive(kp=b, kd=a, inertia=ONE), ONE, lookup(way), timing)
+
+
+def radius(way: str, a: Fraction | float, b: Fraction | float | FloatArray, timing: Timing) -> FloatArray:
+    loop = closed_loop(Drive(kp=ONE, kd=ONE, inertia=ONE), ONE, lookup(way), timing)
+    return spectral_radius(loop, a, b)
 
 
 def limits_of(way: str, a: Fraction, b: Fraction, timing: Timing) -> Limits:
@@ -85,17 +99,17 @@ VELOCITY_LIMITS = [  # of alpha_hat, without stiffness: v' = v - a v of so many 
 def test_without_stiffness_the_velocity_is_judged(way: str, timing: Timing, limit: Fraction | float) -> None:
     """Late by k steps a pole is on the circle at 2 sin(pi / (4 k + 2)); implicit and one step late is explicit."""
     zero = Fraction(0)
-    for factor, said in ((Fraction("0.999"), "converges"), (Fraction("1.001"), "diverges")):
-        assert verdict(lookup(way), factor * Fraction(limit), zero, timing) == said
+    for factor, expected in ((Fraction("0.999"), "converges"), (Fraction("1.001"), "diverges")):
+        assert said(way, factor * Fraction(limit), zero, timing) == expected
     stretch = limits_of(way, Fraction(limit) / 2, zero, timing).kd
     assert stretch == pytest.approx((0, float(limit)), rel=1e-6)
 
 
 def test_without_stiffness_each_step_multiplies_the_velocity() -> None:
     a, zero = Fraction("0.2"), Fraction(0)
-    assert spectral_radius(lookup("SYM"), a, zero, Timing()) == pytest.approx(0.8, rel=1e-15)
-    assert spectral_radius(lookup("SYM"), a, zero, Timing(every=4)) == pytest.approx(0.2**0.25, rel=1e-15)
-    both = spectral_radius(lookup("SYM"), float(a), np.array([0.0, 0.04]), Timing())
+    assert radius("SYM", a, zero, Timing()) == pytest.approx(0.8, rel=1e-15)
+    assert radius("SYM", a, zero, Timing(every=4)) == pytest.approx(0.2**0.25, rel=1e-15)
+    both = radius("SYM", float(a), np.array([0.0, 0.04]), Timing())
     assert both == pytest.approx([0.8, 0.8**0.5])  # with stiffness a pair, of which the product is 1 - a
 
 
@@ -104,9 +118,9 @@ def test_where_no_closed_form_is_known_there_is_no_law() -> None:
         assert law_bounds("SYM", Fraction(1), timing) == ()
 
 
-def grown(way: str, a: float, b: float, timing: Timing, steps: int) -> float:
+def grown(way: str, a: float, b: float, timing: Timing, steps: int, ki: float = 0.0) -> float:
     """Return how much |x| + |v| grows in many steps, as a controller and a physics engine would compute it."""
-    x, v, filtered = 1.0, 0.3, 0.3
+    x, v, filtered, summed = 1.0, 0.3, 0.3, 0.0
     left = float(timing.late - floor(timing.late))
     gain = float(1 / (1 + timing.filter_steps / timing.every)) if timing.filter_steps else 1.0
     computed: dict[int, float] = {}
@@ -119,9 +133,9 @@ def grown(way: str, a: float, b: float, timing: Timing, steps: int) -> float:
         due = step - floor(timing.late)
         return (1 - left) * of_step(due) + left * of_step(due - 1)
 
-    def controller(seen_x: float, seen_v: float) -> tuple[float, float]:
-        seen = filtered + gain * (seen_v - filtered)
-        return -b * seen_x - a * seen, seen
+    def controller(seen_x: float, seen_v: float) -> tuple[float, float, float]:
+        seen, total = filtered + gain * (seen_v - filtered), summed + timing.every * seen_x
+        return -b * seen_x - a * seen - ki * total, seen, total
 
     def seen(step: int, guess: float) -> tuple[float, float]:
         """What the way of applying looks at, if the torque computed now is the guess."""
@@ -142,7 +156,7 @@ def grown(way: str, a: float, b: float, timing: Timing, steps: int) -> float:
             at_zero = controller(*seen(step, 0.0))[0]
             slope = controller(*seen(step, 1.0))[0] - at_zero
             computed[step] = at_zero / (1 - slope)
-            filtered = controller(*seen(step, computed[step]))[1]
+            _, filtered, summed = controller(*seen(step, computed[step]))
         torque = torque_applied(step)
         v += torque
         x += v - torque / 2 if way == "RK4" else v  # which moves a mass under a constant force exactly
@@ -169,9 +183,31 @@ def grown(way: str, a: float, b: float, timing: Timing, steps: int) -> float:
 def test_a_simulated_drive_grows_as_the_pole_says(way: str, timing: Timing) -> None:
     a, b = Fraction("0.05"), Fraction("0.004")
     assert grown(way, float(a), float(b), timing, 3000) == pytest.approx(
-        spectral_radius(lookup(way), a, b, timing),
+        radius(way, a, b, timing),
         abs=1e-3,  # two maxima of an oscillation, 2600 steps apart
     )
+
+
+@pytest.mark.parametrize("way", SEEN)
+@pytest.mark.parametrize("timing", [Timing(), Timing(every=3), Timing(every=2, late=Fraction(1))], ids=str)
+def test_a_simulated_drive_with_an_integral_grows_as_the_pole_says(way: str, timing: Timing) -> None:
+    a, b, ki = Fraction("0.05"), Fraction("0.004"), Fraction("0.0003")
+    pole = dominant_pole(Drive(b, a, ONE, ki), ONE, lookup(way), timing)
+    assert grown(way, float(a), float(b), timing, 3000, float(ki)) == pytest.approx(abs(pole), abs=1e-3)
+
+
+def test_a_pid_drive_of_slow_physics_explodes_by_its_characteristic_polynomial() -> None:
+    """Fresh and explicit: (z - 1)^3 + (a + b + c)(z - 1)^2 + ..., the sum of the error with its own new share."""
+    a, b, ki = Fraction("0.3"), Fraction("0.2"), Fraction("0.05")
+    found = closed_loop(Drive(b, a, ONE, ki), ONE, lookup("SYM"), Timing())
+    z = sp.Symbol("z")
+    # x1 = x + v1, v1 = v - a v - b x - ki s1, s1 = s + x
+    step = sp.Matrix([[1 - b - ki, 1 - a, -ki], [-b - ki, 1 - a, -ki], [1, 0, 1]])
+    expected = sp.Poly((sp.eye(3) * z - step.applyfunc(sp.nsimplify)).det(), z).monic()
+    ours = sp.Poly([sp.Rational(c.numerator, c.denominator) for c in closed_loop_at(found, a, b)][::-1], z).monic()
+    assert sp.rem(ours, expected).is_zero
+    assert verdict(Drive(b, a, ONE, ki), ONE, lookup("SYM"), Timing()) == "converges"
+    assert verdict(Drive(b, a, ONE, 2 * ki), ONE, lookup("SYM"), Timing()) == "diverges"
 
 
 def test_limits_lie_where_the_verdict_turns() -> None:
@@ -184,8 +220,8 @@ def test_limits_lie_where_the_verdict_turns() -> None:
     kp_max, kd_min, kd_max = (Fraction(gain) for gain in (found.kp[1], *found.kd))
     inside = [(a, kp_max * less), (kd_min * more, b), (kd_max * less, b)]
     outside = [(a, kp_max * more), (kd_min * less, b), (kd_max * more, b)]
-    for points, said in ((inside, "converges"), (outside, "diverges")):
-        assert [verdict(lookup("SYM"), *point, timing) for point in points] == [said] * 3
+    for points, expected in ((inside, "converges"), (outside, "diverges")):
+        assert [said("SYM", *point, timing) for point in points] == [expected] * 3
     assert found.every is not None
     assert found.late is not None
     assert converges("SYM", a, b, Timing(found.every, timing.late))
@@ -231,7 +267,7 @@ MAPPED = [
 
 @pytest.mark.parametrize(("way", "timing"), MAPPED, ids=str)
 def test_a_map_shows_all_that_is_stable_and_its_cells_are_where_the_verdict_is_proven(way: str, timing: Timing) -> None:
-    found = drive_map(lookup(way), timing, 40, (0.0, 0.0))
+    found = drive_map(closed_loop(Drive(ONE, ONE, ONE), ONE, lookup(way), timing), timing, 40, (0.0, 0.0))
     stable = found.z_abs < 1
     for row, column in np.argwhere(np.abs(found.z_abs - 1) > 1e-9)[::17]:  # float64's rounding of a pole
         point = Fraction(found.alpha_hat[column]), Fraction(found.beta_hat[row])
