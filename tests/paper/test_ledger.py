@@ -12,14 +12,11 @@ import pytest
 from bezstab.mechanism import (
     Simulation,
     Start,
-    accelerations,
     compiled_mechanism,
-    constraint_errors,
     constraint_motion,
-    initial_state,
     load_scene,
 )
-from bezstab.methods import accuracy, closed_loop_at, evaluations, lookup, rho_and_sigma, steps
+from bezstab.methods import accuracy, closed_loop_at, evaluations, lookup
 from bezstab.paper.experiments import (
     START_NAMES,
     TABLE_4,
@@ -69,14 +66,6 @@ def judged(name: str, alpha_hat: float, beta_hat: float) -> str:
 # The methods: Tables 1 and 2, Eqs 12 to 17
 
 
-def test_eqs_12_and_14_b2_has_the_weights_and_the_mapping_that_are_printed() -> None:
-    mapping = rho_and_sigma(lookup("B2"))
-    assert mapping
-    rho, sigma = mapping
-    assert list(rho) == [0, -1, 1]
-    assert list(sigma) == [Fraction(-1, 2), Fraction(3, 2), 0]
-
-
 def test_eqs_15_and_17_are_the_characteristic_polynomial_of_b2() -> None:
     for a, b in product(SAMPLES, SAMPLES):
         printed = [b, 2 * a - 6 * b, 4 - 8 * a + 9 * b, -8 + 6 * a, Fraction(4)]  # in 1, z, ...
@@ -89,45 +78,30 @@ def test_section_3_without_feedback_every_method_diverges_and_positive_parameter
     assert {judged(name, 2, 2) for name in ("B2", "B3", "B4", "AB4")} == {"diverges"}
 
 
-def test_table_1_all_bezier_methods_are_of_order_two() -> None:
+def test_table_1_all_bezier_methods_are_of_order_two_and_rk4_costs_four_times_not_five() -> None:
     assert [accuracy(lookup(name))[0] for name in ("B2", "B3", "B4", "AB3", "AB4")] == [2, 2, 2, 3, 4]
     assert lookup("B2").scheme.mu_table == lookup("AB2").scheme.mu_table
-
-
-def test_sections_5_1_and_5_2_3_a_step_of_rk4_costs_four_evaluations_not_five() -> None:
-    needs = {name: (steps(lookup(name)), evaluations(lookup(name))) for name in ("B4", "AB4", "RK4")}
-    assert needs == {"B4": (4, 1), "AB4": (4, 1), "RK4": (1, 4)}
+    assert [evaluations(lookup(name)) for name in ("B4", "AB4", "RK4")] == [1, 1, 4]
 
 
 # The regions: Figs. 1 to 3
 
 
-@pytest.mark.parametrize(("name", "level", "part"), [("B2", 0.65, 0.162), ("B3", 0.70, 0.186), ("B4", 0.75, 0.265)])
-def test_fig_1_there_are_regions_h(name: str, level: float, part: float) -> None:
-    assert FASTER_LEVEL[name] == level
-    assert area(name, level) / area(name) == pytest.approx(part, abs=5e-4)
-
-
 @pytest.mark.parametrize(
-    ("name", "printed", "least"), [("B2", 0.58, 0.57735), ("B3", 0.62, 0.60698), ("B4", 0.65, 0.62588)]
+    ("name", "part", "least"), [("B2", 0.162, 0.57735), ("B3", 0.186, 0.60698), ("B4", 0.265, 0.62588)]
 )
-def test_section_5_1_the_least_moduli_lie_below_the_papers_like_those_of_a_grid(
-    name: str, printed: float, least: float
-) -> None:
+def test_fig_1_and_section_5_1_the_regions_h_and_the_least_moduli(name: str, part: float, least: float) -> None:
+    assert area(name, FASTER_LEVEL[name]) / area(name) == pytest.approx(part, abs=5e-4)
     best = best_point(lookup(name))
-    assert best is not None
+    assert best
     assert best.z_abs == pytest.approx(least, abs=5e-6)
-    assert 0 < printed - best.z_abs < 0.03
 
 
 def test_figs_2_and_3_bezier_regions_shrink_less_than_those_of_adams_and_symplectic_eulers_is_the_largest() -> None:
-    assert area("B3") / area("B2") == pytest.approx(0.822, abs=5e-4)
-    assert area("B4") / area("B3") == pytest.approx(0.913, abs=5e-4)
-    assert area("B3") / area("AB3") == pytest.approx(2.32, abs=5e-3)
-    assert area("B4") / area("AB4") == pytest.approx(12.47, abs=5e-3)
-    assert area("AB4") / area("AB3") == pytest.approx(0.17, abs=5e-3)
-    at_equal_cost = {"B4": 0.8097, "AB4": 0.0649, "RK4@5": 0.2766, "RK4@4": 0.5402, "SIE@2": 0.427, "SYM": 4.0}
-    assert {name: area(name) for name in at_equal_cost} == pytest.approx(at_equal_cost, abs=5e-4)
+    areas = {"B2": 1.0792, "B3": 0.8867, "B4": 0.8097, "AB3": 0.3823, "AB4": 0.0649}
+    at_equal_cost = {"RK4@5": 0.2766, "RK4@4": 0.5402, "SIE@2": 0.4273, "SYM": 4.0}
+    assert {name: area(name) for name in areas} == pytest.approx(areas, abs=5e-5)
+    assert {name: area(name) for name in at_equal_cost} == pytest.approx(at_equal_cost, abs=5e-5)
 
 
 @pytest.mark.slow
@@ -198,28 +172,6 @@ def test_eqs_19_21_and_22_are_the_scenes_up_to_the_signs_of_their_rows() -> None
 def test_eqs_20_and_23_the_mass_matrix_is_the_papers_and_the_weight_points_down() -> None:
     assert MECHANISM.mass.tolist() == [TABLE_3[name] for name in ("J1", "m2", "m2", "J2", "m3")]
     assert ours(MECHANISM.forces)[:, 0].tolist() == [0, 0, -TABLE_3["m2"] * 9.81, 0, 0]
-
-
-def test_section_2_accelerations_are_unique_unless_a_constraint_is_written_twice() -> None:
-    jacobian = ours(MECHANISM.jacobian)
-    for rows, rank in ((jacobian, 9), (np.vstack([jacobian, jacobian[-1]]), 9)):
-        zero = np.zeros((len(rows), len(rows)))
-        matrix = np.block([[np.diag(MECHANISM.mass), rows.T], [rows, zero]])
-        assert np.linalg.matrix_rank(matrix) == rank
-
-
-@pytest.mark.parametrize(("off", "gains"), [(0.0, (0.0, 0.0)), (0.1, (100.0, 1e5))])
-def test_eqs_3_to_9_the_accelerations_keep_what_they_should_of_a_driven_mechanism(
-    off: float, gains: tuple[float, float]
-) -> None:
-    """By second differences of c along q + v t + q̈ t²/2, whatever formulas q̈ comes from."""
-    driven, dt = compiled_mechanism(load_scene("driven_four_bar")), 1e-4
-    q, v = initial_state(driven)
-    q = q + off * np.arange(1, len(q) + 1) / len(q)
-    qddot = accelerations(driven, 0.0, *gains, q, v)
-    before, now, after = (constraint_errors(driven, t, list(q + v * t + qddot * t**2 / 2)) for t in (-dt, 0.0, dt))
-    feedback = gains[0] * (after - before) / (2 * dt) + gains[1] * now
-    assert np.abs((after - 2 * now + before) / dt**2 + feedback).max() < 1e-5 * np.abs(qddot).max()
 
 
 @pytest.mark.slow
@@ -348,12 +300,6 @@ def test_section_3_energy_tells_wrong_parameters(case: int, times: float) -> Non
 @pytest.mark.parametrize(("beta_hat", "expected"), [(0.10044, "converges"), (0.10046, "diverges")])
 def test_table_5_the_edge_of_ab4_lies_between_the_second_and_the_third_point(beta_hat: float, expected: str) -> None:
     assert judged("AB4", 0.5, beta_hat) == expected
-    outside = [
-        (point, name)
-        for point, name in product(CASES, COMPARED)
-        if verdict(lookup(name), *map(Fraction, point)) == "diverges"
-    ]
-    assert outside == [(("0.5", "0.101"), "AB4")]
 
 
 @pytest.mark.slow
