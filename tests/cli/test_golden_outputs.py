@@ -1,7 +1,7 @@
 """The commands of the README print the numbers that they once printed, each under its key.
 
 golden/outputs.json holds exit status, rows and written files of each command, without processor times, which no two
-runs share. Keys are those of today; what rows have got since is not there. Which keys a row has, its schema says.
+runs share. Keys are those of today; what rows have got since is not there.
 """
 
 import json
