@@ -126,17 +126,25 @@ def probed_pole(c: ArrayLike, minus: ArrayLike | None = None, differenced: bool 
     if len(responses) < FEWEST:
         return ProbedPole(None, np.nan, 0, (), f"{len(responses)} rows: at least {FEWEST} are needed")
     alone = minus is None and not differenced
-    for changes in (responses, np.diff(responses, axis=0)):
-        sizes = np.abs(changes)
-        floor = sizes[sizes > 0].min(initial=np.inf) / 2  # of decimals; a response that decays is never below it
-        fit, reason = fit_dominant_pole(changes, ORDER, limits=_linear_limits(sizes), floor=floor)
-        if fit:
-            reason = _forced(fit, sizes, alone)
-            break
+    (fit, reason), (of_changes, _) = (_fitted(np.diff(responses, n=times, axis=0)) for times in (0, 1))
+    if fit:
+        reason = _forced(fit, np.abs(responses), alone)
+        off = abs(fit.pole - of_changes.pole) if of_changes else 0.0
+        if not reason and of_changes and abs(fit.pole - 1) < FORCED and off > fit.uncertainty + of_changes.uncertainty:
+            reason = "what hardly changes from row to row is no pole that differences show too: two motions part"
+    elif of_changes:
+        fit, reason = of_changes, _forced(of_changes, np.abs(np.diff(responses, axis=0)), alone)
+    else:
         reason += "; log more digits, or kick harder"
     if fit and not reason:
         return ProbedPole(fit.pole, fit.uncertainty, fit.samples, fit.poles)
     return ProbedPole(None, np.nan, 0, (), reason)
+
+
+def _fitted(responses: FloatArray) -> tuple[Fit | None, str]:
+    sizes = np.abs(responses)
+    floor = sizes[sizes > 0].min(initial=np.inf) / 2  # of decimals; a response that decays is never below it
+    return fit_dominant_pole(responses, ORDER, limits=_linear_limits(sizes), floor=floor)
 
 
 def _responses(c: ArrayLike, minus: ArrayLike | None) -> FloatArray:

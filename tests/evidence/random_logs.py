@@ -12,7 +12,7 @@ from bezstab.evidence.kicks import kicked_motions
 from bezstab.evidence.measured_poles import SURROUNDINGS
 from bezstab.mechanism import Mechanism, compiled_mechanism, constraint_jacobian, load_scene, turning_normals
 from bezstab.mechanism.motions import motion
-from bezstab.methods import REGISTRY, Method
+from bezstab.methods import REGISTRY, lookup
 from bezstab.rationals import exact
 from bezstab.stability import FloatArray, region, spectral_radius, window
 
@@ -46,12 +46,12 @@ def rounded(c: FloatArray, digits: int) -> FloatArray:
     return np.array([float(f"{value:.{digits}g}") for value in c])
 
 
-def kicked_logs(method: Method) -> Iterator[KickedLog]:
+def kicked_logs(name: str) -> Iterator[KickedLog]:
     """Yield logs of a method at random points in and around its region, in two scenes, always the same.
 
     One point of each scene is critically damped, as users like it: two poles meet there.
     """
-    place = list(REGISTRY).index(method.name)
+    place, method = list(REGISTRY).index(name), lookup(name)
     random = np.random.default_rng(place)
     low, high = np.transpose(window(region(method)))
     margin = SURROUNDINGS * (high - low)
@@ -67,7 +67,7 @@ def kicked_logs(method: Method) -> Iterator[KickedLog]:
             runs = c[:, :, int(grows), k]
             usable = np.logical_and.accumulate((np.abs(runs) < LARGEST).all(axis=1))
             up, down = runs[usable].T
-            yield KickedLog(method.name, scene, exact(point[0]), exact(point[1]), _turning(scene), up, down)
+            yield KickedLog(name, scene, exact(point[0]), exact(point[1]), _turning(scene), up, down)
 
 
 @cache
