@@ -18,8 +18,8 @@ from bezstab.stability import FloatArray
 
 Kind = Literal["decays", "neutral", "falls by itself", "unsafe", "not smooth"]
 
-ROUNDING = 1e-6
-"""Of |z| by differences; what grows by less a step is neutral."""
+ROUNDING, SLOW = 1e-6, 0.01
+"""Of |z| by differences, and 1/s: what grows by less a step, or by less than a hundredth a second, is neutral."""
 
 SAME_RATE = 0.1
 """Relative: rates that differ by less are one, and what grows so much more slowly than a robot falls is no matter."""
@@ -62,7 +62,7 @@ def growth_at(robot: Robot, state: State, own: FloatArray | None = None) -> Grow
     if not len(moduli):
         return Growth("neutral", None, own=none)
     z_abs, rates = float(moduli[0]), _rates(moduli, robot.h)
-    if z_abs <= 1 + ROUNDING:
+    if z_abs <= 1 or rates[0] <= _least(robot.h):
         return Growth("decays" if z_abs < 1 - ROUNDING else "neutral", z_abs, own=none)
     if own is None or (z_abs < RESOLVED and _exceeds(rates, own, robot.h)):
         own = _own_rates(robot, state, moduli)
@@ -95,11 +95,16 @@ def _rates(moduli: FloatArray, h: float) -> FloatArray:
     return np.asarray(np.log(moduli[moduli > 1]) / h)
 
 
+def _least(h: float) -> float:
+    """Return the least rate (1/s) that is growth."""
+    return max(ROUNDING / h, SLOW)
+
+
 def _exceeds(rates: FloatArray, own: FloatArray, h: float) -> bool:
     """Return whether some rate is larger than the mechanism's own, each compared with that of its place."""
     length = max(len(rates), len(own))
     first, second = (np.pad(each, (0, length - len(each))) for each in (rates, own))
-    beside = SAME_RATE * own[:1].sum() + ROUNDING / h
+    beside = SAME_RATE * own[:1].sum() + _least(h)
     return bool((first > (1 + SAME_RATE) * second + beside).any())
 
 

@@ -106,7 +106,7 @@ def _feedback(
     if "friction" in kind:  # it has damping, but no position to be off
         points = [(alpha_hat, ZERO) for alpha_hat, _ in points[:1]]
     for (alpha_hat, beta_hat), where in zip(points if deep else points[:1], ("", "past its width"), strict=False):
-        yield Feedback(
+        found = Feedback(
             kind,
             text,
             count,
@@ -116,3 +116,7 @@ def _feedback(
             float(np.abs(drive_pole(method, float(alpha_hat), float(beta_hat)))) ** (1 / float(method.step_multiple)),
             drive_verdict(method, alpha_hat, beta_hat),
         )
+        if found.unsafe:  # (1, 1/4) of symplectic Euler and RK4 are stable, and so is what solimp makes of them
+            advice = f'write solref="{float(2 * h):.9g} 1"'
+            found = replace(found, notes="; ".join(filter(None, [found.notes, advice])))
+        yield found

@@ -1,11 +1,14 @@
 """Each solref as Baumgarte's point: what MuJoCo makes of it, exact verdicts, and that a run does as they say."""
 
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
 import pytest
 
+from bezstab.methods import lookup
 from bezstab.mujoco.solrefs import Feedback, feedbacks
+from bezstab.stability import verdict
 from tests.mujoco.models import FLAT, UNSAFE, mjcf
 from tests.mujoco.test_steps import model_of
 from tests.reference.mujoco_steps import grown
@@ -29,7 +32,7 @@ def held(solref: str, solimp: str = FLAT) -> str:
     [
         ("0.02 1", "", (0.4 / 0.9 * 0.9, 0.04), ""),
         ("0.002 1", "", (1, 0.25), "refsafe raises 0.002 s to 2h"),
-        ("0.002 1", UNSAFE, (4, 4), ""),
+        ("0.002 1", UNSAFE, (4, 4), 'write solref="0.008 1"'),
         ("0.02 -1", "", (0.4, 0.04), "the signs differ: MuJoCo takes 0.02 1"),
         ("-9000 -150", "", (0.6, 0.144), ""),
     ],
@@ -57,10 +60,17 @@ def test_past_its_width_a_setting_is_judged_if_asked_and_a_run_does_so() -> None
     assert not near.unsafe
     near, far = found(more=setting, deep=True)
     assert (far.alpha_hat, far.beta_hat) == pytest.approx((1, 2.2))
-    assert (near.unsafe, far.unsafe, far.notes) == (False, True, "past its width")
+    assert (near.unsafe, far.unsafe) == (False, True)
     model = model_of(mjcf(SLIDE.format(""), setting, h=H))
     assert grown(mujoco, model, mujoco.MjData(model), kick=1e-6, steps=300) < 1e-3
     assert grown(mujoco, model, mujoco.MjData(model), kick=1e-2, steps=300) > 1e3
+
+
+@pytest.mark.parametrize("method", ["SYM", "RK4"])
+@pytest.mark.parametrize("ratio", [Fraction(1, 9999), Fraction(1, 2), Fraction(1)])
+def test_the_solref_to_write_is_safe_whatever_solimp_makes_of_it(method: str, ratio: Fraction) -> None:
+    """A time constant of two steps is (1, 1/4), scaled by r and r^2."""
+    assert verdict(lookup(method), ratio, ratio**2 / 4) == "converges"
 
 
 def test_friction_has_a_velocity_alone() -> None:
