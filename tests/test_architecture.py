@@ -61,7 +61,7 @@ APPOINTED = {
         *("methods/determinants.py", "methods/derivation.py", "methods/formulas.py", "methods/shared_factors.py"),
         *("methods/plane_edges.py", "methods/path_edges.py", "methods/root_isolation.py", "methods/step_matrices.py"),
         *("methods/recipes.py", "methods/steady_errors.py", "methods/rotation_torque.py"),
-        *("stability/quadrant_proofs.py", "stability/held_drives.py"),
+        "stability/quadrant_proofs.py",
         *("mechanism/equations.py", "mechanism/generated_code.py", "mechanism/start.py", "mechanism/observation.py"),
     },
     "matplotlib": {

@@ -11,7 +11,7 @@ from bezstab.stability.accurate_points import default_rate
 from bezstab.stability.answer_checks import Modulus
 from bezstab.stability.arrays import EPS, SLOW, BoolArray, ComplexArray, Extent, FloatArray, plane_arrays, real_array
 from bezstab.stability.best_points import BestPoint, best_point, best_point_or_reason, falls_towards
-from bezstab.stability.choices import Choice, choose, describe_point, gain_stretches, steps_to_settle
+from bezstab.stability.choices import Choice, choose, describe_point, steps_to_settle
 from bezstab.stability.closed_loop import QUALITY, dominant_pole, pole_map, poles, spectral_radius, verdict
 from bezstab.stability.drive_poles import drive_pole, drive_verdict, velocity_poles
 from bezstab.stability.error_fronts import RATES, FrontPoint, error_front
@@ -48,16 +48,6 @@ if TYPE_CHECKING:
         exact_critical_damping_limit,
         stable_up_to,
         unconditional_damping_ratio,
-    )
-    from bezstab.stability.held_drives import (
-        HeldLimits,
-        HeldMap,
-        Timing,
-        held_limits,
-        held_map,
-        held_method,
-        held_spectral_radius,
-        held_verdict,
     )
     from bezstab.stability.quadrant_proofs import StableForAll, stable_for_all
 

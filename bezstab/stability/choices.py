@@ -19,10 +19,9 @@ from bezstab.stability.best_points import best_point
 from bezstab.stability.closed_loop import all_within, converges, largest_pole, spectral_radius, verdict
 from bezstab.stability.critical_points import critical_place
 from bezstab.stability.curve_choices import Curve, least_along, mildest_along, of_equal
-from bezstab.stability.drive_poles import drive_pole, drive_verdict
 from bezstab.stability.forced_errors import OMEGA_H
 from bezstab.stability.margins import Margins, stability_margins
-from bezstab.stability.path_crossings import ONE, Path, stable_stretch
+from bezstab.stability.path_crossings import ONE
 from bezstab.stability.pencils import pencil_of
 from bezstab.stability.regions import Region, chart_of, pole_place, region
 from bezstab.stability.root_finding import TOLD
@@ -231,12 +230,8 @@ def describe_point(
     beta_hat: Fraction,
     spread: float = USUAL_SPREAD,
     margins: bool = True,
-    *,
-    of_drive: bool = False,
 ) -> Choice:
     """Return what there is to say of an exact, dimensionless point; `goal` is only kept.
-
-    `of_drive`: all is said of the velocity where there is no stiffness.
 
     `spread` is the share by which alpha and beta may be off; `margins`: whether those are found and proven. Where that
     fails the verdict stands nevertheless, and `margins_reason` says why. NumericalError if a pole (a root of paper Eq.
@@ -244,14 +239,14 @@ def describe_point(
     """
     _check_spread(spread)
     a, b = float(alpha_hat), float(beta_hat)
-    pole_at = partial(drive_pole, method) if of_drive else partial(largest_pole, method)
-    proven = (drive_verdict if of_drive else verdict)(method, alpha_hat, beta_hat)
+    pole_at = partial(largest_pole, method)
+    proven = verdict(method, alpha_hat, beta_hat)
     offsets = 1 + spread * np.linspace(-1, 1, SHARES + 1)
     near_a, near_b = np.meshgrid(a * offsets, b * offsets**2)
     found, trouble = None, None
     if margins and proven == "converges":
         try:
-            found = stability_margins(method, alpha_hat, beta_hat, of_drive=of_drive)
+            found = stability_margins(method, alpha_hat, beta_hat)
         except NumericalError as error:
             trouble = str(error)
     return Choice(
@@ -353,32 +348,3 @@ def _critical_point(method: Method, box: Extent) -> tuple[float, float]:
     if best and not best.z_abs and math.dist(found, (best.alpha_hat, best.beta_hat)) < AT_DEADBEAT:
         return best.alpha_hat, best.beta_hat
     return found
-
-
-def gain_stretches(
-    method: Method, alpha_hat: Fraction, beta_hat: Fraction
-) -> tuple[tuple[float, float] | None, tuple[float, float] | None]:
-    r"""Return from and to which alpha_hat alone, and beta_hat alone, a drive is stable.
-
-    beta_hat                      x a stable point: each gain may grow up to the edge
-       |  \    edge               o an unstable one: each gain alone is changed until it is stable, if ever
-       |---x--->\   o
-       |        |\ <--
-       +------------ alpha_hat
-
-    To where the proven verdict turns; the stretch that is nearest to the drive's own gain. From zero where there is no
-    lower end, to infinity where there is no upper one. None where no such gain is stable with the other one.
-    """
-    paths = (
-        (Path(method, ONE, beta_hat, (1, 0), of_drive=True), alpha_hat),
-        (Path(method, alpha_hat, ONE, (0, 1), of_drive=True), beta_hat),
-    )
-    of_alpha, of_beta = (stable_stretch(path, own) for path, own in paths)
-    return _in_float64(of_alpha), _in_float64(of_beta)
-
-
-def _in_float64(stretch: tuple[Fraction, Fraction | None] | None) -> tuple[float, float] | None:
-    if stretch is None:
-        return None
-    low, high = stretch
-    return float(low), math.inf if high is None else float(high)

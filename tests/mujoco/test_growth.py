@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from bezstab.engines import Timing
 from bezstab.mujoco.controllers import Gains
 from bezstab.mujoco.growth import Growth, growth_at, stable_factor
 from bezstab.mujoco.robots import Robot
-from bezstab.stability import Timing
 from tests.mujoco.models import INTEGRATORS, WEIGHTLESS, mjcf
 from tests.mujoco.test_steps import at_qpos0, model_of, robot_of
 

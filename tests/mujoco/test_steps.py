@@ -7,12 +7,13 @@ from typing import Any
 import numpy as np
 import pytest
 
+from bezstab.drives.held_torque import held_method, spectral_radius
+from bezstab.engines import Timing
 from bezstab.mujoco.controllers import Gains, controlled
 from bezstab.mujoco.growth import growth_at
 from bezstab.mujoco.reading import loaded_model
 from bezstab.mujoco.robots import Robot, State
 from bezstab.mujoco.steps import step_at
-from bezstab.stability import Timing, held_spectral_radius
 from tests.mujoco.models import INTEGRATORS, mjcf, random_arm, random_model
 from tests.reference.mujoco_steps import grown, step_moduli
 
@@ -159,5 +160,5 @@ def test_a_joint_of_a_urdf_is_driven_by_its_name() -> None:
     for timing in (Timing(), Timing(4, Fraction(1)), Timing(3, Fraction("0.5"))):
         robot = robot_of(model, Gains("knee", Fraction(20), Fraction("0.5")), timing=timing)
         alpha_hat, beta_hat = 0.5 * 0.002 / 0.003, 20 * 0.002**2 / 0.003
-        expected = float(held_spectral_radius("SYM", alpha_hat, beta_hat, timing))
+        expected = float(spectral_radius(held_method("SYM", timing), alpha_hat, beta_hat))
         assert step_at(robot, at_qpos0(robot)).moduli()[0] == pytest.approx(expected, rel=1e-9)
