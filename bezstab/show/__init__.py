@@ -19,6 +19,7 @@ from bezstab.show.result_sentences import (
     passages_words,
     spare_words,
     trade_words,
+    varying_words,
 )
 from bezstab.show.row_kinds import (
     CHECKED,

@@ -1,7 +1,8 @@
-"""What results say in sentences, beside their rows: what feedback costs, which poles meet, when errors grow."""
+"""What results say in sentences, beside their rows: what feedback costs, where it is best, when errors grow."""
 
 from __future__ import annotations
 
+from itertools import groupby
 from typing import TYPE_CHECKING
 
 from bezstab.rationals import typed_number
@@ -14,7 +15,7 @@ if TYPE_CHECKING:
 
     from bezstab.evidence import Measurement
     from bezstab.questions import Answer, ReferenceMotion
-    from bezstab.stability import BestPoint, FarLimit
+    from bezstab.stability import BestPoint, FarLimit, VaryingSteps
 
 COSTLY = 10.0
 """Times the least error: from here on a sentence says what the feedback costs."""
@@ -23,8 +24,6 @@ GAIN = 0.95
 """Of an error: what is not below is called no gain."""
 
 MOST_LISTED = 20  # times in a message
-
-TIMES = {2: "double", 3: "triple"}
 
 
 def costs_words(answer: Answer) -> str | None:
@@ -128,20 +127,50 @@ def energy_words(motion: ReferenceMotion) -> str:
     )
 
 
-def best_point_words(best: BestPoint) -> str:
-    """Return in words which poles meet at the best point, and where else |z_p| is as small (dimensionless, as text)."""
-    from bezstab.stability import pole_place  # which a sentence without poles does not load
+def varying_words(name: str, varying: VaryingSteps) -> str:
+    """Return the verdict on a range of steps of the method of that name, and why, in one sentence."""
+    held = "α̂ and β̂ held" if varying.hold else "α and β fixed"
+    of_range = f"steps between {_seconds(varying.h_min)} and {_seconds(varying.h_max)}"
+    match varying.varying:
+        case "proven":
+            said = f"proven to decay for every sequence of {of_range} ({_proof(varying)})"
+        case "refuted":
+            said = f"refuted for {of_range}: {_growing(varying)}"
+        case "not known":
+            said = f"not known whether every sequence of {of_range} decays"
+    return f"{name}, {held}: {said}."
 
-    stays = "" if best.fixed is None else f"a pole stays at {pole_place(best.fixed)} whatever α̂ and β̂"
-    if best.fixed is not None and best.z_abs <= abs(best.fixed):
-        return stays
-    words = _poles_in_words(best)
+
+def _seconds(step: Fraction) -> str:
+    return f"{float(step):.6g} s"
+
+
+def _proof(varying: VaryingSteps) -> str:
+    if varying.kind == "quadratic":
+        return "a quadratic form falls with each step"
+    return "each step decays alone, and steps commute"
+
+
+def _growing(varying: VaryingSteps) -> str:
+    """Return a sequence and what it does to errors: 3 of 0.01 s, then 0.02 s, over and over, grow 1.3-fold each time.
+
+    That they grow is said where three digits show it.
+    """
+    assert varying.sequence
+    repeated = [(_seconds(step), len(list(same))) for step, same in groupby(varying.sequence)]
+    steps = ", then ".join(step if count == 1 else f"{count} of {step}" for step, count in repeated)
+    if len(varying.sequence) == 1:
+        return f"a step of {steps} alone does not decay"
+    growth = f"{varying.growth or 1:.3g}"
+    return f"{steps}, over and over, {f'grow {growth}-fold each time' if float(growth) > 1 else 'do not decay'}"
+
+
+def best_point_words(best: BestPoint) -> str | None:
+    """Return that every pole is zero at the best point, and where else (dimensionless, as text); None if one is not."""
+    if best.z_abs:
+        return None
     points = " and ".join(f"({alpha_hat:.6f}, {beta_hat:.6f})" for alpha_hat, beta_hat in best.elsewhere)
-    if best.arc:
-        words += f"; the same |z_p| on a whole arc, to {points}"
-    elif points:
-        words += f"; also at {points}"
-    return f"{words}; {stays}" if stays else words
+    return "deadbeat: every pole is 0" + (f"; also at {points}" if points else "")
 
 
 def falling_words(limit: FarLimit) -> str:
@@ -153,7 +182,9 @@ def falling_words(limit: FarLimit) -> str:
     falls = f"|z_p| falls towards {limit.z_abs:.6g} as"
     if p == 0 or q == 0:
         grows, stays = ("α̂", "β̂") if q == 0 else ("β̂", "α̂")
-        return f"{falls} {grows} grows" + ("" if ratio is None else f" at {stays} = {limit.point(1.0)[q == 0]:.6g}")
+        return f"{falls} {grows} grows" + (
+            "" if ratio is None else f" at {stays} = {1 / ratio if q == 0 else ratio:.6g}"
+        )
     times = "" if ratio is None or f"{ratio:.6g}" == "1" else f"{ratio:.6g} "
     equal = "like" if ratio is None else "="
     grow = "α̂ and β̂ grow" if p > 0 and q > 0 else "β̂ grows and α̂ falls" if q > 0 else "α̂ grows and β̂ falls"
@@ -162,20 +193,6 @@ def falling_words(limit: FarLimit) -> str:
 
 def _power(name: str, exponent: int) -> str:
     return name if exponent == 1 else f"{name}^{exponent}"
-
-
-def _poles_in_words(best: BestPoint) -> str:
-    if best.z_abs == 0:
-        return "deadbeat: every pole is 0"
-    poles = [f"{z.real:+.6f} ± {z.imag:.6f}i" if z.imag else f"{z.real:+.6f}" for z in best.meeting]
-    words = f"z = {' and '.join(poles)}"
-    if len(best.meeting) > 1:
-        words += " meet"
-    if best.multiplicity > 1:
-        words += f", {'each ' if len(best.meeting) > 1 else ''}{TIMES.get(best.multiplicity, 'multiple')}"
-    if best.double:
-        words += ", each double, on β̂ = α̂²/4"
-    return words
 
 
 def exact_rate_words(measurement: Measurement) -> str:

@@ -458,6 +458,32 @@ SWEPT_OVER = (
     STABLE_ITERATIONS,
 )
 """What an engine that sweeps adds: the first to all, the others to --chain and --scene."""
+# what --h-min adds: a proof, or a sequence of steps that refutes it
+VARYING = (
+    text(
+        "varying",
+        "Whether errors decay for every sequence of steps",
+        "varying steps",
+    ),
+    number("varying_h_min", "Smallest step of such a sequence", unit="s", path="h_min"),
+    number("varying_h_max", "Largest step of such a sequence", unit="s", path="h_max"),
+    truth("hold", "Whether alpha_hat and beta_hat are held while the step varies, not alpha and beta"),
+    text("certificate_kind", "What the certificate is", null="without a proof", path="kind"),
+    Field("certificate", "Rational numbers that prove it, as rows", null="where it takes none", kind="text rows"),
+    Field(
+        "sequence",
+        "Steps of a sequence that lets errors not decay when it is repeated",
+        unit="s",
+        null="unless refuted",
+        kind="numbers",
+    ),
+    number(
+        "growth",
+        "Factor on errors after each repetition of that sequence",
+        null="unless refuted, and where a step has no solution",
+    ),
+    text("shown_by", "The line with which simulate shows errors grow", null="where no run shows it"),
+)
 # what `probe --alpha --beta` adds for each method
 LIKENESS = (
     METHOD,
@@ -577,9 +603,9 @@ REGIONS = RowKind(
         ),
         text(
             "best_where",
-            "Which poles meet where the modulus is smallest, in words",
+            "That all poles are zero where the modulus is smallest, and where else, in words",
             "poles there",
-            null="where nothing is",
+            null="where they are not zero",
         ),
         text("best_reason", "Why there is no best point", null="where there is one"),
         truth("bounded", "Whether the region is bounded", path="region.bounded"),
@@ -759,7 +785,7 @@ CHOICES = RowKind(
         ENERGY_RATE.hidden,
         SENTENCE,
     ),
-    added=(*MOVING, *SCENE_RUN, SWEEPS, *SWEPT_OVER, ENGINE_H_LIMIT, SETTING),
+    added=(*MOVING, *SCENE_RUN, *VARYING, SWEEPS, *SWEPT_OVER, ENGINE_H_LIMIT, SETTING),
     sentence=IN_WORDS,
 )
 # printed by `check`: a choice with its role

@@ -8,14 +8,12 @@ from typing import TYPE_CHECKING
 from bezstab.goals import Goal
 from bezstab.lazy import lazy_names
 from bezstab.stability.accurate_points import default_rate
-from bezstab.stability.answer_checks import Modulus
 from bezstab.stability.arrays import EPS, SLOW, BoolArray, ComplexArray, Extent, FloatArray, plane_arrays, real_array
-from bezstab.stability.best_points import BestPoint, best_point, best_point_or_reason, falls_towards
+from bezstab.stability.best_points import BestPoint, FarLimit, best_point, best_point_or_reason, falls_towards
 from bezstab.stability.choices import Choice, choose, describe_point, steps_to_settle
-from bezstab.stability.closed_loop import QUALITY, dominant_pole, pole_map, poles, spectral_radius, verdict
+from bezstab.stability.closed_loop import QUALITY, Modulus, dominant_pole, pole_map, poles, spectral_radius, verdict
 from bezstab.stability.drive_poles import drive_pole, drive_verdict, velocity_poles
 from bezstab.stability.error_fronts import RATES, FrontPoint, error_front
-from bezstab.stability.far_limits import FarLimit
 from bezstab.stability.feedback_costs import FeedbackCost, feedback_cost, follows_motion, order_left
 from bezstab.stability.forced_errors import (
     LARGEST_OMEGA_H,
@@ -28,6 +26,7 @@ from bezstab.stability.forced_errors import (
 from bezstab.stability.margins import Margins, largest_stable_step, stability_margins
 from bezstab.stability.regions import Region, check_level, pole_place, region, useful_window, window
 from bezstab.stability.searches import bisected, first_where
+from bezstab.stability.step_sequences import Varying, VaryingSteps, varying_steps
 from bezstab.stability.sweeps import Growth, chain, fewest_sweeps, inverse_effective_masses, swept_growth
 from bezstab.stability.turning import (
     LAW_HOLDS,

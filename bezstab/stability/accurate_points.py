@@ -8,8 +8,8 @@ import numpy as np
 
 from bezstab.errors import NumericalError
 from bezstab.methods import Method
-from bezstab.stability.answer_checks import Modulus
 from bezstab.stability.arrays import BoolArray, Extent, FloatArray
+from bezstab.stability.closed_loop import Modulus
 from bezstab.stability.forced_errors import combined_error
 from bezstab.stability.searches import grid_of, lowest_minima
 

@@ -13,19 +13,17 @@ from bezstab.goals import Goal
 from bezstab.methods import Method, Verdict, steps
 from bezstab.rationals import exact
 from bezstab.stability.accurate_points import Within, accurate_point, default_rate, off_by, worst_error
-from bezstab.stability.answer_checks import Modulus, check_critical, check_least
 from bezstab.stability.arrays import DOUBLE, SLOW, Extent, FloatArray
 from bezstab.stability.best_points import best_point
-from bezstab.stability.closed_loop import all_within, converges, largest_pole, spectral_radius, verdict
-from bezstab.stability.critical_points import critical_place
+from bezstab.stability.closed_loop import Modulus, all_within, converges, largest_pole, spectral_radius, verdict
+from bezstab.stability.critical_points import critical_point
 from bezstab.stability.curve_choices import Curve, least_along, mildest_along, of_equal
 from bezstab.stability.forced_errors import OMEGA_H
 from bezstab.stability.margins import Margins, stability_margins
 from bezstab.stability.path_crossings import ONE
-from bezstab.stability.pencils import pencil_of
-from bezstab.stability.regions import Region, chart_of, pole_place, region
+from bezstab.stability.regions import Region, pole_place, region
 from bezstab.stability.root_finding import TOLD
-from bezstab.stability.searches import checked, lowest_minima
+from bezstab.stability.searches import lowest_minima
 
 SCOUTS = 64  # of the points one in so many is looked at first, for a value that the others must be below
 USUAL_SPREAD = 0.1  # the share by which alpha and beta may be off
@@ -36,7 +34,6 @@ GRID = 49  # points per axis of a zoom: few fine grids take less time than many 
 ZOOM = 0.32  # from one grid to the next: eight spacings to either side of its best point
 ZOOMS = 21  # after the first grid: 0.32^21 = 4e-11 of the region, where Schur's recursion tells values apart no more
 SHARES = 8  # of the largest step, and of the spread, among which the worst is looked for: in practice it is an end
-AT_DEADBEAT = 0.01  # of alpha_hat, beta_hat: a double pole that is so near to zero may be followed no further
 SEARCHED = 4.0  # alpha h and beta h: there e^-4, a fiftieth, is left after a step, and nobody asks for faster decay
 
 
@@ -120,9 +117,9 @@ def choose(
     accurate: the least combined error on a motion of omega_h rad a step (forced_errors.py), at worst with alpha
     and beta off by the spread (a share), among what settles in time; by default errors fall by e^(-1/2) for each rad of
     the motion, or half as fast as with robust where nothing is so fast. fastest: the smallest |z_p|. critical: the
-    fastest dominant pole that is double, real and positive, on the way from small parameters on, before another pole
-    overtakes it. robust: the fastest at worst over every smaller step at the same alpha, beta, and alpha and beta off
-    by the spread, where fast means decay per second. gentle: the smallest alpha = beta that settles in time. `equal`
+    fastest dominant pole that is double, real and positive, on alpha = beta, before another pole overtakes it. robust:
+    the fastest at worst over every smaller step at the same alpha, beta, and alpha and beta off by the spread, where
+    fast means decay per second. gentle: the smallest alpha = beta that settles in time. `equal`
     keeps alpha = beta. `along` is a curve of points that alone are looked at, not by critical; of several that are best
     the mildest is taken, and gentle is the mildest that settles in time.
     To settle in time is that errors fall a thousandfold in `settle` (s) with steps of h (s), or of h_max (s), the
@@ -130,8 +127,8 @@ def choose(
     which alpha_hat = 2 alpha h and beta_hat = beta^2 h^2 (paper Eq. 16) are smaller.
     `modulus` takes the place of |z_p| at rest, for a mechanism that moves; critical asks for poles at rest. It and
     omega_h are those of the largest step.
-    InputError if nothing stable meets the goal, for another goal and for a spread outside 0 to 1; NumericalError if a
-    second route contradicts the answer (answer_checks). The poles are those of paper Eq. 17; the goals are this
+    InputError if nothing stable meets the goal, for another goal and for a spread outside 0 to 1; NumericalError if the
+    point found is not stable. The poles are those of paper Eq. 17; the goals are this
     package's.
     """
     if goal not in get_args(Goal):
@@ -139,9 +136,11 @@ def choose(
     _check_spread(spread)
     largest = h_max or h
     rate = THOUSANDFOLD ** float(largest * method.step_multiple / settle) if largest and settle else None
+    at_rest = modulus is None
+    if goal == "fastest" and at_rest and not along and not equal and (best := best_point(method)):
+        return _described(method, goal, (best.alpha_hat, best.beta_hat), h, largest, spread, margins)
     box, cut = search_box(region(method))
     curve = along or (of_equal(box) if equal or goal == "gentle" else None)
-    at_rest = modulus is None
     z_abs = modulus or partial(spectral_radius, method)
     within: Within = partial(all_within, method) if at_rest else lambda a, b, level: np.asarray(z_abs(a, b) < level)
     if goal == "accurate":
@@ -162,26 +161,32 @@ def choose(
         what = "any setting of the engine" if along else "alpha = beta"
         point, cut = mildest_along(curve, z_abs, rate or 0.0, f"with {what} {method.name}"), False
     elif goal == "critical":
-        point = _critical_point(method, box)
-        check_critical(method, point[0], point[1], box, cut)
-        if equal and not math.isclose(point[1], point[0] ** 2 / 4):
-            raise InputError(
-                f"--goal critical --keep alpha=beta: the double pole of {method.name} is not at alpha = beta"
-            )
-    elif goal == "fastest" and at_rest and not curve and (best := best_point(method)):
-        point, cut = (best.alpha_hat, best.beta_hat), False
+        point = critical_point(method, min(box[0][1] / 2, math.sqrt(box[1][1])))
     elif goal == "robust" or goal == "fastest":  # noqa: PLR1714 (what the type checker follows)
         objective = _slowest(method, z_abs, within, spread) if goal == "robust" else z_abs
         # without a curve of the fastest where |z_p| falls on as the feedback grows, or for a mechanism that moves
-        point = least_along(curve, objective) if curve else checked(partial(_least, method, box, objective, cut))
+        point = least_along(curve, objective) if curve else _least(box, objective, cut)
     else:
         assert_never(goal)
+    choice = _described(method, goal, point, h, largest, spread, margins)
+    return replace(choice, searched=SEARCHED) if cut and not along else choice
+
+
+def _described(
+    method: Method,
+    goal: str,
+    point: tuple[float, float],
+    h: Fraction | None,
+    largest: Fraction | None,
+    spread: float,
+    margins: bool,
+) -> Choice:
+    """Return what there is to say, at the step h, of a point for the largest step; NumericalError if it is unstable."""
     alpha_hat, beta_hat = (exact(each) for each in point)
     if not converges(method, alpha_hat, beta_hat):
         raise NumericalError(f"{method.name}: the point {point} found for {goal} is not stable")
     share = h / largest if h and largest else ONE
-    choice = describe_point(method, goal, alpha_hat * share, beta_hat * share**2, spread, margins)
-    return replace(choice, searched=SEARCHED) if cut and not along else choice
+    return describe_point(method, goal, alpha_hat * share, beta_hat * share**2, spread, margins)
 
 
 def _accurate(
@@ -305,12 +310,11 @@ def _slowest(method: Method, modulus: Modulus, within: Within, spread: float) ->
     return objective
 
 
-def _least(method: Method, extent: Extent, objective: Modulus, cut: bool, finer: int) -> tuple[float, float]:
-    """Return where the objective is least over the region's box; NumericalError if a sampled point is better.
+def _least(extent: Extent, objective: Modulus, cut: bool) -> tuple[float, float]:
+    """Return where the objective is least over the region's box.
 
-    `finer`: so many times the points along an axis of the first grid, and so many times the zooms, each by a lesser
-    factor. Its valleys are narrow, curved and have kinks for beds: the grids wait where a valley leads on, but out of a
-    box that cuts off the region they are not led (`cut`).
+    Its valleys are narrow, curved and have kinks for beds: the grids wait where a valley leads on, but out of a box
+    that cuts off the region they are not led (`cut`).
     """
     largest = np.array([extent[0][1] / 2, math.sqrt(extent[1][1])])  # alpha h and beta h
 
@@ -321,30 +325,14 @@ def _least(method: Method, extent: Extent, objective: Modulus, cut: bool, finer:
         values[positive] = objective(2 * alpha, beta**2)
         return values
 
-    shrink = ZOOM ** (1 / finer)
-    (best, *_), (least, *_) = lowest_minima(
+    (best, *_), _ = lowest_minima(
         over_positive_points,
-        list(np.linspace(np.zeros(2), largest, finer * FIRST_GRID, axis=1)),
+        list(np.linspace(np.zeros(2), largest, FIRST_GRID, axis=1)),
         1,
-        shrink * largest / 2,
+        ZOOM * largest / 2,
         points=GRID,
-        shrink=shrink,
-        rounds=finer * ZOOMS,
+        shrink=ZOOM,
+        rounds=ZOOMS,
         fold=(lambda points: np.minimum(points, largest)) if cut else None,
     )
-    point = 2 * float(best[0]), float(best[1]) ** 2
-    check_least(method, objective, point, float(least), [extent], cut)
-    return point
-
-
-def _critical_point(method: Method, box: Extent) -> tuple[float, float]:
-    """Return the fastest point whose dominant pole is double, real and positive; InputError if there is none."""
-    chart = chart_of(pencil_of(method, free=True), region(method))
-    place = critical_place(chart, box)
-    if place is None:
-        raise InputError(f"{method.name}: no double pole is dominant: --goal critical has no answer")
-    found = chart.user_point(place)
-    best = best_point(method)
-    if best and not best.z_abs and math.dist(found, (best.alpha_hat, best.beta_hat)) < AT_DEADBEAT:
-        return best.alpha_hat, best.beta_hat
-    return found
+    return 2 * float(best[0]), float(best[1]) ** 2

@@ -6,7 +6,7 @@ degree, and keeps all digits on beta_hat = alpha_hat^2 / 4, where the roots of P
 the roots of P(z; alpha_hat, beta_hat) itself.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from fractions import Fraction
 from functools import cache, lru_cache
 
@@ -39,6 +39,9 @@ LEADING = 4 * EPS  # of the sum of its terms' sizes: a leading coefficient below
 UNSURE = 2.0  # |z_p|: of an n-fold pole beyond all sizes rounding may leave 1e15^(1/n)
 LARGE = 1e10  # |mu|: of larger ones powers may overflow
 SPLITTER = 2.0**27 + 1  # multiplying by it parts the 53 bits of a float64 into two halves (Dekker)
+
+Modulus = Callable[[FloatArray, FloatArray], FloatArray]
+"""|z_p|, or what takes its place and is to be least, over arrays of alpha_hat and beta_hat of one shape."""
 
 QUALITY = {"fast": 50, "balanced": 200, "fine": 1000}
 """Points per axis of a map (tests/bench/test_map_costs.py): B4's boundary is read off to 1e-4, 4e-6, 2e-7."""
@@ -242,11 +245,17 @@ def _largest_pole(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray) -
             z = largest_roots(lambda place: _in_plane(method, place.real, place.imag), alpha_hat + 1j * beta_hat)
         else:
             first, real, other = feedback_roots(method, alpha_hat, beta_hat)
-            z = largest_roots(lambda mu: _in_mu(in_mu, mu), np.concatenate([first, other]))
+            z = largest_at_mu(method, np.concatenate([first, other]))
             z, of_other = z[: first.size], z[first.size :]
             z[real] = np.where(np.abs(of_other) > np.abs(z[real]), of_other, z[real])
     z.imag = np.abs(z.imag)
     return np.asarray(_with_infinite(method, alpha_hat, beta_hat, z[np.newaxis])[0])
+
+
+def largest_at_mu(method: Method, mu: ComplexArray) -> ComplexArray:
+    """Return the root z of pi(., mu) of largest modulus at each of a row of mu of the method's own step."""
+    with np.errstate(all="ignore"):
+        return largest_roots(lambda some: _in_mu(mu_table(method), some), mu)
 
 
 def _with_infinite(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray, z: ComplexArray) -> ComplexArray:

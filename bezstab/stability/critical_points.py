@@ -1,52 +1,46 @@
 """The fastest feedback without oscillation: the smallest dominant pole that is double, real and positive.
 
-From one, where both parameters are zero, the double pole is followed down along its curve, until another pole overtakes
-it or a parameter leaves the region's box. On the chart of a method with a mu that curve is the real axis, where both
-mu are the same; elsewhere P and P' are zero on it.
+On alpha = beta both mu of a method that has a mu are one, so each of its poles is double. Elsewhere it is not known.
 """
 
 import numpy as np
-from numpy.polynomial.polynomial import polydiv, polyfromroots, polyroots
 
-from bezstab.stability.arrays import EPS, ComplexArray, Extent
-from bezstab.stability.charts import Chart, Place
-from bezstab.stability.least_modulus import of_multiple_root, stationary
+from bezstab.errors import InputError
+from bezstab.methods import Method
+from bezstab.stability.arrays import SAME, FloatArray
+from bezstab.stability.best_points import AT_ZERO
+from bezstab.stability.closed_loop import largest_at_mu, mu_table
+from bezstab.stability.curve_choices import SAMPLES
+from bezstab.stability.searches import lowest_minima
 
-STEP = 1 / 100  # of the pole, from one place to the next; the last is halved until it is rounding
 ASIDE = 1e-7  # of mu: a double mu splits by 1e-8 in float64, which must not let a rival of equal modulus win
-CONJUGATE = 3e-8  # Im mu of mu, whose square is four roundings: two real mu that rounding parts move margins by 1e-8
-NEARBY = 0.2  # of one, and of the parameters: a place further from the last is on another curve
+ROUNDS = 45  # of a zoom that halves: to 1e-14 of what it begins with
 
 
-def critical_place(chart: Chart, box: Extent) -> Place | None:
-    """Return the place on the chart; None if no double pole below one is dominant."""
-    pole, place, step, ended = 1.0, (0.0, 0.0), STEP, False
-    while pole > 0 and step > EPS:
-        lower = max(0.0, pole - step)
-        found = _double_at(chart, lower, place)
-        if found and all(0 <= each <= end for each, (_, end) in zip(chart.user_point(found), box, strict=True)):
-            pole, place = lower, found
-        else:
-            ended = True
-        if ended:
-            step /= 2
-    if pole == 1:
-        return None
-    return place if chart.real else (place[0] * (1 - ASIDE), place[0] * CONJUGATE)
+def critical_point(method: Method, furthest: float) -> tuple[float, float]:
+    """Return alpha_hat and beta_hat, on the way from weak feedback to alpha h = beta h = furthest.
 
+    On the way the dominant pole falls from one, until it has a least value, another pole overtakes it, or it meets one
+    and leaves the real axis. InputError for a method without a mu.
+    """
+    if not mu_table(method).size:
+        raise InputError(
+            f"{method.name}: --goal critical is known on alpha = beta alone, where its poles are not double"
+        )
+    multiple = float(method.step_multiple)
 
-def _double_at(chart: Chart, pole: float, near: Place) -> Place | None:
-    """Return the place near another one where a pole is double; None if there is none, or a larger pole."""
-    multiplicity = 2 if chart.real else 1  # of a method with a mu two real mu meet
+    def modulus(points: FloatArray) -> FloatArray:
+        """Return |z_p| over shares of the way, infinite where it is not real and positive."""
+        z = largest_at_mu(method, np.asarray(-multiple * furthest * points.ravel(), complex))
+        critical = (z.real > 0) & (np.abs(z.imag) <= SAME * z.real)
+        return np.where(critical, z.real, np.inf).reshape(points.shape[:-1])
 
-    def functions(points: ComplexArray) -> ComplexArray:
-        """Return zero, as nothing is to be least, and what vanishes."""
-        at_pole = of_multiple_root(chart.coefficients(points), pole, multiplicity)
-        return np.stack([0 * at_pole[0], *at_pole, *([] if chart.real else [points[..., 1]])])
-
-    found = stationary(functions, np.array(near))
-    if found is None or np.abs(found - near).max() > NEARBY * (1 + np.abs(near).max()):
-        return None
-    place = float(found[0]), float(found[1])
-    others, _ = polydiv(chart.coefficients(np.array(place)).real, polyfromroots(multiplicity * [pole]))
-    return place if np.abs(polyroots(others)).max(initial=0.0) < pole else None
+    ended = np.flatnonzero(np.isinf(modulus(SAMPLES[:, np.newaxis])))
+    way = SAMPLES[: ended[0]] if ended.size else SAMPLES
+    end = SAMPLES[min(len(way), len(SAMPLES) - 1)]
+    ((share,), *_), (z_abs, *_) = lowest_minima(
+        modulus, [way], 1, rounds=ROUNDS, fold=lambda points: np.clip(points, 0, end)
+    )
+    if z_abs > AT_ZERO and np.isinf(modulus(np.array([[share * (1 + ASIDE)]]))[0]):
+        share *= 1 - ASIDE
+    return 2 * furthest * float(share), (furthest * float(share)) ** 2

@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 
 from bezstab.errors import InputError, NumericalError
-from bezstab.stability.answer_checks import Modulus
 from bezstab.stability.arrays import DOUBLE, EPS, SAME, Extent, FloatArray, even_points
+from bezstab.stability.closed_loop import Modulus
 from bezstab.stability.root_finding import TOLD
 from bezstab.stability.searches import first_where, least_between
 

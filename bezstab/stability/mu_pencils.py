@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from bezstab.errors import NumericalError
 from bezstab.methods import Method
-from bezstab.stability.arrays import DOUBLE, EPS, SAME, BoolArray, ComplexArray, FloatArray
+from bezstab.stability.arrays import EPS, BoolArray, ComplexArray, FloatArray
 from bezstab.stability.closed_loop import largest_pole
 from bezstab.stability.exact_sums import feedback_roots
 from bezstab.stability.low_degrees import quadratic_roots
@@ -146,39 +146,12 @@ def roots_in_z(pencil: MuPencil, mu: ComplexArray) -> ComplexArray:
     return z
 
 
-def largest_root_in_z(pencil: MuPencil, mu: ComplexArray) -> ComplexArray:
-    """Return the root z of pi(., mu) of largest modulus for each of a row of mu; complex. Errors as `roots_in_z`."""
-    z = roots_in_z(pencil, mu)
-    return np.asarray(z[np.argmax(np.abs(z), axis=0), range(mu.size)])
-
-
 def roots_in_mu(pencil: MuPencil, z: ComplexArray) -> ComplexArray:
     """Return all mu with pi(z, mu) = 0, the locus of a root at z; shape (degree of pi in mu, z.size) for a row of z.
 
     Not finite where one of them is at infinity.
     """
     return roots_of_table(pencil.table.T, z)
-
-
-def deadbeat_points(pencil: MuPencil) -> list[tuple[float, float]]:
-    """Return alpha_hat and beta_hat where every pole of a one-step method is zero, z = R(mu), the most damped first.
-
-    Those where Re mu <= 0, as nobody damps negatively; none of several steps. NumericalError where at the first a pole
-    is not zero, to rounding.
-    """
-    zeros = np.sort_complex(deadbeat_mu(pencil))
-    height = np.abs(zeros.imag)
-    zeros = zeros.real + 1j * np.where(height > SAME * np.abs(zeros), height, 0)
-    zeros = zeros[zeros.real <= SAME * np.abs(zeros)]
-    apart = np.abs(zeros[:, np.newaxis] - zeros) > DOUBLE * np.abs(zeros)
-    zeros = zeros[[apart[k, :k].all() for k in range(zeros.size)]]  # each multiple, or conjugate, zero once
-    points = pencil.user_points(zeros, zeros.conj())
-    if zeros.size:
-        size = float(np.abs(pencil.table[0]) @ abs(zeros[0]) ** np.arange(pencil.table.shape[1]))
-        z_abs = float(np.abs(pencil.poles(*points[:1].T)).max())
-        if z_abs > 100 * np.sqrt(EPS) * size:  # a double mu splits by the root of rounding
-            raise NumericalError(f"{pencil.method.name}: |z_p| = {z_abs:.6g} where all poles were to be zero")
-    return [(alpha_hat, beta_hat) for alpha_hat, beta_hat in points.tolist()]
 
 
 def deadbeat_mu(pencil: MuPencil) -> ComplexArray:

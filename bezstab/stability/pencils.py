@@ -4,20 +4,14 @@ With a mu it is answered from pi(z, mu) (mu_pencils, regions by locus_shapes), w
 beta_hat) (plane_pencils, regions by plane_cells). Over rows of alpha_hat and beta_hat both give the poles, the largest
 on a grid, and whether all are below a level. Of the plane they know
 
-    deadbeat_points()           the points known from R(mu) at which every pole is zero
-    far_limit()                 the least value that |z_p| tends to as parameters grow
-    chart(view, curves)         where least values are looked for: of the region what is seen, and its curves if it is
-                                bounded
     shape(level)                the region below a level, None if empty
 """
 
 from functools import cache
 
 from bezstab.methods import Method, without_shared_factor
-from bezstab.stability.charts import mu_chart, plane_chart
-from bezstab.stability.far_limits import far_limit_through_mu, least_far_limit
 from bezstab.stability.locus_shapes import locus_shape
-from bezstab.stability.mu_pencils import MuPencil, deadbeat_points
+from bezstab.stability.mu_pencils import MuPencil
 from bezstab.stability.plane_cells import strips_shape
 from bezstab.stability.plane_pencils import PlanePencil
 from bezstab.stability.shapes import Shape
@@ -26,21 +20,11 @@ from bezstab.stability.shapes import Shape
 class ThroughMu(MuPencil):
     """What can be asked of a method that has a mu."""
 
-    deadbeat_points = deadbeat_points
-    far_limit = far_limit_through_mu
-    chart = mu_chart
     shape = locus_shape
 
 
 class ThroughP(PlanePencil):
     """What can be asked of any other method."""
-
-    far_limit = least_far_limit
-    chart = plane_chart
-
-    def deadbeat_points(self) -> list[tuple[float, float]]:
-        """Return no points."""
-        return []
 
     def shape(self, level: float) -> Shape | None:
         """Return the region below a level, None if empty."""

@@ -10,9 +10,8 @@ from bezstab.errors import InputError
 from bezstab.methods import Method, fixed_poles
 from bezstab.read_only import ReadOnlyArrays
 from bezstab.stability.arrays import ROUNDING, BoolArray, Extent, FloatArray
-from bezstab.stability.charts import Chart
 from bezstab.stability.closed_loop import spectral_radius
-from bezstab.stability.pencils import Pencil, pencil_of
+from bezstab.stability.pencils import pencil_of
 from bezstab.stability.region_checks import check_region
 from bezstab.stability.shapes import ATTAINED, GOES_ON, Approached
 
@@ -90,12 +89,6 @@ def check_level(level: float) -> None:
         raise InputError(
             f"--level {level:.10g}: expected above 0 and at most {NEXT_TO_ONE:.10g}, or 1, the stability boundary"
         )
-
-
-def chart_of(pencil: Pencil, stable: Region) -> Chart:
-    """Return a pencil's chart over what there is to see of a region that is not empty."""
-    assert stable.view
-    return pencil.chart(stable.view, stable.boundary if stable.bounded else ())
 
 
 def pole_place(z: complex) -> str:

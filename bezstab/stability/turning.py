@@ -34,9 +34,8 @@ from numpy.polynomial.polynomial import polyder, polyval2d, polyval3d
 from numpy.typing import ArrayLike
 
 from bezstab.methods import Method
-from bezstab.stability.answer_checks import Modulus
 from bezstab.stability.arrays import ComplexArray, FloatArray
-from bezstab.stability.closed_loop import mu_table, own_feedback_root, poles
+from bezstab.stability.closed_loop import Modulus, mu_table, own_feedback_root, poles
 from bezstab.stability.stretches import float_table
 
 LAW_HOLDS = 0.1

@@ -66,8 +66,8 @@ def test_the_critical_choice_of_rk4_is_the_minimum_of_its_stability_function() -
 
 @pytest.mark.slow
 def test_a_goal_out_of_reach_is_refused() -> None:
-    with pytest.raises(InputError, match="--keep"):
-        choose(lookup("SYM"), "critical", equal=True)
+    with pytest.raises(InputError, match="critical is known on alpha = beta alone"):
+        choose(lookup("SYM"), "critical")
     assert choose(lookup("B4"), "critical", equal=True) == choose(lookup("B4"), "critical")
     with pytest.raises(InputError, match="settle"):
         choose(lookup("B4"), "gentle", h=Fraction(1), settle=settling(0.5))
@@ -148,7 +148,7 @@ def test_a_time_to_settle_goes_with_the_goal_gentle_and_is_met() -> None:
 UNBOUNDED = ["trapezoid", "implicit-euler", "bdf2", "imex-euler", "average-acceleration", "hht", "verlet-implicit"]
 
 
-@pytest.mark.parametrize("goal", ["robust", "fastest", "critical"])
+@pytest.mark.parametrize("goal", ["robust", "fastest"])
 @pytest.mark.parametrize("name", sampled(UNBOUNDED, quick=["trapezoid", "imex-euler", "verlet-implicit"]))
 @pytest.mark.slow
 def test_where_the_region_goes_on_a_choice_says_how_far_it_looked(name: str, goal: Goal) -> None:
