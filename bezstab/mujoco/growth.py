@@ -13,7 +13,7 @@ from typing import Literal
 import numpy as np
 
 from bezstab.mujoco.robots import Robot, State
-from bezstab.mujoco.steps import step_at
+from bezstab.mujoco.steps import NUDGE, step_at
 from bezstab.stability import FloatArray
 
 Kind = Literal["decays", "neutral", "falls by itself", "unsafe", "not smooth"]
@@ -26,6 +26,10 @@ SAME_RATE = 0.1
 
 RESOLVED = np.exp(0.5)
 """|z|: what grows faster in a step is not resolved, and its rate no limit, whatever it does as the step shrinks."""
+
+FOLLOWED, MOST_STEPS = 4.0, 4000
+"""How often an error becomes e-fold while it is followed in a run, which has at most so many steps. What drifts grows
+fivefold meanwhile."""
 
 DOUBLINGS = 10
 """Of the step, or halvings: what is safe a thousand times as long is safe, what is not a thousand times as short is
@@ -69,6 +73,34 @@ def growth_at(robot: Robot, state: State, own: FloatArray | None = None) -> Grow
     if own is None or _exceeds(rates, own, robot.h):
         return Growth("unsafe", z_abs, own=own)
     return Growth("falls by itself", z_abs, float(rates[0]), own)
+
+
+def goes_on_growing(robot: Robot, state: State, z_abs: float) -> bool:
+    """Return whether a run from a state lets an error grow as its pole says, at least half as fast.
+
+    Where nothing rests, as where a robot falls onto its feet, the motion may soon be one that lets errors shrink. What
+    grows within some steps is not run, and neither are controllers outside the model: True.
+    """
+    mujoco, model = robot.mujoco, robot.model
+    if robot.drives or z_abs > RESOLVED:
+        return True
+    steps = min(MOST_STEPS, round(FOLLOWED / np.log(z_abs)))
+    directions = step_at(robot, state).growing()
+    if not directions.size:
+        return False  # what was left out as a free motion was none to rounding
+    direction = NUDGE * directions[:, 0]
+    ends = []
+    for nudge in (0.0, 1.0):
+        data = robot.data_at(state)
+        mujoco.mj_integratePos(model, data.qpos, nudge * direction[: model.nv], 1.0)
+        data.qvel[:] += nudge * direction[model.nv : 2 * model.nv] / robot.h
+        for _ in range(steps):
+            mujoco.mj_step(model, data)
+        ends.append((data.qpos.copy(), data.qvel * robot.h))
+    moved = np.zeros(model.nv)
+    mujoco.mj_differentiatePos(model, moved, 1.0, ends[0][0], ends[1][0])
+    grown = np.linalg.norm([*moved, *(ends[1][1] - ends[0][1])]) / np.linalg.norm(direction[: 2 * model.nv])
+    return bool(grown > z_abs ** (steps / 2))
 
 
 def _own_rates(robot: Robot, state: State, moduli: FloatArray) -> FloatArray | None:

@@ -11,12 +11,12 @@ from bezstab.mujoco.blame import Shown, Suspect, suspects_at
 from bezstab.mujoco.controllers import Gains, controlled, uncontrolled
 from bezstab.mujoco.elements import Element
 from bezstab.mujoco.energy import Kept, energy_kept, spun
-from bezstab.mujoco.growth import Growth, Kind, growth_at, stable_factor
+from bezstab.mujoco.growth import Growth, Kind, goes_on_growing, growth_at, stable_factor
 from bezstab.mujoco.reading import Loaded, loaded_model, silent
 from bezstab.mujoco.remedies import Remedy, remedies
 from bezstab.mujoco.robots import Robot, State
 from bezstab.mujoco.solrefs import METHODS, Feedback, feedbacks
-from bezstab.mujoco.states import chosen_states, touching, touching_nothing
+from bezstab.mujoco.states import chosen_states, touching, touching_nothing, within_limits
 from bezstab.mujoco.steps import NUDGE, step_at
 
 MOST_DOFS = 400
@@ -218,25 +218,23 @@ def _badness(found: _Found) -> tuple[int, float]:
 
 def _looked_at(robot: Robot, state: State, with_limit: bool) -> Iterator[_Found]:
     """Yield what errors do at a state; where a contact or a limit begins just there, with it and without."""
-    growth = growth_at(robot, state)
-    if growth.kind != "not smooth":
-        yield _with_limit(_Found(robot, state, growth), with_limit)
+    state = within_limits(robot, state)
+    found = _found(robot, state, with_limit)
+    if found.growth.kind != "not smooth":
+        yield found
         return
-    apart, alone = touching_nothing(robot, state)
-    for there in touching(robot, state):
-        growth = growth_at(robot, there)
-        if growth.kind != "not smooth":
-            yield _with_limit(_Found(robot, there, growth), with_limit)
-            break
-    else:
-        yield _Found(robot, state, growth)
-    yield _with_limit(_Found(apart, alone, growth_at(apart, alone)), with_limit)
+    tried = (_found(robot, there, with_limit) for there in touching(robot, state))
+    yield next((each for each in tried if each.growth.kind != "not smooth"), found)
+    yield _found(*touching_nothing(robot, state), with_limit)
 
 
-def _with_limit(found: _Found, wanted: bool) -> _Found:
-    if not wanted or found.growth.kind == "not smooth":
-        return found
-    return replace(found, h_factor=stable_factor(found.robot, found.state, found.growth))
+def _found(robot: Robot, state: State, with_limit: bool) -> _Found:
+    growth = growth_at(robot, state)
+    if growth.kind in ("falls by itself", "unsafe") and not goes_on_growing(robot, state, growth.z_abs or 1.0):
+        growth = replace(growth, kind="neutral", rate=None)
+    if not with_limit or growth.kind == "not smooth":
+        return _Found(robot, state, growth)
+    return _Found(robot, state, growth, stable_factor(robot, state, growth))
 
 
 def _accuracy(found: _Found) -> float | None:

@@ -32,6 +32,9 @@ SHORTER = (1, 4, 16)
 EDGE = 10 * NUDGE
 """m, rad: nearer to an end of its range a joint is at it."""
 
+BEYOND = 0.01
+"""m, rad: farther beyond its range no joint is looked at. qpos0 may well be, as of legs whose knees never stretch."""
+
 REACH = 2e-4
 """m, rad: so far into its limit it is moved. There a nudge of its velocity does not lift it off."""
 
@@ -108,11 +111,12 @@ def _logged(model: Any, path: Path) -> Iterator[State]:
 
 def touching(robot: Robot, state: State) -> Iterator[State]:
     """Yield states near one at which more touches than a nudge can end: in its limits, then after some settling."""
-    inside = replace(state, name=f"{state.name}, touching", positions=_within_limits(robot, state.positions))
+    inside = replace(state, name=f"{state.name}, touching", positions=_into_limits(robot, state.positions))
     yield inside
     settled = _settled(robot, inside)
     if settled is not None:
         yield settled
+        yield replace(settled, positions=_into_limits(robot, settled.positions))
 
 
 def touching_nothing(robot: Robot, state: State) -> tuple[Robot, State]:
@@ -123,18 +127,35 @@ def touching_nothing(robot: Robot, state: State) -> tuple[Robot, State]:
     return replace(robot, model=model), replace(state, name=f"{state.name}, touching nothing")
 
 
-def _within_limits(robot: Robot, positions: FloatArray) -> FloatArray:
+def within_limits(robot: Robot, state: State) -> State:
+    """Return the same where no joint is far beyond its range; else the state with those joints at its ends."""
+    positions = state.positions.copy()
+    for place, edge, outwards in _ends_of_ranges(robot):
+        if outwards * (positions[place] - edge) > BEYOND:
+            positions[place] = edge
+    if (positions == state.positions).all():
+        return state
+    return replace(state, name=f"{state.name}, within its limits", positions=positions)
+
+
+def _into_limits(robot: Robot, positions: FloatArray) -> FloatArray:
     """Return positions with every joint that is at an end of its range a little beyond it."""
-    model, joints = robot.model, robot.mujoco.mjtJoint
     positions = positions.copy()
+    for place, edge, outwards in _ends_of_ranges(robot):
+        if abs(positions[place] - edge) < EDGE:
+            positions[place] = edge + outwards * REACH
+    return positions
+
+
+def _ends_of_ranges(robot: Robot) -> Iterator[tuple[int, float, int]]:
+    """Yield where in qpos a limited hinge or slide is, an end of its range, and which way is beyond it."""
+    model, joints, off = robot.model, robot.mujoco.mjtJoint, robot.mujoco.mjtDisableBit
+    if model.opt.disableflags & (off.mjDSBL_LIMIT | off.mjDSBL_CONSTRAINT):
+        return
     one = np.isin(model.jnt_type, (joints.mjJNT_HINGE, joints.mjJNT_SLIDE)) & (model.jnt_limited != 0)
     for joint in np.flatnonzero(one).tolist():
-        place = model.jnt_qposadr[joint]
         for end, outwards in zip(model.jnt_range[joint], (-1, 1), strict=True):
-            edge = end - outwards * model.jnt_margin[joint]
-            if abs(positions[place] - edge) < EDGE:
-                positions[place] = edge + outwards * REACH
-    return positions
+            yield int(model.jnt_qposadr[joint]), float(end - outwards * model.jnt_margin[joint]), outwards
 
 
 def _settled(robot: Robot, state: State) -> State | None:

@@ -1,5 +1,6 @@
 """What falls by itself falls at the rate of its equation, at any step; what a smaller step mends is unsafe."""
 
+from dataclasses import replace
 from fractions import Fraction
 from math import log, sqrt
 from typing import Any
@@ -9,7 +10,7 @@ import pytest
 
 from bezstab.engines import Timing
 from bezstab.mujoco.controllers import Gains
-from bezstab.mujoco.growth import Growth, growth_at, stable_factor
+from bezstab.mujoco.growth import Growth, goes_on_growing, growth_at, stable_factor
 from bezstab.mujoco.robots import Robot
 from tests.mujoco.models import INTEGRATORS, WEIGHTLESS, mjcf
 from tests.mujoco.test_steps import at_qpos0, model_of, robot_of
@@ -41,6 +42,16 @@ def test_an_inverted_pendulum_falls_by_itself_and_so_do_runs(integrator: str, h:
     for _ in range(steps):
         mujoco.mj_step(model, data)
     assert log(data.qpos[0] / 1e-6) == pytest.approx(growth.rate * steps * h, rel=1e-2)
+
+
+@pytest.mark.parametrize("integrator", INTEGRATORS)
+def test_a_run_from_there_lets_it_fall(integrator: str) -> None:
+    """A pole that stands goes on falling, one that is thrown does not, though its matrix there is the same."""
+    robot, growth = found(mjcf(POLE.format(""), integrator=integrator, gravity=-10))
+    assert growth.z_abs is not None
+    assert goes_on_growing(robot, at_qpos0(robot), growth.z_abs)
+    thrown = replace(at_qpos0(robot), velocities=np.array([60.0]))
+    assert not goes_on_growing(robot, thrown, growth.z_abs)
 
 
 def test_what_grows_because_the_torque_is_late_is_unsafe_though_no_step_is_short_enough_to_end_it() -> None:

@@ -99,6 +99,20 @@ def test_a_foot_that_just_touches_is_judged_on_the_ground_and_in_the_air() -> No
     assert on.z_abs != pytest.approx(off.z_abs, abs=1e-3)
 
 
+def test_a_knee_that_qpos0_stretches_beyond_its_range_is_looked_at_within_it() -> None:
+    """A leg that floats: there it would be thrown about by its limit, and its errors seem to grow by themselves."""
+    leg = (
+        '<body pos="0 0 1"><freejoint/><geom size=".1" mass="2"/><body pos="0 0 -.1">'
+        '<joint name="knee" axis="0 1 0" range="-2 -.8" limited="true" damping=".1"/>'
+        '<geom type="capsule" fromto="0 0 0 0 0 -.2" size=".02" mass=".3"/></body></body>'
+    )
+    found = lint(model_of(mjcf(leg, h=0.002, gravity=-9.81)))
+    names = ["qpos0, within its limits, touching", "qpos0, within its limits, touching nothing"]
+    assert [each.at for each in found.judged] == names
+    assert found.worst.kind in ("decays", "neutral")
+    assert lint(model_of(mjcf(leg, h=0.002, flags='limit="disable"'))).worst.at == "qpos0"
+
+
 def test_where_a_spring_begins_it_is_not_smooth() -> None:
     slack = '<tendon><fixed stiffness="900000" springlength="0 1"><joint joint="x" coef="1"/></fixed></tendon>'
     world = '<body><joint name="x" type="slide"/><geom size=".1" mass="1"/></body>'
