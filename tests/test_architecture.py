@@ -58,8 +58,8 @@ SUBJECTS = {"chains", "drives", "mujoco", "step_sequences"}
 
 APPOINTED = {
     "sympy": {
-        *("methods/determinants.py", "methods/derivation.py", "methods/formulas.py", "methods/shared_factors.py"),
-        *("methods/plane_edges.py", "methods/path_edges.py", "methods/root_isolation.py", "methods/step_matrices.py"),
+        *("methods/determinants.py", "methods/derivation.py", "methods/formulas.py"),
+        "methods/step_matrices.py",
         *("methods/recipes.py", "methods/steady_errors.py", "methods/rotation_torque.py"),
         "stability/quadrant_proofs.py",
         *("mechanism/equations.py", "mechanism/generated_code.py", "mechanism/start.py", "mechanism/observation.py"),
@@ -76,7 +76,7 @@ APPOINTED = {
     "distributed": {"evidence/parallel.py"},
     "joblib": {"evidence/parallel.py"},
     "numba": {"compiling.py"},
-    "mpmath": {"stability/forced_errors.py", "stability/path_crossings.py"},
+    "mpmath": {"stability/forced_errors.py"},
 }
 """The files that may import a library when they run; for types anybody may."""
 

@@ -34,8 +34,8 @@ from bezstab.stability import (
     moving_pole,
     poles,
     region,
-    useful_window,
     verdict,
+    window,
 )
 from bezstab.words import point_words
 
@@ -160,7 +160,7 @@ def random_points(method: Method, count: int) -> tuple[FloatArray, FloatArray]:
 
     Both have shape (count,) and no dimension. NumericalError as `region`.
     """
-    low, high = np.transpose(useful_window(region(method)))
+    low, high = np.transpose(window(region(method)))
     margin = SURROUNDINGS * (high - low)
     points = np.random.default_rng(SEED).uniform(low - margin, high + margin, (count, 2))
     alpha_hat, beta_hat = np.round(points, 6).T

@@ -12,7 +12,7 @@ from bezstab.evidence.kicks import TOO_CLOSE, kicked_fates
 from bezstab.mechanism import Scene, compiled_mechanism, runs_compiled, turning_normals
 from bezstab.methods import Method
 from bezstab.read_only import ReadOnlyArrays
-from bezstab.stability import BoolArray, FloatArray, moving_modulus, pole_map, region, useful_window
+from bezstab.stability import BoolArray, FloatArray, moving_modulus, pole_map, region, window
 
 MAP_RUN = 2000
 """Steps after the kick."""
@@ -114,7 +114,7 @@ def map_rows(scene: Scene, method: Method, h: float, count: int) -> list[MapRows
     """
     compiled = runs_compiled(method, 2 * count**2 * MAP_RUN, together=True)
     centres = (np.arange(count) + 0.5) / count
-    alpha_hat, beta_hat = (low + (high - low) * centres for low, high in useful_window(region(method)))
+    alpha_hat, beta_hat = (low + (high - low) * centres for low, high in window(region(method)))
     rows_at_once = max(1, BATCH // count)
     return [
         MapRows(scene, method, h, alpha_hat, beta_hat[first : first + rows_at_once], compiled)

@@ -61,18 +61,8 @@ if TYPE_CHECKING:
         steady_error_text,
     )
     from bezstab.methods.orders import accuracy, accuracy_by_force
-    from bezstab.methods.path_edges import turning_factors
-    from bezstab.methods.plane_edges import (
-        CurveTable,
-        PlaneCell,
-        PlaneEdge,
-        crossing_polynomials,
-        stable_cells,
-    )
     from bezstab.methods.recipes import recipe
-    from bezstab.methods.root_isolation import real_roots
     from bezstab.methods.rotation_torque import stage_torque
-    from bezstab.methods.shared_factors import fixed_poles, reduced_table, without_shared_factor
     from bezstab.methods.steady_errors import ExponentialSum, ForcedErrors, forced_errors, leading_error, turning_error
     from bezstab.methods.step_matrices import ExactArray, StepMatrix, step_matrix
 

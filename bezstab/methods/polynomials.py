@@ -6,9 +6,12 @@ MuTable, PlaneTable    tables: of z and mu, and of z, alpha_hat and beta_hat
 Algebra in several variables is sympy's (determinants, derivation).
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from fractions import Fraction
+from functools import reduce
 from typing import TypeVar
+
+from bezstab.errors import InputError
 
 Number = TypeVar("Number", int, Fraction)
 
@@ -71,3 +74,26 @@ def polynomial_gcd(p: Polynomial, q: Polynomial) -> list[Fraction]:
         _, remainder = quotient_and_remainder(p, divisor)
         p, q = divisor, remainder
     return trimmed(p)
+
+
+def check_no_shared_factor(polynomials: Iterable[Polynomial], what: str) -> None:
+    """Raise InputError where polynomials in z share a factor other than z, an unused past value: it would stay a pole.
+
+    No feedback moves such a pole. `what` are the polynomials, in words.
+    """
+    shared: list[Fraction] = reduce(polynomial_gcd, filter(any, polynomials), [])
+    factor = shared[next(k for k, c in enumerate(shared) if c) :]
+    if len(factor) > 1:
+        raise InputError(f"{what} share the factor {_in_words(factor)}: cancel it")
+
+
+def _in_words(polynomial: Polynomial) -> str:
+    """Return a monic polynomial in z, such as z^2 − 1/2 z + 1."""
+    words = ""
+    for k in range(len(polynomial) - 1, -1, -1):
+        if c := polynomial[k]:
+            power = ["", "z", f"z^{k}"][min(k, 2)]
+            size = "" if abs(c) == 1 and k else f"{abs(c)} " if k else f"{abs(c)}"
+            sign = (" − " if c < 0 else " + ") if words else ""
+            words += f"{sign}{size}{power}"
+    return words

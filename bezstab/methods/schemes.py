@@ -26,6 +26,7 @@ from itertools import zip_longest
 from bezstab.errors import InputError
 from bezstab.methods.polynomials import (
     MuTable,
+    check_no_shared_factor,
     polynomial_gcd,
     quotient_and_remainder,
     without_zeros,
@@ -83,6 +84,7 @@ class LinearMultistep:
             raise InputError(f"inconsistent: sigma(1) = {sum(self.sigma)}, but rho'(1) = {slope}")
         if recursion_verdict(self.rho[::-1]) == "diverges":
             raise InputError("zero-unstable: rho has a root outside the unit circle, or a repeated one on it")
+        check_no_shared_factor([self.rho[::-1], self.sigma[::-1]], "ρ and σ")
         leading = self.rho[0]
         object.__setattr__(self, "rho", tuple(a / leading for a in self.rho))
         object.__setattr__(self, "sigma", tuple(b / leading for b in self.sigma))

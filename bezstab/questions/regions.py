@@ -40,7 +40,7 @@ from bezstab.stability import (
     stable_for_all,
     turn_limits,
     unconditional_damping_ratio,
-    useful_window,
+    window,
 )
 
 MOST_DRAWN = 1e100
@@ -235,7 +235,7 @@ class MovingRegions:
 
 def moving_regions(method: Method) -> MovingRegions:
     """Return the regions of mechanisms that move; NumericalError as `region`, and if a pole leaves float64's range."""
-    (left, right), (low, high) = useful_window(region(method))
+    (left, right), (low, high) = window(region(method))
     width, height = (right - left) / CELLS, (high - low) / CELLS
     centres = (np.arange(CELLS) + 0.5).astype(np.float64)
     alpha_hat, beta_hat = left + width * centres, low + height * centres
@@ -342,7 +342,7 @@ class MapAnswer:
         With a motion they hold both points, and begin above zero: where the feedback is much slower than the motion.
         """
         stable, motion = self.stable, self.question.motion
-        shown = useful_window(stable.region)
+        shown = window(stable.region)
         if motion is None:
             return shown if stable.region.bounded else _holding(shown, stable.best)
         (_, alpha_hat_max), (_, beta_hat_max) = _holding(_holding(shown, stable.best), self.chosen)

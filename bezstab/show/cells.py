@@ -1,5 +1,7 @@
 """What a cell of a table shows where it takes more than a format: texts made of a row."""
 
+import math
+
 from bezstab.rationals import rounded_down
 from bezstab.show.fields import MISSING, Row, formatted
 
@@ -43,6 +45,16 @@ def any_or_missing(row: Row) -> str:
 def unbounded(row: Row) -> str:
     """Return what is said of a region's area or of an end that it does not have: unbounded, unless it is empty."""
     return MISSING if row.get("bounded", True) else "unbounded"
+
+
+def area_text(row: Row) -> str:
+    """Return an area to the digits that it has: 0.8096847 ± 2e-8."""
+    area, error = row["area"], row["area_error"]
+    if not area:
+        return unbounded(row) if area is None else "0"
+    decimals = max(0, -math.floor(math.log10(error)))
+    size, exponent = f"{error:.0e}".split("e")
+    return f"{area:.{decimals}f} ± {size}e{int(exponent)}"
 
 
 def any_speed(row: Row) -> str:

@@ -31,7 +31,7 @@ from bezstab.show.style import (
     styled,
     title_lines,
 )
-from bezstab.stability import BestPoint, Choice, FloatArray, Region, useful_window
+from bezstab.stability import BestPoint, Choice, FloatArray, Region, window
 from bezstab.stability import spectral_radius as spectral_radius_at
 
 if TYPE_CHECKING:  # so that a picture of the plane does not load what runs mechanisms
@@ -73,7 +73,7 @@ def region(region: Region, axes: Axes | None = None, h: float | None = None, **l
     gap = np.full((1, 2), np.nan)  # lifts the pen from one closed curve to the next
     points = np.concatenate([part for curve in region.boundary for part in (curve, gap)] or [gap])
     drawn.set_data(*plane_coordinates(points[:, 0], points[:, 1], h))  # which leaves the limits of the axes alone
-    alpha_range, beta_range = np.array(useful_window(region))
+    alpha_range, beta_range = np.array(window(region))
     axes.update_datalim(np.transpose(plane_coordinates(alpha_range, beta_range, h)))
     axes.autoscale_view()
     return drawn

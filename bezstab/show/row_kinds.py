@@ -13,6 +13,7 @@ from bezstab.show.cells import (
     SPINNING,
     any_or_missing,
     any_speed,
+    area_text,
     constant_text,
     method_and_alias_text,
     modulus_words,
@@ -127,10 +128,15 @@ AREA = number(
     "area",
     "Area of the region in alpha_hat and beta_hat",
     "area",
-    ".10g",
-    otherwise=unbounded,
+    text=area_text,
     null="where it is infinite or empty",
     path="region.area",
+)
+AREA_ERROR = number(
+    "area_error",
+    "How far the area may be off",
+    null="where it is infinite or empty",
+    path="region.area_error",
 )
 end = partial(number, form=".8g", otherwise=unbounded, null="where the region has no end there, or is empty")
 ALPHA_HAT_MAX = end("alpha_hat_max", "Largest alpha_hat of the region", "α̂ to", path="region.extent.0.1")
@@ -561,6 +567,7 @@ REGIONS = RowKind(
         METHOD.of("region.method"),
         Z_ABS_BELOW,
         AREA,
+        AREA_ERROR.hidden,
         end("alpha_hat_min", "Smallest alpha_hat of the region", "α̂ from", path="region.extent.0.0"),
         ALPHA_HAT_MAX,
         end("beta_hat_min", "Smallest beta_hat of the region", "β̂ from", path="region.extent.1.0"),
@@ -570,6 +577,11 @@ REGIONS = RowKind(
             "Those of the four limits that no edge attains: the region comes near them far out",
             "approached",
             null="where edges attain all that there are",
+        ),
+        text(
+            "islands",
+            "Where else |z_p| is as small: a point of each island, alpha_hat beta_hat",
+            null="where nothing is",
         ),
         number(
             "critical_damping_limit",

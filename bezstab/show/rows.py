@@ -124,7 +124,8 @@ def region_row(answer: RegionAnswer) -> Row:
     reason = None if inside else _nowhere(answer)
     where = best_point_words(inside) if inside else reason
     approached = ", ".join(compress(LIMITS, chain(*region.approached))) or None
-    return REGIONS.row(answer, approached=approached, best_where=where, best_reason=reason)
+    islands = ", ".join(f"({alpha_hat:.4g}, {beta_hat:.4g})" for alpha_hat, beta_hat in region.islands) or None
+    return REGIONS.row(answer, approached=approached, islands=islands, best_where=where, best_reason=reason)
 
 
 def map_rows(answer: MapAnswer) -> list[Row]:
@@ -142,18 +143,14 @@ def map_rows(answer: MapAnswer) -> list[Row]:
 
 
 def _nowhere(answer: RegionAnswer) -> str | None:
-    """Return why a region has no best point: not known, |z_p| is not so small, falls on, or a pole cannot be moved."""
-    from bezstab.stability import pole_place
-
+    """Return why a region has no best point: not known, |z_p| is not so small, or falls on."""
     if answer.trouble:
         return f"not known: {answer.trouble}"
     if answer.best:
         return f"none: |z_p| is {answer.best.z_abs:.6g} at least"
     if answer.falls_towards is not None:
         return f"none: {falling_words(answer.falls_towards)}"
-    if not answer.region.fixed_poles:
-        return None
-    return f"stable nowhere: a pole stays at {pole_place(answer.region.fixed_poles[0])} whatever α̂ and β̂"
+    return None
 
 
 def row_in_seconds(fields: Sequence[Field], point: FrontPoint | LikePoint, h: float | None) -> Row:

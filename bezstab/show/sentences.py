@@ -26,6 +26,8 @@ def region_sentence(row: Row) -> str:
     if row["alpha_hat_max"] is None and row["bounded"]:
         return f"{row['method']} {what} nowhere."
     size = "in a region without end" if row["area"] is None else f"in a region of area {row['area']:.3g}"
+    if row["islands"]:
+        size += f" (and on islands, near α̂, β̂ = {row['islands']})"
     if row["best_z_abs"] is None:
         return f"{row['method']} {what} {size}."
     best = f"({row['best_alpha_hat']:.4g}, {row['best_beta_hat']:.4g})"

@@ -11,7 +11,7 @@ import numpy as np
 from bezstab.errors import InputError, NumericalError
 from bezstab.goals import Goal
 from bezstab.methods import Method, Verdict, steps
-from bezstab.rationals import exact
+from bezstab.rationals import ONE, exact
 from bezstab.stability.accurate_points import Within, accurate_point, default_rate, off_by, worst_error
 from bezstab.stability.arrays import DOUBLE, SLOW, Extent, FloatArray
 from bezstab.stability.best_points import best_point
@@ -20,8 +20,7 @@ from bezstab.stability.critical_points import critical_point
 from bezstab.stability.curve_choices import Curve, least_along, mildest_along, of_equal
 from bezstab.stability.forced_errors import OMEGA_H
 from bezstab.stability.margins import Margins, stability_margins
-from bezstab.stability.path_crossings import ONE
-from bezstab.stability.regions import Region, pole_place, region
+from bezstab.stability.regions import Region, region
 from bezstab.stability.root_finding import TOLD
 from bezstab.stability.searches import lowest_minima
 
@@ -215,10 +214,7 @@ def search_box(stable: Region) -> tuple[Extent, bool]:
     InputError where the region is empty.
     """
     if stable.extent is None:
-        reason = ""
-        if stable.fixed_poles and abs(stable.fixed_poles[0]) > 1 - SLOW:
-            reason = f": a pole stays at {pole_place(stable.fixed_poles[0])} on the unit circle"
-        raise InputError(f"{stable.method.name} is not stable with any α and β{reason}")
+        raise InputError(f"{stable.method.name} is not stable with any α and β")
     multiple = float(stable.method.step_multiple)
     strongest = (2 * SEARCHED / multiple, (SEARCHED / multiple) ** 2)
     ranges = [

@@ -1,6 +1,6 @@
 r"""Up to which steps a method is stable, by damping ratio zeta = alpha / beta: what an engineer asks of a region.
 
-At given alpha and beta all steps h make a path (path_crossings), a parabola alpha_hat = 2 zeta (beta h),
+At given alpha and beta all steps h make a path (path_ends), a parabola alpha_hat = 2 zeta (beta h),
 beta_hat = (beta h)^2:
 
       beta_hat |  /  zeta < 1        critical_damping_limit: up to which beta h the path of zeta = 1 is stable
@@ -16,16 +16,19 @@ from functools import cache
 
 import numpy as np
 
-from bezstab.methods import Method, rational_feedback_roots, without_shared_factor
-from bezstab.stability.arrays import FloatArray
-from bezstab.stability.path_crossings import ONE, ZERO, Path, crossing_factors, verdict_end
+from bezstab.methods import Method, rational_feedback_roots
+from bezstab.rationals import ONE, ZERO
+from bezstab.stability.arrays import BoolArray, FloatArray
+from bezstab.stability.path_ends import PROVEN_TO, Path, places, verdict_end
 from bezstab.stability.searches import first_where
+from bezstab.stability.stretches import ALONG_H, paths
 
 RATIOS: FloatArray = 1024 / 2 ** np.arange(21.0)
 """Damping ratios from one that stands for all large ones down to a thousandth: the last without a limit is bisected."""
 
-KNOWN_TO = Fraction(1, 2**60)
-"""Of itself: a limit that is not short is known to 70 bits, of which the path's own arithmetic may take some."""
+
+PLAIN = 24
+"""A step is asked about at which an edge may be touched: the rational number of a denominator up to this next to it."""
 
 
 @cache
@@ -48,9 +51,9 @@ def exact_critical_damping_limit(method: Method) -> Fraction | None:
     limit = limit_at(method, ONE)
     if not limit:
         return limit
-    rational_mu = [mu for z in (1, -1) for mu in rational_feedback_roots(without_shared_factor(method), z)]
+    rational_mu = [mu for z in (1, -1) for mu in rational_feedback_roots(method, z)]
     limits = [-mu / method.step_multiple for mu in rational_mu]
-    return next((exact for exact in limits if abs(exact - limit) <= KNOWN_TO * limit), None)
+    return next((exact for exact in limits if abs(exact - limit) <= PROVEN_TO * limit), None)
 
 
 @cache
@@ -62,10 +65,12 @@ def unconditional_damping_ratio(method: Method) -> float | None:
     if limit_at(method, Fraction(RATIOS[0])) is not None or limit_at(method, ONE) is not None:
         return None
 
-    def is_limited(ratio: float) -> bool:
-        return limit_at(method, Fraction(ratio)) is not None
+    def is_limited(ratios: FloatArray) -> BoolArray:
+        found = paths(method, 2 * ratios, np.ones_like(ratios), ALONG_H).stretches()
+        unlimited = found.path[(found.low == 0) & np.isinf(found.high)]
+        return ~np.isin(np.arange(len(ratios)), unlimited)
 
-    ends = first_where(np.vectorize(is_limited, otypes=[bool]), RATIOS)
+    ends = first_where(is_limited, RATIOS)
     return ends[0] if ends else 0.0
 
 
@@ -84,9 +89,9 @@ def stable_up_to(method: Method, alpha: Fraction, beta: Fraction) -> float:
 def limit_at(method: Method, damping_ratio: Fraction) -> Fraction | None:
     """Return the largest beta h up to which every smaller one is stable at one damping ratio; None without limit.
 
-    A step at which the path meets an edge without crossing it is a limit too: there errors do not decay.
+    A plain step at which the path meets an edge without crossing it is a limit too: there errors do not decay.
     """
     path = Path(method, 2 * damping_ratio, ONE, (1, 2))
     end = verdict_end(path, ZERO)
-    touched = (factor for factor in crossing_factors(path) if end is None or factor < end)
-    return next((factor for factor in touched if not path.converges_at(factor)), end)
+    touched = (s.limit_denominator(PLAIN) for s in places(path))
+    return next((s for s in touched if s and (end is None or s < end) and not path.converges_at(s)), end)

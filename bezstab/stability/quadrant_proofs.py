@@ -1,7 +1,8 @@
 r"""Whether a method is stable for all alpha_hat, beta_hat > 0: proven in exact arithmetic, or refuted at a point.
 
 On a way from one point of the quadrant to another a pole leaves the unit disc through the circle: a real one through 1
-or -1, others in pairs. Each way out is where a polynomial in alpha_hat and beta_hat vanishes (plane_edges), so where
+or -1, others in pairs. Each way out is where a polynomial in alpha_hat and beta_hat vanishes (E. I. Jury, Theory and
+Application of the z-Transform Method, 1964, section 3.5), so where
 none of the three does, the whole quadrant is as stable as any point of it:
 
       beta_hat |   o
@@ -13,13 +14,16 @@ A sum over powers of alpha_hat has no zero there if its factors, polynomials in 
 isolated roots tell, and one has no negative coefficient.
 """
 
+from collections.abc import Sequence
 from fractions import Fraction
 from functools import cache
 from typing import Literal
 
+import sympy as sp
+from sympy.polys.matrices import DomainMatrix
 from sympy.polys.rings import PolyElement
 
-from bezstab.methods import Method, closed_loop_table, crossing_polynomials, plane_elements, real_roots
+from bezstab.methods import Method, closed_loop_table, plane_elements
 from bezstab.stability.damping_limits import RATIOS, limit_at
 
 StableForAll = Literal["proven", "no unstable point found", "no"]
@@ -55,4 +59,34 @@ def _positive(polynomial: PolyElement) -> bool:
 def _nowhere_negative(polynomial: PolyElement) -> bool:
     """Return whether a polynomial in one variable is >= 0 for all positive ones: no simple crossing of zero there."""
     crossing = [factor for factor, multiplicity in polynomial.sqf_list()[1] if multiplicity % 2]
-    return polynomial.LC > 0 and not any(root > 0 for factor in crossing for root in real_roots(factor))
+    return polynomial.LC > 0 and not any(_positive_roots(factor) for factor in crossing)
+
+
+def _positive_roots(polynomial: PolyElement) -> int:
+    """Return the number of different positive roots of a square-free polynomial in one variable, by Sturm's theorem."""
+    at_zero = polynomial.const() == 0
+    return (
+        int(sp.Poly(polynomial.as_expr(), domain=sp.QQ).count_roots(0, None)) - at_zero
+        if not polynomial.is_ground
+        else 0
+    )
+
+
+def crossing_polynomials(coefficients: Sequence[PolyElement]) -> list[PolyElement]:
+    """Return the four polynomials that vanish where a root may pass |z| = 1: P(1), P(-1), c_n and det(X - Y).
+
+    `coefficients` c_k of P in ascending powers of z, of one ring. The determinant is
+    c_n^(n-1) prod_{i<j} (1 - z_i z_j):
+
+        | c_n  c_n-1 ... c_2 |          |           c_0   |
+    X = |      c_n   ... c_3 |      Y = |      c_0  c_1   |
+        |            ... c_n |          | c_0  ...  c_n-2 |
+    """
+    n = len(coefficients) - 1
+    of_even, of_odd = sum(coefficients[::2]), sum(coefficients[1::2])
+    c, ring = dict(enumerate(coefficients)), coefficients[n].ring
+    x_less_y = [
+        [c.get(n + i - j, ring.zero) - c.get(i + j + 2 - n, ring.zero) for j in range(n - 1)] for i in range(n - 1)
+    ]
+    determinant = DomainMatrix(x_less_y, (n - 1, n - 1), ring.to_domain()).det()
+    return [of_even + of_odd, of_even - of_odd, coefficients[n], determinant]

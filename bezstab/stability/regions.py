@@ -1,4 +1,4 @@
-"""The exact region |z_p| < r of the alpha_hat-beta_hat plane: its boundary, area and extent, without a grid."""
+"""The region |z_p| < r where alpha_hat, beta_hat > 0, as far as it hangs together with weak feedback."""
 
 from dataclasses import dataclass
 from functools import cache
@@ -6,39 +6,55 @@ from functools import cache
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bezstab.errors import InputError
-from bezstab.methods import Method, fixed_poles
+from bezstab.errors import InputError, NumericalError
+from bezstab.methods import Method
 from bezstab.read_only import ReadOnlyArrays
-from bezstab.stability.arrays import ROUNDING, BoolArray, Extent, FloatArray
+from bezstab.stability.arrays import BoolArray, Extent, FloatArray
+from bezstab.stability.best_points import best_point_or_reason
 from bezstab.stability.closed_loop import spectral_radius
-from bezstab.stability.pencils import pencil_of
-from bezstab.stability.region_checks import check_region
-from bezstab.stability.shapes import ATTAINED, GOES_ON, Approached
+from bezstab.stability.curves import boundary_curves
+from bezstab.stability.lines import FAR, FIRST_LINES, Lines
 
-MARGIN = 0.05  # of what is to be seen of a bounded region
-NEXT_TO_ONE = 1 - 1e-7  # the last level below one: from 1 - 1e-8 on edges of regions as large are lost to rounding
+MARGIN = 0.05
+"""Of what is to be seen of a bounded region."""
+GOES_ON = 0.5
+"""Of what there is to see of a region without end: so much more is shown, to see that it goes on."""
+USUAL_SIZE = 4.0
+"""alpha_hat and beta_hat up to which a region without end is shown at least: alpha h and beta h up to 2."""
+LARGEST_VIEW = 1e3
+"""The same at most: bdf6 closes its gap at beta_hat = 309."""
+NEXT_TO_ONE = 1 - 1e-5
+"""The last level below one: regions that are larger reach beyond the last line."""
+DISAGREE = 1e-4
+"""Of an area: lines of either direction that differ by more measure different things."""
+
+ROUNDED = 1e-9
+"""Of an area: ends of stretches are asked to be as exact."""
+
+Approached = tuple[tuple[bool, bool], tuple[bool, bool]]
 
 
 @dataclass(frozen=True, repr=False)
 class Region(ReadOnlyArrays):
-    """The set |z_p| < level for one method, in alpha_hat and beta_hat, all dimensionless: by default empty.
+    """The set |z_p| < level for one method, in alpha_hat and beta_hat > 0, all dimensionless: by default empty.
 
-    `boundary` holds curves as arrays of shape (points, 2), closed but where they run to infinity; `extent` is
-    ((alpha_hat_min, alpha_hat_max), (beta_hat_min, beta_hat_max)), infinite where there is no limit, None if the set
-    is empty. `approached` has in the same places whether the region only comes near that end, towards infinity: no edge
-    attains it. `fixed_poles` are those that neither alpha_hat nor beta_hat moves, where rho and sigma share a factor.
-    `area` is None if a limit is infinite. `view` has finite ranges that hold what there is to see: the extent of a
-    bounded region, of an unbounded one what has a shape where alpha_hat, beta_hat >= 0.
+    It is what hangs together with weak feedback; of a level below one, what lies in that part of the stable region.
+    `area` is None where an end is infinite, and known to `area_error`. `extent` is ((alpha_hat_min, alpha_hat_max),
+    (beta_hat_min, beta_hat_max)), None if the set is empty; `approached` has in the same places whether the region only
+    comes near that end, towards infinity. `boundary` holds curves as arrays of shape (points, 2), closed but where they
+    leave the window. `view` has finite ranges that hold what there is to see. `islands` has a point of each other part
+    of the plane where |z_p| < level.
     """
 
     method: Method
     level: float
-    fixed_poles: tuple[complex, ...] = ()
     area: float | None = 0.0
+    area_error: float = 0.0
     extent: Extent | None = None
     view: Extent | None = None
     boundary: tuple[FloatArray, ...] = ()
-    approached: Approached = ATTAINED
+    approached: Approached = ((False, False), (False, False))
+    islands: tuple[tuple[float, float], ...] = ()
 
     def __repr__(self) -> str:
         kind = "curve" if self.area is None else "closed curve"
@@ -64,23 +80,82 @@ class Region(ReadOnlyArrays):
 
 @cache
 def region(method: Method, level: float = 1.0) -> Region:
-    """Return the region |z_p| < level, 0 < level <= 1; area and extent are good to about 1e-12.
+    """Return the region |z_p| < level, 0 < level <= 1, dimensionless.
 
-    Where it grows without limit as the level goes to one, next to one they are good to about 1e-15 / (1 - level).
-    Dimensionless; from the boundary locus of paper Eq. 17, or from the exact strips of the plane of a method that has
-    no mu, held against the poles beside its edges and along lines (region_checks). InputError as `check_level`;
-    NumericalError if they disagree, or its edges leave a gap: not found is an edge on which several roots have
-    |z| = level, or one so short, where the level is hardly above the least |z_p|, that it lies between two samples.
+    From stable stretches of lines in both directions (lines.py). InputError as `check_level`; NumericalError where
+    areas by lines of constant alpha_hat and of constant beta_hat differ by more than DISAGREE.
     """
     check_level(level)
-    stuck = fixed_poles(method)
-    empty = Region(method, level, stuck)
-    if stuck and abs(stuck[0]) >= level * (1 - ROUNDING):
-        return empty
+    across, upwards = _lines(method, level)
+    islands = tuple(across.islands())
+    of_alpha, of_beta = across.extent(), upwards.extent()
+    if of_alpha is None or of_beta is None:
+        return Region(method, level, islands=islands)
+    of_alpha, of_beta = _widest(of_alpha, upwards.reach()), _widest(of_beta, across.reach())
+    extent = of_alpha, of_beta
+    bounded = bool(np.isfinite(extent).all())
+    area, error = _area(across, upwards, extent) if bounded else (None, 0.0)
+    view = extent if bounded else (_in_view(across, of_alpha), _in_view(upwards, of_beta))
+    beyond = 1 + (MARGIN if bounded else GOES_ON)
+    return Region(
+        method,
+        level,
+        area,
+        area_error=error,
+        extent=extent,
+        view=view,
+        boundary=boundary_curves(across, beyond * view[0][1], beyond * view[1][1]),
+        approached=((False, _approached(across)), (False, _approached(upwards))),
+        islands=islands,
+    )
 
-    shape = pencil_of(method, free=True).shape(level)
-    check_region(method, level, shape)
-    return Region(method, level, stuck, **vars(shape)) if shape else empty
+
+@cache
+def _lines(method: Method, level: float) -> tuple[Lines, Lines]:
+    """Return lines of constant alpha_hat and of constant beta_hat, each laid through what the other ones saw."""
+    stable = None if level == 1 else _lines(method, 1.0)[0]
+    both = Lines(method, level, 0, stable), Lines(method, level, 1, stable)
+    multiple = float(method.step_multiple)
+    best = best_point_or_reason(method)[0] if stable else None
+    through = (best.alpha_hat, best.beta_hat) if best and best.z_abs < level else (0.0, 0.0)
+    for lines, first in zip(both, (2 * FIRST_LINES / multiple, (FIRST_LINES / multiple) ** 2), strict=True):
+        lines.look([*first.tolist(), *(place for place in [through[lines.axis]] if place)])
+    for lines, others in (both, both[::-1]):
+        lines.look([along for _, along in others.samples()])
+    return both
+
+
+def _area(across: Lines, upwards: Lines, extent: Extent) -> tuple[float, float]:
+    """Return the area, measured by the lines of the smaller error, and how far off it may be."""
+    (one, error), (other, other_error) = across.area(*extent[0]), upwards.area(*extent[1])
+    if abs(one - other) > DISAGREE * max(one, other):
+        raise NumericalError(
+            f"{across.method.name}: the area of |z_p| < {across.level:g} is {one:.6g} by lines of constant α̂, but "
+            f"{other:.6g} by those of constant β̂: parts of it are too thin to be measured, or only touch"
+        )
+    known = abs(one - other) + ROUNDED * one
+    return (one, max(error, known)) if error < other_error else (other, max(other_error, known))
+
+
+def _widest(lines: tuple[float, float], along: tuple[float, float]) -> tuple[float, float]:
+    """Return the extent along one axis from the lines across it and from the ends of those that run along it."""
+    return min(lines[0], along[0]), max(lines[1], along[1])
+
+
+def _in_view(lines: Lines, ends: tuple[float, float]) -> tuple[float, float]:
+    """Return what is to be seen along one axis, up to the last change where there is no end, in reason."""
+    if np.isfinite(ends[1]):
+        return ends
+    changes = [section.places[0] for section in lines.sections()]
+    return 0.0, max([USUAL_SIZE, *(place for place in changes if place <= LARGEST_VIEW)])
+
+
+def _approached(lines: Lines) -> bool:
+    """Return whether the region comes near its last line only far out."""
+    sections = lines.sections()
+    section, kept = [both for both in zip(sections, lines.kept(sections), strict=True) if both[1].any()][-1]
+    last = lines.found[section.places[-1]][kept]
+    return bool(section is not sections[-1] and last[:, 0].min() > FAR)
 
 
 def check_level(level: float) -> None:
@@ -91,44 +166,12 @@ def check_level(level: float) -> None:
         )
 
 
-def pole_place(z: complex) -> str:
-    """Return a pole that no feedback moves, and its conjugate, as text: 0.9, ±i or 0.3 ± 0.4i."""
-    real, imaginary = float(f"{z.real:.6g}"), float(f"{abs(z.imag):.6g}")
-    if not imaginary:
-        return f"{real:g}"
-    size = "" if imaginary == 1 else f"{imaginary:g}"
-    return f"{real:g} ± {size}i" if abs(real) > ROUNDING else f"±{size}i"
-
-
 def window(shown: Region) -> Extent:
-    """Return ranges of alpha_hat and beta_hat that show the whole region, the origin and a margin of 5 %.
+    """Return ranges of alpha_hat and beta_hat, from zero, that show the whole region and a margin of 5 %.
 
-    Dimensionless and finite; of the unit square if the region is empty. Of an unbounded region they show the part that
-    matters, that is corners and turns of its boundary at positive parameters or at least alpha h, beta h <= 2, and half
-    as much again, over which it goes on.
+    Dimensionless and finite; of the unit square if the region is empty. Of a region without end they show where it
+    changes, or at least alpha h, beta h <= 2, and half as much again, over which it goes on.
     """
-    return _with_margin(shown.view or ((0.0, 1.0), (0.0, 1.0)), shown.bounded)
-
-
-def useful_window(shown: Region) -> Extent:
-    """Return the window without islands far from any use, where alpha_hat or beta_hat is negative all over.
-
-    Symplectic compositions have such islands, and pairs of order five: ten times as far out as what matters.
-    """
-    useful = [curve for curve in shown.boundary if (curve > 0).all(axis=1).any()]
-    if not shown.bounded or not useful or len(useful) == len(shown.boundary):
-        return window(shown)
-    points = np.concatenate(useful)
-    (alpha_min, beta_min), (alpha_max, beta_max) = points.min(axis=0), points.max(axis=0)
-    return _with_margin(((alpha_min, alpha_max), (beta_min, beta_max)), bounded=True)
-
-
-def _with_margin(view: Extent, bounded: bool) -> Extent:
-    """Return the ranges with the origin and a margin."""
-    (alpha_min, alpha_max), (beta_min, beta_max) = view
-    low = np.minimum(0, [alpha_min, beta_min])
-    high = np.maximum(0, [alpha_max, beta_max])
-    margin = (MARGIN if bounded else GOES_ON) * (high - low)
-    low = np.where(low < 0, low - margin, 0)
-    high = high + margin
-    return (float(low[0]), float(high[0])), (float(low[1]), float(high[1]))
+    (_, alpha_max), (_, beta_max) = shown.view or ((0.0, 1.0), (0.0, 1.0))
+    margin = 1 + (MARGIN if shown.bounded else GOES_ON)
+    return (0.0, margin * alpha_max), (0.0, margin * beta_max)

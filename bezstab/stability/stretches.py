@@ -57,7 +57,10 @@ ALONG_H: Powers = (1, 2)
 """Of all steps h at one alpha and beta."""
 
 EXPANDED_AT = -0.03
-"""Of a path's own size: the determinant is expanded there, as at s = 0 it vanishes, and no place is negative."""
+"""Of a path's size: the determinant is expanded there, as at s = 0 it vanishes, and no place is negative."""
+
+FAR_APART = 1e4
+"""Of a path's sizes: eigenvalues for the least then lose the digits of places of the largest, and are asked twice."""
 
 NEARLY_REAL = 1e-2
 """|Im| over |s| of an eigenvalue that is taken for a real place: m that meet part by eps^(1/m). One place too many does
@@ -69,9 +72,6 @@ size: a place so near to s = 0 is rounding of zero."""
 
 END_ACCURACY = 1e-10
 """Of an end: within it the verdict must turn, or the end is bisected."""
-
-REGULAR = 1e-280
-"""Added to the diagonal of matrices that are singular on all of a path, where no place is to be found."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,16 +107,20 @@ class Paths:
     def places(self) -> FloatArray:
         """Return, ascending, all s > 0 where a root may pass |z| = level; shape (paths, most), filled up with inf."""
         with np.errstate(all="ignore"):
-            found = np.concatenate([_roots(self.coefficients[0]), _roots(self.coefficients[-1]), self._of_pairs()]).T
-        nearly_zero = NEGLIGIBLE * _size(self.coefficients[-1])[:, np.newaxis]
+            least, largest = _sizes(self.coefficients)
+            of_pairs = [self._of_pairs(least)] + (
+                [self._of_pairs(largest)] if (largest > FAR_APART * least).any() else []
+            )
+            found = np.concatenate([_roots(self.coefficients[0]), _roots(self.coefficients[-1]), *of_pairs]).T
+        nearly_zero = NEGLIGIBLE * least[:, np.newaxis]
         real = np.isfinite(found) & (np.abs(found.imag) <= NEARLY_REAL * np.abs(found)) & (found.real > nearly_zero)
         return np.sort(np.where(real, found.real, inf), axis=1)
 
-    def _of_pairs(self) -> ComplexArray:
-        """Return the zeros s of Hurwitz's determinant, complex, shape (zeros, paths)."""
+    def _of_pairs(self, size: FloatArray) -> ComplexArray:
+        """Return the zeros s of Hurwitz's determinant, complex, shape (zeros, paths), those of a size best."""
         a = self.coefficients
         n, most = len(a) - 1, a.shape[1]
-        centre = EXPANDED_AT * _size(a[-1])
+        centre = EXPANDED_AT * size
         around = [sum(a[:, m] * (comb(m, k) * centre ** (m - k)) for m in range(k, most)) for k in range(most)]
         padded = np.concatenate([np.stack(around, axis=1), np.zeros((1, most, len(centre)))])
         i, j = np.indices((n - 1, n - 1))
@@ -144,8 +148,7 @@ class Paths:
             outside = between[path, np.maximum(first - 1, 0)], between[path, np.minimum(beyond, last)]
             inside = between[path, first], between[path, beyond - 1]
             bounds = [self._held_to_verdicts(path, *each) for each in zip(bounds, outside, inside, strict=True)]
-            kept = bounds[1] > bounds[0] * (1 + NEGLIGIBLE)
-            path, bounds = path[kept], [each[kept] for each in bounds]
+            path, bounds = _joined(path, *bounds)
         return Stretches(path, *bounds)
 
     def _held_to_verdicts(
@@ -259,13 +262,26 @@ def _without_slivers(stable: BoolArray, low: FloatArray, high: FloatArray) -> Bo
     return np.take_along_axis(stable, latest, axis=1) & (low < high)
 
 
-def _size(p: FloatArray) -> FloatArray:
-    """Return the least s at which a power of polynomials weighs as much as their largest coefficient, one if none."""
-    k = np.arange(1, len(p))[:, np.newaxis]
+def _joined(path: NDArray[np.intp], low: FloatArray, high: FloatArray) -> tuple[NDArray[np.intp], list[FloatArray]]:
+    """Return stretches without those of negligible lengths, and those joined between which the gap is negligible."""
+    long = high > low * (1 + NEGLIGIBLE)
+    path, low, high = path[long], low[long], high[long]
+    apart = (path[1:] != path[:-1]) | (low[1:] > high[:-1] * (1 + NEGLIGIBLE))
+    first, last = np.append(True, apart)[: len(path)], np.append(apart, True)[: len(path)]
+    return path[first], [low[first], high[last]]
+
+
+def _sizes(polynomials: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the least and the largest s at which a power of one of some polynomials weighs as much as its constant.
+
+    Polynomials along axis 0, powers of s along axis 1; shape (paths,). One where there is none.
+    """
+    k = np.arange(1, polynomials.shape[1])[:, np.newaxis]
     with np.errstate(all="ignore"):
-        sizes = (np.abs(p[1:]) / np.abs(p).max(axis=0)) ** (-1 / k)
-    sizes = np.where(np.isfinite(sizes) & (sizes > 0), sizes, inf).min(axis=0, initial=inf)
-    return np.where(np.isfinite(sizes), sizes, 1.0)
+        sizes = np.abs(polynomials[:, :1] / polynomials[:, 1:]) ** (1 / k)
+    sizes = np.where(np.isfinite(sizes) & (sizes > 0), sizes, np.nan).reshape(-1, sizes.shape[2])
+    sizes = np.where(np.isnan(sizes).all(axis=0), 1.0, sizes)
+    return np.nanmin(sizes, axis=0), np.nanmax(sizes, axis=0)
 
 
 def _roots(p: FloatArray) -> ComplexArray:
@@ -291,7 +307,9 @@ def _singular_places(m: FloatArray) -> ComplexArray:
         return np.zeros((0, count), complex)
     companion = np.zeros((count, size, size))
     companion[:, range(n, size), range(size - n)] = 1
-    rows = np.nan_to_num(np.linalg.solve(m[:, :1] + REGULAR * np.eye(n), m[:, 1:]))
+    regular = np.linalg.slogdet(m[:, 0])[0] != 0
+    rows = np.zeros(m[:, 1:].shape)  # of a path along all of which the matrix is singular no place is to be found
+    rows[regular] = np.nan_to_num(np.linalg.solve(m[regular, :1], m[regular, 1:]))
     companion[:, :n] = -rows.transpose(0, 2, 1, 3).reshape(count, n, size)
     inverse: ComplexArray = np.linalg.eigvals(companion).T.astype(complex)
     return 1 / inverse

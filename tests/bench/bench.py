@@ -44,11 +44,7 @@ from bezstab.methods import (
     recipe,
     steps,
 )
-from bezstab.stability import FloatArray, Region, region, spectral_radius, window
-from bezstab.stability.boundary_locus import bounds_of
-from bezstab.stability.mu_pencils import MuPencil
-from bezstab.stability.pencils import pencil_of
-from bezstab.stability.region_checks import check_region
+from bezstab.stability import FloatArray, region, spectral_radius, window
 
 HERE = Path(__file__).parent
 sys.path.insert(0, str(HERE.parent.parent))  # run as a script, the tests are no package yet
@@ -244,22 +240,6 @@ def moving_mechanisms() -> Iterator[Line]:
             each = ours / count
             note = f"{1e3 * each:.2f} ms a point, {STEPS_A_TURN} steps a revolution"
             yield Line("moving", f"{name}: {count} exact rates by the runner", theirs / each, 1.0, note)
-
-
-def self_checks() -> Iterator[Line]:
-    """Yield how many times as long as its check against poles the rest of a region takes: 0.4 at least."""
-    for name in ("B4", "AB4", "RK4", "ABM3"):
-        pencil = MuPencil(lookup(name))
-
-        def found(pencil: MuPencil = pencil) -> Region:
-            for remembered in (region, bounds_of):
-                remembered.cache_clear()
-            return region(pencil.method)
-
-        shape = pencil_of(pencil.method, free=True).shape(1.0)
-        (whole, _), (check, _) = interleaved(found, partial(check_region, pencil.method, 1.0, shape))
-        note = f"{1e3 * check:.1f} ms of {1e3 * whole:.0f} ms"
-        yield Line("check", f"{name}: a region and its check", (whole - check) / check, 0.4, note)
 
 
 def beside_imports(section: str, what: str, command: Sequence[str], packages: str, promise: float, rounds: int) -> Line:
@@ -584,7 +564,6 @@ def main() -> int:
         maps,
         maps_of_other_kinds,
         moving_mechanisms,
-        self_checks,
         starts,
         waiting,
         runs,

@@ -97,9 +97,3 @@ def test_what_was_typed_is_shown_as_typed() -> None:
     ):
         given = rows("check", asked)[0]
         assert tuple(given[key] for key in keys) == typed
-
-
-def test_a_root_on_the_circle_that_no_feedback_moves_leaves_nothing() -> None:
-    (row,) = rows(f"region --method {DATA}/shared_i.toml --figure none --table none")
-    assert (row["area"], row["best_z_abs"]) == (0, None)
-    assert row["best_where"] == "stable nowhere: a pole stays at ±i whatever α̂ and β̂"

@@ -6,19 +6,19 @@ import pytest
 from bezstab.evidence.exact_rates import exact_rates
 from bezstab.methods import lookup
 from bezstab.stability import FloatArray, moduli_and_shifts, moving_modulus, moving_pole, turn_limits
-from bezstab.stability.regions import region, useful_window
+from bezstab.stability.regions import region, window
 from tests.evidence.driven_four_bar import four_bar, turning
 from tests.methods.kinds import sampled
 
 
 def anywhere(name: str, random: np.random.Generator, count: int) -> FloatArray:
-    low, high = np.transpose(useful_window(region(lookup(name))))
+    low, high = np.transpose(window(region(lookup(name))))
     return np.asarray(random.uniform(low - 0.1 * (high - low), high + 0.1 * (high - low), (count, 2)).T)
 
 
 def near_a_double_pole(name: str, random: np.random.Generator, count: int) -> FloatArray:
     """Return points on and beside the curve on which both mu are one, or symplectic Euler's poles."""
-    (_, high), _ = useful_window(region(lookup(name)))
+    (_, high), _ = window(region(lookup(name)))
     alpha_hat = random.uniform(0, 0.99 if name == "SYM" else high, count)
     both_one = (1 - np.sqrt(1 - alpha_hat)) ** 2 if name == "SYM" else alpha_hat**2 / 4
     return np.array([alpha_hat, both_one * (1 + random.choice([0, 1e-6, -1e-4, 1e-3, -1e-2], count))])

@@ -14,9 +14,10 @@ from math import inf
 import sympy as sp
 from sympy.polys.rings import PolyElement
 
-from bezstab.methods import Method, closed_loop_table, crossing_polynomials, is_schur
+from bezstab.methods import Method, closed_loop_table, is_schur
 from bezstab.methods.determinants import as_fraction
 from bezstab.rationals import exact
+from bezstab.stability.quadrant_proofs import crossing_polynomials
 
 VARIABLE = sp.Symbol("free")
 LINE = sp.QQ[VARIABLE]

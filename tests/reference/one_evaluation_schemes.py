@@ -52,14 +52,15 @@ def polygon_extent(method: Method, level: Fraction) -> Extent | None:
 
 
 def _box_extent(method: Method, level: Fraction, size: Fraction) -> tuple[Point, Point] | None:
-    """Return the least and the largest coordinates of the region within a box about the origin."""
+    """Return the least and the largest coordinates of the region within a box where both are positive."""
     table = closed_loop_table(method)
     c = [_line(in_plane, level**k) for k, in_plane in enumerate(table)]
     assert len(c) == 3
+    zero = Fraction(0)
     positive = [_sum(c, (-1, 0, 1)), _sum(c, (1, 1, 1)), _sum(c, (1, -1, 1))]
     corners: list[Point] = []
     for sign in (1, -1):
-        polygon = [(-size, -size), (size, -size), (size, size), (-size, size)]
+        polygon = [(zero, zero), (size, zero), (size, size), (zero, size)]
         for line in positive:
             polygon = _cut(polygon, _sum([line], (sign,)))
         if _double_area(polygon):

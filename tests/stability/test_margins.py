@@ -8,11 +8,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from bezstab.errors import InputError
+from bezstab.errors import InputError, NumericalError
 from bezstab.methods import lookup
 from bezstab.stability import (
     Margins,
     largest_stable_step,
+    path_ends,
     region,
     stability_margins,
     stable_up_to,
@@ -20,6 +21,7 @@ from bezstab.stability import (
     window,
 )
 from tests.methods.kinds import sampled
+from tests.reference.made_methods import runge_kutta
 from tests.reference.second_order_methods import as_second_order
 
 PART = Fraction(1, 10**9)
@@ -133,3 +135,20 @@ def test_small_steps_are_stable_only_with_damping_and_stiffness() -> None:
     assert stable_up_to(lookup("SYM"), Fraction(1), Fraction(0)) == 0
     assert stable_up_to(lookup("SYM"), Fraction(-1), Fraction(1)) == 0
     assert stable_up_to(lookup("implicit-euler"), Fraction(1), Fraction(1)) == math.inf
+
+
+def test_a_gap_is_no_margin_however_mildly_errors_grow_in_it() -> None:
+    """R = 1 + mu + 3/25 mu^2 is below -1 from mu = -10/3 to -5, by a twelfth at most; at -25/3 it is one again."""
+    gap = runge_kutta("gap", "3/25", "0 1")
+    assert stability_margins(gap, 1, Fraction(1, 4)).h == pytest.approx(20 / 3, rel=1e-9)  # both mu are -1/2
+
+
+def test_a_place_that_eigenvalues_miss_is_found_by_verdicts(monkeypatch: pytest.MonkeyPatch) -> None:
+    true = stability_margins(lookup("B4"), 0.3, 0.06)
+    monkeypatch.setattr(path_ends, "places", lambda path: path_ends.WAYPOINTS)
+    assert stability_margins(lookup("B4"), 0.3, 0.06).h == pytest.approx(true.h, rel=2e-9)
+
+
+def test_an_unstable_point_has_no_margin() -> None:
+    with pytest.raises(NumericalError, match="B4 is not stable there"):
+        stability_margins(lookup("B4"), 3, 1)
