@@ -21,7 +21,12 @@ def _largest_step(judged: Judged) -> str | None:
 STATES: Sequence[Column[Judged]] = (
     Column("", "row", lambda _: "state", "what the row is about"),
     Column("at", "at", lambda judged: judged.at, "qpos0, a keyframe, a row of a log"),
-    Column("errors", "errors", lambda judged: judged.kind, "decays, neutral, falls by itself, unsafe or not smooth"),
+    Column(
+        "errors",
+        "errors",
+        lambda judged: judged.kind,
+        "decays, neutral, moves on, falls by itself, unsafe, not smooth",
+    ),
     Column("|z|", "z_abs", lambda judged: judged.z_abs, "a step multiplies errors by it, at most"),
     Column("falls (1/s)", "rate", lambda judged: judged.rate, "how fast it falls by itself", "1/s", ".3g"),
     Column("safe up to h (s)", "largest_step", _largest_step, "largest safe step, also any or none", "s"),

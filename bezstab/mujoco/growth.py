@@ -16,7 +16,7 @@ from bezstab.mujoco.robots import Robot, State
 from bezstab.mujoco.steps import NUDGE, step_at
 from bezstab.stability import FloatArray
 
-Kind = Literal["decays", "neutral", "falls by itself", "unsafe", "not smooth"]
+Kind = Literal["decays", "neutral", "moves on", "falls by itself", "unsafe", "not smooth"]
 
 ROUNDING, SLOW = 1e-6, 0.01
 """Of |z| by differences, and 1/s: what grows by less a step, or by less than a hundredth a second, is neutral."""

@@ -32,7 +32,7 @@ INTEGRATORS = tuple(METHODS)
 """In the order of MuJoCo's own numbers."""
 
 
-ORDER: tuple[Kind, ...] = ("unsafe", "not smooth", "falls by itself", "decays", "neutral")
+ORDER: tuple[Kind, ...] = ("unsafe", "not smooth", "falls by itself", "moves on", "decays", "neutral")
 """From what decides first."""
 
 
@@ -183,6 +183,8 @@ def _sentence(loaded: Loaded, robot: Robot, worst: Judged, settings: Iterable[Fe
             answer = f"is not smooth at {worst.at}: nothing is judged there"
         case "falls by itself":
             answer = f"is safe: at {worst.at} it falls by itself ({worst.rate:.2g} 1/s); not numerical"
+        case "moves on":
+            answer = f"is safe: at {worst.at} errors grow for a moment, but not in a run from there"
         case "decays":
             answer = f"is safe: each step multiplies errors by {worst.z_abs:.6g} at most"
         case _:
@@ -231,7 +233,7 @@ def _looked_at(robot: Robot, state: State, with_limit: bool) -> Iterator[_Found]
 def _found(robot: Robot, state: State, with_limit: bool) -> _Found:
     growth = growth_at(robot, state)
     if growth.kind in ("falls by itself", "unsafe") and not goes_on_growing(robot, state, growth.z_abs or 1.0):
-        growth = replace(growth, kind="neutral", rate=None)
+        growth = replace(growth, kind="moves on", rate=None)
     if not with_limit or growth.kind == "not smooth":
         return _Found(robot, state, growth)
     return _Found(robot, state, growth, stable_factor(robot, state, growth))

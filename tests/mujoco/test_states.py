@@ -109,7 +109,7 @@ def test_a_knee_that_qpos0_stretches_beyond_its_range_is_looked_at_within_it() -
     found = lint(model_of(mjcf(leg, h=0.002, gravity=-9.81)))
     names = ["qpos0, within its limits, touching", "qpos0, within its limits, touching nothing"]
     assert [each.at for each in found.judged] == names
-    assert found.worst.kind in ("decays", "neutral")
+    assert found.worst.kind in ("decays", "neutral", "moves on")
     assert lint(model_of(mjcf(leg, h=0.002, flags='limit="disable"'))).worst.at == "qpos0"
 
 
