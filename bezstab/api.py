@@ -47,9 +47,6 @@ class AboutFeedback(TypedDict, total=False):
     """What `choose` and `check` may be told alike; `Question` in `bezstab.questions` has the usual values."""
 
     h: Number | None
-    h_min: Number | None
-    h_max: Number | None
-    hold: bool
     spread: float
     omega: Number | None
     omega_h: Number | None
@@ -203,14 +200,14 @@ def choose(
     *,
     goal: Goal | None = None,
     settle: Number | None = None,
+    h_max: Number | None = None,
     equal: bool = False,
     engine: str | None = None,
     **asked: Unpack[AboutFeedback],
 ) -> questions.Answer:
     """Return the alpha and beta to use: the point that a goal asks for, proven stable, with its margins.
 
-    method: your integration method. Without one it is the engine's own. With `pd` name one, such as
-        "SYM".
+    method: your integration method. Without one it is the engine's own.
 
     goal: what the point is for.
       "accurate", the usual one: the least error that the feedback makes on a motion, among the points
@@ -221,8 +218,8 @@ def choose(
           `beta` and `h_limit` of the answer do not depend on `h`, which is then 0.01 / omega. With
           other methods `omega_h` is 0.01 unless given.
       "robust": the fastest decay in the worst case. alpha and beta may be off by the share `spread`,
-          and the step may be smaller. The usual goal with `pd`, and with an engine whose alpha and beta
-          depend on each other.
+          and the step may be smaller. The usual goal with an engine whose alpha and beta depend on
+          each other.
       "fastest": the least |z_p|.
       "critical": the fastest among the points with alpha = beta whose dominant pole is double, real and
           positive; not for methods that step position and velocity differently.
@@ -232,12 +229,8 @@ def choose(
     equal: only points with alpha = beta.
     h, h_max: the step and the largest step in s. With both, accurate and robust allow for steps up to
         h_max. The answer is for use at h. `omega_h` is then that of h_max.
-    h_min: steps vary from h_min to h_max (s). `hold`: alpha_hat and beta_hat stay the same, instead of
-        alpha and beta.
     engine: a name, such as "mujoco"; only what that engine can express is searched, and `setting` is
         the line to paste.
-    pd: (kp, kd, inertia) of a joint's drive in SI units; only the inertia counts, and `gains` has kp
-        and kd to set.
     scene, speed: a mechanism that moves so many times as fast as given there; `moving` says what the
         motion changes.
 
@@ -254,6 +247,7 @@ def choose(
         methods=method,
         goal=goal or questions.usual_goal(named, given),
         settle=settle,
+        h_max=h_max,
         equal=equal,
         engine=named,
         **asked,
@@ -281,13 +275,9 @@ def check(
       `alpha_hat` and `beta_hat`, dimensionless;
       `alpha` and `beta` in 1/s with the step `h` in s;
       `engine`, an engine's own values, such as "mujoco=0.02,1", with `h`. `as_typed` leaves out the
-          engine's clamps;
-      `pd`, (kp, kd, inertia) of a joint's drive in SI units, with `h`.
+          engine's clamps.
 
-    method: your integration method. Without one it is the engine's own; for a drive all four ways of
-        applying it are asked about.
-    h_min, h_max: steps vary from h_min to h_max (s). `hold`: alpha_hat and beta_hat stay the same,
-        instead of alpha, beta.
+    method: your integration method. Without one it is the engine's own.
     spread: the share by which alpha and beta may be off, for `worst`.
     omega, omega_h: how fast the motion is, in 1/s or in rad a step, for `cost`: only where one of them
         or a scene is given, it says how many times the least error it is.
@@ -296,18 +286,16 @@ def check(
     Returns an Answer, dimensionless. If there are several, as of the ways of applying a drive, it is
     the first that is not safe. `sentence` says it in words, and begins the repr. `verdict` is proven.
     `pole` is the dominant one. `safe`, and bool() of the answer, is whether errors shrink: with a
-    scene also as it moves, with h_min for every sequence of such steps. `margins`
-    has the factors by which h, alpha and beta may each be scaled alone; None unless the point is
-    stable. These are computed when you first ask for them: `cost` (of accuracy), `instead` (what
-    `choose` gives), `moving`, `varying`, `swept` (many constraints), `setting` (the engine's line) and
-    `gains` (of the drive).
+    scene also as it moves. `margins` has the factors by which h, alpha and beta may each be scaled
+    alone; None unless the point is stable. These are computed when you first ask for them: `cost`
+    (of accuracy), `instead` (what `choose` gives), `moving`, `swept` (many constraints) and `setting`
+    (the engine's line).
 
     InputError unless the point is given in one of these ways and the numbers are in range.
     NumericalError if a pole leaves the range of float64. Sources as for `verdict`.
     """
     named, values = (None, None) if engine is None else engine_and_values(engine)
-    step = asked.get("h_max") if asked.get("h") is None else asked["h"]
-    typed = {"alpha_hat": alpha_hat, "beta_hat": beta_hat, "alpha": alpha, "beta": beta, "h": step}
+    typed = {"alpha_hat": alpha_hat, "beta_hat": beta_hat, "alpha": alpha, "beta": beta, "h": asked.get("h")}
     question = _asked(
         questions.Question,
         methods=method,
@@ -535,7 +523,7 @@ def _first_unsafe(answers: Iterable[questions.Answer]) -> questions.Answer:
 
 
 READ: Mapping[str, Callable[[Any, str], Any]] = {
-    **dict.fromkeys(("h", "h_min", "h_max", "omega", "omega_h", "speed", "settle"), exact_number),
+    **dict.fromkeys(("h", "h_max", "omega", "omega_h", "speed", "settle"), exact_number),
     **dict.fromkeys(("late", "filter_seconds", "duration", "perturb"), exact_number),
     **dict.fromkeys(("iterations",), whole_number),
     "spread": real_number,

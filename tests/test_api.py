@@ -57,17 +57,13 @@ def test_every_goal_can_be_chosen(goal: Goal) -> None:
     [
         ("check --engine mujoco=0.0001,1 --h 0.002", {"engine": "mujoco=0.0001,1", "h": 0.002}),
         (
-            "check --method SYM --alpha 2 --beta 100 --physical --h-min 0.00917 --h-max 1/60",
-            {"method": "SYM", "alpha": 2, "beta": 100, "h_min": 0.00917, "h_max": "1/60"},
-        ),
-        (
             "check --method SYM --alpha 1 --beta 0.5 --h 0.01 --scene driven_four_bar --speed 2",
             {"method": "SYM", "alpha_hat": 1, "beta_hat": 0.5, "h": 0.01, "scene": "driven_four_bar", "speed": 2},
         ),
         ("choose --engine bullet --h 1/240", {"engine": "bullet", "h": "1/240"}),
         (
-            "choose --method SYM --h 0.01 --goal fastest --h-min 0.005",
-            {"method": "SYM", "h": 0.01, "goal": "fastest", "h_min": 0.005},
+            "choose --method SYM --h 0.01 --goal robust --h-max 0.02",
+            {"method": "SYM", "h": 0.01, "goal": "robust", "h_max": 0.02},
         ),
     ],
 )

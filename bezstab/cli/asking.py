@@ -7,7 +7,7 @@ from typing import Any, TypeVar
 from bezstab import questions, show
 from bezstab.cli.command_group import NUMERICAL_TROUBLE
 from bezstab.cli.options import TypedPoint, typed_options
-from bezstab.cli.output import for_reading, say, show_command, show_text, worked_out
+from bezstab.cli.output import for_reading, say, show_text, worked_out
 from bezstab.engines import Engine, Point
 from bezstab.errors import NumericalError
 from bezstab.methods import Method, lookup
@@ -29,7 +29,7 @@ def asked(kind: Callable[..., Asked], **typed: Any) -> Asked:
         typed["methods"] = ()
     point = typed.get("point")
     if point:
-        typed["point"] = point.at(typed["h"] or (typed.get("h_max") if typed.get("h_min") else None))
+        typed["point"] = point.at(typed["h"])
     return kind(**typed)
 
 
@@ -108,16 +108,6 @@ def say_what_is_left_out(engine: Engine, *, many: bool = False) -> None:
     say(f"{engine.name}: left out: {engine.excludes}{swept + ask if engine.sweeps and not many else ''}")
     if many and engine.sweeping:
         say(f"{engine.name}: sweeps are its {engine.sweeping.word}; of them left out: {engine.sweeping.excludes}")
-
-
-def say_varying(answers: "Iterable[questions.Answer]") -> None:
-    """Print a sentence about steps that vary, and the command of a run in which errors grow."""
-    for answer in answers:
-        if answer.varying:
-            show_text("\n" + show.varying_words(answer.method.name, answer.varying))
-            if line := questions.growing_run(answer):
-                show_text("\nThis shows errors grow:\n")
-                show_command(line)
 
 
 def say_if_units_were_mistaken(methods: Sequence[Method], point: TypedPoint, h: Fraction | None) -> None:

@@ -5,13 +5,7 @@ from itertools import groupby
 from typing import Any
 
 from bezstab import questions
-from bezstab.cli.asking import (
-    asked_of_scene,
-    say_varying,
-    show_below,
-    show_point,
-    show_sentences,
-)
+from bezstab.cli.asking import asked_of_scene, show_below, show_point, show_sentences
 from bezstab.cli.options import TypedPoint, changed, command, typed_options
 from bezstab.cli.output import for_reading, say, show_rows, show_text
 from bezstab.errors import InputError, NumericalError
@@ -25,7 +19,7 @@ OF_EVERY_STEP = {"--alpha", "--beta", "--physical", "--method", "--format", "--s
 @command(
     "methods",
     "given_point",
-    *("omega", "h_min", "h_max", "hold"),
+    "omega",
     changed("scene", help="Is it safe for this mechanism as it moves? Needs --h."),
     "speed",
     changed("duration", help="With --scene: how long it is run, in s [10 s, or 10,000 steps if that is less]."),
@@ -38,8 +32,7 @@ def check(**typed: Any) -> bool:
     stable step, and what `choose` gives instead. With α and β in 1/s (--physical) but no --h, prints the step up to
     which every step is safe.
 
-    Without --h-min all steps are equally long. Steps that are each stable alone may still let errors grow when they
-    alternate. With --h-min and --h-max, safe means proven for every sequence of steps in that range.
+    All steps are equally long. For steps that vary see `bezstab steps`.
 
     With --scene the mechanism is also run, for --time. It is safe if errors shrink as it moves and the run goes well:
     constraints hold, and the energy gains at most a tenth of the largest kinetic energy. Where the prediction settles
@@ -66,7 +59,6 @@ def check(**typed: Any) -> bool:
     show_point(typed, question.point, given)
     if for_reading():
         show_rows(CHECKED, map(answer_row, given), left_out(question))
-        say_varying(given)
         if len(given) > 1:  # a single one has said so
             show_sentences(
                 f"{each.method.name}, {each.goal}: {each.energy_sentence}" for each in given if each.energy_sentence

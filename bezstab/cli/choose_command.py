@@ -6,7 +6,7 @@ from typing import Any
 import click
 
 from bezstab import questions
-from bezstab.cli.asking import asked_of_scene, say_varying, show_below, show_sentences
+from bezstab.cli.asking import asked_of_scene, show_below, show_sentences
 from bezstab.cli.options import SECONDS, SHARE, changed, command, option
 from bezstab.cli.output import for_reading, progress, show_rows
 from bezstab.goals import GOALS, Goal
@@ -23,11 +23,7 @@ from bezstab.show import CHOICES, STEPS_OF_CHOICES, answer_row, left_out, spare_
         + " [accurate; robust with an --engine whose α and β depend on each other].",
     ),
     "omega",
-    changed(
-        "h_max",
-        help="The longest step in s that may occur. For the goals accurate and robust, and with --h-min [--h].",
-    ),
-    *("h_min", "hold"),
+    option("--h-max", SECONDS, "The longest step in s that may occur. For the goals accurate and robust [--h]."),
     option("--spread", SHARE, "The share by which α and β may be off.", default="0.1"),
     option(
         "--settle",
@@ -44,9 +40,8 @@ from bezstab.show import CHOICES, STEPS_OF_CHOICES, answer_row, left_out, spare_
 def choose(goal: Goal | None, equal: str | None, **typed: Any) -> bool:
     """Recommend α and β for an integrator and its step size.
 
-    The answer is proven stable, and its margins are printed. You may ask for more: that it is safe as a mechanism
-    moves (--scene), or for steps that vary (--h-min). Exit status 1 if that is not
-    proven.
+    The answer is proven stable, and its margins are printed. With --scene it is asked whether it is safe as
+    that mechanism moves: exit status 1 if not. `bezstab steps` finds feedback for steps that vary.
 
     On a mechanism that moves, feedback makes errors of its own. The default goal, accurate, makes them as small as it
     can. It allows only points that settle within --settle, or while the motion turns by 14 rad. --omega or --scene say
@@ -63,10 +58,9 @@ def choose(goal: Goal | None, equal: str | None, **typed: Any) -> bool:
     --engine searches only what that engine can express. Its own method is used unless you name another. Of several
     points that are equally good the one with the least α̂ and β̂ is taken.
 
-    With --h-min, "varying steps" says whether errors decay for every sequence of steps up to --h-max. Many engines
-    solve their constraints one after another, in sweeps. Their answer is limited to feedback that a chain of 10 equal
-    bodies, or --scene, tolerates with --spread to spare. The line below shows the answer for a single constraint.
-    Other chains: `bezstab chain`.
+    Many engines solve their constraints one after another, in sweeps. Their answer is limited to feedback that a chain
+    of 10 equal bodies, or --scene, tolerates with --spread to spare. The line below shows the answer for a single
+    constraint. Other chains: `bezstab chain`.
 
     Example: bezstab choose --method B4 --h 0.001
     """
@@ -79,10 +73,8 @@ def choose(goal: Goal | None, equal: str | None, **typed: Any) -> bool:
         show_rows(STEPS_OF_CHOICES, map(STEPS_OF_CHOICES.row, chosen))
         return all(answer.safe for answer in chosen)
     show_rows(CHOICES, map(answer_row, chosen), left_out(question))
-    if for_reading():
-        say_varying(chosen)
-        if not question.swept:
-            show_sentences(_trades(chosen))
+    if for_reading() and not question.swept:
+        show_sentences(_trades(chosen))
     show_below(question, chosen)
     show_sentences(map(spare_words, chosen))
     return all(answer.safe for answer in chosen)

@@ -150,14 +150,6 @@ OPTIONS = {
     "beta": option("--beta", NUMBER, "β̂ as a decimal or a fraction, read exactly. With --physical: β in 1/s."),
     "physical": flag("--physical", "--alpha and --beta are α and β in 1/s; needs --h."),
     "h": option("--h", SECONDS, "Step size in s."),
-    "h_min": option(
-        "--h-min", SECONDS, "Steps vary from this one (s) up to --h-max: ask whether every sequence of them is safe."
-    ),
-    "h_max": option("--h-max", SECONDS, "With --h-min: the longest step in s [--h]."),
-    "hold": flag(
-        "--hold",
-        "With --h-min: α̂ and β̂ stay the same while steps vary, as in engines with an ERP. Without it α and β do.",
-    ),
     "engine": option("--engine", ENGINE, "Choose only what this engine can express, and print the line to paste."),
     "engine_values": option(
         "--engine",

@@ -13,6 +13,11 @@ WENT: Mapping[str, str] = {
     "choose --bandwidth": "see `bezstab drive`",
     "region --pd": "see `bezstab drive --figure png`",
     "poles --pd": "see `bezstab drive`",
+    **dict.fromkeys(
+        (f"{command} {option}" for command in ("check", "choose") for option in ("--h-min", "--hold")),
+        "see `bezstab steps`",
+    ),
+    "check --h-max": "see `bezstab steps`",
     "schema": "a table says what each key means, and its unit: bezstab/show/keys.csv",
     "chains": "see `bezstab chain --figure png`",
     "check --chain": "see `bezstab chain`",

@@ -6,7 +6,7 @@ import click
 
 from bezstab import questions, show
 from bezstab.cli.asking import asked, show_point
-from bezstab.cli.options import NUMBER, SEQUENCE, changed, command, option
+from bezstab.cli.options import NUMBER, SEQUENCE, changed, command, flag, option
 from bezstab.cli.output import Files, say, show_rows, worked_out
 from bezstab.compiling import compiled_choice
 from bezstab.errors import NumericalError
@@ -27,7 +27,7 @@ from bezstab.methods import implicit
         "Step sizes in s, taken in turn, over and over: such as 1/60,0.00917 or 3*0.01,0.02, or a file with such a "
         "list. α̂ and β̂ are then those at the step --h.",
     ),
-    changed("hold", help="With --steps: α̂ and β̂ stay the same while steps vary; else α and β do."),
+    flag("--hold", "With --steps: α̂ and β̂ stay the same while steps vary; else α and β do."),
     changed("duration", default="10"),
     option("--perturb", NUMBER, "Initial error of the first constraint, in its own unit.", default="0"),
     option(

@@ -3,7 +3,7 @@
 An answer is a point with its proven verdict, pole and margins. What takes longer is computed when it is first asked
 for, and then kept:
 
-    answers(question)  →  Answer (given, or chosen)  ·  cost  ·  moving  ·  varying  ·  setting
+    answers(question)  →  Answer (given, or chosen)  ·  cost  ·  moving  ·  setting
                             ├── instead              what `choose` gives in its place
                             └── faster, slower       what faster decay costs, and slower decay gains
 """
@@ -30,7 +30,6 @@ from bezstab.stability import (
     FeedbackCost,
     Modulus,
     MovingPole,
-    VaryingSteps,
     choose,
     describe_point,
     feedback_cost,
@@ -39,7 +38,6 @@ from bezstab.stability import (
     moving_pole,
     stable_up_to,
     steps_to_settle,
-    varying_steps,
 )
 from bezstab.units import alpha_and_beta
 from bezstab.words import (
@@ -76,8 +74,8 @@ SLOWER = 2
 class Answer(Choice):
     """All that `Choice` says of a point, and what that means for the question.
 
-    These are None if the question is not about them: `moving` without a scene, `varying` without h_min, `setting`
-    without an engine, `swept` without a chain or a scene in an engine that sweeps.
+    These are None if the question is not about them: `moving` without a scene, `setting` without an engine, `swept`
+    without a chain or a scene in an engine that sweeps.
     """
 
     question: Question = field(compare=False)
@@ -111,8 +109,7 @@ class Answer(Choice):
         """
         if self.swept and not self.swept.growth.decays:
             return False
-        as_steps_vary = self.varying is None or self.varying.varying == "proven"
-        return self.verdict == "converges" and self._safe_in_motion and as_steps_vary
+        return self.verdict == "converges" and self._safe_in_motion
 
     @property
     def _safe_in_motion(self) -> bool:
@@ -210,12 +207,6 @@ class Answer(Choice):
         found = motion_energy(self.method, self.alpha_hat, self.beta_hat, float(omega) * h)
         growth, rotation = float(found.growth()), float(found.rotation)
         return (float(omega) * growth, float(omega) * rotation) if math.isfinite(growth) else None
-
-    @cached_property
-    def varying(self) -> VaryingSteps | None:
-        """Whether errors decay for every sequence of steps from h_min to h_max."""
-        steps = self.question.steps
-        return None if steps is None else varying_steps(self.method, *self.point, **vars(steps))
 
     @property
     def compared(self) -> bool:
@@ -328,7 +319,7 @@ class Answer(Choice):
         if self.goal != "robust" and self._robust:
             return "--goal robust"
         question = self.question
-        if question.scene is None or question.h is None or question.h_min or question.h_max or question.engine:
+        if question.scene is None or question.h is None or question.h_max or question.engine:
             return None
         for share in SHORTER:
             shorter = replace(question, h=question.h / share)
@@ -374,14 +365,13 @@ class Answer(Choice):
 def answer_sentence(answer: Answer) -> str:
     """Return what was judged, whether it is safe, how fast an error falls, and how far each number alone may grow.
 
-    With a scene also what happens over the motion, with h_min what steps that vary do; of an engine that solves its
-    constraints one after another, for how many that is.
+    With a scene also what happens over the motion; of an engine that solves its constraints one after another, for how
+    many that is.
     """
     swept = answer.swept
     safe = "safe" if answer.safe else "not safe"
     if answer.swept_over:
         safe += f" {'in' if swept else 'for'} {answer.swept_over}"
-    varying = f" when steps vary ({answer.varying.varying})" if answer.varying else ""
     said = _swept(answer, swept) if swept else _errors(answer)
     if answer.safe and not answer.swept_over:  # more of one constraint alone means nothing for a chain of them
         said += _growth(answer)
@@ -390,7 +380,7 @@ def answer_sentence(answer: Answer) -> str:
     motion = answer.question.motion
     if answer.goal == "accurate" and motion.assumed:
         said.append(f"without --omega {_assumed(motion.omega_h, answer.h)} is assumed")
-    return " ".join([f"{_judged(answer)}: {safe}{varying}.", *map(_sentence, said)])
+    return " ".join([f"{_judged(answer)}: {safe}.", *map(_sentence, said)])
 
 
 def _sentence(said: str) -> str:
@@ -417,11 +407,11 @@ def _change(answer: Answer, z_abs: float, verdict: str, bound: str = "") -> str:
 
 
 def _errors(answer: Answer) -> list[str]:
-    """Return what becomes of an error at rest, over the motion of a scene, and with steps that are all equally long."""
+    """Return what becomes of an error at rest, and over the motion of a scene."""
     at_rest = _change(answer, abs(answer.pole), answer.verdict)
     if answer.moving:
         return [f"at rest {at_rest}", _in_motion(answer, answer.moving), *_as_it_ran(answer)]
-    return [f"with constant steps {at_rest}" if answer.varying else at_rest, *_on_a_motion(answer)]
+    return [at_rest, *_on_a_motion(answer)]
 
 
 def _in_motion(answer: Answer, moving: MovingPole) -> str:
@@ -502,7 +492,7 @@ def _energy_text(gained: float) -> str:
 def _swept(answer: Answer, swept: SweptAnswer) -> list[str]:
     """Return what becomes of an error of many constraints in an engine that sweeps, and how many sweeps are enough.
 
-    What else was asked, of a scene that moves and of steps that vary, is said of constraints that are solved exactly.
+    What else was asked, of a scene that moves, is said of constraints that are solved exactly.
     """
     z_abs, stable = swept.growth.factor, swept.stable_iterations
     change = _change(answer, z_abs, "converges" if z_abs < 1 else "diverges")
@@ -513,8 +503,6 @@ def _swept(answer: Answer, swept: SweptAnswer) -> list[str]:
     said = [alone, enough, *_on_a_motion(answer)]
     if answer.moving:
         said.append(f"that is at rest. Solved exactly: {_in_motion(answer, answer.moving)}")
-    if answer.varying:
-        said.append(f"that is with constant steps. Solved exactly, when steps vary: {answer.varying.varying}")
     return said
 
 
@@ -607,16 +595,15 @@ def _chosen_alone(
     question: Question, role: Role, method: Method, goal: Goal, settle: Fraction | None, *, margins: bool
 ) -> Answer:
     """Return the choice of a goal for one constraint; if the question has a goal, for all steps up to h_max."""
-    longest = question.h_max if question.goal else None
     modulus: Modulus | None = None
     if question.turning and question.h:
-        turned = question.turning.kappa * float(longest or question.h)
+        turned = question.turning.kappa * float(question.h_max or question.h)
         modulus = moving_modulus(method, turned) if turned <= LAW_HOLDS else None
     choice = choose(
         method,
         goal,
         h=question.h,
-        h_max=longest if goal in UP_TO_LONGEST else None,
+        h_max=question.h_max if goal in UP_TO_LONGEST else None,
         settle=settle,
         spread=question.spread,
         equal=question.equal,

@@ -3,7 +3,6 @@
 Messages name options as the command line has them (--h-max); `bezstab.api` turns them into keywords (h_max).
 """
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
@@ -13,7 +12,7 @@ from bezstab.engines import Applied, Engine, Point
 from bezstab.errors import InputError
 from bezstab.goals import SETTLING, UP_TO_LONGEST, Goal
 from bezstab.mechanism import Mechanism, Scene, TurningNormals, compiled_mechanism
-from bezstab.methods import Method, check_one_step, lookup
+from bezstab.methods import Method, lookup
 from bezstab.questions.chains import USUAL_CHAIN, SweptConstraints, constraints_of, constraints_of_chain
 from bezstab.questions.motions import (
     ReferenceMotion,
@@ -24,29 +23,16 @@ from bezstab.questions.motions import (
     turning_of,
 )
 from bezstab.stability import OMEGA_H, choose, describe_point, follows_motion, verdict
-from bezstab.units import check_step, feedback_gains, from_dimensionless, to_dimensionless
+from bezstab.units import check_step, from_dimensionless, to_dimensionless
 from bezstab.words import SLOWLY
 
 LARGE = 10
 """Above this alpha_hat or beta_hat 1/s was probably meant: as alpha_hat it leaves e^-5 of an error after a step."""
 
-SAME_GAINS = 1e-9
-"""Of gains in 1/s and 1/s^2: roots and powers that engines take are rounded to float64."""
-
 WHICH_METHOD = (
     "which integrator? --method SYM (semi-implicit Euler, as most engines have), RK4, rk45 (solve_ivp's), AB4, "
     "B4 or another of `bezstab methods`; or an --engine"
 )
-
-
-@dataclass(frozen=True)
-class StepRange:
-    """A range of steps (s); with `hold` alpha_hat and beta_hat, given for steps of h (s), stay as steps vary."""
-
-    h: Fraction
-    h_min: Fraction
-    h_max: Fraction
-    hold: bool
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -55,8 +41,7 @@ class Question:
 
     The point is `point` (alpha_hat, beta_hat), or an `engine` gives it for its `values`. Without `methods` the
     engine's own method is asked about. `h` is the step (s). With
-    `h_max` (s) a choice is for all steps up to it. With `h_min` (s) errors must also decay for every sequence of steps
-    from h_min to h_max: alpha and beta stay the same while steps vary; with `hold` alpha_hat and beta_hat do.
+    `h_max` (s) a choice is for all steps up to it.
     The motion has a rate `omega` (1/s) or `omega_h` (rad a step), or is that of a `scene`, `speed` times as fast as
     given there. Safe then means: safe while the scene moves. Where the most accurate feedback follows the motion,
     `omega` is enough, and h is what makes OMEGA_H of it. `spread` is the share by which alpha and beta may be off.
@@ -72,9 +57,7 @@ class Question:
     point: Point | None = None
     goal: Goal | None = None
     h: Fraction | None = None
-    h_min: Fraction | None = None
     h_max: Fraction | None = None
-    hold: bool = False
     engine: Engine | None = None
     values: tuple[Fraction, ...] | None = None
     as_typed: bool = False
@@ -89,7 +72,7 @@ class Question:
     chain: int | None = None
 
     def __post_init__(self) -> None:
-        for name in ("h", "h_min", "h_max"):
+        for name in ("h", "h_max"):
             if (step := getattr(self, name)) is not None:
                 check_step(step, name)
         if not self.goal:
@@ -102,9 +85,6 @@ class Question:
         check_speed(self.scene, self.speed)
         self._check_duration()
         object.__setattr__(self, "methods", methods_for(self.methods, self.engine))
-        if self.steps:
-            for method in self.methods:
-                check_one_step(method)
         if self.goal == "accurate" and self.settle is None:
             self.check_motion()
 
@@ -120,9 +100,9 @@ class Question:
     def _check_given(self) -> None:
         """Raise InputError unless a point is given in one way, with the step that this way needs."""
         in_other_words = self.values is not None
-        if self.h_max is not None and self.h_min is None:
-            raise InputError("--h-max needs --h-min: together they are the range of steps")
-        if in_other_words and self.h is None and self.h_max is None:
+        if self.h_max is not None:
+            raise InputError("--h-max goes with --goal")
+        if in_other_words and self.h is None:
             raise InputError("--physical and --engine need --h: the step in s")
         if self.as_typed and self.values is None:
             raise InputError("--as-typed needs --engine: it leaves out what that engine does to its values")
@@ -130,8 +110,6 @@ class Question:
             raise InputError("--engine takes the place of --alpha, --beta and --physical")
         if not in_other_words and self.point is None:
             raise InputError("a point is needed: --alpha with --beta, or --engine")
-        if self.h is None and self.h_min is not None:
-            object.__setattr__(self, "h", self.h_max)
 
     def _check_goal(self, goal: Goal) -> None:
         """Raise InputError for arguments that do not go with the goal."""
@@ -142,20 +120,18 @@ class Question:
             raise InputError(f"--settle goes with --goal gentle or accurate, not {goal}")
         elif self.settle <= 0:
             raise InputError(f"--settle {float(self.settle):g} s: expected a positive time")
-        in_seconds = (self.h_min, self.h_max, self.settle, self.engine)
+        in_seconds = (self.h_max, self.settle, self.engine)
         if self.h is None:
             if any(each is not None for each in in_seconds):
-                raise InputError("--h-min, --h-max, --settle and --engine need --h: the step in s")
+                raise InputError("--h-max, --settle and --engine need --h: the step in s")
             return
-        if self.h_max is not None and (not (goal in UP_TO_LONGEST or self.h_min) or self.h_max < self.h):
+        if self.h_max is not None and (goal not in UP_TO_LONGEST or self.h_max < self.h):
             raise InputError(
-                f"--h-max {float(self.h_max):g}: only for --goal accurate, robust or --h-min, and at least --h "
-                f"{float(self.h):g}"
+                f"--h-max {float(self.h_max):g}: only for --goal accurate or robust, and at least --h {float(self.h):g}"
             )
-        if self.engine and self.engine.level != "acceleration" and (self.h_max or self.h_min):
+        if self.engine and self.engine.level != "acceleration" and self.h_max:
             raise InputError(
-                f"--h-max and --h-min: what {self.engine.name} makes of its values at other steps is told by "
-                "`check --engine`"
+                f"--h-max: what {self.engine.name} makes of its values at other steps is told by `check --engine`"
             )
 
     def check_motion(self) -> None:
@@ -179,33 +155,15 @@ class Question:
         return Applied(self.point, None)
 
     @cached_property
-    def steps(self) -> StepRange | None:
-        """The range that h_min begins, up to h_max, by default h; None without h_min. InputError unless it is one."""
-        if self.h_min is None:
-            if self.hold:
-                raise InputError("--hold needs --h-min: it is about steps that vary")
-            return None
-        highest = self.h_max or self.h
-        if highest is None:
-            raise InputError("--h-min needs --h-max or --h: the longest step in s")
-        if highest < self.h_min:
-            raise InputError(f"--h-min {float(self.h_min):g}: expected at most the longest step, {float(highest):g} s")
-        hold = self.hold
-        if self.engine and self.values is not None and not hold:
-            hold = engine_holds(self.engine, self.values, self.h_min, highest, as_typed=self.as_typed)
-        return StepRange(self.h or highest, self.h_min, highest, hold)
-
-    @cached_property
     def motion(self) -> ReferenceMotion:
         """The motion on which errors are told; errors as `motion_of`."""
-        longest = self.h_max if self.goal else None
         try:
-            return motion_of(self.omega, self.scene, self.speed, self.h, longest, omega_h=self.omega_h)
+            return motion_of(self.omega, self.scene, self.speed, self.h, self.h_max, omega_h=self.omega_h)
         except InputError:
             at_rest = self.swept is not None and self.turning is not None and self.turning.kappa == 0
             if self.omega is not None or not at_rest:
                 raise
-            return motion_of(None, None, Fraction(1), self.h, longest)  # the sweeps are what is asked about
+            return motion_of(None, None, Fraction(1), self.h, self.h_max)  # the sweeps are what is asked about
 
     @property
     def chain_to_choose_for(self) -> int | None:
@@ -241,28 +199,6 @@ class Question:
     def turning(self) -> TurningNormals | None:
         """How the normals of the scene's constraints turn; None without a scene; errors as `turning_of`."""
         return turning_of(self.scene, self.speed, self.h)
-
-
-def engine_holds(
-    engine: Engine, values: tuple[Fraction, ...], shorter: Fraction, longer: Fraction, *, as_typed: bool
-) -> bool:
-    """Return whether an engine's values mean the same alpha_hat and beta_hat at both steps (s), or alpha and beta.
-
-    InputError where they mean neither, as those do that are clamped to the step.
-    """
-    at_both = [engine.applied(values, step, as_typed=as_typed).points for step in (shorter, longer)]
-    if at_both[0] == at_both[1]:
-        return True
-    of_shorter, of_longer = (
-        [float(gain) for point in points for gain in feedback_gains(*point, step)]
-        for points, step in zip(at_both, (shorter, longer), strict=True)
-    )
-    if all(math.isclose(*gains, rel_tol=SAME_GAINS) for gains in zip(of_shorter, of_longer, strict=True)):
-        return False
-    raise InputError(
-        f"--h-min: {engine.name} makes of these values neither the same α and β nor the same α̂ and β̂ at steps of "
-        f"{float(shorter):g} and {float(longer):g} s; with --hold, what it makes of them at --h is asked about"
-    )
 
 
 def meant_in_seconds(methods: Sequence[Method], point: Point, h: Fraction | None) -> bool:

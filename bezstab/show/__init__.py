@@ -19,7 +19,6 @@ from bezstab.show.result_sentences import (
     passages_words,
     spare_words,
     trade_words,
-    varying_words,
 )
 from bezstab.show.row_kinds import (
     CHECKED,

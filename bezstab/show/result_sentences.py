@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from itertools import groupby
 from typing import TYPE_CHECKING
 
 from bezstab.rationals import typed_number
@@ -15,7 +14,7 @@ if TYPE_CHECKING:
 
     from bezstab.evidence import Measurement
     from bezstab.questions import Answer, ReferenceMotion
-    from bezstab.stability import BestPoint, FarLimit, VaryingSteps
+    from bezstab.stability import BestPoint, FarLimit
 
 COSTLY = 10.0
 """Times the least error: from here on a sentence says what the feedback costs."""
@@ -125,44 +124,6 @@ def energy_words(motion: ReferenceMotion) -> str:
         f"sides. Here it is {motion.words}. A negative growth is a loss. In n revolutions it takes the "
         "motion off its course by 1.6 n² times as much of its amplitude."
     )
-
-
-def varying_words(name: str, varying: VaryingSteps) -> str:
-    """Return the verdict on a range of steps of the method of that name, and why, in one sentence."""
-    held = "α̂ and β̂ held" if varying.hold else "α and β fixed"
-    of_range = f"steps between {_seconds(varying.h_min)} and {_seconds(varying.h_max)}"
-    match varying.varying:
-        case "proven":
-            said = f"proven to decay for every sequence of {of_range} ({_proof(varying)})"
-        case "refuted":
-            said = f"refuted for {of_range}: {_growing(varying)}"
-        case "not known":
-            said = f"not known whether every sequence of {of_range} decays"
-    return f"{name}, {held}: {said}."
-
-
-def _seconds(step: Fraction) -> str:
-    return f"{float(step):.6g} s"
-
-
-def _proof(varying: VaryingSteps) -> str:
-    if varying.kind == "quadratic":
-        return "a quadratic form falls with each step"
-    return "each step decays alone, and steps commute"
-
-
-def _growing(varying: VaryingSteps) -> str:
-    """Return a sequence and what it does to errors: 3 of 0.01 s, then 0.02 s, over and over, grow 1.3-fold each time.
-
-    That they grow is said where three digits show it.
-    """
-    assert varying.sequence
-    repeated = [(_seconds(step), len(list(same))) for step, same in groupby(varying.sequence)]
-    steps = ", then ".join(step if count == 1 else f"{count} of {step}" for step, count in repeated)
-    if len(varying.sequence) == 1:
-        return f"a step of {steps} alone does not decay"
-    growth = f"{varying.growth or 1:.3g}"
-    return f"{steps}, over and over, {f'grow {growth}-fold each time' if float(growth) > 1 else 'do not decay'}"
 
 
 def best_point_words(best: BestPoint) -> str | None:

@@ -464,32 +464,6 @@ SWEPT_OVER = (
     STABLE_ITERATIONS,
 )
 """What an engine that sweeps adds: the first to all, the others to --chain and --scene."""
-# what --h-min adds: a proof, or a sequence of steps that refutes it
-VARYING = (
-    text(
-        "varying",
-        "Whether errors decay for every sequence of steps",
-        "varying steps",
-    ),
-    number("varying_h_min", "Smallest step of such a sequence", unit="s", path="h_min"),
-    number("varying_h_max", "Largest step of such a sequence", unit="s", path="h_max"),
-    truth("hold", "Whether alpha_hat and beta_hat are held while the step varies, not alpha and beta"),
-    text("certificate_kind", "What the certificate is", null="without a proof", path="kind"),
-    Field("certificate", "Rational numbers that prove it, as rows", null="where it takes none", kind="text rows"),
-    Field(
-        "sequence",
-        "Steps of a sequence that lets errors not decay when it is repeated",
-        unit="s",
-        null="unless refuted",
-        kind="numbers",
-    ),
-    number(
-        "growth",
-        "Factor on errors after each repetition of that sequence",
-        null="unless refuted, and where a step has no solution",
-    ),
-    text("shown_by", "The line with which simulate shows errors grow", null="where no run shows it"),
-)
 # what `probe --alpha --beta` adds for each method
 LIKENESS = (
     METHOD,
@@ -797,7 +771,7 @@ CHOICES = RowKind(
         ENERGY_RATE.hidden,
         SENTENCE,
     ),
-    added=(*MOVING, *SCENE_RUN, *VARYING, SWEEPS, *SWEPT_OVER, ENGINE_H_LIMIT, SETTING),
+    added=(*MOVING, *SCENE_RUN, SWEEPS, *SWEPT_OVER, ENGINE_H_LIMIT, SETTING),
     sentence=IN_WORDS,
 )
 # printed by `check`: a choice with its role

@@ -32,7 +32,6 @@ from bezstab.show.row_kinds import (
     SETTING,
     SWEEPS,
     SWEPT_OVER,
-    VARYING,
 )
 from bezstab.units import alpha_and_beta
 
@@ -203,13 +202,11 @@ def left_out(question: Question) -> tuple[str, ...]:
 
 
 def _added_cells(answer: Answer, *of_engine: Field) -> dict[str, Value]:
-    """Return what an engine, a scene and a range of steps add to a row of an answer's point.
+    """Return what an engine and a scene add to a row of an answer's point.
 
     Of an engine it is what it does to its values and what is left out, which is null where the values were not given;
     over what it sweeps; and the fields `of_engine`.
     """
-    from bezstab.questions import growing_run
-
     added: dict[str, Value] = {}
     if answer.question.engine:
         if answer.role != "chosen":
@@ -217,10 +214,9 @@ def _added_cells(answer: Answer, *of_engine: Field) -> dict[str, Value]:
             added |= cells((APPLIED, EXCLUDES), answer if given else None)
         swept_over = SWEPT_OVER if answer.swept else SWEPT_OVER[:1]
         added |= cells((SWEEPS, *swept_over, *of_engine), answer)
-    parts = ((MOVING, answer.moving), (SCENE_RUN, answer.run), (VARYING, answer.varying))
-    for fields, found in parts:
+    for fields, found in ((MOVING, answer.moving), (SCENE_RUN, answer.run)):
         if found:
-            added |= cells(fields, found, {"shown_by": growing_run(answer)})
+            added |= cells(fields, found)
     return added
 
 

@@ -16,33 +16,16 @@ from bezstab.errors import InputError
 from bezstab.goals import Goal
 from bezstab.methods import Method, check_one_step, lookup
 from bezstab.questions import methods_for
-from bezstab.stability import Varying, VaryingSteps, choose, varying_steps
+from bezstab.stability import choose
 from bezstab.step_sequences.growing_runs import growing_run
-from bezstab.units import alpha_and_beta, check_step, feedback_gains, to_dimensionless
+from bezstab.step_sequences.varying_steps import Steps, VaryingSteps, Verdict, varying_steps
+from bezstab.units import alpha_and_beta, feedback_gains, to_dimensionless
 
 GOALS: Sequence[Goal] = ("robust", "fastest", "critical")
 """Of `choose`, in the order in which they are tried."""
 
 SAME_GAINS = 1e-9
 """Of gains in 1/s and 1/s^2: roots and powers that engines take are rounded to float64."""
-
-
-@dataclass(frozen=True)
-class Steps:
-    """A range of steps (s) and how feedback follows them: alpha and beta stay, or with `hold` alpha_hat and beta_hat.
-
-    InputError for a range without a step.
-    """
-
-    h_min: Fraction
-    h_max: Fraction
-    hold: bool = False
-
-    def __post_init__(self) -> None:
-        check_step(self.h_min, "--h-min")
-        check_step(self.h_max, "--h-max")
-        if self.h_max < self.h_min:
-            raise InputError(f"--h-min {float(self.h_min):g}: expected at most --h-max, {float(self.h_max):g} s")
 
 
 @dataclass(frozen=True, repr=False)
@@ -70,9 +53,9 @@ class StepsAnswer:
         return self.safe
 
     @property
-    def verdict(self) -> Varying:
+    def verdict(self) -> Verdict:
         """What is known of all sequences."""
-        return self.found.varying
+        return self.found.verdict
 
     @property
     def safe(self) -> bool:
@@ -160,7 +143,7 @@ def engine_point(engine: Engine, values: tuple[Fraction, ...], asked: Steps) -> 
 
 def judge_steps(method: Method, point: Point, asked: Steps, goal: Goal | None = None) -> StepsAnswer:
     """Return whether errors decay for every sequence of steps; the point is that of the longest one."""
-    found = varying_steps(method, *point, h=asked.h_max, h_min=asked.h_min, h_max=asked.h_max, hold=asked.hold)
+    found = varying_steps(method, *point, asked)
     answer = StepsAnswer(
         method=method,
         alpha_hat=point[0],
@@ -168,7 +151,7 @@ def judge_steps(method: Method, point: Point, asked: Steps, goal: Goal | None = 
         steps=asked,
         goal=goal,
         found=found,
-        shown_by=growing_run(method, point, found),
+        shown_by=growing_run(method, point, asked, found),
         sentence="",
     )
     return replace(answer, sentence=_sentence(answer))
@@ -177,7 +160,7 @@ def judge_steps(method: Method, point: Point, asked: Steps, goal: Goal | None = 
 def proven_choice(method: Method, asked: Steps) -> StepsAnswer:
     """Return the answer about the first of `choose`'s feedbacks that is proven; about the first one if none is."""
     check_one_step(method)
-    tried = []
+    tried: list[StepsAnswer] = []
     for goal in GOALS:
         chosen = choose(method, goal, h=asked.h_max, margins=False)
         answer = judge_steps(method, chosen.point, asked, goal)

@@ -40,8 +40,9 @@ def steps(
 
     Example: bezstab steps --method SYM --alpha 2 --beta 100 --h-min 0.00917 --h-max 1/60
     """
-    from bezstab.step_sequences.answer import Steps, answers
+    from bezstab.step_sequences.answer import answers
     from bezstab.step_sequences.columns import COLUMNS
+    from bezstab.step_sequences.varying_steps import Steps
 
     named, values = engine or (None, None)
     found = answers(methods, Steps(h_min, h_max, hold), alpha, beta, engine=named, values=values)

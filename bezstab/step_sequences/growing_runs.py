@@ -10,7 +10,7 @@ from bezstab.engines import Point
 from bezstab.errors import InputError
 from bezstab.methods import Method, lookup
 from bezstab.rationals import typed_number
-from bezstab.stability import VaryingSteps
+from bezstab.step_sequences.varying_steps import Steps, VaryingSteps
 
 AT_REST = "--scene driven_slider_crank --speed 1e-9"
 """A mechanism without degrees of freedom, all but at rest: what changes in it is the error alone, at any step."""
@@ -20,7 +20,7 @@ GROWN = 1e4  # times that
 MOST_STEPS = 10**5  # of a run: some seconds
 
 
-def growing_run(method: Method, point: Point, found: VaryingSteps) -> str | None:
+def growing_run(method: Method, point: Point, steps: Steps, found: VaryingSteps) -> str | None:
     """Return the line with which simulate shows an error of PERTURBED grow about GROWN times.
 
     The point is that of the longest step. None unless a sequence of steps was found that lets errors grow, and where no
@@ -35,8 +35,8 @@ def growing_run(method: Method, point: Point, found: VaryingSteps) -> str | None
     time = sum(found.sequence) * method.step_multiple * rounds
     return (
         f"bezstab simulate {AT_REST} --method {shlex.quote(method.name)} --alpha {typed_number(alpha_hat)} "
-        f"--beta {typed_number(beta_hat)} --h {typed_number(found.h_max)} --steps {_typed_sequence(found.sequence)}"
-        f"{' --hold' if found.hold else ''} --perturb {PERTURBED:g} --time {float(time):.6g}"
+        f"--beta {typed_number(beta_hat)} --h {typed_number(steps.h_max)} --steps {_typed_sequence(found.sequence)}"
+        f"{' --hold' if steps.hold else ''} --perturb {PERTURBED:g} --time {float(time):.6g}"
     )
 
 

@@ -42,7 +42,6 @@ EXAMPLES = (
     "choose --method SYM --method RK1 --h 0.01",
     "check --method SYM --alpha 2 --beta 2",
     "check --method SYM --method RK2 --alpha 2 --beta 2",
-    "check --method SYM --alpha 2 --beta 100 --physical --h-min 0.00917 --h-max 1/60",
     "check --engine mujoco=0.02,1 --h 0.002",
     "choose --engine bullet --h 1/60",
     "check --method SYM --alpha 1 --beta 0.5 --h 0.01 --scene driven_four_bar",

@@ -37,7 +37,7 @@ def test_an_answer_has_what_a_description_of_its_point_has() -> None:
         assert getattr(answer, name) == getattr(described, name)
     assert (answer.role, answer.point, answer.safe) == ("given", POINT, True)
     assert answer.cost == feedback_cost(SYM[0], *POINT, least=False)
-    assert (answer.moving, answer.varying, answer.setting) == (None, None, None)
+    assert (answer.moving, answer.setting) == (None, None)
 
 
 def test_what_to_take_instead_is_not_looked_for_unless_asked(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -84,13 +84,10 @@ def test_instead_is_what_choose_gives() -> None:
     assert (instead.alpha_hat, instead.beta_hat) == (chosen.alpha_hat, chosen.beta_hat)
 
 
-def test_safe_is_what_is_safe_as_steps_vary_and_as_a_scene_moves() -> None:
+def test_safe_is_what_is_safe_as_a_scene_moves() -> None:
     h = Fraction("0.01")
     weak = (Fraction("0.02"), Fraction("0.5"))
     assert first(Question(methods=SYM, point=weak, h=h)).safe
-    varying = first(Question(methods=SYM, point=weak, h=h, h_min=h / 3, h_max=2 * h))
-    assert varying.varying
-    assert varying.safe == (varying.varying.varying == "proven")
     moving = first(Question(methods=SYM, point=(Fraction("1.9"), Fraction("0.1")), h=h, scene="driven_four_bar"))
     assert moving.moving
     assert moving.safe == (moving.moving.verdict == "converges")

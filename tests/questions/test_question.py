@@ -5,16 +5,14 @@ from typing import Any
 
 import pytest
 
-from bezstab.engines import ENGINES, Drive, engine_and_values
+from bezstab.engines import ENGINES
 from bezstab.errors import InputError
 from bezstab.methods import lookup
 from bezstab.questions import Question, meant_in_seconds, usual_goal
-from bezstab.questions.question import engine_holds
 
 SYM = (lookup("SYM"),)
 POINT = (Fraction(1), Fraction(1, 2))
 H = Fraction(1, 240)
-DRIVE = Drive(Fraction(1000), Fraction(80), Fraction("0.1"))
 
 
 @pytest.mark.parametrize(
@@ -22,6 +20,7 @@ DRIVE = Drive(Fraction(1000), Fraction(80), Fraction("0.1"))
     [
         ({"methods": SYM}, "a point is needed: --alpha with --beta, or --engine"),
         ({"methods": SYM, "point": POINT, "h": Fraction(0)}, "h = 0 s: expected"),
+        ({"methods": SYM, "point": POINT, "h": H, "h_max": 2 * H}, "--h-max goes with --goal"),
     ],
 )
 def test_what_only_python_can_ask_is_refused_as_well(asked: dict[str, Any], message: str) -> None:
@@ -34,12 +33,6 @@ def test_an_engine_brings_its_method() -> None:
     assert [method.name for method in of_engine.methods] == ["SYM"]
 
 
-def test_an_engine_says_itself_what_it_holds_while_steps_vary() -> None:
-    steps = Question(engine=ENGINES["bullet"], values=(Fraction(1, 5),), h=H, h_min=H / 2).steps
-    assert steps
-    assert (steps.h_min, steps.h_max, steps.hold) == (H / 2, H, True)
-
-
 def test_the_usual_goal_is_accurate_and_in_an_engine_robust_unless_feedback_follows_the_motion() -> None:
     assert usual_goal(None) == "accurate"
     mujoco = ENGINES["mujoco"]
@@ -49,17 +42,6 @@ def test_the_usual_goal_is_accurate_and_in_an_engine_robust_unless_feedback_foll
         usual_goal(mujoco, (lookup("RK4"),)),
     ]
     assert goals == ["robust", "robust", "accurate"]
-
-
-H_OF_2_MS = Fraction(1, 500)
-
-
-def test_an_engine_holds_alpha_hat_and_beta_hat_or_alpha_and_beta_or_is_refused() -> None:
-    bullet, spring = engine_and_values("bullet=0.2"), engine_and_values("brax-spring=5000,20,1")
-    assert engine_holds(*bullet, H_OF_2_MS, 2 * H_OF_2_MS, as_typed=False)
-    assert not engine_holds(*spring, H_OF_2_MS, 2 * H_OF_2_MS, as_typed=False)
-    with pytest.raises(InputError, match="box2d makes of these values neither"):
-        engine_holds(*engine_and_values("box2d=60,2"), H_OF_2_MS, 2 * H_OF_2_MS, as_typed=False)
 
 
 @pytest.mark.parametrize(

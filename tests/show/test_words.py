@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bezstab.methods import lookup
-from bezstab.show.result_sentences import best_point_words, falling_words, varying_words
-from bezstab.stability import FarLimit, VaryingSteps, best_point
+from bezstab.show.result_sentences import best_point_words, falling_words
+from bezstab.stability import FarLimit, best_point
 from bezstab.words import change_words, decay_words, growth_words, point_words, seconds_words, times_words
 
 
@@ -79,18 +79,3 @@ def test_words_for_a_best_point() -> None:
 )
 def test_words_for_where_it_falls_towards(limit: FarLimit, words: str) -> None:
     assert falling_words(limit) == f"|z_p| falls towards {words}"
-
-
-@pytest.mark.parametrize(
-    ("steps", "growth", "words"),
-    [
-        ([1], 3.0, "a step of 1 s alone does not decay"),
-        ([1, 1, 2], 1.0001, "2 of 1 s, then 2 s, over and over, do not decay"),
-        ([1, 2], None, "1 s, then 2 s, over and over, do not decay"),
-        ([1, 2], math.inf, "1 s, then 2 s, over and over, grow inf-fold each time"),
-    ],
-)
-def test_words_for_steps_that_do_not_decay(steps: list[int], growth: float | None, words: str) -> None:
-    sequence = tuple(map(Fraction, steps))
-    refuted = VaryingSteps("refuted", Fraction(1), Fraction(2), hold=True, sequence=sequence, growth=growth)
-    assert varying_words("SYM", refuted) == f"SYM, α̂ and β̂ held: refuted for steps between 1 s and 2 s: {words}."

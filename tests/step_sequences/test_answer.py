@@ -10,8 +10,8 @@ import bezstab
 from bezstab.engines import engine_and_values
 from bezstab.errors import InputError
 from bezstab.methods import lookup
-from bezstab.stability import VaryingSteps
-from bezstab.step_sequences.answer import Steps, engine_point, proven_choice, steps, why_words
+from bezstab.step_sequences.answer import engine_point, proven_choice, steps, why_words
+from bezstab.step_sequences.varying_steps import Steps, VaryingSteps
 
 H_MIN, H_MAX = Fraction(1, 240), Fraction(1, 60)
 
@@ -43,6 +43,7 @@ def test_held_feedback_is_the_same_at_every_step() -> None:
     [
         ("bullet=0.2", True),  # its ERP is a share of the error, whatever the step
         ("mujoco=0.5,1", False),  # its time constant is in s
+        ("brax-spring=5000,20,1", False),
     ],
 )
 def test_whether_an_engine_holds_is_known_from_its_values(engine: str, hold: bool) -> None:
@@ -53,8 +54,9 @@ def test_whether_an_engine_holds_is_known_from_its_values(engine: str, hold: boo
 
 
 def test_an_engine_that_does_neither_is_refused() -> None:
-    with pytest.raises(InputError, match="chipmunk makes of these values neither"):
-        steps(engine="chipmunk=0.0018", h_min=H_MIN, h_max=H_MAX)
+    for values in ("chipmunk=0.0018", "box2d=60,2"):
+        with pytest.raises(InputError, match="makes of these values neither"):
+            steps(engine=values, h_min=0.002, h_max=0.004)
 
 
 def test_feedback_is_found_that_is_proven_where_there_is_some() -> None:
@@ -70,7 +72,7 @@ def test_feedback_is_found_that_is_proven_where_there_is_some() -> None:
 
 def test_what_is_refused() -> None:
     for arguments, message in (
-        ({"h_min": 2, "h_max": 1}, "h_min 2: expected at most h_max, 1 s"),
+        ({"h_min": 2, "h_max": 1}, "h_min 2, h_max 1: expected the longest step"),
         ({"h_min": 0, "h_max": 1}, "h_min = 0"),
         ({"h_min": 1, "h_max": 1, "alpha": 1}, "alpha and beta go together"),
         ({"h_min": 1, "h_max": 1, "engine": "bullet=0.2", "hold": True}, "engine takes the place"),
@@ -92,7 +94,5 @@ def test_what_is_refused() -> None:
     ],
 )
 def test_a_sequence_in_words(sequence: tuple[int, ...], growth: float | None, words: str) -> None:
-    found = VaryingSteps(
-        "refuted", Fraction(1), Fraction(2), hold=True, sequence=tuple(map(Fraction, sequence)), growth=growth
-    )
+    found = VaryingSteps("refuted", sequence=tuple(map(Fraction, sequence)), growth=growth)
     assert why_words(found) == words

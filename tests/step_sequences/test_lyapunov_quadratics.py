@@ -3,7 +3,7 @@ from fractions import Fraction
 import numpy as np
 
 from bezstab.methods import lookup, step_matrix
-from bezstab.stability.lyapunov_quadratics import proves_decay
+from bezstab.step_sequences.lyapunov_quadratics import proves_decay
 
 HALF, ONE = Fraction(1, 2), Fraction(1)
 IDENTITY = np.array([[ONE, Fraction(0)], [Fraction(0), ONE]])

@@ -16,12 +16,13 @@ from numpy.polynomial.polynomial import polyadd, polymul
 
 from bezstab.methods import ExactArray, StepMatrix
 from bezstab.rationals import whole_multiples
-from bezstab.stability.arrays import SAME, SLOW, FloatArray
-from bezstab.stability.positive_polynomials import positivity
+from bezstab.stability import SLOW, FloatArray
+from bezstab.step_sequences.positive_polynomials import positivity
 
 DIGITS = 9  # significant ones of what proves
 NEWTON_STEPS = 40  # in each stage; some ten are taken
 STAGES = 24  # each halves what the barrier keeps away from the optimum
+CENTRED = 1e-9  # Newton's decrement at the end of a stage
 
 
 def centred_form(matrices: FloatArray, decays: FloatArray) -> FloatArray:
@@ -53,7 +54,7 @@ def centred_form(matrices: FloatArray, decays: FloatArray) -> FloatArray:
             decrement = -float(gradient @ change)
             # the damped step keeps all conditions (Nesterov & Nemirovskii); rounding may leave a decrement below zero
             values = values + change / (1 + math.sqrt(max(decrement, 0.0)))
-            if decrement < SAME:
+            if decrement < CENTRED:
                 break
         weight *= 2
     form: FloatArray = unit + np.tensordot(values[:-1], basis, axes=1)

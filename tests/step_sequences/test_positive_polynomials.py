@@ -5,7 +5,7 @@ import sympy as sp
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bezstab.stability.positive_polynomials import positivity
+from bezstab.step_sequences.positive_polynomials import positivity
 
 coefficients = st.lists(st.integers(-9, 9), min_size=1, max_size=5)
 

@@ -1,7 +1,7 @@
 from fractions import Fraction
 
 from bezstab.methods import lookup, step_matrix
-from bezstab.stability.growing_sequences import grows
+from bezstab.step_sequences.growing_sequences import grows
 
 ONE, HALF = Fraction(1), Fraction(1, 2)
 

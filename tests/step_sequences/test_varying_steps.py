@@ -1,3 +1,5 @@
+"""Whether every sequence of steps decays: sympy confirms what proves it, and what refutes it."""
+
 import math
 from fractions import Fraction
 
@@ -6,7 +8,7 @@ import sympy as sp
 
 from bezstab.errors import InputError
 from bezstab.methods import lookup
-from bezstab.stability import VaryingSteps, varying_steps
+from bezstab.step_sequences.varying_steps import Steps, VaryingSteps, varying_steps
 from tests.reference.symbolic_steps import form_decreases, spectral_radius, symplectic_euler
 
 TINY = Fraction(1, 10**9)
@@ -14,18 +16,13 @@ TINY = Fraction(1, 10**9)
 
 def symplectic(
     ratio: str, share: str, shortest: Fraction, hold: bool = False
-) -> tuple[VaryingSteps, tuple[Fraction, Fraction]]:
-    """Return the verdict at alpha / beta = ratio, up to a share of the longest step that is stable, and the point."""
+) -> tuple[VaryingSteps, tuple[Fraction, Fraction], Steps]:
+    """Return the verdict at alpha / beta = ratio, the point, and the steps, up to a share of the longest stable one."""
     damping = Fraction(ratio)
     longest = Fraction(2 * (math.sqrt(damping**2 + 1) - damping)).limit_denominator(10**6)  # beta h, at z = -1
     h = longest * Fraction(share)
-    point = 2 * damping * h, h * h
-    found = varying_steps(lookup("SYM"), *point, h=h, h_min=h * shortest, h_max=h, hold=hold)
-    return found, point
-
-
-def shortest_step(found: VaryingSteps) -> Fraction:
-    return found.h_min / found.h_max
+    point, steps = (2 * damping * h, h * h), Steps(h * shortest, h, hold)
+    return varying_steps(lookup("SYM"), *point, steps), point, steps
 
 
 @pytest.mark.parametrize(
@@ -33,20 +30,20 @@ def shortest_step(found: VaryingSteps) -> Fraction:
     [("1/2", "0.94", TINY, False), ("2", "0.999", TINY, False), ("1", "0.9", Fraction(1, 2), True)],
 )
 def test_sympy_confirms_a_quadratic_certificate(ratio: str, share: str, shortest: Fraction, hold: bool) -> None:
-    found, point = symplectic(ratio, share, shortest, hold)
-    assert (found.varying, found.kind) == ("proven", "quadratic")
+    found, point, steps = symplectic(ratio, share, shortest, hold)
+    assert (found.verdict, found.kind) == ("proven", "quadratic")
     assert found.certificate
     form = sp.Matrix([[sp.Rational(number) for number in row] for row in found.certificate])
-    assert form_decreases(form, symplectic_euler(*point, hold), shortest_step(found), Fraction(1))
+    assert form_decreases(form, symplectic_euler(*point, hold), steps.shortest, Fraction(1))
 
 
 @pytest.mark.parametrize(("ratio", "share"), [("1/10", "2/5"), ("1/5", "7/10"), ("1/2", "0.99")])
 def test_sympy_confirms_a_growing_sequence(ratio: str, share: str) -> None:
-    found, point = symplectic(ratio, share, TINY)
-    assert found.varying == "refuted"
+    found, point, steps = symplectic(ratio, share, TINY)
+    assert found.verdict == "refuted"
     assert found.sequence
-    assert all(found.h_min <= step <= found.h_max for step in found.sequence)
-    lengths = [step / found.h_max for step in found.sequence]
+    assert all(steps.h_min <= step <= steps.h_max for step in found.sequence)
+    lengths = [step / steps.h_max for step in found.sequence]
     radius = spectral_radius(symplectic_euler(*point), lengths)
     assert radius >= 1
     assert found.growth == pytest.approx(float(radius), rel=1e-9)  # float64, of a product of few steps
@@ -55,11 +52,11 @@ def test_sympy_confirms_a_growing_sequence(ratio: str, share: str) -> None:
 def test_alternating_steps_that_are_each_stable() -> None:
     # theory: alpha = 2, beta = 100, steps of 1/60 s and 9.17 ms, while each alone decays up to 0.0196 s
     h, other = Fraction(1, 60), Fraction("0.00917")
-    point = 4 * h, (100 * h) ** 2
-    alone = [varying_steps(lookup("SYM"), *point, h=h, h_min=step, h_max=step) for step in (h, other)]
-    assert [each.varying for each in alone] == ["proven", "proven"]
-    both = varying_steps(lookup("SYM"), *point, h=h, h_min=other, h_max=h)
-    assert both.varying == "refuted"
+    for step in (h, other):
+        alone = varying_steps(lookup("SYM"), 4 * step, (100 * step) ** 2, Steps(step, step))
+        assert alone.verdict == "proven"
+    both = varying_steps(lookup("SYM"), 4 * h, (100 * h) ** 2, Steps(other, h))
+    assert both.verdict == "refuted"
     assert both.sequence
     assert set(both.sequence) == {h, other}
 
@@ -79,7 +76,7 @@ def test_alternating_steps_that_are_each_stable() -> None:
 def test_between_the_best_form_and_the_first_sequence_it_is_not_known(ratio: str, proven: str, refuted: str) -> None:
     between = str((Fraction(proven) + Fraction(refuted)) / 2)
     for share, verdict in ((proven, "proven"), (between, "not known"), (refuted, "refuted")):
-        assert symplectic(ratio, share, TINY)[0].varying == verdict
+        assert symplectic(ratio, share, TINY)[0].verdict == verdict
 
 
 @pytest.mark.slow
@@ -90,29 +87,29 @@ def test_between_the_best_form_and_the_first_sequence_it_is_not_known(ratio: str
 )
 def test_so_it_is_where_alpha_hat_and_beta_hat_are_held(ratio: str, shortest: str, refuted: str, proven: str) -> None:
     for share, verdict in ((refuted, "refuted"), ("0.45", "not known"), (proven, "proven")):
-        assert symplectic(ratio, share, Fraction(shortest), hold=True)[0].varying == verdict
+        assert symplectic(ratio, share, Fraction(shortest), hold=True)[0].verdict == verdict
 
 
 @pytest.mark.parametrize("ratio", ["7/10", "1", "3/2", "2"])
 def test_with_enough_damping_the_limit_is_that_of_constant_steps(ratio: str) -> None:
-    assert symplectic(ratio, "0.995", TINY)[0].varying == "proven"
+    assert symplectic(ratio, "0.995", TINY)[0].verdict == "proven"
     beyond = symplectic(ratio, "1.005", TINY)[0]
-    assert beyond.varying == "refuted"
+    assert beyond.verdict == "refuted"
     assert beyond.sequence
     assert len(beyond.sequence) == 1
 
 
 @pytest.mark.parametrize("name", ["RK4", "RK4@2", "implicit-euler", "gauss4"])
 def test_steps_that_commute_need_only_be_stable_alone(name: str) -> None:
-    found = varying_steps(lookup(name), Fraction("0.1"), Fraction(1, 4), h=Fraction(1), h_min=TINY, h_max=Fraction(1))
-    assert (found.varying, found.kind, found.certificate) == ("proven", "commuting", None)
+    found = varying_steps(lookup(name), Fraction("0.1"), Fraction(1, 4), Steps(TINY, Fraction(1)))
+    assert (found.verdict, found.kind, found.certificate) == ("proven", "commuting", None)
 
 
 @pytest.mark.parametrize("name", ["verlet-half", "verlet-predicted", "hht", "generalized-alpha"])
 def test_a_state_of_three_is_proven_by_a_form(name: str) -> None:
     h = Fraction(1, 2)
-    found = varying_steps(lookup(name), h / 2, h * h, h=h, h_min=h / 10, h_max=h)
-    assert (found.varying, found.kind) == ("proven", "quadratic")
+    found = varying_steps(lookup(name), h / 2, h * h, Steps(h / 10, h))
+    assert (found.verdict, found.kind) == ("proven", "quadratic")
     assert found.certificate
     assert len(found.certificate) == 3
 
@@ -120,7 +117,7 @@ def test_a_state_of_three_is_proven_by_a_form(name: str) -> None:
 def test_what_is_refused() -> None:
     one = Fraction(1)
     with pytest.raises(InputError, match="assume that these are of equal length"):
-        varying_steps(lookup("B4"), one, one, h=one, h_min=one, h_max=one)
+        varying_steps(lookup("B4"), one, one, Steps(one, one))
     for h_min in (2 * one, Fraction(1, 10**15)):
-        with pytest.raises(InputError, match="expected a range of positive steps"):
-            varying_steps(lookup("SYM"), one, one, h=one, h_min=h_min, h_max=one)
+        with pytest.raises(InputError, match="expected the longest step to be 1 to"):
+            Steps(h_min, one)

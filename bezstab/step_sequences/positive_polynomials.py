@@ -15,7 +15,8 @@ import numpy as np
 from numpy.polynomial.polynomial import polymul, polypow
 
 from bezstab.methods import ExactArray
-from bezstab.stability.searches import BISECTIONS
+
+HALVINGS = 60  # what is still undecided then touches zero within 1e-18 of the interval
 
 
 def positivity(polynomials: Iterable[Iterable[Fraction]], low: Fraction, high: Fraction) -> Fraction | bool:
@@ -24,8 +25,7 @@ def positivity(polynomials: Iterable[Iterable[Fraction]], low: Fraction, high: F
     If not, a place where one is not, False where none was found. low <= high; whole coefficients are faster.
     """
     by_power = np.array(list(zip_longest(*polynomials, fillvalue=0)), object)
-    # what is still undecided after all halvings touches zero within 1e-18 of the interval
-    pending = [(low, high, np.arange(by_power.shape[1]), BISECTIONS)]
+    pending = [(low, high, np.arange(by_power.shape[1]), HALVINGS)]
     while pending:
         left, right, some, halvings = pending.pop()
         bernstein = by_power[:, some].T @ _to_bernstein(len(by_power) - 1, left, right)

@@ -14,7 +14,7 @@ their steps commute, and any sequence of steps that decay alone decays.
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 from typing import Literal
 
@@ -23,17 +23,13 @@ from numpy.polynomial.polynomial import polyadd, polymul, polysub
 
 from bezstab.errors import InputError
 from bezstab.methods import Method, StepMatrix, step_matrix
-from bezstab.stability.arrays import FloatArray
-from bezstab.stability.growing_sequences import growing_words, grows, growth_of
-from bezstab.stability.lyapunov_quadratics import (
-    centred_form,
-    determinant,
-    proves_decay,
-    rounded,
-)
-from bezstab.stability.positive_polynomials import positivity
+from bezstab.stability import FloatArray
+from bezstab.step_sequences.growing_sequences import growing_words, grows, growth_of
+from bezstab.step_sequences.lyapunov_quadratics import centred_form, determinant, proves_decay, rounded
+from bezstab.step_sequences.positive_polynomials import positivity
+from bezstab.units import check_step
 
-Varying = Literal["proven", "refuted", "not known"]
+Verdict = Literal["proven", "refuted", "not known"]
 Certificate = Literal["commuting", "quadratic"]
 
 FIGURES = 4  # significant digits of the steps in a sequence
@@ -44,8 +40,34 @@ LONGEST_RANGE = Fraction(10**12)  # h_max / h_min: beyond, steps so short are as
 
 
 @dataclass(frozen=True)
+class Steps:
+    """A range of steps (s). alpha and beta stay as they are while steps vary, or with `hold` alpha_hat and beta_hat do.
+
+    InputError unless 1e-100 <= h_min <= h_max <= 1e100 and h_max <= 1e12 h_min.
+    """
+
+    h_min: Fraction
+    h_max: Fraction
+    hold: bool = False
+
+    def __post_init__(self) -> None:
+        check_step(self.h_min, "--h-min")
+        check_step(self.h_max, "--h-max")
+        if not self.h_min <= self.h_max <= LONGEST_RANGE * self.h_min:
+            raise InputError(
+                f"--h-min {float(self.h_min):g}, --h-max {float(self.h_max):g}: expected the longest step to be 1 to "
+                f"{float(LONGEST_RANGE):g} times the shortest"
+            )
+
+    @property
+    def shortest(self) -> Fraction:
+        """The shortest step, as a share of the longest."""
+        return self.h_min / self.h_max
+
+
+@dataclass(frozen=True)
 class VaryingSteps:
-    """What sequences of steps from h_min to h_max (s) do at one point of a method.
+    """What sequences of steps do at one point of a method.
 
     `kind` is how it was proven: "commuting" (every single step decays, and steps commute), or "quadratic", by the rows
     of a form, the `certificate`, of the state (c, h_max cdot) or, of a method that stores an acceleration, (c, h_max
@@ -54,63 +76,39 @@ class VaryingSteps:
     solution.
     """
 
-    varying: Varying
-    h_min: Fraction
-    h_max: Fraction
-    hold: bool
+    verdict: Verdict
     kind: Certificate | None = None
     certificate: tuple[tuple[Fraction, ...], ...] | None = None
     sequence: tuple[Fraction, ...] | None = None
     growth: float | None = None
 
 
-def varying_steps(
-    method: Method,
-    alpha_hat: Fraction,
-    beta_hat: Fraction,
-    *,
-    h: Fraction,
-    h_min: Fraction,
-    h_max: Fraction,
-    hold: bool = False,
-) -> VaryingSteps:
-    """Return whether every sequence of steps from h_min to h_max (s) decays.
+def varying_steps(method: Method, alpha_hat: Fraction, beta_hat: Fraction, steps: Steps) -> VaryingSteps:
+    """Return whether every sequence of steps in a range decays; alpha_hat and beta_hat are those of the longest step.
 
-    alpha_hat and beta_hat are those of a step of h (s); the alpha and beta that belong to them stay as they are, or
-    with `hold` alpha_hat and beta_hat do. InputError for a method of several steps, whose coefficients assume equal
-    steps, and unless 0 < h_min <= h_max <= 1e12 h_min. Lyapunov functions: Liberzon, Switching in Systems and Control,
-    chapter 2.
+    InputError for a method of several steps, whose coefficients assume equal steps. Lyapunov functions: Liberzon,
+    Switching in Systems and Control, chapter 2.
     """
-    if not 0 < h_min <= h_max <= LONGEST_RANGE * h_min:
-        raise InputError(
-            f"steps from {float(h_min):g} to {float(h_max):g} s: expected a range of positive steps, the longest at "
-            f"most {float(LONGEST_RANGE):g} times the shortest"
-        )
-    longest = Fraction(1) if hold else h_max / h
-    at_longest = alpha_hat * longest, beta_hat * longest**2
-    matrix = step_matrix(method, *at_longest, hold)
-    shortest = h_min / h_max
-
-    unknown = VaryingSteps("not known", h_min, h_max, hold)
+    matrix = step_matrix(method, alpha_hat, beta_hat, steps.hold)
 
     def refuted(word: Sequence[Fraction]) -> VaryingSteps:
-        sequence = tuple(length * h_max for length in word)
-        return replace(unknown, varying="refuted", sequence=sequence, growth=growth_of(matrix, word))
+        sequence = tuple(length * steps.h_max for length in word)
+        return VaryingSteps("refuted", sequence=sequence, growth=growth_of(matrix, word))
 
-    alone = _single_step(matrix, shortest)
+    alone = _single_step(matrix, steps.shortest)
     if isinstance(alone, Fraction):
         return refuted([alone])
     if matrix.commuting:
-        return replace(unknown, varying="proven", kind="commuting") if alone else unknown
-    samples = _samples(shortest, down=hold or matrix.size == 3)
+        return VaryingSteps("proven", "commuting") if alone else VaryingSteps("not known")
+    samples = _samples(steps.shortest, down=steps.hold or matrix.size == 3)
     matrices = np.array([matrix.at(s) for s in samples], np.float64)
-    form = _form(matrices, *(float(each) for each in at_longest))
+    form = _form(matrices, float(alpha_hat), float(beta_hat))
     if form is not None:
         exact_form = rounded(form / form[-1, -1])
-        if proves_decay(exact_form, matrix, shortest):
-            return replace(unknown, varying="proven", kind="quadratic", certificate=tuple(map(tuple, exact_form)))
-    word = _growing_word(matrix, h_min, h_max)
-    return refuted(word) if word else unknown
+        if proves_decay(exact_form, matrix, steps.shortest):
+            return VaryingSteps("proven", "quadratic", tuple(map(tuple, exact_form)))
+    word = _growing_word(matrix, steps)
+    return refuted(word) if word else VaryingSteps("not known")
 
 
 def _single_step(matrix: StepMatrix, shortest: Fraction) -> Fraction | bool:
@@ -158,11 +156,11 @@ def _form(matrices: FloatArray, alpha_hat: float, beta_hat: float) -> FloatArray
     return form if np.isfinite(form).all() else None
 
 
-def _growing_word(matrix: StepMatrix, h_min: Fraction, h_max: Fraction) -> tuple[Fraction, ...] | None:
+def _growing_word(matrix: StepMatrix, steps: Steps) -> tuple[Fraction, ...] | None:
     """Return a sequence of lengths proven to grow, of few digits in s; None if none was found."""
-    for word in growing_words(matrix, h_min / h_max):
-        steps = [Fraction(f"{float(length * h_max):.{FIGURES - 1}e}") for length in word]
-        within = tuple(min(max(step, h_min), h_max) / h_max for step in steps)
+    for word in growing_words(matrix, steps.shortest):
+        rounded_steps = [Fraction(f"{float(length * steps.h_max):.{FIGURES - 1}e}") for length in word]
+        within = tuple(min(max(step, steps.h_min), steps.h_max) / steps.h_max for step in rounded_steps)
         if grows(matrix, within):
             return within
     return None
