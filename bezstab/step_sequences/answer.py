@@ -199,7 +199,7 @@ def why_words(found: VaryingSteps) -> str:
         case "commuting":
             return "Errors decay in every sequence: each step decays alone, and steps commute"
         case _:
-            return "Each step decays alone, but neither a proof for all sequences nor one that grows was found"
+            return "Neither a proof for all sequences nor a sequence that grows was found"
 
 
 def _growing(sequence: Sequence[Fraction], growth: float) -> str:

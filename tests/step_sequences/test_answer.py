@@ -83,6 +83,13 @@ def test_what_is_refused() -> None:
             steps(**{"method": "SYM", **arguments})  # type: ignore[arg-type]
 
 
+def test_what_is_not_known_claims_nothing() -> None:
+    """A single step may not be proven either, as where positivity stays undecided."""
+    assert (
+        why_words(VaryingSteps("not known")) == "Neither a proof for all sequences nor a sequence that grows was found"
+    )
+
+
 @pytest.mark.parametrize(
     ("sequence", "growth", "words"),
     [
