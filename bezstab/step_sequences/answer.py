@@ -24,6 +24,8 @@ from bezstab.units import alpha_and_beta, feedback_gains, to_dimensionless
 GOALS: Sequence[Goal] = ("robust", "fastest", "critical")
 """Of `choose`, in the order in which they are tried."""
 
+GIVEN = "as given"
+
 SAME_GAINS = 1e-9
 """Of gains in 1/s and 1/s^2: roots and powers that engines take are rounded to float64."""
 
@@ -32,16 +34,17 @@ SAME_GAINS = 1e-9
 class StepsAnswer:
     """Whether errors decay for every sequence of steps in a range.
 
-    `alpha_hat` and `beta_hat` are those of the longest step. `goal`: the goal of `choose` that gave them; None where
-    they were given. `found`: the proof, or the sequence that refutes. `shown_by`: the line of `simulate` that shows
-    errors grow; None unless refuted, and where no run shows it. `sentence`: the answer in words.
+    `alpha_hat` and `beta_hat` are those of the longest step. `goal`: the goal of `choose` that gave them, "as given",
+    or which of the points it is that an engine makes of its values. `found`: the proof, or the sequence that refutes.
+    `shown_by`: the line of `simulate` that shows errors grow; None unless refuted, and where no run shows it.
+    `sentence`: the answer in words.
     """
 
     method: Method
     alpha_hat: Fraction
     beta_hat: Fraction
     steps: Steps
-    goal: Goal | None
+    goal: str
     found: VaryingSteps
     shown_by: str | None
     sentence: str = field(compare=False)
@@ -82,7 +85,7 @@ def steps(
         if none is, the answer is about the first.
     engine: an engine with its values in their place, such as "bullet=0.2"; whether it holds is then known.
 
-    Returns a StepsAnswer.
+    Returns a StepsAnswer; of an engine whose feedback changes with the size of the error, the first that is not proven.
 
     InputError for a method of several steps, whose coefficients assume equal steps; for an engine whose values change
     alpha and beta as well as alpha_hat and beta_hat with the step; for numbers out of range. Source: Liberzon,
@@ -92,8 +95,8 @@ def steps(
     given = () if method is None else (method if isinstance(method, Method) else lookup(method),)
     numbers = [None if each is None else exact_number(each, name) for each, name in ((alpha, "alpha"), (beta, "beta"))]
     asked = Steps(exact_number(h_min, "h_min"), exact_number(h_max, "h_max"), hold)
-    (answer,) = answers(given, asked, *numbers, engine=named, values=values)
-    return answer
+    found = answers(given, asked, *numbers, engine=named, values=values)
+    return next((answer for answer in found if not answer), found[0])
 
 
 def answers(
@@ -105,13 +108,13 @@ def answers(
     engine: Engine | None = None,
     values: tuple[Fraction, ...] | None = None,
 ) -> list[StepsAnswer]:
-    """Return an answer for each method, without methods for the engine's own; arguments and errors as `steps`."""
+    """Return the answers for each method, without methods for the engine's own; arguments and errors as `steps`."""
     methods = methods_for(methods, engine)
     if engine and values is not None:
         if alpha is not None or beta is not None or asked.hold:
             raise InputError("--engine takes the place of --alpha, --beta and --hold")
-        point, asked = engine_point(engine, values, asked)
-        return [judge_steps(method, point, asked) for method in methods]
+        points, asked = engine_points(engine, values, asked)
+        return [judge_steps(method, point, asked, name) for method in methods for name, point in points]
     if alpha is None and beta is None:
         return [proven_choice(method, asked) for method in methods]
     if alpha is None or beta is None:
@@ -120,15 +123,16 @@ def answers(
     return [judge_steps(method, point, asked) for method in methods]
 
 
-def engine_point(engine: Engine, values: tuple[Fraction, ...], asked: Steps) -> tuple[Point, Steps]:
-    """Return what an engine makes of its values at the longest step, and how its feedback follows the steps.
+def engine_points(engine: Engine, values: tuple[Fraction, ...], asked: Steps) -> tuple[list[tuple[str, Point]], Steps]:
+    """Return the points that an engine makes of its values at the longest step, and how its feedback follows the steps.
 
     InputError where its values mean neither the same alpha and beta nor the same alpha_hat and beta_hat at both ends of
     the range, as those do that are clamped to the step.
     """
     shortest, longest = (engine.applied(values, h) for h in (asked.h_min, asked.h_max))
+    points = [(GIVEN, longest.point), *longest.also]
     if shortest.points == longest.points:
-        return longest.point, replace(asked, hold=True)
+        return points, replace(asked, hold=True)
     gains = [
         [float(gain) for point in applied.points for gain in feedback_gains(*point, h)]
         for applied, h in ((shortest, asked.h_min), (longest, asked.h_max))
@@ -138,10 +142,10 @@ def engine_point(engine: Engine, values: tuple[Fraction, ...], asked: Steps) -> 
             f"--engine: {engine.name} makes of these values neither the same α and β nor the same α̂ and β̂ at steps of "
             f"{float(asked.h_min):g} and {float(asked.h_max):g} s"
         )
-    return longest.point, asked
+    return points, asked
 
 
-def judge_steps(method: Method, point: Point, asked: Steps, goal: Goal | None = None) -> StepsAnswer:
+def judge_steps(method: Method, point: Point, asked: Steps, goal: str = GIVEN) -> StepsAnswer:
     """Return whether errors decay for every sequence of steps; the point is that of the longest one."""
     found = varying_steps(method, *point, asked)
     answer = StepsAnswer(
@@ -183,8 +187,8 @@ def _sentence(answer: StepsAnswer) -> str:
     else:
         rates = zip("αβ", alpha_and_beta(answer.alpha_hat, answer.beta_hat, asked.h_max), strict=True)
         feedback = ", ".join(f"{name} = {rate:.6g} 1/s" for name, rate in rates if rate is not None)
-    if answer.goal:
-        feedback += f" (goal {answer.goal} of `choose`)"
+    if answer.goal != GIVEN:
+        feedback += f" (goal {answer.goal} of `choose`)" if answer.goal in GOALS else f" ({answer.goal})"
     judged = f"{answer.method.name}, {feedback}, steps from {_seconds(asked.h_min)} to {_seconds(asked.h_max)}"
     return f"{judged}: {answer.verdict}. {why_words(answer.found)}."
 

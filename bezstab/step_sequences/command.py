@@ -5,6 +5,7 @@ from fractions import Fraction
 import click
 
 from bezstab.cli import shared_options as shared
+from bezstab.cli.asking import say_what_is_left_out
 from bezstab.cli.options import ENGINE_VALUES, NUMBER, SECONDS, EngineValues
 from bezstab.cli.output import for_reading, show_answers, show_command, show_text
 from bezstab.methods import Method
@@ -51,4 +52,6 @@ def steps(
         if answer.shown_by:
             show_text("\nThis shows errors grow:\n")
             show_command(answer.shown_by)
+    if named and for_reading():
+        say_what_is_left_out(named)
     return all(found)

@@ -10,7 +10,7 @@ import bezstab
 from bezstab.engines import engine_and_values
 from bezstab.errors import InputError
 from bezstab.methods import lookup
-from bezstab.step_sequences.answer import engine_point, proven_choice, steps, why_words
+from bezstab.step_sequences.answer import answers, engine_points, proven_choice, steps, why_words
 from bezstab.step_sequences.varying_steps import Steps, VaryingSteps
 
 H_MIN, H_MAX = Fraction(1, 240), Fraction(1, 60)
@@ -48,9 +48,18 @@ def test_held_feedback_is_the_same_at_every_step() -> None:
 )
 def test_whether_an_engine_holds_is_known_from_its_values(engine: str, hold: bool) -> None:
     named, values = engine_and_values(engine)
-    point, asked = engine_point(named, values, Steps(H_MIN, H_MAX))
+    points, asked = engine_points(named, values, Steps(H_MIN, H_MAX))
     assert asked.hold == hold
-    assert point == named.applied(values, H_MAX).point
+    assert points == [("as given", named.applied(values, H_MAX).point)]
+
+
+def test_feedback_that_changes_with_the_error_is_proven_at_each_of_its_points() -> None:
+    """MuJoCo's solimp makes it weaker where the error is small: there it is proven, past its width it is refuted."""
+    values = "mujoco=0.02,0.3,0.3,0.95"
+    named, numbers = engine_and_values(values)
+    both = answers((), Steps(Fraction(1, 1200), Fraction(1, 120)), engine=named, values=numbers)
+    assert [(each.goal, each.verdict) for each in both] == [("as given", "proven"), ("past solimp's width", "refuted")]
+    assert steps(engine=values, h_min="1/1200", h_max="1/120").goal == "past solimp's width"
 
 
 def test_an_engine_that_does_neither_is_refused() -> None:
