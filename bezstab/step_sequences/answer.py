@@ -21,7 +21,7 @@ from bezstab.step_sequences.growing_runs import growing_run
 from bezstab.step_sequences.varying_steps import Steps, VaryingSteps, Verdict, varying_steps
 from bezstab.units import alpha_and_beta, feedback_gains, to_dimensionless
 
-GOALS: Sequence[Goal] = ("robust", "fastest", "critical")
+GOALS: Sequence[Goal] = ("robust", "fastest")
 """Of `choose`, in the order in which they are tried."""
 
 GIVEN = "as given"
@@ -81,7 +81,7 @@ def steps(
 
     method: your integration method; with an engine, by default its own.
     alpha, beta: in 1/s, the same for all steps. With `hold` alpha_hat and beta_hat, the same for all steps. Without
-        them, the first feedback of `choose` (goals robust, fastest, critical, at h_max) that is proven for these steps;
+        them, the first feedback of `choose` (goals robust, then fastest, at h_max) that is proven for these steps;
         if none is, the answer is about the first.
     engine: an engine with its values in their place, such as "bullet=0.2"; whether it holds is then known.
 

@@ -36,8 +36,8 @@ def steps(
     Steps that are each stable alone may still let errors grow in turn. The answer is "proven" for every sequence of
     steps in the range; "refuted", with a sequence that grows and the line of `simulate` that shows it; or "not known".
 
-    Without --alpha and --beta it finds feedback that is proven for these steps: `choose` with the goals robust, fastest
-    and critical, in this order, at --h-max.
+    Without --alpha and --beta it finds feedback that is proven for these steps: `choose` with --goal robust, then
+    fastest, at --h-max.
 
     Example: bezstab steps --method SYM --alpha 2 --beta 100 --h-min 0.00917 --h-max 1/60
     """
