@@ -69,12 +69,17 @@ def loaded_model(source: Any) -> Loaded:
 
 @contextmanager
 def silent(mujoco: types.ModuleType) -> Iterator[None]:
-    """Keep MuJoCo from printing its warnings, and from writing them into a file of the current directory."""
+    """Keep MuJoCo from printing its warnings, and from writing them into a file of the current directory.
+
+    Afterwards the filter of contacts, which leaves out pairs meanwhile, is the caller's own again.
+    """
+    own_filter = mujoco.get_mjcb_contactfilter()
     mujoco.set_mju_user_warning(lambda _: None)
     try:
         yield
     finally:
         mujoco.set_mju_user_warning(None)
+        mujoco.set_mjcb_contactfilter(own_filter)
 
 
 def _read(mujoco: Any, path: Path) -> Loaded:

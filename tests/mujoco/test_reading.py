@@ -10,6 +10,7 @@ import pytest
 from bezstab.errors import InputError
 from bezstab.mujoco.linting import lint
 from bezstab.mujoco.reading import loaded_model, mujoco_module
+from tests.mujoco.models import mjcf
 from tests.mujoco.test_steps import model_of
 
 mujoco: Any = pytest.importorskip("mujoco")
@@ -101,6 +102,27 @@ def test_a_loaded_model_is_left_as_it_was() -> None:
     loaded = loaded_model(model)
     assert (model.opt.iterations, model.opt.solver) == (3, mujoco.mjtSolver.mjSOL_PGS)
     assert loaded.model.opt.solver == mujoco.mjtSolver.mjSOL_NEWTON
+
+
+def test_a_filter_of_contacts_is_the_callers_own_again() -> None:
+    """lint leaves out pairs of geoms by it, to find which contact is to blame."""
+
+    def own(_model: Any, _data: Any, _first: int, _second: int) -> int:
+        return 0
+
+    boxes = "".join(
+        f'<body pos="0 0 {place}"><freejoint/><geom type="box" size=".1 .1 .1" solref=".0015 1"/></body>'
+        for place in (0.0999, 0.2997)
+    )
+    world = f'<geom type="plane" size="1 1 .1" solref=".0015 1"/>{boxes}'
+    model = model_of(mjcf(world, h=0.002, gravity=-9.81, flags='refsafe="disable"'))
+    mujoco.set_mjcb_contactfilter(own)
+    try:
+        found = lint(model)
+        assert mujoco.get_mjcb_contactfilter() is own
+    finally:
+        mujoco.set_mjcb_contactfilter(None)
+    assert {suspect.kind for suspect in found.suspects} == {"contact"}
 
 
 def test_without_mujoco_or_with_an_old_one_the_message_says_what_to_get(monkeypatch: pytest.MonkeyPatch) -> None:
