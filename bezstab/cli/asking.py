@@ -8,7 +8,7 @@ from bezstab import questions, show
 from bezstab.cli.command_group import NUMERICAL_TROUBLE
 from bezstab.cli.options import TypedPoint, typed_options
 from bezstab.cli.output import for_reading, say, show_text, worked_out
-from bezstab.engines import Engine, Point
+from bezstab.engines import WITNESSES, Engine, Point
 from bezstab.errors import NumericalError
 from bezstab.methods import Method, lookup
 from bezstab.rationals import typed_number
@@ -102,10 +102,15 @@ def show_below(question: "questions.Question", found: "Sequence[questions.Answer
 
 
 def say_what_is_left_out(engine: Engine, *, many: bool = False) -> None:
-    """Say on standard error what the conversion of an engine's values leaves out, for one constraint or for many."""
+    """Say on standard error what the conversion of an engine's values leaves out, for one constraint or for many.
+
+    It is also said if the engine itself was never run.
+    """
     swept = "; it solves each constraint by itself, in sweeps: chains of them may diverge all the same"
     ask = ": ask `bezstab chain`" if engine.sweeping else ""
     say(f"{engine.name}: left out: {engine.excludes}{swept + ask if engine.sweeps and not many else ''}")
+    if engine.name not in WITNESSES:
+        say(f"{engine.name}: this is from its source; it was never run beside it")
     if many and engine.sweeping:
         say(f"{engine.name}: sweeps are its {engine.sweeping.word}; of them left out: {engine.sweeping.excludes}")
 

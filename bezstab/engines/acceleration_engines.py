@@ -1,6 +1,7 @@
 """Engines whose feedback is Baumgarte's: c'' + 2 alpha c' + beta^2 c = 0 in their equations, then an integrator."""
 
 from fractions import Fraction
+from typing import Any
 
 from bezstab.engines.conversions import (
     Applied,
@@ -243,19 +244,42 @@ CHRONO_EXPLICIT = Engine(
 )
 
 
-# Brax's spring pipeline: forces of the old state, the new velocity moves
+# Joints that are springs between bodies: forces of the old state, the new velocity moves; no turn of the normals
 
 
-BRAX_SPRING = Engine(
-    name="brax-spring",
-    energy_class="bias",
-    level="acceleration",
-    parameters={"constraint_stiffness": "N/m", "constraint_vel_damping": "N s/m"},
-    optional={"mass": "kg"},
-    defaults="2000,0",
-    above_zero=("mass",),
-    read=lambda h, stiffness, damping, mass=ONE: point_of_gains(h, stiffness / mass, damping / mass),
-    write=lambda alpha_hat, beta_hat, h: (*stiffness_and_damping(alpha_hat, beta_hat, h), 1.0),
+def _engine_of_springs(name: str, stiffness: str, damping: str, defaults: str, **facts: Any) -> Engine:
+    """Return an engine with springs at its joints, by its two words; `facts` are the other fields of `Engine`."""
+    return Engine(
+        name=name,
+        energy_class="bias",
+        level="acceleration",
+        parameters={stiffness: "N/m", damping: "N s/m"},
+        optional={"mass": "kg"},
+        defaults=defaults,
+        above_zero=("mass",),
+        read=lambda h, stiffness, damping, mass=ONE: point_of_gains(h, stiffness / mass, damping / mass),
+        write=lambda alpha_hat, beta_hat, h: (*stiffness_and_damping(alpha_hat, beta_hat, h), 1.0),
+        **facts,
+    )
+
+
+BRAX_SPRING = _engine_of_springs(
+    "brax-spring",
+    "constraint_stiffness",
+    "constraint_vel_damping",
+    "2000,0",
     source="Brax source, spring/joints.py, spring/pipeline.py, spring/integrator.py; io/mjcf.py (2000, 0 unless set)",
     excludes="angles (constraint_ang_damping); vel_damping and ang_damping; spring_mass_scale; contacts: brax-contact",
+)
+
+
+NEWTON_SEMI_IMPLICIT = _engine_of_springs(
+    "newton-semi-implicit",
+    "joint_attach_ke",
+    "joint_attach_kd",
+    "1e4,1e2",
+    source="Newton source, solvers/semi_implicit: kernels_body.py (eval_body_joints), solver_semi_implicit.py; Warp's "
+    "wp.sim had the same",
+    excludes="angles, which have a hundredth of the damping; angular_damping; targets and limits of "
+    "joints; mass is 1 / (J M^-1 J'), 1 unless given",
 )

@@ -18,14 +18,24 @@ ENGINES = {
 }
 """Every engine by name, in the order of the files that they stand in."""
 
-ENGINE_ALIASES = {"pybullet": "bullet", "pymunk": "chipmunk"}
+ENGINE_ALIASES = {
+    "bepuphysics2": "bepu",
+    "cannon": "cannon-es",
+    "matter-js": "matter.js",
+    "p2-es": "p2",
+    "pybullet": "bullet",
+    "pymunk": "chipmunk",
+}
 """Engines that are one of the list under another name."""
 
 RUN_UNDERNEATH = {
     "avian": "its joints are XPBD: ask about xpbd, or about pbd=1 where the compliance is 0; h is the substep's",
-    "newton": "it has several solvers: ask about kamino, mujoco (MuJoCo Warp) or xpbd",
+    "newton": "it has several solvers: ask about kamino, mujoco (MuJoCo Warp), newton-semi-implicit or xpbd",
+    "raisim": "its source is closed and its manual has no formula for erp and erp2, so what they do is not known here; "
+    "ask about the PD gains of its joints with bezstab drive",
     "unity": "it runs PhysX in 3D and Box2D in 2D: ask about physx or physx-tgs (joints), about "
     "physx-drive (a drive of its joints and articulations), about box2d-v2, or about box2d (that of version 3)",
+    "warp": "its simulators are Newton's now: ask about newton-semi-implicit or xpbd",
 }
 """What others that are asked for run underneath, by their names."""
 
@@ -34,6 +44,9 @@ WITNESSES = {
     "bullet": "tests/witnesses/test_pybullet.py::test_bullets_pole_is_that_of_its_erp",
     "chipmunk": "tests/witnesses/test_pymunk.py::test_chipmunks_pole_is_that_of_its_error_bias",
     "box2d-v2": "tests/witnesses/test_box2d.py::test_errors_of_a_chain_shrink_as_predicted",
+    "cannon-es": "tests/witnesses/test_javascript_engines.py::test_cannon_es_grows_as_its_spook_says",
+    "matter.js": "tests/witnesses/test_javascript_engines.py::test_matter_js_grows_as_its_stiffness_says",
+    "p2": "tests/witnesses/test_javascript_engines.py::test_p2_grows_as_its_spook_says",
 }
 """The test that runs an engine itself and holds its row against that, by the engine's name; add a line for each.
 

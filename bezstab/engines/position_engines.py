@@ -8,7 +8,9 @@ Two kinds, for one constraint of unit mass, c* = c0 + h c0' and a share s that a
 XPBD's compliance is a spring that is solved implicitly: implicit Euler.
 """
 
+import math
 from fractions import Fraction
+from typing import Any
 
 from bezstab.engines.conversions import Engine, Point, engine_without_parameters, hard
 from bezstab.engines.sweeping import Move, Pass, Sweeping, SweptStep, VelocityOfMove
@@ -163,4 +165,84 @@ BRAX_POSITIONAL = Engine(
     curve=lambda share: (share, share),  # not more than all
     source="Brax source, positional/pipeline.py, joints.py, integrator.py (project_xd); io/mjcf.py (default)",
     excludes="joint_scale_ang (0.2 unless set), the same for angles; constraint_vel_damping; joints that share bodies",
+)
+
+
+# matter.js: Verlet's positions, moved by a share s of the error in each of n iterations, in two passes a step. Before
+# a pass bodies move by 0.4 times what the last one moved them. So a step has three poles: with r = (1 - s)^n, those of
+#
+#     z^3 - (3.36 r^2 - 1.2 r) z^2 + (1.72 r^2 - 0.4 r) z - 0.16 r^2
+#
+# The largest one, with its conjugate or the next real one, is the point. Below 1/60 s s is 60 h times a stiffness of 1
+# or more, and (60 h)^2 times a smaller one.
+
+MATTER_STEP = Fraction(1, 60)
+MOST_LEFT = 1e50  # of an error, by a pass: its squares stay within float64
+
+
+def _matter_point(left: float) -> Any:
+    """Return alpha_hat and beta_hat where the iterations of a pass leave that share of an error."""
+    import numpy as np
+
+    cubic = [1, 1.2 * left - 3.36 * left**2, 1.72 * left**2 - 0.4 * left, -0.16 * left**2]
+    largest, *others = sorted(np.roots(cubic), key=abs, reverse=True)
+    beside = largest.conjugate() if largest.imag else next((z for z in others if not z.imag), 0.0)
+    total, product = float((largest + beside).real), float((largest * beside).real)
+    return 1 - product, 1 + product - total
+
+
+def _matter_scale(h: Fraction, stiffness: Fraction) -> Fraction:
+    scale = min(h / MATTER_STEP, ONE)
+    return scale if stiffness >= 1 else scale**2
+
+
+def _read_matter(h: Fraction, stiffness: Fraction, iterations: Fraction = Fraction(2)) -> Point:
+    left = 1 - _share_of_all("matter.js", stiffness * _matter_scale(h, stiffness), iterations)
+    if abs(left) > MOST_LEFT:
+        raise InputError(f"--engine matter.js: stiffness = {float(stiffness):g}: expected less")
+    alpha_hat, beta_hat = _matter_point(float(left))
+    return Fraction(alpha_hat), Fraction(beta_hat)
+
+
+def _matter_curve(share: Any) -> Any:
+    import numpy as np
+
+    return np.vectorize(_matter_point)((1 - share) ** 2)
+
+
+def _write_matter(alpha_hat: float, beta_hat: float, h: float) -> tuple[float, ...]:
+    import numpy as np
+
+    def missed(left: float) -> float:
+        return float(np.abs(np.array(_matter_point(left)) - (alpha_hat, beta_hat)).max())
+
+    with np.errstate(over="raise", invalid="raise"):  # so that Engine.values takes it for: not reached
+        z = max(np.roots([1, alpha_hat + beta_hat - 2, 1 - alpha_hat]), key=abs)
+        lefts = np.roots([-3.36 + (1.72 - 0.16 / z) / z, 1.2 - 0.4 / z, z]).real if z else [0.0]  # the cubic, in r
+        left = min(lefts, key=missed)
+    scale = min(h / float(MATTER_STEP), 1.0)
+    for iterations in (2, 1, *range(3, MOST_ITERATIONS)):  # so many that the stiffness is not between both scales
+        share = 1 - math.copysign(abs(left) ** (1 / iterations), left)
+        if share < scale**2 or share >= scale:
+            break
+    return share / (scale**2 if share < scale**2 else scale), iterations
+
+
+MATTER_JS = Engine(
+    name="matter.js",
+    energy_class="projected",
+    level="position",
+    parameters={"stiffness": "-"},
+    optional={"constraintIterations": "-"},
+    defaults="1",
+    above_zero=("stiffness",),
+    read=_read_matter,
+    write=_write_matter,
+    digits=17,
+    reaches="the points of its stiffness",
+    marks={"matter.js: stiffness 1": "1"},
+    curve=_matter_curve,
+    source="matter.js source, Constraint.js (solve, _warming), Engine.js (update: two passes), Body.js (update)",
+    excludes="pins (length 0) in steps below 1/60 s; anchors away from centres of mass, where it takes more than the "
+    "share; damping; frictionAir (0.01 unless set); contacts; the smallest of its three poles",
 )

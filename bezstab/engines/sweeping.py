@@ -5,8 +5,8 @@
 A pass has an unknown impulse for each constraint. With the inverse effective masses A = J M^-1 J', the errors c and
 their rates of change h c' = v, it sweeps towards the impulses p with
 
-    velocity pass   (A + softness D) p = A p0 - v - share c      p0: the impulses that v has in it already
-    position pass   (A + softness D) p = -share c                from p = 0; it moves c by A p and leaves v alone
+    velocity pass   (A + softness D) p = A p0 - damping v - share c    p0: the impulses that v has in it already
+    position pass   (A + softness D) p = -share c                      from p = 0; it moves c by A p and leaves v alone
 
 with D the part of A that a constraint, or a joint whose constraints are solved together, has with itself.
 """
@@ -28,6 +28,7 @@ class Pass:
 
     `share` is the part of the error that one constraint alone would take back. `softness` is what is added to each
     constraint's own A, as a part of it. `relaxation` is how far each constraint goes of its way: over-relaxed above 1.
+    `damping` is the part of the velocity that a velocity pass takes back, from p0 = 0 where that is not all of it.
     """
 
     kind: Literal["velocity", "position"]
@@ -35,6 +36,7 @@ class Pass:
     share: float = 0.0
     softness: float = 0.0
     relaxation: float = 1.0
+    damping: float = 1.0
 
 
 @dataclass(frozen=True)

@@ -13,6 +13,7 @@ beta_hat = stiffness h^2, each per unit of mass, v1 = (v0 - beta_hat c0) / (1 + 
 """
 
 import math
+from collections.abc import Callable
 from fractions import Fraction
 from typing import Any
 
@@ -439,42 +440,185 @@ KAMINO = _engine_with_erp(
 # Catto's soft constraint, without relaxation
 
 
-def _read_jolt_spring(h: Fraction, frequency: Fraction, damping: Fraction) -> Point:
+def _read_spring(h: Fraction, frequency: Fraction, damping: Fraction) -> Point:
     turn = Fraction(2 * math.pi) * frequency * h
     return 2 * damping * turn, turn**2
 
 
-def _write_jolt_spring(alpha_hat: float, beta_hat: float, h: float) -> tuple[float, float]:
+def _write_spring(alpha_hat: float, beta_hat: float, h: float) -> tuple[float, float]:
     turn = math.sqrt(beta_hat)
     return turn / (2 * math.pi * h), alpha_hat / (2 * turn)
 
 
-def _jolt_spring_step(iterations: int, h: Fraction, frequency: Fraction, damping: Fraction) -> SweptStep:
-    alpha_hat, beta_hat = map(float, _read_jolt_spring(h, frequency, damping))
+def _spring_step(iterations: int, h: Fraction, frequency: Fraction, damping: Fraction) -> SweptStep:
+    alpha_hat, beta_hat = map(float, _read_spring(h, frequency, damping))
     total = alpha_hat + beta_hat  # h (c + h k) over the effective mass
+    if total <= 0:
+        raise InputError(f"a damping ratio of {float(damping):g} is not judged in sweeps")
     return hard_velocity_step(beta_hat / total, iterations, kept=1.0, softness=1 / total)
 
 
-JOLT_SPRING = Engine(
-    name="jolt-spring",
-    energy_class="bias",
-    level="velocity",
-    method="implicit-euler",
-    parameters={"mFrequency": "Hz", "mDamping": "-"},
-    above_zero=("mFrequency",),
+def _engine_with_springs(name: str, frequency: str, damping_ratio: str, **facts: Any) -> Engine:
+    """Return an engine of such springs, with its two words; `facts` are the other fields of `Engine`."""
+    return Engine(
+        name=name,
+        energy_class="bias",
+        level="velocity",
+        method="implicit-euler",
+        parameters={frequency: "Hz", damping_ratio: "-"},
+        above_zero=(frequency,),
+        read=_read_spring,
+        write=_write_spring,
+        **facts,
+    )
+
+
+JOLT_SPRING = _engine_with_springs(
+    "jolt-spring",
+    "mFrequency",
+    "mDamping",
     from_zero=("mDamping",),
-    read=_read_jolt_spring,
-    write=_write_jolt_spring,
     reaches="β̂ > 0 (for a hard constraint see jolt)",
     source="Jolt source, SpringPart.h (Catto, Soft constraints, GDC 2011, without relaxation)",
     excludes="its modes by stiffness; the error of iterations; for a hard constraint see jolt",
     sweeping=Sweeping(
-        _jolt_spring_step,
+        _spring_step,
         iterations=10,
         word="mNumVelocitySteps",
         source="Jolt source, SpringPart.h, AxisConstraintPart.h, PhysicsSystem.cpp, PhysicsSettings.h",
         excludes="large islands, which it splits; hard constraints beside the springs",
     ),
+)
+
+
+HALF_THE_RATE = math.pi  # of the steps, as a turn: bepuphysics2 advises against faster springs
+
+BEPU = _engine_with_springs(
+    "bepu",
+    "Frequency",
+    "DampingRatio",  # negative ones are used: they make up for what implicit Euler damps
+    reaches="β̂ > 0",
+    curve=lambda share: (2 * HALF_THE_RATE, HALF_THE_RATE**2 * share),  # the fastest is critically damped
+    source="bepuphysics2 source, SpringSettings.cs (ComputeSpringiness), BallSocket.cs, BallSocketShared.cs",
+    excludes="h is the substep's; servos' largest speed and force; motors; contacts",
+    sweeping=Sweeping(
+        _spring_step,
+        iterations=1,
+        word="VelocityIterationCount",
+        source="bepuphysics2 source, SolveDescription.cs (1 unless given), BallSocket.cs (WarmStart, Solve)",
+        excludes="h is the substep's; its order by batches",
+        together=True,
+    ),
+)
+
+
+# SPOOK, as p2 and cannon-es have it: with relaxation d, stiffness k and the constraint's inverse mass w the impulse is
+#
+#     (w + eps) p = -(4 d c' + 4 c / h) / (1 + 4 d)                     eps = 4 / (h^2 k (1 + 4 d))
+#
+# so that with s = w / (w + eps) alpha_hat = s 4 d / (1 + 4 d), beta_hat = s 4 / (1 + 4 d), and 2 alpha_hat + beta_hat
+# is below 4: stable. cannon-es computes these when a constraint is made, for steps of 1/60 s unless it is told others.
+
+
+def _spook(
+    h: Fraction, made_for: Fraction, stiffness: Fraction, relaxation: Fraction, mass: Fraction = ONE
+) -> tuple[Fraction, Fraction, Fraction]:
+    """Return the shares that a step of h takes back of c' and of c were it hard, and eps / w; made for other steps."""
+    whole = 1 + 4 * relaxation
+    return 4 * relaxation / whole, 4 / whole * h / made_for, 4 * mass / (made_for**2 * stiffness * whole)
+
+
+def _spook_of_cannon(
+    h: Fraction, stiffness: Fraction, relaxation: Fraction, time_step: Fraction = Fraction(1, 60), mass: Fraction = ONE
+) -> tuple[Fraction, Fraction, Fraction]:
+    return _spook(h, time_step, stiffness, relaxation, mass)
+
+
+def _write_spook(alpha_hat: float, share: float, made_for: float) -> tuple[float, float, float]:
+    softness = 1 / (alpha_hat + share / 4) - 1
+    relaxation = alpha_hat / share
+    return 4 / (made_for**2 * softness * (1 + 4 * relaxation)), relaxation, 1.0
+
+
+def _write_spook_of_cannon(alpha_hat: float, beta_hat: float, h: float) -> tuple[float, float, float]:
+    share = beta_hat if alpha_hat + beta_hat / 4 < 1 else 2 * (1 - alpha_hat)  # made for shorter steps it does more
+    made_for = h * share / beta_hat
+    return *_write_spook(alpha_hat, share, made_for)[:2], made_for
+
+
+def _engine_with_spook(
+    name: str, stiffness: str, shares: Callable[..., tuple[Fraction, Fraction, Fraction]], **facts: Any
+) -> Engine:
+    """Return an engine whose `shares(h, *values)` are those of `_spook`; `facts` are the other fields of `Engine`."""
+
+    def read(h: Fraction, *values: Fraction) -> Point:
+        damping, share, softness = shares(h, *values)
+        return damping / (1 + softness), share / (1 + softness)
+
+    def step(iterations: int, h: Fraction, *values: Fraction) -> SweptStep:
+        damping, share, softness = map(float, shares(h, *values))
+        return SweptStep(0.0, (Pass("velocity", iterations, share, softness, damping=damping), Move()))
+
+    return Engine(
+        name=name,
+        energy_class="bias",
+        level="velocity",
+        parameters={"stiffness": "N/m", "relaxation": "-"},
+        defaults=f"{stiffness},4",
+        above_zero=("stiffness", "mass", "timeStep"),
+        from_zero=("relaxation",),
+        read=read,
+        digits=17,  # alpha_hat + beta_hat / 4 may be next to 1
+        marks={f"{name}: {stiffness}, 4": f"{stiffness} 4"},
+        curve=lambda share: (STIFFEST * (1 - share / 5), STIFFEST * 4 * share / 5),  # relaxations, in steps, down to 1
+        sweeping=Sweeping(
+            step,
+            iterations=10,
+            word="solver.iterations",
+            source=f"{name} source, GSSolver (impulses start at 0)",
+            excludes="its tolerance of 1e-7, which ends the sweeps; eps is taken as the same share of each effective "
+            "mass",
+        ),
+        **facts,
+    )
+
+
+P2 = _engine_with_spook(
+    "p2",
+    "1e6",
+    lambda h, *values: _spook(h, h, *values),
+    optional={"mass": "kg"},
+    write=_write_spook,
+    reaches="α̂ + β̂/4 < 1 with β̂ > 0",
+    source="p2 source, Equation.js (SPOOK), GSSolver.js",
+    excludes="the damping of bodies (0.1 unless set); contacts; largest forces; mass is 1 / (J M^-1 J'), 1 unless set",
+)
+
+CANNON_ES = _engine_with_spook(
+    "cannon-es",
+    "1e7",
+    _spook_of_cannon,
+    optional={"timeStep": "s", "mass": "kg"},
+    write=_write_spook_of_cannon,
+    paste="setSpookParams({}, {}, {})",
+    reaches="α̂ < 1 with β̂ > 0",
+    source="cannon-es source, Equation.ts (setSpookParams(1e7, 4, 1 / 60) whatever the steps), GSSolver.ts",
+    excludes="the damping of bodies (0.01 unless set); contacts; largest forces (1e6 N unless set); mass is "
+    "1 / (J M^-1 J'), 1 unless given",
+)
+
+
+# SOFA's constraints with FreeMotionAnimationLoop: a free step, then impulses for which the new places have no error;
+# the same impulses change the velocities
+
+SOFA = engine_without_parameters(
+    (ONE, ONE),
+    name="sofa",
+    level="velocity",
+    jointly=True,
+    source="SOFA source, FreeMotionAnimationLoop.cpp, BilateralLagrangianConstraint.inl, "
+    "LinearSolverConstraintCorrection.inl (x + dt times the correction, v + the correction), EulerImplicitSolver.h",
+    excludes="what its solver's tolerance leaves over; contacts; springs and Rayleigh damping; what it does to energy",
 )
 
 

@@ -77,7 +77,8 @@ ENGINES = (
     *("brax-spring", "bullet", "ode", "dart", "box2d", "rapier", "chipmunk", "chrono-linearized", "drake-sap"),
     *("brax-contact", "jolt-spring", "physx-drive", "jolt", "pbd", "xpbd", "brax-positional"),
     *("genesis", "godot", "godot-2d", "kamino", "avian", "newton", "pybullet", "pymunk", "unity"),
-    *("chrono", "brax", "physx", "physx-tgs", "box2d-v2"),
+    *("chrono", "brax", "physx", "physx-tgs", "box2d-v2", "bepu", "cannon-es", "matter.js", "p2", "sofa"),
+    *("newton-semi-implicit", "raisim", "warp"),
 )
 """Engines other than MuJoCo: nobody means one method by them."""
 

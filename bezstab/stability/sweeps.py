@@ -114,7 +114,7 @@ def _step_matrix(inverse_masses: FloatArray, root: FloatArray, joints: NDArray[n
                 rates = errors - before
             case Pass("velocity"):
                 of_old, of_wanted = _sweeps(inverse_masses, root, joints, stage)
-                new = of_old @ impulses + of_wanted @ (impulses - rates - stage.share * errors)
+                new = of_old @ impulses + of_wanted @ (impulses - stage.damping * rates - stage.share * errors)
                 rates, impulses = rates + new - impulses, new
             case Pass("position"):
                 _, of_wanted = _sweeps(inverse_masses, root, joints, stage)

@@ -1,5 +1,6 @@
 """Answers about chains: loops over links that know no matrices, the number of sweeps, what to set."""
 
+import re
 from fractions import Fraction
 from math import log
 
@@ -46,13 +47,14 @@ def test_its_setting_is_stable_also_if_it_were_a_tenth_stronger(name: str) -> No
     if not engine.parameters or answer.setting is None:
         return
     assert engine.curve
-    written = [Fraction(part.split("=")[-1].strip(" ,);f")) for part in answer.setting.split(",")[:1]]
-    point = engine.applied((*written, *values[1:]), H).point
+    numbers = re.findall(r"(?<![\w.])\d+(?:\.\d+)?(?:e[-+]?\d+)?", answer.setting)
+    written = tuple(map(Fraction, numbers))
+    point = engine.applied((*written, *values[len(written) :]), H).point
     stronger = point[0], point[1] * Fraction(1 + SPREAD)
     try:
         pushed = tuple(map(Fraction, engine.values(stronger, H)))
     except InputError:  # it has no words for so strong a feedback
-        pushed = (*written, *values[1:])
+        pushed = (*written, *values[len(written) :])
     assert judge_chain(engine, pushed, H, links(6, Fraction(20))).safe
 
 

@@ -49,7 +49,7 @@ def likely_values(draw: st.DrawFn, engine: Engine) -> tuple[Fraction, ...]:
             else (draw(st.floats(1e-3, 0.1)), draw(st.floats(0.1, 2)))
         )
         numbers = [*solref, draw(st.floats(0.5, 0.99)), draw(st.floats(0.5, 0.99))][: draw(st.sampled_from([2, 4]))]
-    elif engine.name in ("jolt", "pbd"):
+    elif engine.name in ("jolt", "pbd", "matter.js"):
         numbers = [draw(st.floats(0.05, 1.0)), draw(st.integers(1, 4))][: draw(st.integers(1, 2))]
     else:
         count = len(engine.parameters) + draw(st.sampled_from([0, len(engine.optional)]))
@@ -70,7 +70,12 @@ def test_an_engines_step_has_the_poles_of_its_point(name: str, data: st.DataObje
     numbers = data.draw(likely_values(engine))
     alpha_hat, beta_hat = map(float, engine.applied(numbers, h).point)
     theirs = np.poly(matrix(STEPS[name], float(h), *map(float, numbers)))
-    ours = np.poly(poles(lookup(integrator(engine)), alpha_hat, beta_hat)).real
+    of_point = poles(lookup(integrator(engine)), alpha_hat, beta_hat)
+    if len(theirs) > len(of_point) + 1:  # matter.js has a third pole: the largest of all is that of its point
+        assert np.polyval(theirs, of_point[0]) == pytest.approx(0, abs=1e-9)
+        assert np.abs(of_point).max() == pytest.approx(np.abs(np.roots(theirs)).max(), rel=1e-6, abs=1e-7)
+        return
+    ours = np.poly(of_point).real
     assert ours == pytest.approx(theirs, rel=1e-7, abs=1e-7 * max(1, np.abs(theirs).max()))  # a double pole: half
 
 
@@ -181,7 +186,7 @@ def test_who_is_said_to_be_witnessed_has_a_test_that_exists() -> None:
         path, _, test = witness.partition("::")
         text = (root / path).read_text(encoding="utf-8")
         assert re.search(rf"^def {test}\(", text, re.MULTILINE)
-        assert "importorskip(" in text
+        assert "importorskip(" in text or "pytest.skip(" in text
 
 
 @pytest.mark.parametrize("name", ENGINES)
@@ -198,5 +203,5 @@ def test_every_point_has_a_setting_or_is_refused(name: str, a: float, b: float, 
 
 def test_who_solves_all_constraints_together_below_acceleration_level() -> None:
     below = {name for name, engine in ENGINES.items() if engine.level != "acceleration"}
-    assert {name for name in below if not ENGINES[name].sweeps} == {"dart", "kamino", "drake-sap"}
+    assert {name for name in below if not ENGINES[name].sweeps} == {"dart", "kamino", "drake-sap", "sofa"}
     assert not any(engine.sweeps for engine in ENGINES.values() if engine.level == "acceleration")

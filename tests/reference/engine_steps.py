@@ -14,9 +14,12 @@ from numpy.typing import NDArray
 State = tuple[float, float]
 
 
-def matrix(step: Callable[..., State], *values: float) -> NDArray[np.float64]:
-    """Return the matrix of a step, which is linear: its columns are what becomes of (1, 0) and (0, 1)."""
-    return np.array([step(1.0, 0.0, *values), step(0.0, 1.0, *values)]).T
+def matrix(step: Callable[..., tuple[float, ...]], *values: float) -> NDArray[np.float64]:
+    """Return the matrix of a step, which is linear: its columns are what becomes of (1, 0) and (0, 1).
+
+    matter.js has three numbers in its state.
+    """
+    return np.array([step(*each, *values) for each in np.eye(3 if step is matter_js else 2)]).T
 
 
 def _symplectic(c: float, v: float, h: float, acceleration: float) -> State:
@@ -248,7 +251,71 @@ def kamino(c: float, v: float, h: float, alpha: float) -> State:
     return middle + h / 2 * v, v
 
 
-STEPS: dict[str, Callable[..., State]] = {
+def p2(c: float, v: float, h: float, stiffness: float, relaxation: float, mass: float = 1.0) -> State:
+    """Take the step of p2: SPOOK's three numbers, ten sweeps over the impulse, which starts at none."""
+    whole = 1 + 4 * relaxation
+    a, b, epsilon = 4 / (h * whole), 4 * relaxation / whole, 4 / (h * h * stiffness * whole)
+
+    right_side, inverse_c, impulse = -c * a - v * b, 1 / (1 / mass + epsilon), 0.0
+    for _ in range(10):
+        impulse += inverse_c * (right_side - impulse / mass - epsilon * impulse)
+    v += impulse / mass
+    return c + h * v, v
+
+
+def cannon_es(
+    c: float, v: float, h: float, stiffness: float, relaxation: float, time_step: float = 1 / 60, mass: float = 1.0
+) -> State:
+    """Take the step of cannon-es: the same with numbers that were made for another step."""
+    whole = 1 + 4 * relaxation
+    a, b, epsilon = 4 / (time_step * whole), 4 * relaxation / whole, 4 / (time_step * time_step * stiffness * whole)
+
+    impulse = (-c * a - v * b) / (1 / mass + epsilon)
+    v += impulse / mass
+    return c + h * v, v
+
+
+def bepu(c: float, v: float, h: float, frequency: float, damping_ratio: float) -> State:
+    """Take the step of bepuphysics2: springiness, then iterations that add to an accumulated impulse."""
+    omega = 2 * math.pi * frequency
+    error_to_velocity = omega / (omega * h + 2 * damping_ratio)
+    extra = 1 / (omega * h * (omega * h + 2 * damping_ratio))
+    effective_mass = 1 / (1 + extra)
+    softness = extra * effective_mass
+
+    impulse = 0.0
+    for _ in range(3):
+        change = (-error_to_velocity * c - v) * effective_mass - impulse * softness
+        impulse, v = impulse + change, v + change
+    return c + h * v, v
+
+
+def sofa(c: float, v: float, h: float) -> State:
+    """Take the step of SOFA's FreeMotionAnimationLoop: free motion, then the impulse that leaves no error."""
+    free = c + h * v
+    correction = -free / h
+    return free + h * correction, v + correction
+
+
+def matter_js(
+    position: float, previous: float, warming: float, h: float, stiffness: float, iterations: float = 2.0
+) -> tuple[float, float, float]:
+    """Take the step of matter.js, whose state is a position, the one before and the impulse that it starts with."""
+    time_scale = min(h * 60, 1.0)
+    share = stiffness * time_scale if stiffness >= 1 else stiffness * time_scale**2
+
+    position, previous = position + (position - previous), position
+    for _ in range(2):
+        position += warming
+        for _ in range(int(iterations)):
+            change = -share * position
+            position += change
+            warming += change
+        warming *= 0.4
+    return position, previous, warming
+
+
+STEPS: dict[str, Callable[..., tuple[float, ...]]] = {
     "mujoco": mujoco,
     "crocoddyl": two_gains,
     "pinocchio": two_gains,
@@ -280,5 +347,11 @@ STEPS: dict[str, Callable[..., State]] = {
     "physx-tgs": physx_tgs,
     "box2d-v2": box2d_v2,
     "kamino": kamino,
+    "p2": p2,
+    "cannon-es": cannon_es,
+    "bepu": bepu,
+    "sofa": sofa,
+    "newton-semi-implicit": brax_spring,
+    "matter.js": matter_js,
 }
 """By the engine's name. Where the integrator is the user's, symplectic Euler, as the simplest that moves last."""
