@@ -70,7 +70,7 @@ lint: .venv/tested  ## style, format and types
 bench: .venv/benched  ## speed, as ratios measured in one run, into figures/bench.md
 	$(BIN)/python -m tests.bench.bench
 
-campaign: .venv/tested  ## areas, extents, best points of 10,000 random methods against independent ones, in hours
+campaign: .venv/tested  ## regions of 10,000 random methods against verdicts in rationals and a plain rule, in hours
 	$(BIN)/python tests/stability/campaign.py
 
 clean:  ## remove the virtual environments

@@ -266,6 +266,7 @@ def _joined(path: NDArray[np.intp], low: FloatArray, high: FloatArray) -> tuple[
     """Return stretches without those of negligible lengths, and those joined between which the gap is negligible."""
     long = high > low * (1 + NEGLIGIBLE)
     path, low, high = path[long], low[long], high[long]
+    low = np.where((low < NEGLIGIBLE * high) & np.isfinite(high), 0.0, low)  # rounding of a place at zero
     apart = (path[1:] != path[:-1]) | (low[1:] > high[:-1] * (1 + NEGLIGIBLE))
     first, last = np.append(True, apart)[: len(path)], np.append(apart, True)[: len(path)]
     return path[first], [low[first], high[last]]
