@@ -78,7 +78,6 @@ class Region(ReadOnlyArrays):
         return inside
 
 
-@cache
 def region(method: Method, level: float = 1.0) -> Region:
     """Return the region |z_p| < level, 0 < level <= 1, dimensionless.
 
@@ -86,6 +85,11 @@ def region(method: Method, level: float = 1.0) -> Region:
     areas by lines of constant alpha_hat and of constant beta_hat differ by more than DISAGREE.
     """
     check_level(level)
+    return _region(method, float(level))
+
+
+@cache
+def _region(method: Method, level: float) -> Region:
     across, upwards = _lines(method, level)
     islands = tuple(across.islands())
     of_alpha, of_beta = across.extent(), upwards.extent()

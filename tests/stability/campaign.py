@@ -21,7 +21,7 @@ from bezstab.rationals import exact
 from bezstab.stability import region
 from bezstab.stability.closed_loop import converges
 from bezstab.stability.lines import Lines
-from bezstab.stability.regions import Region, _lines
+from bezstab.stability.regions import Region, _lines, _region
 from tests.reference.random_methods import other_random_method, random_method
 
 METHODS = 5_000  # of either half
@@ -37,7 +37,7 @@ def verdict_on(method: Method) -> str:
     except NumericalError as error:
         return f"refused: {error}"
     finally:
-        region.cache_clear()
+        _region.cache_clear()
     wrong = _wrong_end(method)
     if not wrong and shape.area and not shape.islands:
         areas = [_plain_area(shape, count) for count in RULES]

@@ -11,6 +11,7 @@ from bezstab.methods import Method, lookup
 from bezstab.rationals import rational
 from bezstab.stability import Extent, Region, region, verdict, window
 from bezstab.stability.lines import Lines
+from bezstab.stability.regions import _region
 from tests.methods.kinds import EXPLICIT, SAMPLE, sampled
 from tests.reference.companion_poles import radius
 from tests.reference.enclosed_points import enclosed
@@ -194,7 +195,7 @@ def test_areas_that_disagree_are_refused(monkeypatch: pytest.MonkeyPatch) -> Non
 
     monkeypatch.setattr(Lines, "area", by_axis)
     with pytest.raises(NumericalError, match="too thin to be measured"):
-        region.__wrapped__(lookup("B2"))
+        _region.__wrapped__(lookup("B2"), 1.0)
 
 
 @pytest.mark.parametrize("name", ["B4", "RK4", "SYM"])
