@@ -23,6 +23,7 @@ TOLD = 1e-10  # relative: Schur's recursion tells apart what differs by more
 FEWEST = 256  # points: of fewer all roots are solved for
 SPACING = 4  # points along an axis to one node of the table from which their largest roots are followed
 STEPS = 4  # of Newton's method from there: the last one leaves but rounding, and its size says so
+CUBIC_STEPS = 6  # of Newton's method, from at most three times the root's distance from the inflection
 AROUND = ((0, 0), (0, 1), (0, -1), (1, 0), (-1, 0))  # the nearest node, and its neighbours across a kink
 
 
@@ -83,12 +84,15 @@ def largest_roots(rows_at: Rows, places: ComplexArray) -> ComplexArray:
 
 
 def _by_formula(rows: NDArray[np.inexact]) -> bool:
-    return len(rows) == 2 or (len(rows) == 3 and not np.iscomplexobj(rows))
+    return len(rows) == 2 or (len(rows) in (3, 4) and not np.iscomplexobj(rows))
 
 
 def _largest_root(rows: NDArray[np.inexact]) -> ComplexArray:
     if _by_formula(rows) and len(rows) == 3:
         return _larger_root(rows)
+    if _by_formula(rows) and len(rows) == 4:
+        with np.errstate(all="ignore"):
+            return largest_cubic_root(*(rows[2::-1] / rows[3]))
     z = roots_of_rows(rows)
     return np.asarray(z[np.argmax(np.abs(z), axis=0), range(z.shape[1])])
 
@@ -155,6 +159,29 @@ def larger_root(half: FloatArray, discriminant: FloatArray) -> ComplexArray:
     np.sqrt(real_square - discriminant, out=z.imag)
     np.negative(half + np.copysign(np.sqrt(real_square), half), out=z.real)
     return z
+
+
+def largest_cubic_root(b: FloatArray, c: FloatArray, d: FloatArray) -> ComplexArray:
+    r"""Return the root of largest modulus of z^3 + b z^2 + c z + d, Im >= 0.
+
+        p(z) |      _                    the root beyond the inflection's far side is simple, however the others meet.
+             |    /   \        /          Newton's method comes to it from further out, where all slopes are of one sign
+        -----+-x-+-----\--_--/---- z      (W. Kahan, "To solve a real cubic equation", 1986). Divided by it, the
+             | /   o     '              polynomial leaves a quadratic.
+
+    In t = z - o: t^3 - 3 q t +- 2 size = 0.
+    """
+    shift = b / 3
+    q = shift * shift - c / 3
+    r = shift * (shift * shift - c / 2) + d / 2
+    size = np.abs(r)
+    t = np.sqrt(3 * np.maximum(q, 0)) + np.cbrt(2 * size)
+    for _ in range(CUBIC_STEPS):
+        t = np.fmax((t * t * t + size) / (1.5 * (t * t - q)), 0)  # 0 / 0 where all three roots meet
+    alone = -np.copysign(t, r) - shift
+    half = 0.5 * (b + alone)
+    z = larger_root(half, half * half - (c + alone * (b + alone)))
+    return np.where(np.abs(alone) > np.abs(z), alone, z)
 
 
 # The Newton polygon. Over k stands the point log|a_k|; above all points lies their upper hull:

@@ -211,7 +211,8 @@ def maps_of_other_kinds() -> Iterator[Line]:
             np.quantile(np.abs(z_abs - by_companion), 0.99)
         )  # near double roots eigenvalues keep half the digits
         note = f"{ours:.3f} s, {kind}; 99 of 100 points differ by less than {off:.0e}"
-        promise = 5.0 if name == "B12" else 18.0  # of so many poles most points ask for all roots
+        # of a recipe's P, which has real coefficients, roots meet along curves: next to them all are solved for
+        promise = 9.0 if "Runge-Kutta" in kind else 5.0 if "recipe" in kind else 18.0
         yield Line("map", f"{name}: batched eigenvalues, one core", theirs / ours, promise, note)
 
 
