@@ -497,6 +497,7 @@ BEPU = _engine_with_springs(
     "bepu",
     "Frequency",
     "DampingRatio",  # negative ones are used: they make up for what implicit Euler damps
+    digits=17,  # the strongest that a chain allows is next to one that it does not
     reaches="β̂ > 0",
     curve=lambda share: (2 * HALF_THE_RATE, HALF_THE_RATE**2 * share),  # the fastest is critically damped
     source="bepuphysics2 source, SpringSettings.cs (ComputeSpringiness), BallSocket.cs, BallSocketShared.cs",
