@@ -46,8 +46,8 @@ GRID, ROUNDS = 21, 22
 CHECKED = 230
 """Points per axis of another grid, which no point may have a lesser error on, by more than BETTER."""
 
-AS_FAST = 1e-11
-"""Of |z_p| at the edge: by less it differs among arrays in which it is looked at."""
+AS_FAST = 1e-7
+"""Of |z_p| at the edge: where two poles meet they keep half of their digits, and differ among arrays by so much."""
 
 TOO_SLOW, SLOWEST = 1e3, 1e3
 """Where errors decay too slowly, TOO_SLOW + |z_p| stands in for the error's logarithm, which is never so large: the
