@@ -27,6 +27,7 @@ from tests.reference.random_methods import other_random_method, random_method
 METHODS = 5_000  # of either half
 BESIDE = 1e-5  # of an end: on either side of it the verdict is asked; double poles are known to less
 ASKED = 5  # lines of each method
+ZERO = 1e-9  # of the upper end: a lower one so small is rounding of zero
 RULES = (4_000, 1_000)  # lines of the midpoint rule: their difference is its error, times two for the corners
 
 
@@ -56,7 +57,7 @@ def _wrong_end(method: Method) -> str:
     for place in sorted(wide)[:: 1 + len(wide) // ASKED]:
         for low, high in lines.found[place].tolist():
             for end, inwards in ((low, 1), (high, -1)):
-                if not 0 < end < np.inf or high - low < 1e-3 * high:
+                if not ZERO * high < end < np.inf or high - low < 1e-3 * high:
                     continue
                 within, beyond = (exact(end * (1 + side * inwards * BESIDE)) for side in (1, -1))
                 if not converges(method, exact(place), within) or converges(method, exact(place), beyond):
