@@ -32,20 +32,20 @@ def check(**typed: Any) -> bool:
     stable step, and what `choose` gives instead. With α and β in 1/s (--physical) but no --h, prints the step up to
     which every step is safe.
 
-    All steps are equally long. For steps that vary see `bezstab steps`.
+    All steps are equally long. A sequence of stable steps can still diverge: see `bezstab steps`.
 
     With --scene the mechanism is also run, for --time. It is safe if errors shrink as it moves and the run goes well:
-    constraints hold, and the energy gains at most a tenth of the largest kinetic energy. Where the prediction settles
-    nothing the run decides, and a sentence says so.
+    constraints hold, and the energy grows by at most a tenth of the largest kinetic energy. If no prediction is
+    possible, the run decides, and a sentence says so.
 
-    What is safe may still be inaccurate. On a mechanism that moves, feedback makes errors of its own if it is strong,
-    or if it is weak. A sentence says so if they are at least ten times the least.
+    A stable setting can still be inaccurate: on a moving mechanism the feedback adds an error. A sentence says so if it
+    is at least ten times the smallest possible one.
 
     --engine judges an engine's own values, with its own method unless you name another. What the engine does to its
     values, such as clamps, is applied first. What the conversion leaves out is printed. The largest step is for the
     engine's values as they are. What `choose` gives instead is a line to paste. Many engines solve their constraints
-    one after another, in sweeps. The answer is then about one constraint alone: a chain of them may diverge all the
-    same (`bezstab chain`). With --scene, the constraints of that mechanism are checked in its initial position, in the
+    one after another, in sweeps. The answer is then for a single constraint; a chain of bodies can still diverge
+    (`bezstab chain`). With --scene, the constraints of that mechanism are checked in its initial position, in the
     order of the file.
 
     Example: bezstab check --method RK2 --h 0.002 --alpha 50 --beta 50 --physical

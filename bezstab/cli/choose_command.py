@@ -23,8 +23,8 @@ from bezstab.show import CHOICES, STEPS_OF_CHOICES, answer_row, left_out, spare_
         + " [accurate; robust with an --engine whose α and β depend on each other].",
     ),
     "omega",
-    option("--h-max", SECONDS, "The longest step in s that may occur. For the goals accurate and robust [--h]."),
-    option("--spread", SHARE, "The share by which α and β may be off.", default="0.1"),
+    option("--h-max", SECONDS, "Largest step in s that can occur; for the goals accurate and robust [--h]."),
+    option("--spread", SHARE, "The share by which α and β may be wrong.", default="0.1"),
     option(
         "--settle",
         SECONDS,
@@ -40,20 +40,19 @@ from bezstab.show import CHOICES, STEPS_OF_CHOICES, answer_row, left_out, spare_
 def choose(goal: Goal | None, equal: str | None, **typed: Any) -> bool:
     """Recommend α and β for an integrator and its step size.
 
-    The answer is proven stable, and its margins are printed. With --scene it is asked whether it is safe as
-    that mechanism moves: exit status 1 if not. `bezstab steps` finds feedback for steps that vary.
+    The answer is proven stable, and its margins are printed. With --scene the answer must also be safe as
+    that mechanism moves: exit status 1 if it is not. `bezstab steps` finds feedback for steps that vary.
 
-    On a mechanism that moves, feedback makes errors of its own. The default goal, accurate, makes them as small as it
-    can. It allows only points that settle within --settle, or while the motion turns by 14 rad. --omega or --scene say
-    how fast the motion is. With most Runge-Kutta methods α and β are multiples of that rate, so it is asked for; then
-    --omega needs no --h, and you are told up to which h they are stable. Other methods take ωh = 0.01 unless you say
-    more: their α is near that rate, and β as large as leaves --spread to the edge. What the start and each disturbance
-    leave dies with α: for short runs, and where bodies collide, give a shorter --settle or --goal robust, which is the
-    default with --engine. Two lines below the answer say what faster decay would cost and what slower decay would gain.
+    On a moving mechanism the feedback adds an error. The default goal, accurate, minimises it among all points that
+    settle within --settle, or while the motion turns by 14 rad. --omega or --scene say how fast the motion is. Most
+    Runge-Kutta methods need that rate, because α and β are multiples of it; then --omega needs no --h, and the answer
+    says up to which h they are stable. Other methods assume ωh = 0.01 without it. Their α is near that rate, and β as
+    large as a margin of --spread allows. Errors of the start and of disturbances decay with α: for short runs and
+    collisions, give a shorter --settle or --goal robust, which is the default with --engine. Two more lines say what
+    faster or slower decay would change.
 
-    "within the spread" is the largest |z_p| if α and β are off by --spread. At the goal fastest |z_p| rises steeply as
-    soon as α grows; the goal robust keeps away from such points. Some methods are stable however strong the feedback
-    is. For these only αh and βh up to 4 are searched, and "searched" says so.
+    "worst |z_p|" allows for α and β wrong by --spread. With the goal fastest it is much larger than |z_p|. Some methods
+    are stable however strong the feedback is. For these only αh and βh up to 4 are searched, and "searched" says so.
 
     --engine searches only what that engine can express. Its own method is used unless you name another. Of several
     points that are equally good the one with the least α̂ and β̂ is taken.

@@ -20,7 +20,7 @@ def engines(h: Fraction, point: TypedPoint, omega: Fraction | None) -> None:
 
     "level" is where an engine applies the feedback. acceleration: true Baumgarte feedback, and the integrator
     decides. velocity or position: the engine feeds the error back into velocities or positions; each such step is a
-    step of the method named. "left out" is what the conversion does not cover. "rests on" says whether we ran the
+    step of the method named. "left out" is what the conversion does not cover. "verified by" says whether we ran the
     engine itself or rely on its source. "a spinning body" is what happens to the energy of a body that spins about a
     pin, by θ = ωh in a step. With --omega a column says how large a share of it a second adds.
 

@@ -25,8 +25,8 @@ def poles(all_poles: bool, **typed: Any) -> None:
     converges: every |z| < 1, so errors shrink. marginal: errors stay bounded but do not shrink. diverges: errors
     grow. The verdict is proven in exact arithmetic on the numbers as typed (Schur-Cohn test).
 
-    Feedback also makes errors of its own on a mechanism that moves. "error" is that error as a share of the
-    motion's amplitude. "× least" is how many times as large it is as with `choose --goal accurate`.
+    On a moving mechanism the feedback also adds an error. "error" is that error as a share of the motion's amplitude.
+    "error / least" compares it with the error at the point of `choose --goal accurate`.
 
     Example: bezstab poles --alpha 0.5 --beta 0.1
     """

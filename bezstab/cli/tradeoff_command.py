@@ -58,9 +58,9 @@ def tradeoff(predicted: bool, point: TypedPoint, work: Work, files: Files, **typ
     two figures of errors against evaluations or time, which mark it. A run that fails is marked as diverged.
 
     Without --alpha and --beta each step size has its own point: that of the goal accurate, for the scene's motion or
-    for --omega. If α̂ and β̂ stay the same while h shrinks, methods with stages lose order. "In the later half" of a run
-    the error of the start has died away. What remains is the error that the feedback makes, and the work that its
-    multipliers do on it, which takes the trajectory off; compare "predicted".
+    for --omega. If α̂ and β̂ stay the same while h shrinks, methods with stages lose order. In the second half of a
+    run the error of the start is gone. Only the feedback's error remains, and the work that its multipliers do on it,
+    which changes the trajectory; compare "predicted".
 
     --stabilise projection replaces feedback by projection onto the constraints after each step. --against projection
     makes both, feedback at the advised points and, with --alpha and --beta, at that one too. It draws the errors of

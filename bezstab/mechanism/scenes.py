@@ -174,7 +174,7 @@ def at_speed(scene: Scene, factor: float) -> Scene:
         return scene
     drivers = [joint for joint in scene.joints if isinstance(joint, Driver)]
     if not drivers and not any(scene.velocity.values()):
-        raise InputError(f"speed {factor:g}: {scene.name} starts at rest and nothing drives it: no speed to multiply")
+        raise InputError(f"--speed {factor:g}: {scene.name} starts at rest and has no driver")
     return replace(
         scene,
         name=f"{scene.name}, {factor:g} times as fast",

@@ -117,7 +117,7 @@ class Question:
             if goal == "gentle":
                 raise InputError("--goal gentle needs --settle: the time in s in which c falls a thousandfold")
         elif goal not in SETTLING:
-            raise InputError(f"--settle goes with --goal gentle or accurate, not {goal}")
+            raise InputError(f"--settle works only with --goal gentle or accurate, not {goal}")
         elif self.settle <= 0:
             raise InputError(f"--settle {float(self.settle):g} s: expected a positive time")
         in_seconds = (self.h_max, self.settle, self.engine)
@@ -131,7 +131,8 @@ class Question:
             )
         if self.engine and self.engine.level != "acceleration" and self.h_max:
             raise InputError(
-                f"--h-max: what {self.engine.name} makes of its values at other steps is told by `check --engine`"
+                f"choose cannot combine {self.engine.name} with --h-max; run "
+                f"`bezstab check --engine {self.engine.name}=... --h STEP`"
             )
 
     def check_motion(self) -> None:

@@ -42,8 +42,8 @@ def costs_words(answer: Answer) -> str | None:
     least = "the least" if question.engine else _point_words(cost.least_at, question.h)
     return (
         f"This feedback costs accuracy: {answer.method.name} keeps order {cost.order_left} of {cost.order}. Compared "
-        f"with {least} it forces {_errors_words(times)}: {cost.total_error:.1e} of the motion's amplitude{in_units}, "
-        f"{cost.velocity_error:.1e} of its velocity's."
+        f"with {least}: {_errors_words(times)}. They are {cost.total_error:.1e} of the motion's amplitude{in_units} "
+        f"and {cost.velocity_error:.1e} of its velocity's."
     )
 
 
@@ -55,34 +55,38 @@ def _point_words(point: tuple[float, float], h: Fraction | None) -> str:
 
 
 def trade_words(answer: Answer) -> list[str]:
-    """Return how long what disturbs a choice is seen, what faster decay costs and what slower gains, where known."""
+    """Return how long a disturbance of a choice lasts, and what faster or slower decay would change, where known."""
     if answer.cost is None or answer.cost.total_error is None:
         return []
     lines = []
     if answer.goal == "accurate":
         lines.append(
-            "The start's own error, and what each disturbance leaves, takes as long to die: if a run is short or often "
-            "disturbed, give a shorter --settle."
+            "Errors of the start and of disturbances decay as slowly. If a run is short or often disturbed, give a "
+            "shorter --settle."
         )
     faster, slower, settle = answer.faster, answer.slower, answer.slower_settle
     if faster is None:
-        lines.append("Faster decay: there is none.")
+        lines.append("No other goal decays faster.")
     elif times := answer.times_the_errors(faster):
-        moduli = f"from {abs(answer.pole):.4f} to {abs(faster.pole):.4f} a step"
-        lines.append(
-            f"Faster decay: --goal {faster.goal} takes |z_p| {moduli}, and the feedback forces {_errors_words(times)}."
-        )
+        moduli = f"|z_p| {abs(faster.pole):.4f} instead of {abs(answer.pole):.4f}"
+        lines.append(f"Faster decay: --goal {faster.goal} gives {moduli}, {_errors_words(times)}.")
     if slower is not None and settle and (times := answer.times_the_errors(slower)):
-        gain = "Slower decay:" if min(times) < GAIN else "Slower decay gains nothing:"
         goal = "" if answer.goal == "accurate" else "--goal accurate "
-        lines.append(f"{gain} with {goal}--settle {typed_number(settle)} the feedback forces {_errors_words(times)}.")
+        slow = f"Slower decay: {goal}--settle {typed_number(settle)} gives {_errors_words(times)}."
+        lines.append(slow if min(times) < GAIN else "Slower decay would not be more accurate.")
     return lines
 
 
 def _errors_words(times: tuple[float, float]) -> str:
-    """Return how many times as large the errors of constraint and velocity are."""
-    of_constraint, of_velocity = times
-    return f"{times_words(of_constraint)} times the error, {times_words(of_velocity)} times that of velocities"
+    """Return by how many times the errors of constraint and velocity are larger or smaller."""
+    of_constraint, of_velocity = map(_ratio_words, times)
+    return f"constraint error {of_constraint}, velocity error {of_velocity}"
+
+
+def _ratio_words(times: float) -> str:
+    """Return how one error compares with another that it is so many times as large as."""
+    words = times_words(max(times, 1 / times))
+    return "unchanged" if words == "1" else f"{words} times {'larger' if times > 1 else 'smaller'}"
 
 
 def spare_words(answer: Answer) -> str | None:
@@ -99,20 +103,20 @@ def spare_words(answer: Answer) -> str | None:
     if alone is None:
         return words
     needed = alone.sweeps_to_spare
-    takes = "no number of sweeps that was tried" if needed is None else counted(needed, "sweep")
-    return f"{words} One constraint alone would get {alone.setting}: with as much to spare that takes {takes}."
+    takes = "more sweeps than were tried" if needed is None else counted(needed, "sweep")
+    return f"{words} A single constraint would get {alone.setting}; here that needs {takes} for the same margin."
 
 
 def motion_words(motion: ReferenceMotion) -> str:
     """Return what errors are shares of, and what is called the least."""
-    shares = f"Errors are shares of the amplitude of a motion, here {motion.words}."
-    return f"{shares} The least are those of --goal accurate."
+    shares = f"Errors are relative to the amplitude of a motion, here {motion.words}."
+    return f"{shares} The smallest possible errors are those of --goal accurate."
 
 
 def combined_words(motion: ReferenceMotion) -> str:
     """Return what combined errors are shares of."""
     return (
-        "\nErrors of position and velocity are shares of the amplitudes of a motion's own position and velocity, here "
+        "\nErrors of position and velocity are relative to the amplitudes of a motion's position and velocity, here "
         f"{motion.words}."
     )
 

@@ -197,7 +197,7 @@ ORDER_LEFT = integer(
 TIMES_LEAST = number(
     "times_least",
     "Total error over that at the point of the goal accurate, which weighs velocities as well",
-    "× least",
+    "error / least",
     times_words,
     null=NOT_COMPARED,
     path="cost.times_least",
@@ -205,7 +205,7 @@ TIMES_LEAST = number(
 TIMES_LEAST_VELOCITY = number(
     "times_least_velocity",
     "Velocity error over that at the same point",
-    "× least of velocity",
+    "velocity error / least",
     times_words,
     null=NOT_COMPARED,
     path="cost.times_least_velocity",
@@ -223,7 +223,7 @@ H_FACTOR = number(
 H_LIMIT = number(
     "h_limit",
     "Largest step that is stable at this alpha and beta",
-    "stable for constant h (s) to",
+    "largest stable h (s)",
     text=step_text,
     unit="s",
     null="where the point is not stable, any step is, or h is unknown",
@@ -694,7 +694,7 @@ CHOICES = RowKind(
         number(
             "worst",
             "Largest modulus of the dominant pole with alpha and beta off by the spread",
-            "|z_p| within the spread",
+            "worst |z_p|",
             ".4f",
         ),
         number(
@@ -724,7 +724,7 @@ CHOICES = RowKind(
         number(
             "alpha_factor_min",
             "Least factor by which alpha alone may be scaled",
-            "α times from",
+            "min α factor",
             ".3g",
             null=UNSTABLE,
             path="margins.alpha.0",
@@ -732,7 +732,7 @@ CHOICES = RowKind(
         number(
             "alpha_factor_max",
             "Largest factor by which alpha alone may be scaled",
-            "α times to",
+            "max α factor",
             ".3g",
             otherwise=any_or_missing,
             null="where the point is not stable, or any",
@@ -741,7 +741,7 @@ CHOICES = RowKind(
         number(
             "beta_factor_min",
             "Least factor by which beta alone may be scaled",
-            "β times from",
+            "min β factor",
             ".3g",
             null=UNSTABLE,
             path="margins.beta.0",
@@ -749,7 +749,7 @@ CHOICES = RowKind(
         number(
             "beta_factor_max",
             "Largest factor by which beta alone may be scaled",
-            "β times to",
+            "max β factor",
             ".3g",
             otherwise=any_or_missing,
             null="where the point is not stable, or any",
@@ -789,7 +789,7 @@ STEPS_OF_CHOICES = RowKind(
         ALPHA,
         BETA,
         SAFE,
-        H_LIMIT.shown("stable for constant h (s) to", text=safe_step_text),
+        H_LIMIT.shown("largest stable h (s)", text=safe_step_text),
     ),
     sentence=step_sentence,
 )
@@ -811,7 +811,7 @@ ENGINES_LISTED = RowKind(
         ),
         METHOD,
         text("parameters", "What the engine calls the feedback's parameters", "parameters"),
-        text("optional", "Which of the parameters may be left away", "then"),
+        text("optional", "Which of the parameters may be left away", "optional"),
         text("units", "Units of the parameters, in their order", "units"),
         SETTING,
         text(
@@ -827,7 +827,7 @@ ENGINES_LISTED = RowKind(
         text(
             "witness",
             "With which engine a run has confirmed the conversion",
-            "rests on",
+            "verified by",
             text=lambda row: "a run" if row["witness"] else "its source",
             null="where its source alone says it",
         ),
