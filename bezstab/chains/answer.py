@@ -24,6 +24,9 @@ SPREAD = 0.1
 
 SWEEPS_DRAWN = 50
 
+NO_SAG = 1e-9
+"""m: impulses that are kept hold a load without an error; what is computed then is rounding."""
+
 
 @dataclass(frozen=True)
 class Links:
@@ -54,12 +57,16 @@ class Links:
             words = f"a chain of masses {', '.join(f'{float(mass):g}' for mass in self.masses)}"
         return f"{words}, pinned at both ends" if self.both_ends else words
 
-    def constraints(self) -> Constraints:
-        """Return its links as constraints in the order in which they are swept over."""
+    @property
+    def jacobian(self) -> FloatArray:
+        """What each link's error is of the places of the bodies, shape (links, bodies)."""
         count = len(self.masses)
         jacobian = np.eye(count) - np.eye(count, k=-1)  # each link: where its body is, less where the one before is
-        if self.both_ends:
-            jacobian = np.vstack([jacobian, -np.eye(count)[-1]])
+        return np.vstack([jacobian, -np.eye(count)[-1]]) if self.both_ends else jacobian
+
+    def constraints(self) -> Constraints:
+        """Return its links as constraints in the order in which they are swept over."""
+        jacobian = self.jacobian
         inverse_masses = inverse_effective_masses(np.diag([float(mass) for mass in self.masses]), jacobian)
         return Constraints(self.words, inverse_masses, tuple(range(len(jacobian))))
 
@@ -78,7 +85,9 @@ class ChainAnswer:
     `z_abs` is the factor by which a step multiplies its errors in the long run, computed and off by at most `accuracy`;
     `alone_z_abs` that of one constraint alone. `stable_iterations`: from how many sweeps errors decay; None if
     from none that is tried. `setting`: the strongest values with which this chain is stable even if they were SPREAD
-    stronger; None where there are none, or where the engine has nothing to set. `sentence`: the answer in words.
+    stronger; None where there are none, or where the engine has nothing to set. `sag`: how far (m) some body rests from
+    its place, at most, where all accelerate by `load` (m/s^2) along the chain; None without a load, and if not safe.
+    `sentence`: the answer in words.
     """
 
     engine: Engine
@@ -93,6 +102,8 @@ class ChainAnswer:
     settle_steps: int | None
     stable_iterations: int | None
     setting: str | None
+    load: Fraction | None
+    sag: float | None
     sentence: str = field(compare=False)
 
     def __repr__(self) -> str:
@@ -112,6 +123,7 @@ def chain(
     masses: Sequence[Number] | None = None,
     both_ends: bool = False,
     iterations: int | None = None,
+    load: Number | None = None,
 ) -> ChainAnswer:
     """Return whether a straight chain of bodies is stable in an engine that sweeps over its constraints.
 
@@ -121,6 +133,7 @@ def chain(
     masses: those of all bodies from the world on, in any unit, in place of the two.
     both_ends: whether the last body is held by the world, too.
     iterations: sweeps in a step; by default the engine's own number.
+    load: a steady acceleration along the chain in m/s^2, 9.81 for gravity: how far does it sag?
 
     Returns a ChainAnswer. What is swept is linear and along the chain's own line.
 
@@ -132,11 +145,17 @@ def chain(
     if masses is not None:
         whole = Links(tuple(exact_number(mass, "masses") for mass in masses), both_ends)
     sweeps = None if iterations is None else whole_number(iterations, "iterations")
-    return judge_chain(named, values, exact_number(h, "h"), whole, sweeps)
+    along = None if load is None else exact_number(load, "load")
+    return judge_chain(named, values, exact_number(h, "h"), whole, sweeps, along)
 
 
 def judge_chain(
-    engine: Engine, values: tuple[Fraction, ...], h: Fraction, chained: Links, iterations: int | None = None
+    engine: Engine,
+    values: tuple[Fraction, ...],
+    h: Fraction,
+    chained: Links,
+    iterations: int | None = None,
+    load: Fraction | None = None,
 ) -> ChainAnswer:
     """Return what a step of h (s) does to the errors of a chain; errors as `chain`."""
     swept = swept_links(engine, h, chained, iterations)
@@ -155,6 +174,8 @@ def judge_chain(
         settle_steps=steps_to_settle(found.growth.factor) if safe else None,
         stable_iterations=found.stable_iterations,
         setting=_setting(swept),
+        load=load,
+        sag=None if load is None or not safe else _sag(swept, values, chained, load),
         sentence="",
     )
     return replace(answer, sentence=_sentence(answer))
@@ -170,6 +191,14 @@ def swept_links(engine: Engine, h: Fraction, chained: Links, iterations: int | N
     sweeps = engine.sweeping.iterations if iterations is None else iterations
     check_iterations(sweeps)
     return SweptConstraints(engine, h, chained.constraints(), sweeps)
+
+
+def _sag(swept: SweptConstraints, values: tuple[Fraction, ...], chained: Links, load: Fraction) -> float:
+    """Return how far (m) some body of a chain rests from its place, at most, under a load (m/s^2)."""
+    pull = float(swept.h**2 * load) * chained.jacobian.sum(axis=1)
+    moved = np.cumsum(swept.rest(values, pull)[: len(chained.masses)])
+    sag = float(np.abs(moved).max())
+    return sag if sag > NO_SAG else 0.0
 
 
 def _setting(swept: SweptConstraints) -> str | None:
@@ -190,6 +219,8 @@ def _sentence(answer: ChainAnswer) -> str:
     if answer.stable_iterations is not None:
         enough = f"It is stable from {counted(answer.stable_iterations, 'sweep')}"
     sentence = f"{judged}: {'safe' if answer.safe else 'not safe'}. {change[0].upper()}{change[1:]}. {enough}."
+    if answer.sag is not None:
+        sentence += f" Under {float(answer.load or 0):g} m/s² along it, it sags by {1000 * answer.sag:.3g} mm."
     if answer.setting and not answer.safe:
         sentence += f" With these sweeps {answer.setting} is stable, with {SPREAD:.0%} to spare."
     return sentence

@@ -48,5 +48,20 @@ COLUMNS: Sequence[Column[ChainAnswer]] = (
         "strongest values that leave a tenth to spare; null where there are none, or nothing to set",
         brief=True,
     ),
+    Column(
+        "load",
+        "load",
+        lambda answer: None if answer.load is None else float(answer.load),
+        "steady acceleration along the chain",
+        unit="m/s²",
+    ),
+    Column(
+        "sags by",
+        "sag",
+        lambda answer: answer.sag,
+        "how far some body rests from its place under that load, at most; null where none is given, or errors grow",
+        unit="m",
+        form=".3g",
+    ),
     Column("", "sentence", lambda answer: answer.sentence, "the answer in words"),
 )

@@ -9,9 +9,13 @@ import click
 
 from bezstab.cli import shared_options as shared
 from bezstab.cli.asking import say_what_is_left_out
-from bezstab.cli.options import ENGINE_VALUES, NUMBER, NUMBERS, EngineValues
+from bezstab.cli.options import ENGINE_VALUES, NUMBER, NUMBERS, EngineValues, ParsedType
 from bezstab.cli.output import Files, for_reading, show_answers
 from bezstab.errors import InputError
+from bezstab.rationals import rational
+
+GRAVITY = Fraction("9.81")  # m/s²
+LOAD = ParsedType("number|gravity", lambda text: GRAVITY if text == "gravity" else rational(text), lambda: ["gravity"])
 
 
 @click.command()
@@ -24,6 +28,7 @@ from bezstab.errors import InputError
 @click.option("--masses", type=NUMBERS, help="The masses of all bodies from the world on: 1,1,5.")
 @click.option("--pinned", type=click.Choice(["one", "both"]), default="one", help="Ends that are held by the world.")
 @click.option("--iterations", type=int, help="Sweeps over all constraints in a step [the engine's own number].")
+@click.option("--load", type=LOAD, help="A steady acceleration along it, m/s², or gravity (9.81): how far does it sag?")
 @shared.output_options
 def chain(
     engine: EngineValues,
@@ -33,6 +38,7 @@ def chain(
     masses: Sequence[Fraction] | None,
     pinned: str,
     iterations: int | None,
+    load: Fraction | None,
     output: Path,
     figure: str,
     **_: object,
@@ -52,7 +58,7 @@ def chain(
     if masses and figure != "none":
         raise InputError("--figure draws chains with --mass-ratio: leave out --masses")
     whole = Links(tuple(masses), both_ends) if masses else links(bodies, mass_ratio, both_ends=both_ends)
-    answer = judge_chain(words, values, h, whole, iterations)
+    answer = judge_chain(words, values, h, whole, iterations, load)
     files = Files(output, figure)
     files.check_output()
     show_answers(COLUMNS, [answer], [answer.sentence])

@@ -7,7 +7,7 @@ from functools import partial
 
 import numpy as np
 
-from bezstab.engines import Engine, Point
+from bezstab.engines import Engine, Point, SweptStep
 from bezstab.errors import InputError
 from bezstab.mechanism import Scene, compiled_mechanism, constraint_jacobian, initial_state
 from bezstab.questions.motions import name_of, scene_at_speed
@@ -20,6 +20,7 @@ from bezstab.stability import (
     first_where,
     inverse_effective_masses,
     swept_growth,
+    swept_rest,
 )
 
 SHARES = np.geomspace(1e-6, 1 - 1e-9, 50)
@@ -94,11 +95,18 @@ class SweptConstraints:
 
     def growth(self, values: Sequence[Fraction], sweeps: int | None = None) -> Growth:
         """Return the factor by which a step multiplies their errors, with another number of sweeps if one is given."""
+        return swept_growth(self.constraints.inverse_masses, *self._step(values, sweeps))
+
+    def rest(self, values: Sequence[Fraction], pull: FloatArray) -> FloatArray:
+        """Return the errors at which they rest, for what a steady acceleration adds to their rates times h."""
+        step, joints = self._step(values)
+        return swept_rest(self.constraints.inverse_masses, step, pull, joints)
+
+    def _step(self, values: Sequence[Fraction], sweeps: int | None = None) -> tuple[SweptStep, tuple[int, ...] | None]:
         sweeping = self.engine.sweeping
         assert sweeping
         step = sweeping.step(sweeps or self.iterations, self.h, *values)
-        joints = self.constraints.joints if sweeping.together else None
-        return swept_growth(self.constraints.inverse_masses, step, joints)
+        return step, self.constraints.joints if sweeping.together else None
 
     def fewest(self, values: Sequence[Fraction]) -> int | None:
         """Return from how many sweeps their errors decay; None if from none that is tried."""

@@ -26,7 +26,7 @@ from bezstab.stability.forced_errors import (
 from bezstab.stability.margins import Margins, largest_stable_step, stability_margins
 from bezstab.stability.regions import Region, check_level, region, window
 from bezstab.stability.searches import bisected, first_where
-from bezstab.stability.sweeps import Growth, chain, fewest_sweeps, inverse_effective_masses, swept_growth
+from bezstab.stability.sweeps import Growth, chain, fewest_sweeps, inverse_effective_masses, swept_growth, swept_rest
 from bezstab.stability.turning import (
     LAW_HOLDS,
     MovingPole,

@@ -15,6 +15,7 @@ Free motions are not in it, because y and u are errors, not coordinates.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -83,6 +84,40 @@ def swept_growth(inverse_masses: FloatArray, step: SweptStep, joints: Sequence[i
     their joints, rising: those of one joint are solved together; None: each by itself. InputError where a constraint
     follows from others and impulses are softened. NumericalError where a number leaves float64's range.
     """
+    _, root, take = _scaled_step(inverse_masses, step, joints)
+    matrix = take(np.eye(3 * len(root)), np.zeros((len(root), 1)))
+    if not np.isfinite(matrix).all():
+        raise NumericalError("the matrix of a step with such sweeps leaves the range of float64")
+    return _spectral_radius(matrix)
+
+
+def swept_rest(
+    inverse_masses: FloatArray, step: SweptStep, pull: FloatArray, joints: Sequence[int] | None = None
+) -> FloatArray:
+    """Return the errors at which constraints rest that a steady acceleration pulls at, shape (m,).
+
+    `pull` (m,) is what it adds to their errors' rates in a step, times h: h^2 J a. The others and errors as
+    `swept_growth`. Only where errors decay is there such a place.
+    """
+    scale, root, take = _scaled_step(inverse_masses, step, joints)
+    size = 3 * len(root)
+    pulled = np.asarray(np.linalg.lstsq(root.T, scale * pull, rcond=None)[0], dtype=np.float64)[:, None]
+    matrix = take(np.eye(size), np.zeros_like(pulled))
+    at_rest = np.linalg.solve(np.eye(size) - matrix, take(np.zeros((size, 1)), pulled))[:, 0]
+    return np.asarray(root.T @ at_rest[: len(root)] / scale)
+
+
+Taking = Callable[[FloatArray, FloatArray], FloatArray]
+"""What a step makes of states, columns of shape (3 r, k), and of what is added to their rates, (r, k) or (r, 1)."""
+
+
+def _scaled_step(
+    inverse_masses: FloatArray, step: SweptStep, joints: Sequence[int] | None
+) -> tuple[FloatArray, FloatArray, Taking]:
+    """Return the factors by which errors are multiplied first, the root (r, m) of A that is left, and the step.
+
+    Errors as `swept_growth`.
+    """
     scale = 1 / np.sqrt(np.diag(inverse_masses))
     scaled = scale[:, None] * inverse_masses * scale  # sweeps do the same; its diagonal is one
     values, vectors = np.linalg.eigh(scaled)
@@ -91,20 +126,24 @@ def swept_growth(inverse_masses: FloatArray, step: SweptStep, joints: Sequence[i
         raise InputError("constraints that follow from others are not judged where the engine softens impulses")
     root = np.sqrt(values[made])[:, None] * vectors.T[made]  # root' root = A
     number = np.arange(len(scaled)) if joints is None else np.array(joints)
-    matrix = _step_matrix(scaled, root, number, step)
-    if not np.isfinite(matrix).all():
-        raise NumericalError("the matrix of a step with such sweeps leaves the range of float64")
-    return _spectral_radius(matrix)
+    return scale, root, partial(_take_step, scaled, root, number, step)
 
 
-def _step_matrix(inverse_masses: FloatArray, root: FloatArray, joints: NDArray[np.intp], step: SweptStep) -> FloatArray:
-    """Return the matrix of a step over errors, rates and impulses, shape (3 r, 3 r), for a root (r, m): root' root = A.
+def _take_step(
+    inverse_masses: FloatArray,
+    root: FloatArray,
+    joints: NDArray[np.intp],
+    step: SweptStep,
+    states: FloatArray,
+    pulled: FloatArray,
+) -> FloatArray:
+    """Return what a step makes of states (3 r, k) for a root (r, m), root' root = A, and of what pulls at their rates.
 
     Errors and rates are root' of its first two thirds, impulses p with root p the last: there A is the identity.
     """
-    errors, rates, impulses = np.split(np.eye(3 * len(root)), 3)
+    errors, rates, impulses = np.split(states, 3)
     impulses = step.kept * impulses
-    rates = rates + impulses
+    rates = rates + impulses + pulled
     before = errors
     for stage in step.stages:
         match stage:
@@ -114,7 +153,8 @@ def _step_matrix(inverse_masses: FloatArray, root: FloatArray, joints: NDArray[n
                 rates = errors - before
             case Pass("velocity"):
                 of_old, of_wanted = _sweeps(inverse_masses, root, joints, stage)
-                new = of_old @ impulses + of_wanted @ (impulses - stage.damping * rates - stage.share * errors)
+                taken = stage.damping * rates + (1 - stage.damping) * pulled  # of what forces did, all
+                new = of_old @ impulses + of_wanted @ (impulses - taken - stage.share * errors)
                 rates, impulses = rates + new - impulses, new
             case Pass("position"):
                 _, of_wanted = _sweeps(inverse_masses, root, joints, stage)

@@ -2,7 +2,7 @@
 
 import re
 from fractions import Fraction
-from math import log
+from math import log, pi
 
 import numpy as np
 import pytest
@@ -11,6 +11,7 @@ from bezstab.chains.answer import SPREAD, Links, chain, judge_chain, links
 from bezstab.engines import ENGINES, engine_and_values
 from bezstab.errors import InputError
 from bezstab.stability import FloatArray
+from tests.reference.engine_steps import STEPS
 
 H = Fraction(1, 60)
 
@@ -100,3 +101,58 @@ def test_a_chain_between_two_walls_is_what_loops_over_its_links_do(masses: tuple
     moduli = np.abs(np.linalg.eigvals(loops(tuple(map(float, exact)), sweeps, share)))
     others = np.delete(moduli, np.argmin(np.abs(moduli - 1)))
     assert answer.z_abs == pytest.approx(others.max(), abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("engine", "seconds_squared"),
+    [
+        ("jolt-spring=5,1/2", 1 / (2 * pi * 5) ** 2),  # of a spring g / omega^2
+        ("box2d=10,2", 1 / (2 * pi * 10) ** 2),
+        ("p2=1e4,4", 1e-4),  # m / k
+        ("ode=0.2,0.001", 0.001 / 60 / 0.2),  # h CFM / ERP
+        ("pbd=0.8", 0.2 / 0.8 / 60**2),  # what is left of the move of a step
+        ("chipmunk", 0),
+        ("jolt=0.2", 0),
+    ],
+)
+def test_one_body_rests_where_its_constraint_holds_the_load(engine: str, seconds_squared: float) -> None:
+    answer = chain(engine, h=Fraction(1, 60), bodies=1, load=9.81)
+    assert answer.sag == pytest.approx(9.81 * seconds_squared, rel=1e-6)
+    assert f"sags by {9810 * seconds_squared:.3g} mm" in answer.sentence
+
+
+@pytest.mark.parametrize(
+    "engine", ["rapier=10,1", "jolt-spring=3,1", "bepu=8,0.3", "box2d=5,1", "ode=0.3,0.02", "pbd=0.6", "physx", "godot"]
+)
+def test_one_body_rests_where_the_engines_own_step_leaves_it(engine: str) -> None:
+    """Forces first change the velocity, then the step of tests/reference/engine_steps.py is taken."""
+    named, values = engine_and_values(engine)
+    c, v = 0.0, 0.0
+    for _ in range(3000):
+        c, v = STEPS[named.name](c, v + 9.81 / 60, 1 / 60, *map(float, values))
+    assert chain(engine, h=Fraction(1, 60), bodies=1, load=9.81).sag == pytest.approx(c, rel=1e-6, abs=1e-9)
+
+
+def test_a_chain_without_kept_impulses_sags_as_loops_over_its_links_do() -> None:
+    """Bullet's joints start each step with no impulse: few sweeps do not hold the chain."""
+    bodies, sweeps, share = 5, 3, 0.2
+    x, v = np.zeros(bodies), np.zeros(bodies)
+    for _ in range(3000):
+        v += 9.81 / 60**2
+        for _ in range(sweeps):
+            for link in range(bodies):
+                before, rate = (x[link - 1], v[link - 1]) if link else (0.0, 0.0)
+                impulse = -(v[link] - rate + share * (x[link] - before)) / (2 if link else 1)
+                v[link] += impulse
+                if link:
+                    v[link - 1] -= impulse
+        x += v
+    answer = chain("bullet=0.2", h=Fraction(1, 60), bodies=bodies, iterations=sweeps, load=9.81)
+    assert answer.sag == pytest.approx(x[-1], rel=1e-6)
+    assert x[-1] > 0.01
+
+
+def test_a_chain_that_comes_apart_has_no_place_to_rest() -> None:
+    answer = chain("chipmunk", h=Fraction(1, 60), mass_ratio=10, load=9.81)
+    assert not answer.safe
+    assert answer.sag is None

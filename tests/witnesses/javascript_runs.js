@@ -21,9 +21,9 @@ function inMatter({ h, stiffness, iterations, places, spin }) {
   return [step, () => [Math.atan2(bodies[0].position.y, bodies[0].position.x)]];
 }
 
-function inCannon({ h, stiffness, relaxation, timeStep, iterations, masses, places, velocities }) {
+function inCannon({ h, stiffness, relaxation, timeStep, iterations, masses, places, velocities, gravity = 0 }) {
   const CANNON = require("cannon-es");
-  const world = new CANNON.World();
+  const world = new CANNON.World({ gravity: new CANNON.Vec3(gravity, 0, 0) });
   world.solver.iterations = iterations;
   world.solver.tolerance = 0;
   let before = new CANNON.Body({ mass: 0 });
@@ -42,9 +42,9 @@ function inCannon({ h, stiffness, relaxation, timeStep, iterations, masses, plac
   return [() => world.step(h), () => bodies.map((body) => body.position.x)];
 }
 
-function inP2({ h, stiffness, relaxation, iterations, masses, places, velocities }) {
+function inP2({ h, stiffness, relaxation, iterations, masses, places, velocities, gravity = 0 }) {
   const p2 = require("p2");
-  const world = new p2.World({ gravity: [0, 0] });
+  const world = new p2.World({ gravity: [gravity, 0] });
   world.solver.iterations = iterations;
   world.solver.tolerance = 0;
   world.applyDamping = false;

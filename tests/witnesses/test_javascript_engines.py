@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from bezstab.chains.answer import chain as judge
 from bezstab.engines import ENGINES
 from bezstab.methods import lookup
 from bezstab.motion import spin_change
@@ -133,3 +134,16 @@ def test_chains_in_spook_engines_settle_as_predicted(
     run = links(engine, 2000, h=float(h), masses=masses, places=places, velocities=velocities, **settings)
     errors = np.abs(run).max(axis=1)[1:]
     assert growth(list(errors[errors > 1e-12]), 10) == pytest.approx(of_row.factor, abs=2e-3)
+
+
+@pytest.mark.parametrize("engine", ["p2", "cannon-es"])
+@pytest.mark.parametrize(("bodies", "ratio", "stiffness"), [(1, 1, 1e4), (5, 1, 1e7), (10, 4, 1e7)])
+def test_hanging_chains_in_spook_engines_sag_as_predicted(
+    engine: str, bodies: int, ratio: float, stiffness: float
+) -> None:
+    """To a hundredth, after half a minute."""
+    settings = {"stiffness": stiffness, "relaxation": 4, "timeStep": 1 / 60, "iterations": 10, "gravity": 9.81}
+    masses, places = [1] * (bodies - 1) + [ratio], list(range(1, bodies + 1))
+    run = links(engine, 1800, h=1 / 60, masses=masses, places=places, velocities=[0] * bodies, **settings)
+    answer = judge(f"{engine}={stiffness},4", h="1/60", bodies=bodies, mass_ratio=ratio, load="9.81")
+    assert run[-1].sum() == pytest.approx(answer.sag, rel=0.01)

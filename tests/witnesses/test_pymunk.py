@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from bezstab.chains.answer import chain as judge
 from bezstab.engines import hard_velocity_step
 from bezstab.methods import lookup
 from bezstab.stability import Growth, chain, spectral_radius, swept_growth
@@ -147,3 +148,15 @@ def test_hanging_chains_come_apart_where_predicted(bodies: int, ratio: float, sw
         if step >= 1500:
             worst = max(worst, worst_link(chained))
     assert (worst < LINK / 10) is decays
+
+
+@pytest.mark.parametrize(("bodies", "ratio", "sweeps"), [(5, 1, 10), (10, 1, 10)])
+def test_hanging_chains_do_not_sag_where_impulses_are_kept(bodies: int, ratio: float, sweeps: int) -> None:
+    """As predicted, to a thousandth of a link for each."""
+    space, chained = hung_chain(bodies, ratio, sweeps, 0.1)
+    space.gravity = (0, -981)
+    for _ in range(6000):
+        space.step(H)
+    answer = judge("chipmunk", h="1/60", bodies=bodies, mass_ratio=ratio, iterations=sweeps, load=981)
+    assert answer.sag == 0
+    assert -chained[-1].position.y - LINK * bodies == pytest.approx(0, abs=LINK * bodies / 1000)
