@@ -4,69 +4,81 @@
 >>> bezstab.verdict("SYM", alpha=500, beta=707.10678, h=0.002)
 'diverges'
 
-The names below are loaded when first used, so that `import bezstab` stays light. bezstab/README.md has examples.
+Public names are loaded when first used, so that `import bezstab` stays light. bezstab/README.md has examples.
 """
-
-from bezstab.lazy import lazy_names
 
 TYPE_CHECKING = False  # as type checkers know it; to import typing would take longer than all the rest
 
 if TYPE_CHECKING:
-    from bezstab.api import (
-        best_point,
-        check,
-        choose,
-        dominant_pole,
-        feedback_cost,
-        largest_step,
-        method,
-        poles,
-        probe,
-        probe_step,
-        region,
-        scene,
-        simulate,
-        spectral_radius,
-        verdict,
-        verify,
-    )
-    from bezstab.chains.answer import chain
-    from bezstab.drives.answer import drive
-    from bezstab.mujoco.linting import lint
-    from bezstab.show import plot
-    from bezstab.step_sequences.answer import steps
-    from bezstab.units import from_dimensionless, to_dimensionless
+    from bezstab.api import best_point as best_point
+    from bezstab.api import check as check
+    from bezstab.api import choose as choose
+    from bezstab.api import dominant_pole as dominant_pole
+    from bezstab.api import feedback_cost as feedback_cost
+    from bezstab.api import largest_step as largest_step
+    from bezstab.api import method as method
+    from bezstab.api import poles as poles
+    from bezstab.api import probe as probe
+    from bezstab.api import probe_step as probe_step
+    from bezstab.api import region as region
+    from bezstab.api import scene as scene
+    from bezstab.api import simulate as simulate
+    from bezstab.api import spectral_radius as spectral_radius
+    from bezstab.api import verdict as verdict
+    from bezstab.api import verify as verify
+    from bezstab.chains.answer import chain as chain
+    from bezstab.drives.answer import drive as drive
+    from bezstab.mujoco.linting import lint as lint
+    from bezstab.show import plot as plot
+    from bezstab.step_sequences.answer import steps as steps
+    from bezstab.units import from_dimensionless as from_dimensionless
+    from bezstab.units import to_dimensionless as to_dimensionless
 
 __version__ = "0.2.0"
 
-__getattr__ = lazy_names(__name__)
+HOMES = {
+    **dict.fromkeys(
+        (
+            "best_point",
+            "check",
+            "choose",
+            "dominant_pole",
+            "feedback_cost",
+            "largest_step",
+            "method",
+            "poles",
+            "probe",
+            "probe_step",
+            "region",
+            "scene",
+            "simulate",
+            "spectral_radius",
+            "verdict",
+            "verify",
+        ),
+        "bezstab.api",
+    ),
+    "chain": "bezstab.chains.answer",
+    "drive": "bezstab.drives.answer",
+    "from_dimensionless": "bezstab.units",
+    "lint": "bezstab.mujoco.linting",
+    "plot": "bezstab.show.plot",
+    "steps": "bezstab.step_sequences.answer",
+    "to_dimensionless": "bezstab.units",
+}
+"""The module of each public name, which type checkers read above."""
 
-__all__ = [
-    "best_point",
-    "chain",
-    "check",
-    "choose",
-    "dominant_pole",
-    "drive",
-    "feedback_cost",
-    "from_dimensionless",
-    "largest_step",
-    "lint",
-    "method",
-    "plot",
-    "poles",
-    "probe",
-    "probe_step",
-    "region",
-    "scene",
-    "simulate",
-    "spectral_radius",
-    "steps",
-    "to_dimensionless",
-    "verdict",
-    "verify",
-]
+__all__ = sorted(HOMES)  # noqa: PLE0605 - a list
+
+
+def __getattr__(name: str) -> object:
+    if name not in HOMES:
+        raise AttributeError(f"module 'bezstab' has no attribute {name!r}")
+    from importlib import import_module
+
+    home = import_module(HOMES[name])
+    return home if HOMES[name].endswith(f".{name}") else getattr(home, name)
 
 
 def __dir__() -> list[str]:
-    return sorted(__all__)
+    return __all__

@@ -20,7 +20,7 @@ def run() -> None:
 
         one_thread_for_algebra()
         prepare_streams()
-        from bezstab.cli import main
+        from bezstab.cli.command_group import main
 
         main()
     finally:

@@ -14,15 +14,21 @@ from typing import Any, Generic, TypedDict, TypeVar, Unpack, get_args, get_origi
 
 from numpy.typing import ArrayLike
 
-from bezstab import evidence, mechanism, questions, stability
 from bezstab.arguments import Number, exact_number, in_keywords, real_number, whole_number
-from bezstab.engines import engine_and_values, engine_named
+from bezstab.engines.engine_list import engine_and_values, engine_named
 from bezstab.errors import InputError, shown
+from bezstab.evidence import measured_poles, probed_poles
 from bezstab.goals import Goal
-from bezstab.mechanism import Scene, Simulation
-from bezstab.methods import Method, Verdict, lookup
+from bezstab.mechanism import equations, runner, scene_files, scenes
+from bezstab.mechanism.scenes import Scene
+from bezstab.mechanism.simulation import Simulation
+from bezstab.methods.registry import lookup
+from bezstab.methods.schemes import Method
+from bezstab.methods.schur import Verdict
+from bezstab.questions import answering, log_probes, question, runs
 from bezstab.stabilising import Stabilise
-from bezstab.stability import ComplexArray, FloatArray
+from bezstab.stability import arrays, best_points, closed_loop, feedback_costs, regions
+from bezstab.stability.arrays import ComplexArray, FloatArray
 from bezstab.units import check_step, to_dimensionless
 
 Given = TypeVar("Given")
@@ -64,7 +70,7 @@ def _spelled_out(function: Function) -> Function:
     *others, gathered = signature.parameters.values()
     (kind,) = get_args(get_type_hints(function)[gathered.name])
     for name in (get_origin(kind) or kind).__annotations__:
-        usual = getattr(questions.Question, name, None)
+        usual = getattr(question.Question, name, None)
         others.append(inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=usual))
     function.__signature__ = signature.replace(parameters=others)  # type: ignore[attr-defined]
     return function
@@ -100,8 +106,8 @@ def scene(name: str | Scene, speed: float = 1.0) -> Scene:
         raise InputError(
             f"scene {shown(name)}: expected one name such as 'pendulum', or what bezstab.scene makes of one"
         )
-    given = name if isinstance(name, Scene) else mechanism.load_scene(name)
-    return mechanism.at_speed(given, real_number(speed, "speed"))
+    given = name if isinstance(name, Scene) else scene_files.load_scene(name)
+    return scenes.at_speed(given, real_number(speed, "speed"))
 
 
 @_spelled_out
@@ -117,7 +123,7 @@ def poles(method: str | Method, **point: Unpack[PointAtStep[ArrayLike]]) -> Comp
     InputError unless the point is given in one of the two ways. NumericalError if a pole leaves the
     range of float64. Source: the roots of paper Eq. 17.
     """
-    return stability.poles(_method(method), *_plane_arrays(point))
+    return closed_loop.poles(_method(method), *_plane_arrays(point))
 
 
 @_spelled_out
@@ -132,7 +138,7 @@ def dominant_pole(method: str | Method, **point: Unpack[PointAtStep[ArrayLike]])
 
     Errors as for `poles`. Source: the paper's section 4.
     """
-    return stability.dominant_pole(_method(method), *_plane_arrays(point))
+    return closed_loop.dominant_pole(_method(method), *_plane_arrays(point))
 
 
 @_spelled_out
@@ -147,7 +153,7 @@ def spectral_radius(method: str | Method, **point: Unpack[PointAtStep[ArrayLike]
     Errors as for `poles`. Close to 1 rounding may decide: `verdict` is exact. Source: the paper's Figs.
     1 to 3.
     """
-    return stability.spectral_radius(_method(method), *_plane_arrays(point))
+    return closed_loop.spectral_radius(_method(method), *_plane_arrays(point))
 
 
 @_spelled_out
@@ -162,11 +168,11 @@ def verdict(method: str | Method, **point: Unpack[PointAtStep[Number]]) -> Verdi
     InputError unless the numbers are finite and the point is given in one of the two ways. Source: the
     Schur-Cohn test (I. Schur, J. reine angew. Math. 147, 1917) on the polynomial of paper Eq. 17.
     """
-    return stability.verdict(_method(method), *_plane_point(point))
+    return closed_loop.verdict(_method(method), *_plane_point(point))
 
 
 @in_keywords()
-def region(method: str | Method, level: float = 1.0) -> stability.Region:
+def region(method: str | Method, level: float = 1.0) -> regions.Region:
     """Return the exact region of the plane of alpha_hat and beta_hat in which |z_p| < level.
 
     level: above 0, at most 0.9999999, or 1. At 1 the region is where the method is stable.
@@ -178,10 +184,10 @@ def region(method: str | Method, level: float = 1.0) -> stability.Region:
     InputError for another level. NumericalError if an edge cannot be found. Source: boundary locus of
     paper Eq. 17.
     """
-    return stability.region(_method(method), real_number(level, "level"))
+    return regions.region(_method(method), real_number(level, "level"))
 
 
-def best_point(method: str | Method) -> stability.BestPoint | None:
+def best_point(method: str | Method) -> best_points.BestPoint | None:
     """Return the point of the plane with the smallest |z_p|, where the constraint error decays fastest.
 
     Returns a BestPoint with `alpha_hat`, `beta_hat` and `z_abs`, which is good to 1e-7, dimensionless.
@@ -190,7 +196,7 @@ def best_point(method: str | Method) -> stability.BestPoint | None:
 
     NumericalError if a pole leaves the range of float64. Source: the paper's section 5.1.
     """
-    return stability.best_point(_method(method))
+    return best_points.best_point(_method(method))
 
 
 @_spelled_out
@@ -204,7 +210,7 @@ def choose(
     equal: bool = False,
     engine: str | None = None,
     **asked: Unpack[AboutFeedback],
-) -> questions.Answer:
+) -> answering.Answer:
     """Return the alpha and beta to use: the point that a goal asks for, proven stable, with its margins.
 
     method: your integration method. Without one it is the engine's own.
@@ -242,17 +248,17 @@ def choose(
     """
     named = None if engine is None else engine_named(engine)
     given = () if method is None else READ["methods"](method, "methods")
-    question = _asked(
-        questions.Question,
+    wanted = _asked(
+        question.Question,
         methods=method,
-        goal=goal or questions.usual_goal(named, given),
+        goal=goal or question.usual_goal(named, given),
         settle=settle,
         h_max=h_max,
         equal=equal,
         engine=named,
         **asked,
     )
-    (chosen,) = questions.answers(question)
+    (chosen,) = answering.answers(wanted)
     return chosen
 
 
@@ -268,7 +274,7 @@ def check(
     engine: str | None = None,
     as_typed: bool = False,
     **asked: Unpack[AboutFeedback],
-) -> questions.Answer:
+) -> answering.Answer:
     """Return whether a point of your own is safe, how fast errors decay there, and how far the point may move.
 
     The point is one of these:
@@ -296,8 +302,8 @@ def check(
     """
     named, values = (None, None) if engine is None else engine_and_values(engine)
     typed = {"alpha_hat": alpha_hat, "beta_hat": beta_hat, "alpha": alpha, "beta": beta, "h": asked.get("h")}
-    question = _asked(
-        questions.Question,
+    wanted = _asked(
+        question.Question,
         methods=method,
         point=_point_if_given(typed, needed=engine is None),
         engine=named,
@@ -305,7 +311,7 @@ def check(
         as_typed=as_typed,
         **asked,
     )
-    return _first_unsafe(questions.answers(question))
+    return _first_unsafe(answering.answers(wanted))
 
 
 def largest_step(method: str | Method, *, alpha: Number, beta: Number) -> float:
@@ -317,7 +323,7 @@ def largest_step(method: str | Method, *, alpha: Number, beta: Number) -> float:
     InputError unless the numbers are finite. Source: the path of all steps through the plane of paper
     Eq. 17.
     """
-    return questions.LargestStep(_method(method), exact_number(alpha, "alpha"), exact_number(beta, "beta")).h_limit
+    return answering.LargestStep(_method(method), exact_number(alpha, "alpha"), exact_number(beta, "beta")).h_limit
 
 
 @_spelled_out
@@ -328,7 +334,7 @@ def feedback_cost(
     omega: Number | None = None,
     omega_h: Number | None = None,
     **point: Unpack[PointAtStep[Number]],
-) -> stability.FeedbackCost:
+) -> feedback_costs.FeedbackCost:
     """Return the errors that a feedback makes on a mechanism that moves.
 
     The point is `alpha_hat` and `beta_hat`, or `alpha` and `beta` in 1/s with the step `h` in s. The
@@ -343,15 +349,15 @@ def feedback_cost(
     InputError unless the point is given in one of the two ways and omega h is from 1e-6 to 1. Source:
     the test equation of Prothero and Robinson (Math. Comp. 28, 1974).
     """
-    question = _asked(
-        questions.Question,
+    wanted = _asked(
+        question.Question,
         methods=method,
         point=_plane_point(point),
         h=point.get("h"),
         omega=omega,
         omega_h=omega_h,
     )
-    return stability.feedback_cost(question.methods[0], *question.given.point, question.motion.omega_h)
+    return feedback_costs.feedback_cost(wanted.methods[0], *wanted.given.point, wanted.motion.omega_h)
 
 
 @_spelled_out
@@ -362,7 +368,7 @@ def simulate(
     *,
     h: float,
     duration: float,
-    start: mechanism.Start = "rk4",
+    start: runner.Start = "rk4",
     perturb: float = 0.0,
     stabilise: Stabilise = "baumgarte",
     iterations: int | None = None,
@@ -388,8 +394,8 @@ def simulate(
     feedback is given in one of the two ways. NumericalError if the start cannot be perturbed. Source:
     paper Eqs. 6 to 9.
     """
-    question = _asked(
-        questions.RunQuestion,
+    wanted = _asked(
+        runs.RunQuestion,
         scene=scene,
         method=_method(method),
         duration=duration,
@@ -400,13 +406,13 @@ def simulate(
         perturb=perturb,
         start=start,
     )
-    return questions.run_answer(question)
+    return runs.run_answer(wanted)
 
 
 @_spelled_out
 def verify(
     scene: str | Scene, method: str | Method, *, h: float, **point: Unpack[Point[ArrayLike]]
-) -> list[evidence.Measurement]:
+) -> list[measured_poles.Measurement]:
     """Return the dominant pole as predicted and as measured in a simulation, for each of a row of points.
 
     scene: the mechanism to kick. h: the step in s.
@@ -422,8 +428,8 @@ def verify(
     alpha_hat, beta_hat = _plane_arrays({**point, "h": h})
     step = real_number(h, "h")
     check_step(step)
-    kicked = mechanism.compiled_mechanism(_scene(scene))
-    return evidence.measure_poles(kicked, _method(method), step, alpha_hat.ravel(), beta_hat.ravel())
+    kicked = equations.compiled_mechanism(_scene(scene))
+    return measured_poles.measure_poles(kicked, _method(method), step, alpha_hat.ravel(), beta_hat.ravel())
 
 
 @_spelled_out
@@ -437,7 +443,7 @@ def probe(
     every: int = 1,
     turning: float | None = None,
     **point: Unpack[PointAtStep[Number]],
-) -> questions.Probe:
+) -> log_probes.Probe:
     """Return the dominant pole in samples of a decaying error, and which integrator could have made them.
 
     c: samples of one constraint error in any unit, shape (samples,), or (samples, responses) of one
@@ -459,16 +465,16 @@ def probe(
     if methods is not None and (isinstance(methods, str | Method) or not isinstance(methods, Iterable)):
         raise InputError(f"methods = {shown(methods)}: expected a list of methods")
     h = point.get("h")
-    question = questions.PoleQuestion(
+    wanted = log_probes.PoleQuestion(
         point=_point_if_given(point),
         methods=tuple(map(_method, methods or ())),
         every=every,
         h=None if h is None else exact_number(h, "h"),
         turning=None if turning is None else exact_number(turning, "turning"),
     )
-    c = stability.real_array(c, "c")
-    minus = None if minus is None else stability.real_array(minus, "minus")
-    return questions.Probe(question, "c", evidence.probed_pole(c, minus, differenced))
+    c = arrays.real_array(c, "c")
+    minus = None if minus is None else arrays.real_array(minus, "minus")
+    return log_probes.Probe(wanted, "c", probed_poles.probed_pole(c, minus, differenced))
 
 
 @_spelled_out
@@ -482,7 +488,7 @@ def probe_step(
     methods: Sequence[str | Method] | None = None,
     turning: float | None = None,
     **point: Unpack[PointAtStep[Number]],
-) -> questions.Probe:
+) -> log_probes.Probe:
     """Return what `probe` does, for a simulator of your own: a function that takes a state to the next.
 
     step: a function of an array, the state, that returns the next one. It is called six times `steps`
@@ -495,7 +501,7 @@ def probe_step(
 
     Returns a Probe, as `probe` does; poles are dimensionless. Errors as there; InputError, too, for shapes that differ.
     """
-    responses = evidence.kicked_responses(step, state, constraint, kick, steps)
+    responses = probed_poles.kicked_responses(step, state, constraint, kick, steps)
     return probe(responses, differenced=True, methods=methods, turning=turning, **point)
 
 
@@ -516,7 +522,7 @@ def _asked(kind: Callable[..., Asked], **given: Any) -> Asked:
     return kind(**{name: READ[name](value, name) if name in READ else value for name, value in told.items()})
 
 
-def _first_unsafe(answers: Iterable[questions.Answer]) -> questions.Answer:
+def _first_unsafe(answers: Iterable[answering.Answer]) -> answering.Answer:
     """Return the first answer that is not safe; the first of all where every one is."""
     found = list(answers)
     return next((answer for answer in found if not answer.safe), found[0])
@@ -555,4 +561,4 @@ def _point_if_given(point: Mapping[str, Any], *, needed: bool = False) -> tuple[
 
 def _plane_arrays(point: Mapping[str, Any]) -> tuple[FloatArray, FloatArray]:
     """Return the same as float64 arrays, broadcast; InputError if their shapes do not fit each other."""
-    return stability.plane_arrays(*_plane_point(point, stability.real_array))
+    return arrays.plane_arrays(*_plane_point(point, arrays.real_array))

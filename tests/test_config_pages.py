@@ -8,9 +8,14 @@ from typing import Any
 
 import pytest
 
-from bezstab.mechanism import compiled_mechanism, simulate
+from bezstab.mechanism.equations import compiled_mechanism
+from bezstab.mechanism.runner import simulate
 from bezstab.mechanism.scene_files import parse_scene
-from bezstab.methods import accuracy, closed_loop_polynomial, lookup, read_method, steps
+from bezstab.methods.derivation import closed_loop_polynomial
+from bezstab.methods.method_files import read_method
+from bezstab.methods.orders import accuracy
+from bezstab.methods.registry import lookup
+from bezstab.methods.schemes import steps
 from bezstab.toml_tables import TomlTable
 
 CONFIGS = Path(__file__).parent.parent / "configs"

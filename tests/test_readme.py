@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from bezstab.cli import main
-from bezstab.methods import lookup
-from bezstab.stability import poles
+from bezstab.cli.command_group import main
+from bezstab.methods.registry import lookup
+from bezstab.stability.closed_loop import poles
 from tests.reference.sampled_responses import of_poles
 
 ROOT = Path(__file__).parent.parent

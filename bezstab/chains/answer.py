@@ -11,11 +11,14 @@ from fractions import Fraction
 import numpy as np
 
 from bezstab.arguments import Number, exact_number, in_keywords, whole_number
-from bezstab.engines import Engine, check_iterations, engine_and_values
+from bezstab.engines.conversions import Engine
+from bezstab.engines.engine_list import engine_and_values
+from bezstab.engines.sweeping import check_iterations
 from bezstab.errors import InputError
 from bezstab.questions.chains import Constraints, SweptConstraints
-from bezstab.stability import FloatArray, inverse_effective_masses, steps_to_settle
-from bezstab.stability.sweeps import LARGEST_RATIO, MOST_BODIES
+from bezstab.stability.arrays import FloatArray
+from bezstab.stability.choices import steps_to_settle
+from bezstab.stability.sweeps import LARGEST_RATIO, MOST_BODIES, inverse_effective_masses
 from bezstab.units import check_step
 from bezstab.words import change_words, counted, decay_words
 

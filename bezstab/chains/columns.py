@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from bezstab.chains.answer import ChainAnswer
-from bezstab.show import Column
+from bezstab.show.columns import Column
 
 COLUMNS: Sequence[Column[ChainAnswer]] = (
     Column("engine", "engine", lambda answer: answer.engine.name, "engine that sweeps over its constraints"),

@@ -3,5 +3,3 @@
 One file for each command. It names the options that it takes (`options` has those that several commands share), asks a
 question (`asking`), and shows the answers (`output`). It returns whether what it judges is safe, or an exit status.
 """
-
-from bezstab.cli.command_group import main

@@ -1,21 +1,30 @@
 """The question that was typed, and how answers are shown that several commands give."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Iterable, Mapping, Sequence, Sized
 from fractions import Fraction
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
-from bezstab import questions, show
 from bezstab.cli.command_group import NUMERICAL_TROUBLE
 from bezstab.cli.options import TypedPoint, typed_options
 from bezstab.cli.output import for_reading, say, show_text, worked_out
-from bezstab.engines import WITNESSES, Engine, Point
+from bezstab.engines.conversions import Engine, Point
+from bezstab.engines.engine_list import WITNESSES
 from bezstab.errors import NumericalError
-from bezstab.methods import Method, lookup
+from bezstab.methods.registry import lookup
+from bezstab.methods.schemes import Method
 from bezstab.rationals import typed_number
 from bezstab.words import point_words
 
+if TYPE_CHECKING:
+    from bezstab.questions.answering import Answer
+    from bezstab.questions.question import Question
+    from bezstab.questions.regions import MapQuestion
+    from bezstab.show.fields import Row
+
 Asked = TypeVar("Asked")
-OfScene = TypeVar("OfScene", "questions.Question", "questions.MapQuestion")
+OfScene = TypeVar("OfScene", "Question", "MapQuestion")
 
 
 def asked(kind: Callable[..., Asked], **typed: Any) -> Asked:
@@ -33,7 +42,7 @@ def asked(kind: Callable[..., Asked], **typed: Any) -> Asked:
     return kind(**typed)
 
 
-def asked_of_scene(kind: "type[OfScene]", **typed: Any) -> "OfScene":
+def asked_of_scene(kind: type[OfScene], **typed: Any) -> OfScene:
     """Return the same, once it is known how its scene moves: a note says so if that is too far in a step."""
     question = asked(kind, **typed)
     say_each(worked_out(lambda: question.warnings, typed["scene"]))
@@ -47,12 +56,12 @@ def say_each(reasons: Iterable[str | None]) -> None:
             say(f"bezstab: {reason}")
 
 
-def of_each(methods: Iterable[Method], rows_of: Callable[[Method], Iterable[show.Row]]) -> tuple[list[show.Row], int]:
+def of_each(methods: Iterable[Method], rows_of: Callable[[Method], Iterable[Row]]) -> tuple[list[Row], int]:
     """Return the rows of all methods, and an exit status: what cannot be found of one withholds no other's.
 
     Why it cannot be found is said on standard error. NumericalError where that is so of all.
     """
-    rows: list[show.Row] = []
+    rows: list[Row] = []
     failed: list[NumericalError] = []
     for method in methods:
         try:
@@ -85,16 +94,19 @@ def show_sentences(sentences: Iterable[str | None]) -> None:
         show_text(f"\n{sentence}")
 
 
-def show_below(question: "questions.Question", found: "Sequence[questions.Answer]", *, motion: bool = True) -> None:
+def show_below(question: Question, found: Sequence[Answer], *, motion: bool = True) -> None:
     """Print below the answers on which motion errors are told; say on standard error why they are not known.
 
     For people to read, it is also said what an engine did to its values, and what the conversion leaves out.
     """
+
+    from bezstab.show.result_sentences import motion_words
+
     say_each(answer.cost_or_reason[1] for answer in found)
     if not for_reading():
         return
     if motion and (question.goal or not question.motion.assumed):
-        show_text(f"\n{show.motion_words(question.motion)}")
+        show_text(f"\n{motion_words(question.motion)}")
     if question.engine:
         for note in () if question.goal else question.given.notes or ():
             say(f"{question.engine.name}: {note} (--as-typed leaves that out)")
@@ -120,9 +132,12 @@ def say_if_units_were_mistaken(methods: Sequence[Method], point: TypedPoint, h: 
 
     Without methods, of that of most engines.
     """
+
+    from bezstab.questions.question import meant_in_seconds
+
     if point.numbers is None or point.physical:
         return
-    if questions.meant_in_seconds(methods or (lookup("SYM"),), point.numbers, h):
+    if meant_in_seconds(methods or (lookup("SYM"),), point.numbers, h):
         alpha, beta = map(typed_number, point.numbers)
         needed = "" if "--h" in typed_options() else " and your --h"
         say(f"note: if {alpha} and {beta} are in 1/s, add --physical{needed}")

@@ -1,16 +1,22 @@
 """The command that tells whether a choice is safe: check."""
 
+from __future__ import annotations
+
 from collections.abc import Iterable, Iterator
 from itertools import groupby
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from bezstab import questions
 from bezstab.cli.asking import asked_of_scene, show_below, show_point, show_sentences
 from bezstab.cli.options import TypedPoint, changed, command, typed_options
 from bezstab.cli.output import for_reading, say, show_rows, show_text
 from bezstab.errors import InputError, NumericalError
-from bezstab.methods import Method
-from bezstab.show import CHECKED, LARGEST_STEPS, answer_row, costs_words, largest_step_row, left_out, spare_words
+from bezstab.methods.schemes import Method
+from bezstab.show.result_sentences import costs_words, spare_words
+from bezstab.show.row_kinds import CHECKED, LARGEST_STEPS
+from bezstab.show.rows import answer_row, largest_step_row, left_out
+
+if TYPE_CHECKING:
+    from bezstab.questions.answering import Answer
 
 OF_EVERY_STEP = {"--alpha", "--beta", "--physical", "--method", "--format", "--speed"}
 """With no other option, a question about α and β in 1/s is about every step."""
@@ -50,11 +56,16 @@ def check(**typed: Any) -> bool:
 
     Example: bezstab check --method RK2 --h 0.002 --alpha 50 --beta 50 --physical
     """
+
+    from bezstab.questions.answering import answers
+    from bezstab.questions.motions import check_speed
+    from bezstab.questions.question import Question
+
     if typed["point"].physical and typed_options().keys() <= OF_EVERY_STEP:
-        questions.check_speed(None, typed["speed"])
+        check_speed(None, typed["speed"])
         return _check_without_step(typed["methods"], typed["point"])
-    question = asked_of_scene(questions.Question, **typed)
-    found = list(_with_instead(questions.answers(question)))
+    question = asked_of_scene(Question, **typed)
+    found = list(_with_instead(answers(question)))
     given = [answer for answer in found if answer.role == "given"]
     show_point(typed, question.point, given)
     if for_reading():
@@ -74,7 +85,7 @@ def check(**typed: Any) -> bool:
     return all(answer.safe for answer in given)
 
 
-def _with_instead(given: "Iterable[questions.Answer]") -> "Iterator[questions.Answer]":
+def _with_instead(given: Iterable[Answer]) -> Iterator[Answer]:
     """Yield the given answers, and for each method the choice instead; say on standard error why there is none."""
     for _, of_method in groupby(given, lambda answer: answer.method):
         answers_of_method = list(of_method)
@@ -87,7 +98,11 @@ def _with_instead(given: "Iterable[questions.Answer]") -> "Iterator[questions.An
 
 def _check_without_step(methods: tuple[Method, ...], point: TypedPoint) -> bool:
     """Print the step up to which alpha and beta (1/s) are safe with each method; return whether each method has one."""
+
+    from bezstab.questions.answering import LargestStep
+    from bezstab.questions.question import methods_for
+
     assert point.numbers
-    found = [questions.LargestStep(method, *point.numbers) for method in questions.methods_for(methods, None)]
+    found = [LargestStep(method, *point.numbers) for method in methods_for(methods, None)]
     show_rows(LARGEST_STEPS, map(largest_step_row, found))
     return all(each.safe for each in found)

@@ -1,16 +1,22 @@
 """The command that recommends α and β: choose."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from bezstab import questions
 from bezstab.cli.asking import asked_of_scene, show_below, show_sentences
 from bezstab.cli.options import SECONDS, SHARE, changed, command, option
 from bezstab.cli.output import for_reading, progress, show_rows
 from bezstab.goals import GOALS, Goal
-from bezstab.show import CHOICES, STEPS_OF_CHOICES, answer_row, left_out, spare_words, trade_words
+from bezstab.show.result_sentences import spare_words, trade_words
+from bezstab.show.row_kinds import CHOICES, STEPS_OF_CHOICES
+from bezstab.show.rows import answer_row, left_out
+
+if TYPE_CHECKING:
+    from bezstab.questions.answering import Answer
 
 
 @command(
@@ -63,11 +69,15 @@ def choose(goal: Goal | None, equal: str | None, **typed: Any) -> bool:
 
     Example: bezstab choose --method B4 --h 0.001
     """
-    goal = goal or questions.usual_goal(typed["engine"], typed["methods"])
-    question = asked_of_scene(questions.Question, goal=goal, equal=equal is not None, **typed)
+
+    from bezstab.questions.answering import answers
+    from bezstab.questions.question import Question, usual_goal
+
+    goal = goal or usual_goal(typed["engine"], typed["methods"])
+    question = asked_of_scene(Question, goal=goal, equal=equal is not None, **typed)
     if question.h is None:
         raise click.MissingParameter(param_hint="'--h'", param_type="option")
-    chosen = list(progress(questions.answers(question), goal, len(question.methods)))
+    chosen = list(progress(answers(question), goal, len(question.methods)))
     if typed["h"] is None:
         show_rows(STEPS_OF_CHOICES, map(STEPS_OF_CHOICES.row, chosen))
         return all(answer.safe for answer in chosen)
@@ -79,7 +89,7 @@ def choose(goal: Goal | None, equal: str | None, **typed: Any) -> bool:
     return all(answer.safe for answer in chosen)
 
 
-def _trades(chosen: "Sequence[questions.Answer]") -> "Iterator[str]":
+def _trades(chosen: Sequence[Answer]) -> Iterator[str]:
     """Yield for each choice how long disturbances are seen, what faster decay would cost, and slower gain."""
     for answer in chosen:
         name = f"{answer.method.name}: " if len(chosen) > 1 else ""

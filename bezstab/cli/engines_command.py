@@ -4,8 +4,9 @@ from fractions import Fraction
 
 from bezstab.cli.options import TypedPoint, changed, command
 from bezstab.cli.output import show_rows, show_text
-from bezstab.engines import ENGINE_ALIASES, ENGINES, RUN_UNDERNEATH
-from bezstab.show import ENGINES_LISTED, engine_row
+from bezstab.engines.engine_list import ENGINE_ALIASES, ENGINES, RUN_UNDERNEATH
+from bezstab.show.row_kinds import ENGINES_LISTED
+from bezstab.show.rows import engine_row
 
 
 @command(

@@ -4,11 +4,12 @@ from collections.abc import Sequence
 
 import click
 
-from bezstab import questions
 from bezstab.cli.options import METHOD, command, flag
 from bezstab.cli.output import chosen_format, show_groups, show_rows, show_text
-from bezstab.methods import GROUPS, Method, lookup
-from bezstab.show import LISTED_METHODS, NAMED_METHODS, method_row, whole_row
+from bezstab.methods.registry import GROUPS, lookup
+from bezstab.methods.schemes import Method
+from bezstab.show.row_kinds import LISTED_METHODS, NAMED_METHODS
+from bezstab.show.rows import method_row, whole_row
 
 
 @command(flag("--latex", "Formulas as LaTeX."), "form")
@@ -29,8 +30,11 @@ def methods(methods: Sequence[Method], latex: bool) -> None:
 
     Example: bezstab methods B4
     """
+
+    from bezstab.questions.regions import region_answer
+
     if methods:
-        rows = [whole_row(questions.region_answer(method), latex=latex) for method in methods]
+        rows = [whole_row(region_answer(method), latex=latex) for method in methods]
         show_rows(NAMED_METHODS, rows, in_blocks=True)
         show_text("\nSteady errors are shares of a motion of ω rad/s, to leading order in θ = iωh.")
         return

@@ -14,11 +14,13 @@ from click.shell_completion import CompletionItem
 
 from bezstab.cli.output import NOTES, Files, Work
 from bezstab.compiling import COMPILED_CHOICE, compiler
-from bezstab.engines import ENGINES, Engine, Point, engine_and_values, engine_named
+from bezstab.engines.conversions import Engine, Point
+from bezstab.engines.engine_list import ENGINES, engine_and_values, engine_named
 from bezstab.errors import InputError
-from bezstab.methods import REGISTRY, lookup
+from bezstab.methods.registry import REGISTRY, lookup
 from bezstab.rationals import rational
-from bezstab.show import FIGURE_FORMS, TABLE_FORMS, Format
+from bezstab.show.file_forms import FIGURE_FORMS, TABLE_FORMS
+from bezstab.show.tables import Format
 from bezstab.stabilising import STABILISE
 from bezstab.units import LEAST_STEP, LONGEST_STEP, to_dimensionless
 
@@ -61,7 +63,7 @@ class ParsedType(click.ParamType):  # type: ignore[type-arg]  # generic since cl
 
 
 def _scenes() -> Iterable[str]:
-    from bezstab.mechanism import shipped_scenes
+    from bezstab.mechanism.scene_files import shipped_scenes
 
     return shipped_scenes()
 

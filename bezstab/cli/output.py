@@ -15,27 +15,15 @@ import click
 
 from bezstab.errors import InputError
 from bezstab.files import output_directory, write_whole
-from bezstab.show import (
-    MISSING,
-    Column,
-    Format,
-    Row,
-    RowKind,
-    block,
-    fits,
-    lines_below,
-    render,
-    row_of,
-    table,
-    visible,
-    wrapped,
-)
+from bezstab.show.columns import Column, row_of
+from bezstab.show.fields import MISSING, Row, RowKind, visible
+from bezstab.show.tables import Format, block, fits, lines_below, render, table, wrapped
 from bezstab.stopping import Stopped
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from bezstab.evidence import Arrays
+    from bezstab.evidence.parallel import Arrays
 
 Item = TypeVar("Item")
 INDENT = " " * 4
@@ -214,14 +202,17 @@ class Files:
 
         The files are `path` + .csv, .png, ... What is not asked for is neither made nor loaded.
         """
-        from bezstab import show
+
+        from bezstab.show.arrays import write_arrays
+        from bezstab.show.style import save
+        from bezstab.show.window import show_in_window
 
         if table and self.table != "none":
-            write_file(path.with_name(f"{path.name}.{self.table}"), partial(show.write_arrays, table(), self.table))
+            write_file(path.with_name(f"{path.name}.{self.table}"), partial(write_arrays, table(), self.table))
         if figure and self.figure == "window":
-            show.show_in_window(figure())
+            show_in_window(figure())
         elif figure and self.figure != "none":
-            write_file(path.with_name(f"{path.name}.{self.figure}"), partial(show.save, figure(), self.figure))
+            write_file(path.with_name(f"{path.name}.{self.figure}"), partial(save, figure(), self.figure))
 
 
 @dataclass(frozen=True)
@@ -259,7 +250,7 @@ def results_of_chunks(
     Finished chunks are kept in `path` + .chunks, so that a run of the same `job` can resume; once the results are used
     they are deleted. Without joblib this process computes them, and none are kept.
     """
-    from bezstab.evidence import KeptResults, completed_chunks, joblib_is_installed
+    from bezstab.evidence.parallel import KeptResults, completed_chunks, joblib_is_installed
 
     if not joblib_is_installed():
         if work.resume or work.scheduler or (work.workers or 1) > 1:

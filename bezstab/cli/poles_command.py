@@ -3,11 +3,12 @@
 from dataclasses import replace
 from typing import Any
 
-from bezstab import questions
 from bezstab.cli.asking import asked_of_scene, show_below, show_point
 from bezstab.cli.options import USUAL_METHODS, Rule, changed, command, flag
 from bezstab.cli.output import show_rows
-from bezstab.show import POLES, one_pole_sentence, pole_rows
+from bezstab.show.row_kinds import POLES
+from bezstab.show.rows import pole_rows
+from bezstab.show.sentences import one_pole_sentence
 
 
 @command(
@@ -30,16 +31,17 @@ def poles(all_poles: bool, **typed: Any) -> None:
 
     Example: bezstab poles --alpha 0.5 --beta 0.1
     """
-    from bezstab import stability
 
-    question = asked_of_scene(questions.Question, **typed)
-    at_point = [each for each in questions.answers(question, margins=False) if each.goal == "as given"]
+    from bezstab.questions.answering import answers
+    from bezstab.questions.question import Question
+    from bezstab.stability.closed_loop import poles
+
+    question = asked_of_scene(Question, **typed)
+    at_point = [each for each in answers(question, margins=False) if each.goal == "as given"]
     rows = [
         row
         for each in at_point
-        for row in pole_rows(
-            each, stability.poles(each.method, each.alpha_hat, each.beta_hat) if all_poles else [each.pole]
-        )
+        for row in pole_rows(each, poles(each.method, each.alpha_hat, each.beta_hat) if all_poles else [each.pole])
     ]
     kind = replace(POLES, sentence=one_pole_sentence) if all_poles else POLES
     without = ("total_error", "times_least") if all_poles else ()

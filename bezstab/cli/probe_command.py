@@ -6,12 +6,13 @@ from typing import Any, BinaryIO
 
 import click
 
-from bezstab import evidence, questions
 from bezstab.cli.asking import asked, show_point, show_sentences
 from bezstab.cli.options import NUMBER, changed, command, option
 from bezstab.cli.output import for_reading, show_rows
 from bezstab.errors import NumericalError
-from bezstab.show import LIKE_POINT, LIKENESS, PROBED, cells, row_in_seconds
+from bezstab.show.fields import cells
+from bezstab.show.row_kinds import LIKE_POINT, LIKENESS, PROBED
+from bezstab.show.rows import row_in_seconds
 
 
 @command(
@@ -48,13 +49,18 @@ def probe(
 
     Example: bezstab probe log.csv --minus unkicked.csv --alpha 1 --beta 0.25
     """
-    question = asked(questions.PoleQuestion, h=h, every=every, **typed)
-    kicked = evidence.read_log(log, float(every * h) if h else None)
-    other = evidence.read_log(minus, kicked.row_step) if minus else None
+
+    from bezstab.evidence.logs import read_log
+    from bezstab.evidence.probed_poles import probed_pole
+    from bezstab.questions.log_probes import PoleQuestion, Probe
+
+    question = asked(PoleQuestion, h=h, every=every, **typed)
+    kicked = read_log(log, float(every * h) if h else None)
+    other = read_log(minus, kicked.row_step) if minus else None
     found = []
     for name in columns or kicked.errors:
-        pole = evidence.probed_pole(kicked.column(name), other.column(name) if other else None)
-        found.append(questions.Probe(question, name, pole))
+        pole = probed_pole(kicked.column(name), other.column(name) if other else None)
+        found.append(Probe(question, name, pole))
     show_point({"h": h, **typed}, question.point, found)
     fits = [PROBED.row(answer.found, column=answer.column) for answer in found]
     beside = [

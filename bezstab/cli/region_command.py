@@ -1,16 +1,22 @@
 """The command that draws where a method is stable: region."""
 
+from __future__ import annotations
+
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from bezstab import questions, show
 from bezstab.cli.asking import asked_of_scene, of_each, say_each
 from bezstab.cli.command_group import NUMERICAL_TROUBLE
 from bezstab.cli.options import NUMBER, POSITIVE, SPEED, Rule, changed, command, flag, option
 from bezstab.cli.output import Files, progress, show_rows, show_text
-from bezstab.methods import Method
+from bezstab.methods.schemes import Method
+from bezstab.show.file_forms import FIGURE_FORMS
+
+if TYPE_CHECKING:
+    from bezstab.questions.regions import MapQuestion
+    from bezstab.show.fields import Row
 
 
 @command(
@@ -47,7 +53,7 @@ from bezstab.methods import Method
     "output",
     changed(
         "figure",
-        type=click.Choice([*show.FIGURE_FORMS, "window", "none"]),
+        type=click.Choice([*FIGURE_FORMS, "window", "none"]),
         help="Format of the figure; or a window that says under the mouse what the point means.",
     ),
     "table",
@@ -70,38 +76,53 @@ def region(quality: str, grid: int | None, files: Files, **typed: Any) -> int:
 
     Example: bezstab region --method B4
     """
-    from bezstab import stability
 
-    points = grid or stability.QUALITY[quality]
-    question = asked_of_scene(questions.MapQuestion, points=points, **typed)
+    from bezstab.questions.regions import MapQuestion
+    from bezstab.show.result_sentences import combined_words, energy_words
+    from bezstab.show.row_kinds import REGIONS
+    from bezstab.stability.closed_loop import QUALITY
+
+    points = grid or QUALITY[quality]
+    question = asked_of_scene(MapQuestion, points=points, **typed)
     files.check_output()
     if question.compare:
         rows, status = _write_boundaries(question, files), 0
     else:
         rows, status = of_each(question.methods, lambda method: _write_map(question, method, files))
-    show_rows(show.REGIONS, rows, () if question.levels else ("z_abs_below",))
+    show_rows(REGIONS, rows, () if question.levels else ("z_abs_below",))
     if question.motion:
-        show_text((show.energy_words if question.energy else show.combined_words)(question.motion))
+        show_text((energy_words if question.energy else combined_words)(question.motion))
     return status if question.best_points_known else NUMERICAL_TROUBLE
 
 
-def _write_map(question: "questions.MapQuestion", method: Method, files: Files) -> list[show.Row]:
+def _write_map(question: MapQuestion, method: Method, files: Files) -> list[Row]:
     """Write the map of one method; return its rows."""
-    answer = questions.MapAnswer(question, method)
+
+    from bezstab.questions.regions import MapAnswer
+    from bezstab.show.arrays import map_arrays
+    from bezstab.show.map_figures import map_figure
+    from bezstab.show.rows import map_rows
+
+    answer = MapAnswer(question, method)
     if question.motion:
         say_each([answer.choice_or_reason[1]])
     if files.wanted:
         z = answer.dominant_poles(partial(progress, label=method.name, length=len(answer.axes[1])))
         path = files.path("region", method.name, question.of_motion.lstrip("-") or question.scene)
-        files.write(path, lambda: show.map_figure(answer, z), lambda: show.map_arrays(answer, z))
-    return show.map_rows(answer)
+        files.write(path, lambda: map_figure(answer, z), lambda: map_arrays(answer, z))
+    return map_rows(answer)
 
 
-def _write_boundaries(question: "questions.MapQuestion", files: Files) -> list[show.Row]:
+def _write_boundaries(question: MapQuestion, files: Files) -> list[Row]:
     """Write the boundaries of all methods into one table and one figure; return a row for each."""
+
+    from bezstab.show.arrays import boundary_arrays
+    from bezstab.show.map_figures import comparison_figure
+    from bezstab.show.rows import region_row
+
     files.write(
         files.path("compare", *(method.name for method in question.methods)),
-        partial(show.comparison_figure, question),
-        lambda: show.boundary_arrays([answer.region for answer in question.compared], question.seconds),
+        partial(comparison_figure, question),
+        lambda: boundary_arrays([answer.region for answer in question.compared], question.seconds),
     )
-    return [show.region_row(answer) for answer in question.compared]
+    return [region_row(answer) for answer in question.compared]

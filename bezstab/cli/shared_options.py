@@ -7,7 +7,8 @@ from typing import Any, TypeVar, get_args
 import click
 
 from bezstab.cli.options import A_METHOD, METHOD, SECONDS
-from bezstab.show import FIGURE_FORMS, Format
+from bezstab.show.file_forms import FIGURE_FORMS
+from bezstab.show.tables import Format
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 

@@ -4,13 +4,12 @@ from typing import Any
 
 import click
 
-from bezstab import questions, show
 from bezstab.cli.asking import asked, show_point
 from bezstab.cli.options import NUMBER, SEQUENCE, changed, command, flag, option
 from bezstab.cli.output import Files, say, show_rows, worked_out
 from bezstab.compiling import compiled_choice
 from bezstab.errors import NumericalError
-from bezstab.methods import implicit
+from bezstab.methods.schemes import implicit
 
 
 @command(
@@ -58,22 +57,29 @@ def simulate(files: Files, **typed: Any) -> None:
 
     Example: bezstab simulate --method AB4 --alpha 0.5 --beta 0.101 --time 2
     """
+
+    from bezstab.questions.runs import RunQuestion, run_answer
+    from bezstab.show.arrays import history_arrays
+    from bezstab.show.result_sentences import passages_words
+    from bezstab.show.row_kinds import SIMULATIONS
+    from bezstab.show.run_figures import history_figure
+
     if typed["stabilise"] != "baumgarte":
         typed["point"] = None
-    question = asked(questions.RunQuestion, **typed)
+    question = asked(RunQuestion, **typed)
     files.check_output()
     worked_out(lambda: question.mechanism, typed["scene"])
-    run = worked_out(lambda: questions.run_answer(question), question.method.name)
+    run = worked_out(lambda: run_answer(question), question.method.name)
     files.write(
         files.path("simulate", typed["scene"], question.method.name),
-        lambda: show.history_figure(run),
-        lambda: show.history_arrays(run),
+        lambda: history_figure(run),
+        lambda: history_arrays(run),
     )
     show_point(typed, question.point)
-    show_rows(show.SIMULATIONS, [show.SIMULATIONS.row(run)])
+    show_rows(SIMULATIONS, [SIMULATIONS.row(run)])
     if compiled_choice() == "yes" and (implicit(run.method) or run.after.projecting):
         say("bezstab: this run was not compiled: only runs of explicit methods without projection are")
     if len(run.singular_times):
-        say(f"bezstab: {show.passages_words(run.singular_times.tolist())}")
+        say(f"bezstab: {passages_words(run.singular_times.tolist())}")
     if run.failure:
         raise NumericalError(run.failure)

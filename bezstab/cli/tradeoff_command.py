@@ -6,7 +6,6 @@ from typing import Any
 
 import click
 
-from bezstab import evidence, questions, show
 from bezstab.cli.asking import say_if_units_were_mistaken
 from bezstab.cli.options import POSITIVE, SECONDS, Rule, TypedPoint, changed, command, flag, option, typed_options
 from bezstab.cli.output import Files, Work, progress, results_of_chunks, show_rows, show_text, worked_out
@@ -72,32 +71,46 @@ def tradeoff(predicted: bool, point: TypedPoint, work: Work, files: Files, **typ
 
     Example: bezstab tradeoff --method B4 --method AB4 --h 0.002 --h 0.004 --time 2
     """
+
+    from bezstab.evidence.accuracy_costs import measured_runs
+    from bezstab.questions.trades import TradeQuestion
+    from bezstab.show.arrays import untimed_arrays
+    from bezstab.show.row_kinds import SWEPT
+    from bezstab.show.run_figures import trade_figures
+
     levels = typed.pop("levels")
     if predicted:
         _show_fronts(files, levels, **{name: typed[name] for name in ("methods", "omega", "speed", "steps")})
         return
-    question = questions.TradeQuestion(numbers=point.numbers, physical=point.physical, **typed)
+    question = TradeQuestion(numbers=point.numbers, physical=point.physical, **typed)
     say_if_units_were_mistaken(question.methods, point, None)
     path = files.path("tradeoff", typed["scene"])
     sweeps = worked_out(lambda: question.sweeps, typed["scene"])
-    with results_of_chunks(evidence.measured_runs, sweeps, path, f"{question.methods} {question}", work) as results:
+    with results_of_chunks(measured_runs, sweeps, path, f"{question.methods} {question}", work) as results:
         swept = question.swept(results)
         marked = zip(swept.runs, swept.front_labels, strict=True)
-        rows = [show.SWEPT.row(run, front=front, cheapest=run is swept.cheapest) for run, front in marked]
-        files.write(path, None, lambda: show.untimed_arrays(rows))
-        for name, draw in show.trade_figures(swept, question.moving.name).items():
+        rows = [SWEPT.row(run, front=front, cheapest=run is swept.cheapest) for run, front in marked]
+        files.write(path, None, lambda: untimed_arrays(rows))
+        for name, draw in trade_figures(swept, question.moving.name).items():
             files.write(path.with_name(f"{path.name}_{name}"), draw)
-    show_rows(show.SWEPT, rows)
+    show_rows(SWEPT, rows)
     show_text(f"\n{question.basis}")
 
 
 def _show_fronts(files: Files, levels: Sequence[Fraction], **typed: Any) -> None:
     """Print the least error that each method forces, by speed of decay; write it as a table."""
-    question = questions.FrontQuestion(levels=levels, scene=typed_options().get("--scene"), **typed)
+
+    from bezstab.questions.trades import FrontQuestion
+    from bezstab.show.arrays import untimed_arrays
+    from bezstab.show.result_sentences import combined_words, energy_words
+    from bezstab.show.row_kinds import FRONTS
+    from bezstab.show.rows import row_in_seconds
+
+    question = FrontQuestion(levels=levels, scene=typed_options().get("--scene"), **typed)
     files.check_output()
     fronts = progress(question.fronts(), "fronts", len(question.methods))
     h = None if question.h is None else float(question.h)
-    rows = [show.row_in_seconds(show.FRONTS.fields, point, h) for front in fronts for point in front]
-    files.write(files.path("tradeoff", "predicted"), None, lambda: show.untimed_arrays(rows))
-    show_rows(show.FRONTS, rows)
-    show_text(show.combined_words(question.motion) + show.energy_words(question.motion))
+    rows = [row_in_seconds(FRONTS.fields, point, h) for front in fronts for point in front]
+    files.write(files.path("tradeoff", "predicted"), None, lambda: untimed_arrays(rows))
+    show_rows(FRONTS, rows)
+    show_text(combined_words(question.motion) + energy_words(question.motion))

@@ -1,14 +1,19 @@
 """The command that holds predicted poles against measured ones: verify."""
 
-from typing import Any
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from bezstab import evidence, questions, show
 from bezstab.cli.asking import asked, of_each, show_point
 from bezstab.cli.options import Rule, changed, command, flag, option
 from bezstab.cli.output import Files, Work, for_reading, progress, results_of_chunks, show_rows, show_text, worked_out
-from bezstab.methods import Method
+from bezstab.methods.schemes import Method
+
+if TYPE_CHECKING:
+    from bezstab.questions.verifications import VerifyQuestion
+    from bezstab.show.fields import Row
 
 WHICH_POINTS = ("--alpha", "--points", "--map")
 """Options each of which says what is verified."""
@@ -42,42 +47,56 @@ def verify(across: int | None, work: Work, files: Files, **typed: Any) -> int:
 
     Example: bezstab verify --method AB4 --points 20
     """
-    question = asked(questions.VerifyQuestion, **typed)
+
+    from bezstab.questions.verifications import VerifyQuestion
+    from bezstab.show.row_kinds import VERDICT_MAPS
+
+    question = asked(VerifyQuestion, **typed)
     worked_out(lambda: question.mechanism, typed["scene"])
     if across:
         rows, status = of_each(question.methods, lambda method: [_write_map(question, method, across, work, files)])
-        show_rows(show.VERDICT_MAPS, rows)
+        show_rows(VERDICT_MAPS, rows)
         return status
     _show_measurements(question, typed)
     return 0
 
 
-def _show_measurements(question: "questions.VerifyQuestion", typed: dict[str, Any]) -> None:
+def _show_measurements(question: VerifyQuestion, typed: dict[str, Any]) -> None:
     """Print the poles measured at one point, else at random ones, and where there are several how well they agree."""
+
+    from bezstab.evidence.measured_poles import measurement_summary
+    from bezstab.show.result_sentences import exact_rate_words
+    from bezstab.show.row_kinds import MEASUREMENTS, SUMMARIES
+
     scene, floquet = question.mechanism.scene.name, question.floquet
     measured = [question.measurements(method) for method in progress(question.methods, "verify")]
-    rows = [show.MEASUREMENTS.row(each, scene=scene) for of_method in measured for each in of_method]
+    rows = [MEASUREMENTS.row(each, scene=scene) for of_method in measured for each in of_method]
     show_point(typed, question.point)
-    show_rows(show.MEASUREMENTS, rows, () if floquet else ("right",))
+    show_rows(MEASUREMENTS, rows, () if floquet else ("right",))
     if not for_reading():
         return
     for of_method in measured if floquet else ():
-        show_text(show.exact_rate_words(of_method[0]))
+        show_text(exact_rate_words(of_method[0]))
     if len(rows) > len(measured):  # of one point each there is nothing to sum up
         click.echo()
-        summaries = map(evidence.measurement_summary, measured)
-        show_rows(show.SUMMARIES, map(show.SUMMARIES.row, summaries), () if floquet else ("followed",))
+        summaries = map(measurement_summary, measured)
+        show_rows(SUMMARIES, map(SUMMARIES.row, summaries), () if floquet else ("followed",))
 
 
-def _write_map(question: "questions.VerifyQuestion", method: Method, across: int, work: Work, files: Files) -> show.Row:
+def _write_map(question: VerifyQuestion, method: Method, across: int, work: Work, files: Files) -> Row:
     """Simulate across x across runs of a method, write their verdicts as table and figure, return how many agree."""
-    from bezstab.stability import region
+
+    from bezstab.evidence.verdict_maps import map_rows, simulated_verdicts, verdict_map
+    from bezstab.show.arrays import verdict_arrays
+    from bezstab.show.map_figures import verdict_figure
+    from bezstab.show.row_kinds import VERDICT_MAPS
+    from bezstab.stability.regions import region
 
     scene, h = question.mechanism.scene, float(question.h)
     path = files.path("verify", str(question.scene), method.name)
-    chunks = evidence.map_rows(scene, method, h, across)
+    chunks = map_rows(scene, method, h, across)
     job = f"verify --map {across} --h {h} {method} {scene}"
-    with results_of_chunks(evidence.simulated_verdicts, chunks, path, job, work) as results:
-        verdicts = evidence.verdict_map(chunks, results)
-        files.write(path, lambda: show.verdict_figure(verdicts, region(method)), lambda: show.verdict_arrays(verdicts))
-    return show.VERDICT_MAPS.row(verdicts)
+    with results_of_chunks(simulated_verdicts, chunks, path, job, work) as results:
+        verdicts = verdict_map(chunks, results)
+        files.write(path, lambda: verdict_figure(verdicts, region(method)), lambda: verdict_arrays(verdicts))
+    return VERDICT_MAPS.row(verdicts)

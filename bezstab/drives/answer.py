@@ -16,11 +16,14 @@ import numpy as np
 from bezstab.arguments import Number, exact_number, in_keywords, whole_number
 from bezstab.drives.held_torque import dominant_pole, verdict
 from bezstab.drives.limits import Limits, limits
-from bezstab.engines import DRIVE_METHODS, FRESH, Drive, Timing, timing_of
+from bezstab.engines.drives import DRIVE_METHODS, FRESH, Drive, Timing, timing_of
 from bezstab.errors import InputError
-from bezstab.methods import Method, Verdict, lookup
+from bezstab.methods.registry import lookup
+from bezstab.methods.schemes import Method
+from bezstab.methods.schur import Verdict
 from bezstab.rationals import exact, rounded_down
-from bezstab.stability import first_where, steps_to_settle
+from bezstab.stability.choices import steps_to_settle
+from bezstab.stability.searches import first_where
 from bezstab.units import check_step
 from bezstab.words import change_words, counted, decay_words, gains_words, seconds_words
 

@@ -5,8 +5,8 @@ from collections.abc import Sequence
 
 from bezstab.drives.answer import DriveAnswer
 from bezstab.drives.limits import Stretch
-from bezstab.engines import Timing
-from bezstab.show import Column
+from bezstab.engines.drives import Timing
+from bezstab.show.columns import Column
 from bezstab.words import seconds_words
 
 NOT_JUDGED = (

@@ -11,7 +11,8 @@ from bezstab.cli import shared_options as shared
 from bezstab.cli.options import NUMBER, POSITIVE, SECONDS, ParsedType
 from bezstab.cli.output import Files, show_answers, show_text
 from bezstab.errors import InputError
-from bezstab.methods import Method, lookup
+from bezstab.methods.registry import lookup
+from bezstab.methods.schemes import Method
 from bezstab.rationals import rational
 
 Late = tuple[Fraction, bool]
@@ -81,7 +82,7 @@ def drive(
     """
     from bezstab.drives.answer import gains_for, judge_drive, rates
     from bezstab.drives.columns import COLUMNS, NOT_JUDGED, timing_words, ways_words
-    from bezstab.engines import DRIVE_METHODS, FRESH, Drive, timing_of
+    from bezstab.engines.drives import DRIVE_METHODS, FRESH, Drive, timing_of
 
     ways = tuple(methods) or tuple(map(lookup, DRIVE_METHODS))
     h, every = rates(h, physics, every, controller)

@@ -17,11 +17,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from bezstab.engines import FRESH, Drive, Timing
+from bezstab.engines.drives import FRESH, Drive, Timing
 from bezstab.errors import InputError
-from bezstab.methods import Assignment, Combination, Evaluation, Method, Quantity, SecondOrder, Verdict
+from bezstab.methods.schemes import Method
+from bezstab.methods.schur import Verdict
+from bezstab.methods.second_order import SecondOrder
+from bezstab.methods.step_equations import Assignment, Combination, Evaluation, Quantity
 from bezstab.rationals import ONE
-from bezstab.stability import FloatArray, drive_pole, drive_verdict
+from bezstab.stability.arrays import FloatArray
+from bezstab.stability.drive_poles import drive_pole, drive_verdict
 
 Numbers = NDArray[np.object_]
 """Exact ones."""

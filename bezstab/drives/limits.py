@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 
 from bezstab.drives.held_torque import SEEN, closed_loop, spectral_radius, verdict
-from bezstab.engines import MOST_STEPS, Drive, Timing
-from bezstab.methods import Method
-from bezstab.stability import SLOW, BoolArray, FloatArray, first_where
+from bezstab.engines.drives import MOST_STEPS, Drive, Timing
+from bezstab.methods.schemes import Method
+from bezstab.stability.arrays import SLOW, BoolArray, FloatArray
+from bezstab.stability.searches import first_where
 
 Stretch = tuple[float, float]
 """From and to where a drive is stable: from 0 where there is no lower end, to infinity where there is no upper one."""

@@ -12,20 +12,16 @@ from numpy.typing import NDArray
 
 from bezstab.errors import InputError, NumericalError
 from bezstab.evidence.forced_runs import predicted_errors, settled_error, settled_work
-from bezstab.mechanism import (
-    Motion,
-    Scene,
-    Trajectory,
-    compiled_mechanism,
-    energy_balance,
-    motion_over,
-    observe,
-    simulate,
-)
-from bezstab.methods import Method, steps
+from bezstab.mechanism.equations import compiled_mechanism
+from bezstab.mechanism.motions import Motion, motion_over
+from bezstab.mechanism.observation import energy_balance, observe
+from bezstab.mechanism.runner import Trajectory, simulate
+from bezstab.mechanism.scenes import Scene
+from bezstab.methods.schemes import Method, steps
 from bezstab.rationals import exact
 from bezstab.stabilising import NOTHING, AfterStep, Stabilise, held_by
-from bezstab.stability import choose, spectral_radius
+from bezstab.stability.choices import choose
+from bezstab.stability.closed_loop import spectral_radius
 from bezstab.units import feedback_gains, to_dimensionless
 
 METHODS = ("B2", "B3", "B4", "AB2", "AB4", "ABM4", "RK4", "SIE", "SYM")

@@ -19,19 +19,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bezstab.mechanism import (
-    Mechanism,
-    Memory,
-    Motion,
-    constraint_jacobian,
-    lane_function,
-    linearized_step,
-    memory,
-    program_of,
-    regular_motion,
-)
-from bezstab.methods import Method
-from bezstab.stability import FloatArray
+from bezstab.mechanism.equations import Mechanism
+from bezstab.mechanism.generated_code import lane_function
+from bezstab.mechanism.motions import Motion, regular_motion
+from bezstab.mechanism.programs import program_of
+from bezstab.mechanism.second_order_memory import Memory, memory
+from bezstab.mechanism.start import constraint_jacobian
+from bezstab.mechanism.stepper import linearized_step
+from bezstab.methods.schemes import Method
+from bezstab.stability.arrays import FloatArray
 from bezstab.units import feedback_gains
 
 FIRST_SHARE = 1 / 3  # of the steps in which errors stand out: there the lesser poles still count

@@ -16,18 +16,14 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from bezstab.mechanism import (
-    Mechanism,
-    Motion,
-    Observation,
-    along_normals,
-    motion,
-    multiplier_work,
-    observe,
-    turned_across,
-)
-from bezstab.methods import Method, leading_error, turning_error
-from bezstab.stability import LARGEST_OMEGA_H, FloatArray, forced_response
+from bezstab.mechanism.constraint_normals import along_normals, turned_across
+from bezstab.mechanism.equations import Mechanism
+from bezstab.mechanism.motions import Motion, motion
+from bezstab.mechanism.observation import Observation, multiplier_work, observe
+from bezstab.methods.schemes import Method
+from bezstab.methods.steady_errors import leading_error, turning_error
+from bezstab.stability.arrays import FloatArray
+from bezstab.stability.forced_errors import LARGEST_OMEGA_H, forced_response
 
 COMPARED = 0.5
 """Of the run: from there on, the start has died away."""

@@ -39,17 +39,12 @@ from itertools import chain
 import numpy as np
 
 from bezstab.evidence.linear_prediction import NEGLIGIBLE
-from bezstab.mechanism import (
-    Mechanism,
-    constraint_errors,
-    even_steps,
-    initial_state,
-    march,
-    perturbed_state,
-    resume,
-)
-from bezstab.methods import Method, steps
-from bezstab.stability import BoolArray, FloatArray
+from bezstab.mechanism.equations import Mechanism
+from bezstab.mechanism.programs import even_steps
+from bezstab.mechanism.runner import march, resume
+from bezstab.mechanism.start import constraint_errors, initial_state, perturbed_state
+from bezstab.methods.schemes import Method, steps
+from bezstab.stability.arrays import BoolArray, FloatArray
 from bezstab.units import feedback_gains
 
 KICK = 1e-8

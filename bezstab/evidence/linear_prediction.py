@@ -36,7 +36,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
-from bezstab.stability import ComplexArray, FloatArray
+from bezstab.stability.arrays import ComplexArray, FloatArray
 
 ABOVE_FORCED = (1e2, 1e3, 1e4, 1e5, 1e6)
 """Least |d| of a window, in units of the largest |d| in the second half of the response: above what is forced."""

@@ -11,7 +11,7 @@ from typing import BinaryIO
 import numpy as np
 
 from bezstab.errors import InputError
-from bezstab.stability import FloatArray
+from bezstab.stability.arrays import FloatArray
 
 TIMES = re.compile(r"t(ime)?(\W+s\W*)?", re.IGNORECASE)
 """What a column of times in s is called: t, Time, time [s]. Every other column holds an error."""

@@ -23,20 +23,16 @@ import numpy as np
 from bezstab.evidence.exact_rates import exact_rates
 from bezstab.evidence.kicks import LINEAR, TOO_CLOSE, kicked_fates, kicked_motions
 from bezstab.evidence.linear_prediction import SAMPLES, SPREAD, fit_dominant_pole
-from bezstab.mechanism import Mechanism, runs_compiled, turning_normals
-from bezstab.methods import Method, Verdict
+from bezstab.mechanism.compiled_stepping import runs_compiled
+from bezstab.mechanism.constraint_normals import turning_normals
+from bezstab.mechanism.equations import Mechanism
+from bezstab.methods.schemes import Method
+from bezstab.methods.schur import Verdict
 from bezstab.rationals import exact
-from bezstab.stability import (
-    ComplexArray,
-    FloatArray,
-    MovingPole,
-    dominant_pole,
-    moving_pole,
-    poles,
-    region,
-    verdict,
-    window,
-)
+from bezstab.stability.arrays import ComplexArray, FloatArray
+from bezstab.stability.closed_loop import dominant_pole, poles, verdict
+from bezstab.stability.regions import region, window
+from bezstab.stability.turning import MovingPole, moving_pole
 from bezstab.words import point_words
 
 MeasuredVerdict = Literal["converges", "diverges", "too close to call"]

@@ -25,8 +25,12 @@ from bezstab.errors import InputError, NumericalError
 from bezstab.evidence.kicks import GROWN
 from bezstab.evidence.linear_prediction import Fit, fit_dominant_pole
 from bezstab.evidence.measured_poles import CLOSE
-from bezstab.methods import Method, closed_loop_table
-from bezstab.stability import ComplexArray, FloatArray, dominant_pole, moving_pole, region, spectral_radius, window
+from bezstab.methods.derivation import closed_loop_table
+from bezstab.methods.schemes import Method
+from bezstab.stability.arrays import ComplexArray, FloatArray
+from bezstab.stability.closed_loop import dominant_pole, spectral_radius
+from bezstab.stability.regions import region, window
+from bezstab.stability.turning import moving_pole
 
 ORDER = 8
 """Poles that are looked for: as many as four-step methods have. Of longer ones the lesser poles die out first."""

@@ -9,10 +9,16 @@ from numpy.typing import NDArray
 
 from bezstab.errors import InputError, NumericalError
 from bezstab.evidence.kicks import TOO_CLOSE, kicked_fates
-from bezstab.mechanism import Scene, compiled_mechanism, runs_compiled, turning_normals
-from bezstab.methods import Method
+from bezstab.mechanism.compiled_stepping import runs_compiled
+from bezstab.mechanism.constraint_normals import turning_normals
+from bezstab.mechanism.equations import compiled_mechanism
+from bezstab.mechanism.scenes import Scene
+from bezstab.methods.schemes import Method
 from bezstab.read_only import ReadOnlyArrays
-from bezstab.stability import BoolArray, FloatArray, moving_modulus, pole_map, region, window
+from bezstab.stability.arrays import BoolArray, FloatArray
+from bezstab.stability.closed_loop import pole_map
+from bezstab.stability.regions import region, window
+from bezstab.stability.turning import moving_modulus
 
 MAP_RUN = 2000
 """Steps after the kick."""

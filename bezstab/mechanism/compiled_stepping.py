@@ -19,7 +19,7 @@ from bezstab.compiling import compiled_choice, compiler, numba_is_installed
 from bezstab.mechanism.equations import Mechanism
 from bezstab.mechanism.generated_code import code_of, compiled_source, machine_source
 from bezstab.mechanism.programs import EVALUATIONS, PIVOT, FloatArray, Program, Steps, steps_at_once
-from bezstab.methods import Method, evaluations, implicit
+from bezstab.methods.schemes import Method, evaluations, implicit
 from bezstab.stabilising import NOTHING, AfterStep
 
 WORTH_COMPILING = 3 * 10**5

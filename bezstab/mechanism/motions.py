@@ -16,7 +16,7 @@ from bezstab.mechanism.generated_code import accelerations
 from bezstab.mechanism.observation import observe, singular_passages
 from bezstab.mechanism.runner import simulate
 from bezstab.mechanism.scenes import Driver
-from bezstab.methods import lookup
+from bezstab.methods.registry import lookup
 from bezstab.read_only import ReadOnlyArrays
 
 FloatArray = NDArray[np.float64]

@@ -36,7 +36,9 @@ from numpy.typing import NDArray
 
 from bezstab.linear_equations import solution
 from bezstab.mechanism.second_order_memory import ACCELERATION, POSITION, VELOCITY, is_solved_together, memory
-from bezstab.methods import Assignment, Combination, Evaluation, Quantity, SecondOrder, evaluation_times
+from bezstab.methods.scheme_motions import evaluation_times
+from bezstab.methods.second_order import SecondOrder
+from bezstab.methods.step_equations import Assignment, Combination, Evaluation, Quantity
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]

@@ -24,15 +24,10 @@ from bezstab.mechanism.programs import (
 from bezstab.mechanism.second_order_memory import memory
 from bezstab.mechanism.start import CLOSED, equation_function, initial_state
 from bezstab.mechanism.stepper import BLOWN_UP, Stepper
-from bezstab.methods import (
-    Method,
-    SecondOrder,
-    adams_bashforth,
-    bezier,
-    implicit,
-    is_bezier,
-    lookup,
-)
+from bezstab.methods.multistep_methods import adams_bashforth, bezier, is_bezier
+from bezstab.methods.registry import lookup
+from bezstab.methods.schemes import Method, implicit
+from bezstab.methods.second_order import SecondOrder
 from bezstab.read_only import ReadOnlyArrays
 from bezstab.stabilising import NOTHING, AfterStep
 

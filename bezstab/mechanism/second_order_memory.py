@@ -10,18 +10,9 @@ from fractions import Fraction
 from functools import cache
 
 from bezstab.errors import InputError
-from bezstab.methods import (
-    ACCELERATED,
-    AT_REST,
-    STEADY,
-    Assignment,
-    Evaluation,
-    Motions,
-    Quantity,
-    SecondOrder,
-    exact_motions,
-    value_at_start,
-)
+from bezstab.methods.scheme_motions import ACCELERATED, AT_REST, STEADY, Motions, exact_motions, value_at_start
+from bezstab.methods.second_order import SecondOrder
+from bezstab.methods.step_equations import Assignment, Evaluation, Quantity
 
 POSITION, VELOCITY, ACCELERATION = "x", "v", "a"
 Equation = Assignment | Evaluation

@@ -21,7 +21,7 @@ from bezstab.mechanism.observation import (
 from bezstab.mechanism.programs import Steps, even_steps
 from bezstab.mechanism.runner import Start, Trajectory, simulate_steps
 from bezstab.mechanism.start import perturbed_state
-from bezstab.methods import Method, check_one_step
+from bezstab.methods.schemes import Method, check_one_step
 from bezstab.stabilising import NOTHING, AfterStep, Stabilise, held_by
 from bezstab.units import check_step, feedback_gains
 from bezstab.words import point_words

@@ -27,15 +27,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from bezstab.errors import InputError
-from bezstab.methods import (
-    AT_REST,
-    STEADY,
-    Assignment,
-    Combination,
-    Evaluation,
-    Method,
-    exact_motions,
-)
+from bezstab.methods.scheme_motions import AT_REST, STEADY, exact_motions
+from bezstab.methods.schemes import Method
+from bezstab.methods.step_equations import Assignment, Combination, Evaluation
 from bezstab.read_only import ReadOnlyArrays
 
 FloatArray = NDArray[np.float64]

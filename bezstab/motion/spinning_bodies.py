@@ -21,7 +21,7 @@ PyBullet (erp = 0.2) 34.3 and 33.6 %, Box2D 2.3 74.2 and 74.2 %, MuJoCo ((1, 0.8
 import cmath
 import math
 
-from bezstab.engines import EnergyClass
+from bezstab.engines.conversions import EnergyClass
 from bezstab.errors import InputError
 
 

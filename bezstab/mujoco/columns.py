@@ -8,7 +8,7 @@ from bezstab.mujoco.energy import Kept
 from bezstab.mujoco.linting import Judged
 from bezstab.mujoco.remedies import Remedy
 from bezstab.mujoco.solrefs import Feedback
-from bezstab.show import Column
+from bezstab.show.columns import Column
 
 
 def _largest_step(judged: Judged) -> str | None:

@@ -79,7 +79,7 @@ def lint(
 
     Example: bezstab lint robot.xml
     """
-    from bezstab.engines import Timing
+    from bezstab.engines.drives import Timing
     from bezstab.mujoco.columns import ENERGIES, REMEDIES, SETTINGS, STATES, SUSPECTS
     from bezstab.mujoco.linting import linted_model
 

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from bezstab.engines import Timing
+from bezstab.engines.drives import Timing
 from bezstab.errors import InputError
 from bezstab.rationals import exact
 

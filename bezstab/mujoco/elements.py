@@ -9,7 +9,7 @@ import numpy as np
 
 from bezstab.mujoco.controllers import Drive, name_of
 from bezstab.mujoco.robots import Robot, State
-from bezstab.stability import FloatArray
+from bezstab.stability.arrays import FloatArray
 
 DRIVE_ARRAYS = ("actuator_gainprm", "actuator_biasprm", "actuator_damping")
 FLEX_ARRAYS = ("flex_edgestiffness", "flex_edgedamping", "flex_damping")

@@ -12,14 +12,14 @@ from functools import partial
 
 import numpy as np
 
-from bezstab.engines import MOST_IMPEDANCE
+from bezstab.engines.acceleration_engines import MOST_IMPEDANCE
 from bezstab.errors import InputError, NumericalError
-from bezstab.methods import lookup
+from bezstab.methods.registry import lookup
 from bezstab.mujoco.controllers import name_of
 from bezstab.mujoco.robots import Robot, State
 from bezstab.mujoco.solrefs import METHODS
 from bezstab.rationals import exact
-from bezstab.stability import choose
+from bezstab.stability.choices import choose
 from bezstab.units import feedback_gains
 
 SECONDS = 1.0

@@ -14,7 +14,7 @@ import numpy as np
 
 from bezstab.mujoco.robots import Robot, State
 from bezstab.mujoco.steps import NUDGE, step_at
-from bezstab.stability import FloatArray
+from bezstab.stability.arrays import FloatArray
 
 Kind = Literal["decays", "neutral", "moves on", "falls by itself", "unsafe", "not smooth"]
 

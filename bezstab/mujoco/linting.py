@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from bezstab.arguments import Number, exact_number, in_keywords, real_number, whole_number
-from bezstab.engines import Timing
+from bezstab.engines.drives import Timing
 from bezstab.errors import InputError
 from bezstab.mujoco.blame import Shown, Suspect, suspects_at
 from bezstab.mujoco.controllers import Gains, controlled, uncontrolled

@@ -15,7 +15,7 @@ from bezstab.mujoco.growth import growth_at
 from bezstab.mujoco.robots import Robot, State
 from bezstab.mujoco.solrefs import METHODS
 from bezstab.rationals import rounded_down
-from bezstab.stability import FloatArray
+from bezstab.stability.arrays import FloatArray
 
 MARGIN = 0.9
 """Of the largest safe step: the rest is left to what differs between poses."""

@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from bezstab.engines import Timing
+from bezstab.engines.drives import Timing
 from bezstab.mujoco.controllers import Drive
-from bezstab.stability import FloatArray
+from bezstab.stability.arrays import FloatArray
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,11 +10,14 @@ from typing import Any
 
 import numpy as np
 
-from bezstab.engines import ENGINES, LEAST_IMPEDANCE, MOST_IMPEDANCE
+from bezstab.engines.acceleration_engines import LEAST_IMPEDANCE, MOST_IMPEDANCE
+from bezstab.engines.engine_list import ENGINES
 from bezstab.errors import InputError
-from bezstab.methods import Method, Verdict, lookup
+from bezstab.methods.registry import lookup
+from bezstab.methods.schemes import Method
+from bezstab.methods.schur import Verdict
 from bezstab.rationals import ZERO, exact
-from bezstab.stability import drive_pole, drive_verdict
+from bezstab.stability.drive_poles import drive_pole, drive_verdict
 
 METHODS = {"Euler": "SYM", "RK4": "RK4", "implicit": "SYM", "implicitfast": "SYM"}
 """What MuJoCo's integrators, in the order of its own numbers, are for constraints."""

@@ -13,7 +13,7 @@ from bezstab.errors import InputError
 from bezstab.mujoco.controllers import name_of
 from bezstab.mujoco.robots import Robot, State
 from bezstab.mujoco.steps import NUDGE
-from bezstab.stability import FloatArray
+from bezstab.stability.arrays import FloatArray
 
 QPOS0 = "qpos0"
 

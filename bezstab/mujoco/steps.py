@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from bezstab.mujoco.robots import Robot, State
-from bezstab.stability import ComplexArray, FloatArray
+from bezstab.stability.arrays import ComplexArray, FloatArray
 
 NUDGE = 1e-6
 """m, rad: of positions, and of velocities times the step. Rounding then leaves ten digits of a difference, and the

@@ -5,10 +5,13 @@ from itertools import product
 
 import numpy as np
 
-from bezstab.mechanism import Simulation, Start, compiled_mechanism, load_scene, simulated
-from bezstab.methods import lookup
+from bezstab.mechanism.equations import compiled_mechanism
+from bezstab.mechanism.runner import Start
+from bezstab.mechanism.scene_files import load_scene
+from bezstab.mechanism.simulation import Simulation, simulated
+from bezstab.methods.registry import lookup
 from bezstab.paper.printed import COMPARED, TABLE_5
-from bezstab.stability import dominant_pole
+from bezstab.stability.closed_loop import dominant_pole
 
 STEP = 1e-3  # s, of every method of sections 5.2.2 and 5.2.3 (RK4@5 makes one step of 5 ms in five of these)
 DURATION = 10.0  # s, of Tables 5 and 6

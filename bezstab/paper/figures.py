@@ -8,13 +8,19 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from bezstab.mechanism import Simulation, Start, compiled_mechanism, initial_state, load_scene
-from bezstab.methods import lookup
+from bezstab.mechanism.equations import compiled_mechanism
+from bezstab.mechanism.runner import Start
+from bezstab.mechanism.scene_files import load_scene
+from bezstab.mechanism.simulation import Simulation
+from bezstab.mechanism.start import initial_state
+from bezstab.methods.registry import lookup
 from bezstab.paper.experiments import START_NAMES, STEP, UNSTABILIZED, compared_runs, kicked_runs, unstabilized_runs
 from bezstab.paper.printed import COMPARED, FASTER_LEVEL, TABLE_5
-from bezstab.questions import MapAnswer, MapQuestion
+from bezstab.questions.regions import MapAnswer, MapQuestion
 from bezstab.rationals import exact
-from bezstab.show import DASHES, column_figure, comparison_figure, line_at, map_figure, plot, styled, with_legend
+from bezstab.show import plot
+from bezstab.show.map_figures import comparison_figure, map_figure
+from bezstab.show.style import DASHES, column_figure, line_at, styled, with_legend
 
 COLLAPSE = (0.02, 0.05, 0.1), 2000.0
 """Steps of Fig. 5 (s), and how long it follows a run (s): until most blow up."""

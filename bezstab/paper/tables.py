@@ -6,11 +6,16 @@ from pathlib import Path
 
 import numpy as np
 
-from bezstab.mechanism import Simulation, load_scene
-from bezstab.methods import characteristic_text, lookup, mapping_text, recursion_text
+from bezstab.mechanism.scene_files import load_scene
+from bezstab.mechanism.simulation import Simulation
+from bezstab.methods.formulas import characteristic_text, mapping_text, recursion_text
+from bezstab.methods.registry import lookup
 from bezstab.paper.experiments import KICK, KICKS, STEP, TABLE_4, compared_runs, kicked_runs, largest, pole
 from bezstab.paper.printed import FASTER_LEVEL, TABLE_5, TABLE_6
-from bezstab.show import Row, column, formatted, pole_cells, pole_text, render
+from bezstab.show.cells import pole_text
+from bezstab.show.fields import Row, column, formatted
+from bezstab.show.rows import pole_cells
+from bezstab.show.tables import render
 
 ROUNDED = 1e-13  # m: below, c_1 is rounding amplified by beta^2 h^2 / |1 - z|, and differs between machines
 HALF_A_DIGIT = 0.5001  # of the last place: what rounding may take, and a little for the float64 that is rounded

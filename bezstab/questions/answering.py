@@ -15,30 +15,24 @@ from fractions import Fraction
 from functools import cached_property
 from typing import Literal, cast
 
-from bezstab.engines import READ_BACK, Curve, Engine, Point, engine_and_values
+from bezstab.engines.conversions import READ_BACK, Curve, Engine, Point
+from bezstab.engines.engine_list import engine_and_values
 from bezstab.errors import InputError, NumericalError
 from bezstab.goals import UP_TO_LONGEST, Goal
-from bezstab.methods import Method, stage_torque
-from bezstab.motion import motion_energy, spin_change, steps_to_breakdown
+from bezstab.methods.rotation_torque import stage_torque
+from bezstab.methods.schemes import Method
+from bezstab.motion.modulated_circle import motion_energy, steps_to_breakdown
+from bezstab.motion.spinning_bodies import spin_change
 from bezstab.questions.chains import ALONE, SweptAnswer
 from bezstab.questions.question import Question, usual_goal
 from bezstab.questions.scene_runs import MOST_GAINED, SceneRun, scene_run
 from bezstab.rationals import rational, typed_number
-from bezstab.stability import (
-    LAW_HOLDS,
-    Choice,
-    FeedbackCost,
-    Modulus,
-    MovingPole,
-    choose,
-    describe_point,
-    feedback_cost,
-    largest_stable_step,
-    moving_modulus,
-    moving_pole,
-    stable_up_to,
-    steps_to_settle,
-)
+from bezstab.stability.choices import Choice, choose, describe_point, steps_to_settle
+from bezstab.stability.closed_loop import Modulus
+from bezstab.stability.damping_limits import stable_up_to
+from bezstab.stability.feedback_costs import FeedbackCost, feedback_cost
+from bezstab.stability.margins import largest_stable_step
+from bezstab.stability.turning import LAW_HOLDS, MovingPole, moving_modulus, moving_pole
 from bezstab.units import alpha_and_beta
 from bezstab.words import (
     change_words,

@@ -7,21 +7,17 @@ from functools import partial
 
 import numpy as np
 
-from bezstab.engines import Engine, Point, SweptStep
+from bezstab.engines.conversions import Engine, Point
+from bezstab.engines.sweeping import SweptStep
 from bezstab.errors import InputError
-from bezstab.mechanism import Scene, compiled_mechanism, constraint_jacobian, initial_state
+from bezstab.mechanism.equations import compiled_mechanism
+from bezstab.mechanism.scenes import Scene
+from bezstab.mechanism.start import constraint_jacobian, initial_state
 from bezstab.questions.motions import name_of, scene_at_speed
 from bezstab.rationals import rational
-from bezstab.stability import (
-    FloatArray,
-    Growth,
-    chain,
-    fewest_sweeps,
-    first_where,
-    inverse_effective_masses,
-    swept_growth,
-    swept_rest,
-)
+from bezstab.stability.arrays import FloatArray
+from bezstab.stability.searches import first_where
+from bezstab.stability.sweeps import Growth, chain, fewest_sweeps, inverse_effective_masses, swept_growth, swept_rest
 
 SHARES = np.geomspace(1e-6, 1 - 1e-9, 50)
 """Shares of the strongest feedback. The largest share that constraints allow is searched for between two neighbours.

@@ -8,10 +8,11 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 
-from bezstab.engines import Point
+from bezstab.engines.conversions import Point
 from bezstab.errors import InputError
-from bezstab.evidence import TURNED, Likeness, LikePoint, ProbedPole, likenesses, point_like, told
-from bezstab.methods import Method, lookup
+from bezstab.evidence.probed_poles import TURNED, Likeness, LikePoint, ProbedPole, likenesses, point_like, told
+from bezstab.methods.registry import lookup
+from bezstab.methods.schemes import Method
 from bezstab.words import point_words
 
 MOST_USED = ("SYM", "RK1", "RK2", "RK4", "AB2", "verlet-kdk", "implicit-euler", "trapezoid", "bdf2", "hht")

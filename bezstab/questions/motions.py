@@ -6,19 +6,13 @@ from fractions import Fraction
 from functools import cached_property
 
 from bezstab.errors import InputError
-from bezstab.mechanism import (
-    ConstraintMotion,
-    Mechanism,
-    Scene,
-    TurningNormals,
-    at_speed,
-    compiled_mechanism,
-    constraint_motion,
-    load_scene,
-    turning_normals,
-)
+from bezstab.mechanism.constraint_normals import ConstraintMotion, TurningNormals, constraint_motion, turning_normals
+from bezstab.mechanism.equations import Mechanism, compiled_mechanism
+from bezstab.mechanism.scene_files import load_scene
+from bezstab.mechanism.scenes import Scene, at_speed
 from bezstab.rationals import exact, typed_number
-from bezstab.stability import LAW_HOLDS, OMEGA_H, check_omega_h
+from bezstab.stability.forced_errors import OMEGA_H, check_omega_h
+from bezstab.stability.turning import LAW_HOLDS
 
 
 @dataclass(frozen=True)

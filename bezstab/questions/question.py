@@ -8,11 +8,14 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 
-from bezstab.engines import Applied, Engine, Point
+from bezstab.engines.conversions import Applied, Engine, Point
 from bezstab.errors import InputError
 from bezstab.goals import SETTLING, UP_TO_LONGEST, Goal
-from bezstab.mechanism import Mechanism, Scene, TurningNormals, compiled_mechanism
-from bezstab.methods import Method, lookup
+from bezstab.mechanism.constraint_normals import TurningNormals
+from bezstab.mechanism.equations import Mechanism, compiled_mechanism
+from bezstab.mechanism.scenes import Scene
+from bezstab.methods.registry import lookup
+from bezstab.methods.schemes import Method
 from bezstab.questions.chains import USUAL_CHAIN, SweptConstraints, constraints_of, constraints_of_chain
 from bezstab.questions.motions import (
     ReferenceMotion,
@@ -22,7 +25,10 @@ from bezstab.questions.motions import (
     turn_too_far,
     turning_of,
 )
-from bezstab.stability import OMEGA_H, choose, describe_point, follows_motion, verdict
+from bezstab.stability.choices import choose, describe_point
+from bezstab.stability.closed_loop import verdict
+from bezstab.stability.feedback_costs import follows_motion
+from bezstab.stability.forced_errors import OMEGA_H
 from bezstab.units import check_step, from_dimensionless, to_dimensionless
 from bezstab.words import SLOWLY
 

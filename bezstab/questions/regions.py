@@ -11,37 +11,28 @@ from itertools import chain
 
 import numpy as np
 
-from bezstab.engines import Engine
+from bezstab.engines.conversions import Engine
 from bezstab.errors import InputError, NumericalError
-from bezstab.mechanism import TurningNormals, load_scene
-from bezstab.methods import Method
-from bezstab.motion import motion_energy
+from bezstab.mechanism.constraint_normals import TurningNormals
+from bezstab.mechanism.scene_files import load_scene
+from bezstab.methods.schemes import Method
+from bezstab.motion.modulated_circle import motion_energy
 from bezstab.questions.motions import ReferenceMotion, motion_of, turn_too_far, turning_of
 from bezstab.questions.question import methods_for
-from bezstab.stability import (
-    QUALITY,
-    BestPoint,
-    Choice,
-    ComplexArray,
-    Extent,
-    FarLimit,
-    FloatArray,
-    Region,
-    best_point_or_reason,
-    check_level,
-    choose,
-    combined_error,
+from bezstab.stability.accurate_points import default_rate
+from bezstab.stability.arrays import ComplexArray, Extent, FloatArray
+from bezstab.stability.best_points import BestPoint, FarLimit, best_point_or_reason, falls_towards
+from bezstab.stability.choices import Choice, choose
+from bezstab.stability.closed_loop import QUALITY, pole_map
+from bezstab.stability.damping_limits import (
     critical_damping_limit,
-    default_rate,
     exact_critical_damping_limit,
-    falls_towards,
-    pole_map,
-    region,
-    stable_for_all,
-    turn_limits,
     unconditional_damping_ratio,
-    window,
 )
+from bezstab.stability.forced_errors import combined_error
+from bezstab.stability.quadrant_proofs import stable_for_all
+from bezstab.stability.regions import Region, check_level, region, window
+from bezstab.stability.turning import turn_limits
 
 MOST_DRAWN = 1e100
 """The largest end of a window: its square is drawn as well."""

@@ -7,14 +7,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
-from bezstab.engines import Point
+from bezstab.engines.conversions import Point
 from bezstab.errors import InputError
-from bezstab.mechanism import (
-    Simulation,
-    Start,
-    simulated,
-)
-from bezstab.methods import Method, check_one_step
+from bezstab.mechanism.runner import Start
+from bezstab.mechanism.simulation import Simulation, simulated
+from bezstab.methods.schemes import Method, check_one_step
 from bezstab.questions.motions import SceneQuestion
 from bezstab.stabilising import Stabilise, after_step
 

@@ -11,10 +11,13 @@ from typing import Literal
 
 import numpy as np
 
-from bezstab.engines import Point
+from bezstab.engines.conversions import Point
 from bezstab.errors import InputError
-from bezstab.mechanism import DURATION, Mechanism, Simulation, check_duration, simulated
-from bezstab.methods import Method, stage_torque
+from bezstab.mechanism.equations import Mechanism
+from bezstab.mechanism.scenes import DURATION
+from bezstab.mechanism.simulation import Simulation, check_duration, simulated
+from bezstab.methods.rotation_torque import stage_torque
+from bezstab.methods.schemes import Method
 
 USUAL_TIME = 10.0
 """s, of a scene that says nothing."""

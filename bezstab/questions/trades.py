@@ -13,9 +13,9 @@ from itertools import chain
 import numpy as np
 from numpy.typing import NDArray
 
-from bezstab.engines import Point
+from bezstab.engines.conversions import Point
 from bezstab.errors import InputError
-from bezstab.evidence import (
+from bezstab.evidence.accuracy_costs import (
     NO_FEEDBACK,
     STEPS,
     Cost,
@@ -25,12 +25,13 @@ from bezstab.evidence import (
     reference_run,
     swept_runs,
 )
-from bezstab.mechanism import Scene, runs_compiled
-from bezstab.methods import Method
+from bezstab.mechanism.compiled_stepping import runs_compiled
+from bezstab.mechanism.scenes import Scene
+from bezstab.methods.schemes import Method
 from bezstab.questions import motions
 from bezstab.rationals import exact
 from bezstab.stabilising import NOTHING, AfterStep, Stabilise, after_step
-from bezstab.stability import RATES, FrontPoint, error_front
+from bezstab.stability.error_fronts import RATES, FrontPoint, error_front
 
 MOST_SWEPT = 10**6
 """Steps of a run: the reference takes up to 32 times as many."""

@@ -9,9 +9,9 @@ from fractions import Fraction
 
 import numpy as np
 
-from bezstab.engines import Point
-from bezstab.evidence import Measurement, measure_poles, random_points
-from bezstab.methods import Method
+from bezstab.engines.conversions import Point
+from bezstab.evidence.measured_poles import Measurement, measure_poles, random_points
+from bezstab.methods.schemes import Method
 from bezstab.questions.motions import SceneQuestion
 
 RANDOM_POINTS = 20

@@ -13,13 +13,15 @@ from numpy.typing import NDArray
 
 from bezstab.show.fields import Row
 from bezstab.show.row_kinds import FIELDS
-from bezstab.stability import ComplexArray, FloatArray, Region
+from bezstab.stability.arrays import ComplexArray, FloatArray
+from bezstab.stability.regions import Region
 from bezstab.units import feedback_gains
 
 if TYPE_CHECKING:  # so that an array of the plane does not load what runs mechanisms
-    from bezstab.evidence import Arrays, VerdictMap
-    from bezstab.mechanism import Simulation
-    from bezstab.questions import MapAnswer
+    from bezstab.evidence.parallel import Arrays
+    from bezstab.evidence.verdict_maps import VerdictMap
+    from bezstab.mechanism.simulation import Simulation
+    from bezstab.questions.regions import MapAnswer
 
 
 def map_arrays(answer: MapAnswer, z: ComplexArray) -> Arrays:

@@ -14,7 +14,7 @@ from matplotlib.path import Path
 from matplotlib.patheffects import AbstractPathEffect, withStroke
 from matplotlib.ticker import MaxNLocator
 
-from bezstab.methods import Method
+from bezstab.methods.schemes import Method
 from bezstab.show import plot
 from bezstab.show.style import (
     ABOVE_THE_AXES,
@@ -33,7 +33,8 @@ from bezstab.show.style import (
     with_legend,
 )
 from bezstab.show.window import under_the_mouse
-from bezstab.stability import ComplexArray, FloatArray, Region
+from bezstab.stability.arrays import ComplexArray, FloatArray
+from bezstab.stability.regions import Region
 
 EDGE_LINES = 0.015  # of the axes' sides: so far apart are the arrows of regions that go on beyond the same edge
 ALONG_AN_EDGE, ARROW_EVERY = 121, 24
@@ -68,8 +69,8 @@ PARTS = 300
 
 
 if TYPE_CHECKING:  # so that a picture of the plane does not load what runs mechanisms
-    from bezstab.evidence import VerdictMap
-    from bezstab.questions import MapAnswer, MapQuestion
+    from bezstab.evidence.verdict_maps import VerdictMap
+    from bezstab.questions.regions import MapAnswer, MapQuestion
 
 
 def map_figure(answer: MapAnswer, z: ComplexArray) -> Figure:

@@ -20,7 +20,7 @@ from matplotlib.patheffects import withStroke
 from numpy.typing import ArrayLike
 
 from bezstab.errors import check_kind
-from bezstab.methods import Method
+from bezstab.methods.schemes import Method
 from bezstab.show.style import (
     DASHES,
     cells,
@@ -31,11 +31,15 @@ from bezstab.show.style import (
     styled,
     title_lines,
 )
-from bezstab.stability import BestPoint, Choice, FloatArray, Region, window
-from bezstab.stability import spectral_radius as spectral_radius_at
+from bezstab.stability.arrays import FloatArray
+from bezstab.stability.best_points import BestPoint
+from bezstab.stability.choices import Choice
+from bezstab.stability.closed_loop import spectral_radius as spectral_radius_at
+from bezstab.stability.regions import Region, window
 
 if TYPE_CHECKING:  # so that a picture of the plane does not load what runs mechanisms
-    from bezstab.mechanism import Scene, Simulation
+    from bezstab.mechanism.scenes import Scene
+    from bezstab.mechanism.simulation import Simulation
 
 Range = tuple[SupportsFloat, SupportsFloat]
 
@@ -167,7 +171,7 @@ def history(
     Constraints count from 1. With None it is the largest |c| over all of them, on a logarithmic axis, with a gap where
     all constraints hold to the last bit.
     """
-    from bezstab.mechanism import Simulation
+    from bezstab.mechanism.simulation import Simulation
 
     check_kind(simulation, Simulation, "bezstab.simulate")
     if constraint is None:
@@ -187,7 +191,7 @@ def mechanism(scene: Scene, q: FloatArray, axes: Axes | None = None) -> list[Lin
     A body's pivot on the ground is one of its points, on a triangle. A body with one joint that is free to move along
     is a square on it.
     """
-    from bezstab.mechanism import Scene
+    from bezstab.mechanism.scenes import Scene
 
     check_kind(scene, Scene, "bezstab.scene")
     if axes is None:

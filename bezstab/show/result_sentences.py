@@ -12,9 +12,10 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from fractions import Fraction
 
-    from bezstab.evidence import Measurement
-    from bezstab.questions import Answer, ReferenceMotion
-    from bezstab.stability import BestPoint, FarLimit
+    from bezstab.evidence.measured_poles import Measurement
+    from bezstab.questions.answering import Answer
+    from bezstab.questions.motions import ReferenceMotion
+    from bezstab.stability.best_points import BestPoint, FarLimit
 
 COSTLY = 10.0
 """Times the least error: from here on a sentence says what the feedback costs."""

@@ -8,9 +8,10 @@ from itertools import chain, compress
 from types import SimpleNamespace
 from typing import TYPE_CHECKING
 
-from bezstab.engines import WITNESSES
+from bezstab.engines.engine_list import WITNESSES
 from bezstab.errors import InputError
-from bezstab.methods import OTHER_NAMES, Method, evaluations, implicit, steps
+from bezstab.methods.aliases import OTHER_NAMES
+from bezstab.methods.schemes import Method, evaluations, implicit, steps
 from bezstab.show.cells import LIMITS
 from bezstab.show.fields import Field, Row, Value, cells
 from bezstab.show.result_sentences import best_point_words, falling_words
@@ -45,10 +46,12 @@ OF_ONE_ALONE = (
 if TYPE_CHECKING:  # so that a small row does not load what makes the large ones
     from collections.abc import Iterable
 
-    from bezstab.engines import Engine
-    from bezstab.evidence import LikePoint
-    from bezstab.questions import Answer, LargestStep, MapAnswer, Question, RegionAnswer
-    from bezstab.stability import FrontPoint
+    from bezstab.engines.conversions import Engine
+    from bezstab.evidence.probed_poles import LikePoint
+    from bezstab.questions.answering import Answer, LargestStep
+    from bezstab.questions.question import Question
+    from bezstab.questions.regions import MapAnswer, RegionAnswer
+    from bezstab.stability.error_fronts import FrontPoint
 
 
 def pole_cells(z: complex) -> dict[str, Value]:
@@ -63,7 +66,7 @@ def method_row(method: Method) -> Row:
     None where they do not. `order_position_forces` and `order_velocity_forces` are the orders where forces
     depend on the position alone, and on the velocity alone; `implicit` is whether a step solves equations.
     """
-    from bezstab.methods import accuracy, accuracy_by_force  # loads sympy
+    from bezstab.methods.orders import accuracy, accuracy_by_force  # loads sympy
 
     order, constant = accuracy(method)
     by_force = accuracy_by_force(method)
@@ -88,7 +91,7 @@ def whole_row(answer: RegionAnswer, *, latex: bool) -> Row:
     They are the recursion, s->z mapping, characteristic polynomial (paper Tables 1 and 2), steady errors, stage torque.
     NumericalError as `region_row`.
     """
-    from bezstab.methods import (  # loads sympy
+    from bezstab.methods.formulas import (
         characteristic_text,
         mapping_text,
         multiplier_law_text,
@@ -96,7 +99,7 @@ def whole_row(answer: RegionAnswer, *, latex: bool) -> Row:
         stage_torque_text,
         steady_error_text,
     )
-    from bezstab.stability import order_left
+    from bezstab.stability.feedback_costs import order_left
 
     method = answer.region.method
     return {
@@ -165,7 +168,7 @@ def engine_row(
 
     With a rate omega (1/s) also what that, or else its defaults, do to the energy of a motion.
     """
-    from bezstab.questions import engine_energy_rate
+    from bezstab.questions.answering import engine_energy_rate
 
     setting = None
     if point:

@@ -10,8 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from bezstab.evidence import Cost, ErrorOf, Run, SweptRuns
-from bezstab.mechanism import Simulation
+from bezstab.evidence.accuracy_costs import Cost, ErrorOf, Run, SweptRuns
+from bezstab.mechanism.simulation import Simulation
 from bezstab.show import plot
 from bezstab.show.style import (
     ABOVE_THE_AXES,

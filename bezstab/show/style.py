@@ -13,7 +13,7 @@ from matplotlib.ticker import FixedLocator, MaxNLocator
 from numpy.typing import ArrayLike
 
 from bezstab.show.file_forms import FIGURE_FORMS
-from bezstab.stability import FloatArray
+from bezstab.stability.arrays import FloatArray
 from bezstab.units import FloatOrArray, feedback_gains
 
 COLUMN_WIDTH = 85 / 25.4  # inches

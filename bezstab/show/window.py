@@ -6,9 +6,9 @@ from fractions import Fraction
 from matplotlib.figure import Figure
 
 from bezstab.errors import InputError
-from bezstab.methods import Method
+from bezstab.methods.schemes import Method
 from bezstab.show.style import plane_coordinates, styled
-from bezstab.stability import spectral_radius, verdict
+from bezstab.stability.closed_loop import spectral_radius, verdict
 from bezstab.words import point_words
 
 ENLARGED = 2  # times the size of a column on paper

@@ -7,7 +7,7 @@ from itertools import product
 import numpy as np
 
 from bezstab.errors import NumericalError
-from bezstab.methods import Method
+from bezstab.methods.schemes import Method
 from bezstab.stability.arrays import BoolArray, Extent, FloatArray
 from bezstab.stability.closed_loop import Modulus
 from bezstab.stability.forced_errors import combined_error

@@ -23,7 +23,7 @@ import numpy as np
 from numpy.polynomial.polynomial import polyder, polyroots, polyval2d, polyval3d
 
 from bezstab.errors import NumericalError
-from bezstab.methods import Method
+from bezstab.methods.schemes import Method
 from bezstab.rationals import exact
 from bezstab.stability.arrays import DOUBLE, ROUNDING, SAME, FloatArray
 from bezstab.stability.closed_loop import converges, largest_at_mu, mu_table, poles, spectral_radius

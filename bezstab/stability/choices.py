@@ -10,7 +10,8 @@ import numpy as np
 
 from bezstab.errors import InputError, NumericalError
 from bezstab.goals import Goal
-from bezstab.methods import Method, Verdict, steps
+from bezstab.methods.schemes import Method, steps
+from bezstab.methods.schur import Verdict
 from bezstab.rationals import ONE, exact
 from bezstab.stability.accurate_points import Within, accurate_point, default_rate, off_by, worst_error
 from bezstab.stability.arrays import DOUBLE, SLOW, Extent, FloatArray

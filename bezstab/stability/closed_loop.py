@@ -15,13 +15,9 @@ from numpy.polynomial.polynomial import polyval, polyval2d
 from numpy.typing import ArrayLike, NDArray
 
 from bezstab.errors import NumericalError
-from bezstab.methods import (
-    Method,
-    Verdict,
-    closed_loop_at,
-    is_schur,
-    recursion_verdict,
-)
+from bezstab.methods.derivation import closed_loop_at
+from bezstab.methods.schemes import Method
+from bezstab.methods.schur import Verdict, is_schur, recursion_verdict
 from bezstab.stability.arrays import EPS, BoolArray, ComplexArray, FloatArray, plane_arrays
 from bezstab.stability.root_finding import (
     CHUNK,

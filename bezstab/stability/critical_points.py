@@ -6,7 +6,7 @@ On alpha = beta both mu of a method that has a mu are one, so each of its poles 
 import numpy as np
 
 from bezstab.errors import InputError
-from bezstab.methods import Method
+from bezstab.methods.schemes import Method
 from bezstab.stability.arrays import SAME, FloatArray
 from bezstab.stability.best_points import AT_ZERO
 from bezstab.stability.closed_loop import largest_at_mu, mu_table

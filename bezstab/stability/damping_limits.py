@@ -16,7 +16,8 @@ from functools import cache
 
 import numpy as np
 
-from bezstab.methods import Method, rational_feedback_roots
+from bezstab.methods.derivation import rational_feedback_roots
+from bezstab.methods.schemes import Method
 from bezstab.rationals import ONE, ZERO
 from bezstab.stability.arrays import BoolArray, FloatArray
 from bezstab.stability.path_ends import PROVEN_TO, Path, places, verdict_end

@@ -10,7 +10,9 @@ import numpy as np
 from numpy.polynomial.polynomial import polyval
 from numpy.typing import ArrayLike
 
-from bezstab.methods import Method, Verdict, closed_loop_at, closed_loop_table, recursion_verdict
+from bezstab.methods.derivation import closed_loop_at, closed_loop_table
+from bezstab.methods.schemes import Method
+from bezstab.methods.schur import Verdict, recursion_verdict
 from bezstab.stability.arrays import ComplexArray, plane_arrays
 from bezstab.stability.closed_loop import largest_pole
 from bezstab.stability.root_finding import roots_of_rows

@@ -16,8 +16,8 @@ from functools import partial
 import numpy as np
 
 from bezstab.errors import InputError, NumericalError
-from bezstab.methods import Method
-from bezstab.motion import motion_energy
+from bezstab.methods.schemes import Method
+from bezstab.motion.modulated_circle import motion_energy
 from bezstab.stability.accurate_points import BETTER
 from bezstab.stability.arrays import FloatArray
 from bezstab.stability.best_points import BestPoint, best_point_or_reason

@@ -7,7 +7,9 @@ from functools import lru_cache
 import numpy as np
 
 from bezstab.errors import InputError, NumericalError
-from bezstab.methods import Method, accuracy, leading_error
+from bezstab.methods.orders import accuracy
+from bezstab.methods.schemes import Method
+from bezstab.methods.steady_errors import leading_error
 from bezstab.rationals import exact
 from bezstab.stability.accurate_points import DECAY
 from bezstab.stability.choices import USUAL_SPREAD, choose

@@ -25,7 +25,8 @@ from numpy.polynomial.polynomial import polyval, polyval2d
 from numpy.typing import ArrayLike
 
 from bezstab.errors import InputError
-from bezstab.methods import Method, forced_errors, leading_error
+from bezstab.methods.schemes import Method
+from bezstab.methods.steady_errors import forced_errors, leading_error
 from bezstab.stability.arrays import ComplexArray, FloatArray
 from bezstab.stability.root_finding import companion_roots
 

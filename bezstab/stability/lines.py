@@ -24,7 +24,7 @@ import numpy as np
 from numpy.polynomial import Legendre
 
 from bezstab.errors import NumericalError
-from bezstab.methods import Method
+from bezstab.methods.schemes import Method
 from bezstab.stability.arrays import BoolArray, FloatArray
 from bezstab.stability.stretches import ALONG_ALPHA, ALONG_BETA, paths
 

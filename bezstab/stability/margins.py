@@ -8,7 +8,7 @@ from fractions import Fraction
 import numpy as np
 
 from bezstab.errors import InputError, NumericalError
-from bezstab.methods import Method
+from bezstab.methods.schemes import Method
 from bezstab.stability.closed_loop import converges
 from bezstab.stability.path_ends import Path, verdict_end
 from bezstab.stability.searches import first_where

@@ -16,7 +16,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from bezstab.methods import Method
+from bezstab.methods.schemes import Method
 from bezstab.rationals import ONE
 from bezstab.stability.closed_loop import converges
 from bezstab.stability.stretches import Powers, paths

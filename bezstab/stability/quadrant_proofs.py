@@ -23,7 +23,8 @@ import sympy as sp
 from sympy.polys.matrices import DomainMatrix
 from sympy.polys.rings import PolyElement
 
-from bezstab.methods import Method, closed_loop_table, plane_elements
+from bezstab.methods.derivation import closed_loop_table, plane_elements
+from bezstab.methods.schemes import Method
 from bezstab.stability.damping_limits import RATIOS, limit_at
 
 StableForAll = Literal["proven", "no unstable point found", "no"]

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bezstab.errors import InputError, NumericalError
-from bezstab.methods import Method
+from bezstab.methods.schemes import Method
 from bezstab.read_only import ReadOnlyArrays
 from bezstab.stability.arrays import BoolArray, Extent, FloatArray
 from bezstab.stability.best_points import best_point_or_reason

@@ -40,7 +40,8 @@ from numpy.polynomial.polynomial import polyval
 from numpy.typing import NDArray
 
 from bezstab.errors import NumericalError
-from bezstab.methods import Method, closed_loop_table
+from bezstab.methods.derivation import closed_loop_table
+from bezstab.methods.schemes import Method
 from bezstab.rationals import exact
 from bezstab.stability.arrays import BoolArray, ComplexArray, FloatArray
 from bezstab.stability.root_finding import companion_roots

@@ -20,7 +20,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from bezstab.engines import MOST_SWEEPS, Move, Pass, SweptStep, VelocityOfMove
+from bezstab.engines.sweeping import MOST_SWEEPS, Move, Pass, SweptStep, VelocityOfMove
 from bezstab.errors import InputError, NumericalError
 from bezstab.rationals import bisected_integers
 from bezstab.stability.arrays import EPS, FloatArray

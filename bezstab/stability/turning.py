@@ -33,7 +33,7 @@ import numpy as np
 from numpy.polynomial.polynomial import polyder, polyval2d, polyval3d
 from numpy.typing import ArrayLike
 
-from bezstab.methods import Method
+from bezstab.methods.schemes import Method
 from bezstab.stability.arrays import ComplexArray, FloatArray
 from bezstab.stability.closed_loop import Modulus, mu_table, own_feedback_root, poles
 from bezstab.stability.stretches import float_table

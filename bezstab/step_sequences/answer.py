@@ -11,12 +11,14 @@ from fractions import Fraction
 from itertools import groupby
 
 from bezstab.arguments import Number, exact_number, in_keywords
-from bezstab.engines import Engine, Point, engine_and_values
+from bezstab.engines.conversions import Engine, Point
+from bezstab.engines.engine_list import engine_and_values
 from bezstab.errors import InputError
 from bezstab.goals import Goal
-from bezstab.methods import Method, check_one_step, lookup
-from bezstab.questions import methods_for
-from bezstab.stability import choose
+from bezstab.methods.registry import lookup
+from bezstab.methods.schemes import Method, check_one_step
+from bezstab.questions.question import methods_for
+from bezstab.stability.choices import choose
 from bezstab.step_sequences.growing_runs import growing_run
 from bezstab.step_sequences.varying_steps import Steps, VaryingSteps, Verdict, varying_steps
 from bezstab.units import alpha_and_beta, feedback_gains, to_dimensionless

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from bezstab.show import Column
+from bezstab.show.columns import Column
 from bezstab.step_sequences.answer import StepsAnswer
 from bezstab.units import alpha_and_beta
 

@@ -8,7 +8,7 @@ from bezstab.cli import shared_options as shared
 from bezstab.cli.asking import say_what_is_left_out
 from bezstab.cli.options import ENGINE_VALUES, NUMBER, SECONDS, EngineValues
 from bezstab.cli.output import for_reading, show_answers, show_command, show_text
-from bezstab.methods import Method
+from bezstab.methods.schemes import Method
 
 
 @click.command()

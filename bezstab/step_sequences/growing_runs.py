@@ -6,9 +6,10 @@ from collections.abc import Sequence
 from fractions import Fraction
 from itertools import groupby
 
-from bezstab.engines import Point
+from bezstab.engines.conversions import Point
 from bezstab.errors import InputError
-from bezstab.methods import Method, lookup
+from bezstab.methods.registry import lookup
+from bezstab.methods.schemes import Method
 from bezstab.rationals import typed_number
 from bezstab.step_sequences.varying_steps import Steps, VaryingSteps
 

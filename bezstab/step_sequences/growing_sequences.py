@@ -11,7 +11,9 @@ from itertools import groupby
 
 import numpy as np
 
-from bezstab.methods import ExactArray, StepMatrix, characteristic, is_schur
+from bezstab.methods.determinants import characteristic
+from bezstab.methods.schur import is_schur
+from bezstab.methods.step_matrices import ExactArray, StepMatrix
 from bezstab.rationals import exact
 
 LENGTHS = 40  # tried for either kind of step, evenly spaced

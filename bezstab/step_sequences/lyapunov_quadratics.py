@@ -14,9 +14,9 @@ from itertools import combinations_with_replacement, product
 import numpy as np
 from numpy.polynomial.polynomial import polyadd, polymul
 
-from bezstab.methods import ExactArray, StepMatrix
+from bezstab.methods.step_matrices import ExactArray, StepMatrix
 from bezstab.rationals import whole_multiples
-from bezstab.stability import SLOW, FloatArray
+from bezstab.stability.arrays import SLOW, FloatArray
 from bezstab.step_sequences.positive_polynomials import positivity
 
 DIGITS = 9  # significant ones of what proves

@@ -22,8 +22,9 @@ import numpy as np
 from numpy.polynomial.polynomial import polyadd, polymul, polysub
 
 from bezstab.errors import InputError
-from bezstab.methods import Method, StepMatrix, step_matrix
-from bezstab.stability import FloatArray
+from bezstab.methods.schemes import Method
+from bezstab.methods.step_matrices import StepMatrix, step_matrix
+from bezstab.stability.arrays import FloatArray
 from bezstab.step_sequences.growing_sequences import growing_words, grows, growth_of
 from bezstab.step_sequences.lyapunov_quadratics import centred_form, determinant, proves_decay, rounded
 from bezstab.step_sequences.positive_polynomials import positivity

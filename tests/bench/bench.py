@@ -21,30 +21,21 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
-from bezstab.evidence import map_rows, simulated_verdicts
 from bezstab.evidence.exact_rates import exact_rates
-from bezstab.evidence.verdict_maps import MapRows
-from bezstab.mechanism import (
-    Mechanism,
-    T,
-    compiled_mechanism,
-    even_steps,
-    initial_state,
-    load_scene,
-    march,
-    motion,
-    simulate,
-)
-from bezstab.methods import (
-    LinearMultistep,
-    Method,
-    RungeKutta,
-    bezier,
-    lookup,
-    recipe,
-    steps,
-)
-from bezstab.stability import FloatArray, region, spectral_radius, window
+from bezstab.evidence.verdict_maps import MapRows, map_rows, simulated_verdicts
+from bezstab.mechanism.equations import Mechanism, T, compiled_mechanism
+from bezstab.mechanism.motions import motion
+from bezstab.mechanism.programs import even_steps
+from bezstab.mechanism.runner import march, simulate
+from bezstab.mechanism.scene_files import load_scene
+from bezstab.mechanism.start import initial_state
+from bezstab.methods.multistep_methods import bezier
+from bezstab.methods.recipes import recipe
+from bezstab.methods.registry import lookup
+from bezstab.methods.schemes import LinearMultistep, Method, RungeKutta, steps
+from bezstab.stability.arrays import FloatArray
+from bezstab.stability.closed_loop import spectral_radius
+from bezstab.stability.regions import region, window
 
 HERE = Path(__file__).parent
 sys.path.insert(0, str(HERE.parent.parent))  # run as a script, the tests are no package yet

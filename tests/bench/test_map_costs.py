@@ -5,8 +5,11 @@ import tracemalloc
 import numpy as np
 import pytest
 
-from bezstab.methods import Method, lookup
-from bezstab.stability import QUALITY, FloatArray, pole_map, region, spectral_radius, window
+from bezstab.methods.registry import lookup
+from bezstab.methods.schemes import Method
+from bezstab.stability.arrays import FloatArray
+from bezstab.stability.closed_loop import QUALITY, pole_map, spectral_radius
+from bezstab.stability.regions import region, window
 
 ON_THE_EDGE = 1e-9  # of |z_p|: a whole row where it is one, up to rounding, lies along the boundary
 HALVINGS = 40  # of the interval between two points of a row: to 1e-12 of it

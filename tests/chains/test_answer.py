@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from bezstab.chains.answer import SPREAD, Links, chain, judge_chain, links
-from bezstab.engines import ENGINES, engine_and_values
+from bezstab.engines.engine_list import ENGINES, engine_and_values
 from bezstab.errors import InputError
-from bezstab.stability import FloatArray
+from bezstab.stability.arrays import FloatArray
 from tests.reference.engine_steps import STEPS
 
 H = Fraction(1, 60)

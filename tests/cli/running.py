@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from click.testing import CliRunner, Result
 
-from bezstab.cli import main
+from bezstab.cli.command_group import main
 
 DATA = Path(__file__).parent / "data"
 

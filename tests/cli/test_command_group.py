@@ -10,7 +10,7 @@ from click.testing import CliRunner
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from bezstab.cli import main
+from bezstab.cli.command_group import main
 from bezstab.cli.removed import WENT
 from tests.cli.running import run
 

@@ -3,10 +3,10 @@
 import pytest
 from click.shell_completion import ShellComplete
 
-from bezstab.cli import main
-from bezstab.engines import ENGINES
-from bezstab.mechanism import shipped_scenes
-from bezstab.methods import REGISTRY, lookup
+from bezstab.cli.command_group import main
+from bezstab.engines.engine_list import ENGINES
+from bezstab.mechanism.scene_files import shipped_scenes
+from bezstab.methods.registry import REGISTRY, lookup
 
 
 def completions(words: str, kind: str = "plain") -> list[str]:

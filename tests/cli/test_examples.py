@@ -11,8 +11,10 @@ import click
 import pytest
 from click.testing import CliRunner
 
-from bezstab.cli import main
-from bezstab.show import ROW_KINDS, RowKind, shown_width
+from bezstab.cli.command_group import main
+from bezstab.show.fields import RowKind
+from bezstab.show.row_kinds import ROW_KINDS
+from bezstab.show.tables import shown_width
 from tests.cli.running import DATA
 
 SMALL = "--figure none --table none"

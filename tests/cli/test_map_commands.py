@@ -7,8 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from bezstab.methods import lookup
-from bezstab.stability import combined_error, region
+from bezstab.methods.registry import lookup
+from bezstab.stability.forced_errors import combined_error
+from bezstab.stability.regions import region
 from tests.cli.running import arrays, rows, run
 
 

@@ -2,7 +2,9 @@
 
 import pytest
 
-from bezstab.mechanism import compiled_mechanism, constraint_motion, load_scene
+from bezstab.mechanism.constraint_normals import constraint_motion
+from bezstab.mechanism.equations import compiled_mechanism
+from bezstab.mechanism.scene_files import load_scene
 from tests.cli.running import rows, run
 
 FOUR_BAR = "--scene driven_four_bar"

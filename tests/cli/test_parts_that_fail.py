@@ -6,10 +6,10 @@ from typing import Any
 
 import pytest
 
-from bezstab import stability
 from bezstab.errors import NumericalError
 from bezstab.questions import answering, regions
 from bezstab.stability import best_points, choices, feedback_costs
+from bezstab.stability.regions import region
 from tests.cli.running import rows, run
 
 POINT = "--method B4 --alpha 1/2 --beta 1/10"
@@ -28,7 +28,7 @@ def _forget_what_failed() -> Iterator[None]:
 
 
 def test_without_an_alternative_check_still_answers(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(stability.choices, "region", failing)
+    monkeypatch.setattr(choices, "region", failing)
     for alpha, status, said in (("1/2", 0, "α̂ = 0.5, β̂ = 0.1: safe."), ("5", 1, "α̂ = 5, β̂ = 0.1: not safe.")):
         result = run(f"check --method B4 --alpha {alpha} --beta 1/10")
         assert (result.exit_code, result.stdout.startswith(said)) == (status, True)
@@ -55,7 +55,7 @@ def test_without_a_best_point_region_still_prints_the_area(monkeypatch: pytest.M
 
 
 def test_a_method_without_a_region_withholds_no_other(monkeypatch: pytest.MonkeyPatch) -> None:
-    of_any = stability.region
+    of_any = region
     monkeypatch.setattr(regions, "region", lambda method, *level: (of_any if method.name == "B4" else failing)(method))
     result = run("region --method AB4 --method B4", FILES)
     assert (result.exit_code, result.stderr) == (3, f"bezstab: {REASON}\n")

@@ -8,10 +8,11 @@ import pytest
 from click.testing import CliRunner
 from numpy.typing import NDArray
 
-from bezstab.cli import main
-from bezstab.methods import lookup
+from bezstab.cli.command_group import main
+from bezstab.methods.registry import lookup
 from bezstab.questions.log_probes import MOST_USED
-from bezstab.stability import FloatArray, poles
+from bezstab.stability.arrays import FloatArray
+from bezstab.stability.closed_loop import poles
 from tests.cli.running import rows, run
 from tests.reference.sampled_responses import of_poles
 

@@ -7,9 +7,9 @@ import pytest
 
 from bezstab.drives.answer import DriveAnswer, drive, gains_for, judge_drive, rates
 from bezstab.drives.held_torque import verdict
-from bezstab.engines import Drive, Timing
+from bezstab.engines.drives import Drive, Timing
 from bezstab.errors import InputError
-from bezstab.methods import lookup
+from bezstab.methods.registry import lookup
 
 H = Fraction("0.002")
 INERTIA = Fraction("0.1")

@@ -10,8 +10,8 @@ from matplotlib.figure import Figure
 from bezstab.drives.answer import judge_drive
 from bezstab.drives.figure import drive_figure
 from bezstab.drives.held_torque import verdict
-from bezstab.engines import Drive, Timing
-from bezstab.methods import lookup
+from bezstab.engines.drives import Drive, Timing
+from bezstab.methods.registry import lookup
 
 SYM = lookup("SYM")
 H = Fraction("0.002")

@@ -21,9 +21,10 @@ from bezstab.drives.held_torque import (
     verdict,
 )
 from bezstab.drives.limits import Limits, limits
-from bezstab.engines import DRIVE_METHODS, Drive, Timing
-from bezstab.methods import closed_loop_at, lookup
-from bezstab.stability import FloatArray
+from bezstab.engines.drives import DRIVE_METHODS, Drive, Timing
+from bezstab.methods.derivation import closed_loop_at
+from bezstab.methods.registry import lookup
+from bezstab.stability.arrays import FloatArray
 
 ONE = Fraction(1)
 POSITIVE = st.fractions(Fraction(1, 100), 4, max_denominator=1000)

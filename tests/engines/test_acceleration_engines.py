@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from bezstab.engines import ENGINES
 from bezstab.engines.acceleration_engines import MUJOCO
+from bezstab.engines.engine_list import ENGINES
 from tests.reference.engine_steps import State, matrix, two_gains
 
 H = Fraction(2, 1000)

@@ -2,7 +2,7 @@ from fractions import Fraction
 
 import pytest
 
-from bezstab.engines import ENGINES
+from bezstab.engines.engine_list import ENGINES
 from bezstab.errors import InputError
 
 H = Fraction(1, 100)

@@ -8,10 +8,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from bezstab.engines import DRIVE_METHODS, Drive
+from bezstab.engines.drives import DRIVE_METHODS, Drive
 from bezstab.errors import InputError
-from bezstab.methods import lookup
-from bezstab.stability import spectral_radius, verdict
+from bezstab.methods.registry import lookup
+from bezstab.stability.closed_loop import spectral_radius, verdict
 from tests.reference.drive_steps import DRIVE_STEPS
 from tests.reference.engine_steps import matrix
 

@@ -10,10 +10,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from bezstab.engines import ENGINES, RUN_UNDERNEATH, WITNESSES, Engine, engine_and_values, engine_named
+from bezstab.engines.conversions import Engine
+from bezstab.engines.engine_list import ENGINES, RUN_UNDERNEATH, WITNESSES, engine_and_values, engine_named
 from bezstab.errors import InputError
-from bezstab.methods import lookup
-from bezstab.stability import poles, spectral_radius
+from bezstab.methods.registry import lookup
+from bezstab.stability.closed_loop import poles, spectral_radius
 from tests.reference.engine_steps import STEPS, matrix
 
 LIKELY = {  # ranges of what people set, by unit: wide, but within what a line of nine digits keeps

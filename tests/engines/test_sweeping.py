@@ -4,10 +4,12 @@ from fractions import Fraction
 
 import pytest
 
-from bezstab.engines import ENGINES, check_iterations
+from bezstab.engines.engine_list import ENGINES
+from bezstab.engines.sweeping import check_iterations
 from bezstab.errors import InputError
-from bezstab.methods import lookup
-from bezstab.stability import chain, spectral_radius, swept_growth
+from bezstab.methods.registry import lookup
+from bezstab.stability.closed_loop import spectral_radius
+from bezstab.stability.sweeps import chain, swept_growth
 
 
 @pytest.mark.parametrize("name", [name for name, engine in ENGINES.items() if engine.sweeping])

@@ -3,7 +3,10 @@
 from dataclasses import replace
 from functools import cache
 
-from bezstab.mechanism import Driver, Mechanism, TurningNormals, compiled_mechanism, load_scene, turning_normals
+from bezstab.mechanism.constraint_normals import TurningNormals, turning_normals
+from bezstab.mechanism.equations import Mechanism, compiled_mechanism
+from bezstab.mechanism.scene_files import load_scene
+from bezstab.mechanism.scenes import Driver
 
 
 def four_bar() -> Mechanism:

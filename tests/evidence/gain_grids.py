@@ -10,10 +10,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from bezstab.evidence.forced_runs import COMPARED, settled_error
-from bezstab.mechanism import compiled_mechanism, constraint_motion, load_scene, motion, simulated
-from bezstab.methods import Method, lookup
+from bezstab.goals import Goal
+from bezstab.mechanism.constraint_normals import constraint_motion
+from bezstab.mechanism.equations import compiled_mechanism
+from bezstab.mechanism.motions import motion
+from bezstab.mechanism.scene_files import load_scene
+from bezstab.mechanism.simulation import simulated
+from bezstab.methods.registry import lookup
+from bezstab.methods.schemes import Method
 from bezstab.rationals import exact
-from bezstab.stability import FloatArray, Goal, choose, spectral_radius
+from bezstab.stability.arrays import FloatArray
+from bezstab.stability.choices import choose
+from bezstab.stability.closed_loop import spectral_radius
 
 METHODS = ("RK4", "dopri5", "bs3", "B4", "AB2", "AB4", "ABM4", "SYM", "verlet-half", "bdf2", "hht", "gauss4")
 SCENES = {"slider_crank_light": (0.004, 2.0), "driven_four_bar": (0.003, 1.0), "andrews": (1e-4, 0.03)}

@@ -12,13 +12,19 @@ from typing import Literal
 
 import numpy as np
 
-from bezstab.engines import MOST_IMPEDANCE
+from bezstab.engines.acceleration_engines import MOST_IMPEDANCE
 from bezstab.errors import InputError
-from bezstab.mechanism import GROUND, Body, Mechanism, Revolute, Scene, constraint_errors, perturbed_state
-from bezstab.methods import Method, lookup
+from bezstab.mechanism.equations import Mechanism
+from bezstab.mechanism.scenes import GROUND, Body, Revolute, Scene
+from bezstab.mechanism.start import constraint_errors, perturbed_state
+from bezstab.methods.registry import lookup
+from bezstab.methods.schemes import Method
 from bezstab.mujoco.reading import mujoco_module, silent
 from bezstab.mujoco.solrefs import METHODS
-from bezstab.stability import FloatArray, bisected, region, spectral_radius
+from bezstab.stability.arrays import FloatArray
+from bezstab.stability.closed_loop import spectral_radius
+from bezstab.stability.regions import region
+from bezstab.stability.searches import bisected
 from bezstab.units import feedback_gains
 
 Outcome = Literal["converges", "diverges", "neither"]

@@ -10,11 +10,16 @@ import numpy as np
 
 from bezstab.evidence.kicks import kicked_motions
 from bezstab.evidence.measured_poles import SURROUNDINGS
-from bezstab.mechanism import Mechanism, compiled_mechanism, constraint_jacobian, load_scene, turning_normals
+from bezstab.mechanism.constraint_normals import turning_normals
+from bezstab.mechanism.equations import Mechanism, compiled_mechanism
 from bezstab.mechanism.motions import motion
-from bezstab.methods import REGISTRY, lookup
+from bezstab.mechanism.scene_files import load_scene
+from bezstab.mechanism.start import constraint_jacobian
+from bezstab.methods.registry import REGISTRY, lookup
 from bezstab.rationals import exact
-from bezstab.stability import FloatArray, region, spectral_radius, window
+from bezstab.stability.arrays import FloatArray
+from bezstab.stability.closed_loop import spectral_radius
+from bezstab.stability.regions import region, window
 
 H = 1e-3  # s
 LARGEST = 1.0  # m: beyond it a simulator has long stopped

@@ -5,9 +5,9 @@ from functools import cache
 
 import numpy as np
 
-from bezstab.evidence import Cost, ReferenceRun, Run, Sweep, measured_runs, reference_run, swept_runs
-from bezstab.mechanism import load_scene
-from bezstab.methods import lookup
+from bezstab.evidence.accuracy_costs import Cost, ReferenceRun, Run, Sweep, measured_runs, reference_run, swept_runs
+from bezstab.mechanism.scene_files import load_scene
+from bezstab.methods.registry import lookup
 
 SCENE = "slider_crank_light"
 DURATION = 2.0  # s: in the first one AB4 shows the error of its RK4 start, of order 2

@@ -8,13 +8,24 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bezstab.errors import NumericalError
-from bezstab.evidence import METHODS, NO_FEEDBACK, Cost, ErrorOf, SweptRuns, measured_runs, reference_run, swept_runs
-from bezstab.evidence.accuracy_costs import pareto_front
-from bezstab.mechanism import load_scene
-from bezstab.methods import accuracy, evaluations, lookup
+from bezstab.evidence.accuracy_costs import (
+    METHODS,
+    NO_FEEDBACK,
+    Cost,
+    ErrorOf,
+    SweptRuns,
+    measured_runs,
+    pareto_front,
+    reference_run,
+    swept_runs,
+)
+from bezstab.mechanism.scene_files import load_scene
+from bezstab.methods.orders import accuracy
+from bezstab.methods.registry import lookup
+from bezstab.methods.schemes import evaluations
 from bezstab.rationals import exact
 from bezstab.stabilising import after_step
-from bezstab.stability import choose
+from bezstab.stability.choices import choose
 from tests.evidence.samples import of_campaign
 from tests.evidence.small_sweeps import DURATION, OMEGA, SOFT, cost_for, reference, small_sweep, swept
 from tests.reference.undominated import Point, undominated

@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 from bezstab.evidence.exact_rates import exact_rates, stepped_motion
-from bezstab.mechanism import Mechanism, compiled_mechanism, load_scene
-from bezstab.methods import lookup
-from bezstab.stability import spectral_radius
+from bezstab.mechanism.equations import Mechanism, compiled_mechanism
+from bezstab.mechanism.scene_files import load_scene
+from bezstab.methods.registry import lookup
+from bezstab.stability.closed_loop import spectral_radius
 from tests.evidence.driven_four_bar import four_bar, swinging_four_bar
 from tests.reference.perturbed_revolutions import runner_motion, settled_multiplier
 

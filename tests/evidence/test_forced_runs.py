@@ -7,9 +7,14 @@ import numpy as np
 import pytest
 
 from bezstab.evidence.forced_runs import predicted_errors, settled_error
-from bezstab.mechanism import compiled_mechanism, load_scene, motion, simulate, simulated
-from bezstab.methods import RungeKutta, lookup
-from bezstab.stability import choose
+from bezstab.mechanism.equations import compiled_mechanism
+from bezstab.mechanism.motions import motion
+from bezstab.mechanism.runner import simulate
+from bezstab.mechanism.scene_files import load_scene
+from bezstab.mechanism.simulation import simulated
+from bezstab.methods.registry import lookup
+from bezstab.methods.schemes import RungeKutta
+from bezstab.stability.choices import choose
 from bezstab.units import feedback_gains
 from tests.evidence.gain_grids import METHODS
 from tests.evidence.samples import of_campaign

@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 from bezstab.evidence.kicks import fates, thrown_apart
-from bezstab.mechanism import compiled_mechanism, load_scene
-from bezstab.methods import lookup
-from bezstab.stability import FloatArray
+from bezstab.mechanism.equations import compiled_mechanism
+from bezstab.mechanism.scene_files import load_scene
+from bezstab.methods.registry import lookup
+from bezstab.stability.arrays import FloatArray
 
 KICK, RUN = 1e-8, 2000
 STEPS: FloatArray = np.arange(RUN + 1.0)

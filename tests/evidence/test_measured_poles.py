@@ -5,11 +5,20 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from bezstab.evidence import Measurement, measure_poles, measurement_summary, random_points
 from bezstab.evidence.linear_prediction import SPREAD
-from bezstab.evidence.measured_poles import CLOSE, _measured_verdict
-from bezstab.mechanism import Mechanism, compiled_mechanism, load_scene
-from bezstab.methods import LinearMultistep, PredictorCorrector, SecondOrder, implicit, lookup
+from bezstab.evidence.measured_poles import (
+    CLOSE,
+    Measurement,
+    _measured_verdict,
+    measure_poles,
+    measurement_summary,
+    random_points,
+)
+from bezstab.mechanism.equations import Mechanism, compiled_mechanism
+from bezstab.mechanism.scene_files import load_scene
+from bezstab.methods.registry import lookup
+from bezstab.methods.schemes import LinearMultistep, PredictorCorrector, implicit
+from bezstab.methods.second_order import SecondOrder
 from tests.methods.kinds import FEW
 
 H = 1e-3  # s

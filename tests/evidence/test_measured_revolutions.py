@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from bezstab.evidence.exact_rates import exact_rates
-from bezstab.methods import lookup
-from bezstab.stability import spectral_radius
+from bezstab.methods.registry import lookup
+from bezstab.stability.closed_loop import spectral_radius
 from tests.evidence.driven_four_bar import four_bar
 from tests.reference.perturbed_revolutions import runner_motion
 

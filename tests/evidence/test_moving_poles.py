@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 from bezstab.evidence.exact_rates import exact_rates
-from bezstab.methods import lookup
-from bezstab.stability import FloatArray, moduli_and_shifts, moving_modulus, moving_pole, turn_limits
+from bezstab.methods.registry import lookup
+from bezstab.stability.arrays import FloatArray
 from bezstab.stability.regions import region, window
+from bezstab.stability.turning import moduli_and_shifts, moving_modulus, moving_pole, turn_limits
 from tests.evidence.driven_four_bar import four_bar, turning
 from tests.methods.kinds import sampled
 

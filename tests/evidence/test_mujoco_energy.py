@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 
 from bezstab import check
-from bezstab.mechanism import compiled_mechanism, initial_state, load_scene
+from bezstab.mechanism.equations import compiled_mechanism
+from bezstab.mechanism.scene_files import load_scene
+from bezstab.mechanism.start import initial_state
 from tests.evidence.mujoco_witness import model_xml
 
 mujoco: Any = pytest.importorskip("mujoco")

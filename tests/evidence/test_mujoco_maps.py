@@ -13,10 +13,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from bezstab.engines import ENGINES
-from bezstab.methods import lookup
+from bezstab.engines.engine_list import ENGINES
+from bezstab.methods.registry import lookup
 from bezstab.rationals import exact
-from bezstab.stability import spectral_radius
+from bezstab.stability.closed_loop import spectral_radius
 from tests.mujoco.models import FLAT, INTEGRATORS, UNSAFE, WEIGHTLESS, mjcf
 from tests.reference.mujoco_steps import grown, step_moduli
 

@@ -9,9 +9,11 @@ import numpy as np
 import pytest
 
 from bezstab.errors import InputError
-from bezstab.mechanism import Force, compiled_mechanism, load_scene, perturbed_state, shipped_scenes
-from bezstab.mechanism.scene_files import parse_scene
-from bezstab.stability import spectral_radius
+from bezstab.mechanism.equations import compiled_mechanism
+from bezstab.mechanism.scene_files import load_scene, parse_scene, shipped_scenes
+from bezstab.mechanism.scenes import Force
+from bezstab.mechanism.start import perturbed_state
+from bezstab.stability.closed_loop import spectral_radius
 from tests.evidence.mujoco_witness import RAYS, RUN_WITH, TIMES, model_xml, mujoco_witnesses
 from tests.evidence.samples import of_campaign
 from tests.mechanism.test_scenes import MANY, pendulum, scene_of

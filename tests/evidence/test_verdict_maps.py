@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from bezstab.evidence import VerdictMap, map_rows, simulated_verdicts, verdict_map
 from bezstab.evidence.exact_rates import exact_rates
-from bezstab.mechanism import load_scene
-from bezstab.methods import lookup
-from bezstab.stability import region
+from bezstab.evidence.verdict_maps import VerdictMap, map_rows, simulated_verdicts, verdict_map
+from bezstab.mechanism.scene_files import load_scene
+from bezstab.methods.registry import lookup
+from bezstab.stability.regions import region
 from tests.evidence.driven_four_bar import four_bar
 
 H = 1e-3  # s

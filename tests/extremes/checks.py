@@ -15,20 +15,19 @@ import numpy as np
 
 from bezstab.errors import NumericalError
 from bezstab.evidence.kicks import kicked_fates
-from bezstab.mechanism import (
-    compiled_mechanism,
-    constraint_errors,
-    even_steps,
-    initial_state,
-    load_scene,
-    march,
-    observe,
-    runs_compiled,
-    simulate,
-    state_function,
-)
-from bezstab.methods import LinearMultistep, Method, lookup, rho_and_sigma
-from bezstab.stability import critical_damping_limit, poles
+from bezstab.mechanism.compiled_stepping import runs_compiled
+from bezstab.mechanism.equations import compiled_mechanism
+from bezstab.mechanism.generated_code import state_function
+from bezstab.mechanism.observation import observe
+from bezstab.mechanism.programs import even_steps
+from bezstab.mechanism.runner import march, simulate
+from bezstab.mechanism.scene_files import load_scene
+from bezstab.mechanism.start import constraint_errors, initial_state
+from bezstab.methods.derivation import rho_and_sigma
+from bezstab.methods.registry import lookup
+from bezstab.methods.schemes import LinearMultistep, Method
+from bezstab.stability.closed_loop import poles
+from bezstab.stability.damping_limits import critical_damping_limit
 from bezstab.units import feedback_gains
 from tests.extremes.root_digits import DIGITS, pole_digits
 

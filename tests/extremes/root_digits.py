@@ -22,8 +22,8 @@ from dataclasses import dataclass
 import mpmath as mp
 
 from bezstab.errors import NumericalError
-from bezstab.methods import Method
-from bezstab.stability import poles
+from bezstab.methods.schemes import Method
+from bezstab.stability.closed_loop import poles
 
 DIGITS = 100
 """Of the arithmetic: differences of squares of two float64 cancel up to 32 of them."""

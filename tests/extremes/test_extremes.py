@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from bezstab.mechanism import Observation, observe
-from bezstab.methods import Method
-from bezstab.stability import critical_damping_limit, poles
+from bezstab.mechanism.observation import Observation, observe
+from bezstab.methods.schemes import Method
+from bezstab.stability.closed_loop import poles
+from bezstab.stability.damping_limits import critical_damping_limit
 from tests.extremes import checks, root_digits
 from tests.extremes.checks import EXTREMES, Found
 

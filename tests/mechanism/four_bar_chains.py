@@ -11,8 +11,8 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-from bezstab.mechanism import Scene
 from bezstab.mechanism.scene_files import parse_scene
+from bezstab.mechanism.scenes import Scene
 
 HALF = 0.5  # m
 

@@ -10,9 +10,11 @@ import pytest
 
 from bezstab.compiling import COMPILED_CHOICE
 from bezstab.errors import InputError
-from bezstab.mechanism import compiled_mechanism, load_scene, runs_compiled
 from bezstab.mechanism import compiled_stepping as module
-from bezstab.methods import lookup
+from bezstab.mechanism.compiled_stepping import runs_compiled
+from bezstab.mechanism.equations import compiled_mechanism
+from bezstab.mechanism.scene_files import load_scene
+from bezstab.methods.registry import lookup
 from bezstab.stabilising import after_step
 from bezstab.units import feedback_gains
 from tests.mechanism.four_bar_chains import four_bars

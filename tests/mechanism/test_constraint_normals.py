@@ -3,14 +3,10 @@
 import numpy as np
 import pytest
 
-from bezstab.mechanism import (
-    compiled_mechanism,
-    constraint_motion,
-    load_scene,
-    motion,
-    turned_across,
-    turning_normals,
-)
+from bezstab.mechanism.constraint_normals import constraint_motion, turned_across, turning_normals
+from bezstab.mechanism.equations import compiled_mechanism
+from bezstab.mechanism.motions import motion
+from bezstab.mechanism.scene_files import load_scene
 
 OMEGA = 2 * np.pi  # rad/s, of both driven scenes
 

@@ -6,11 +6,13 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from bezstab.mechanism import Simulation, compiled_mechanism, load_scene, simulated
+from bezstab.mechanism.equations import compiled_mechanism
 from bezstab.mechanism.observation import running_integral
-from bezstab.mechanism.scene_files import parse_scene
-from bezstab.methods import accuracy, lookup
-from bezstab.motion import motion_energy
+from bezstab.mechanism.scene_files import load_scene, parse_scene
+from bezstab.mechanism.simulation import Simulation, simulated
+from bezstab.methods.orders import accuracy
+from bezstab.methods.registry import lookup
+from bezstab.motion.modulated_circle import motion_energy
 from tests.mechanism.test_scenes import pendulum
 from tests.reference.one_coordinate_motion import ANGLE, shown_order, slider_crank_energies
 

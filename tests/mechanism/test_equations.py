@@ -5,8 +5,10 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from bezstab.mechanism import Mechanism, compiled_mechanism, initial_state, observe
+from bezstab.mechanism.equations import Mechanism, compiled_mechanism
+from bezstab.mechanism.observation import observe
 from bezstab.mechanism.scene_files import parse_scene
+from bezstab.mechanism.start import initial_state
 from tests.mechanism.test_scenes import pendulum
 
 FloatArray = NDArray[np.float64]

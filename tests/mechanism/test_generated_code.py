@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from bezstab.mechanism import compiled_mechanism, initial_state, load_scene, state_function
-from bezstab.mechanism.generated_code import code_of, compiled_source, lane_function, machine_source
-from bezstab.mechanism.scene_files import parse_scene
+from bezstab.mechanism.equations import compiled_mechanism
+from bezstab.mechanism.generated_code import code_of, compiled_source, lane_function, machine_source, state_function
+from bezstab.mechanism.scene_files import load_scene, parse_scene
+from bezstab.mechanism.start import initial_state
 from tests.mechanism.four_bar_chains import four_bars
 from tests.mechanism.test_scenes import pendulum
 

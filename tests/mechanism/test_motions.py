@@ -6,16 +6,12 @@ import numpy as np
 import pytest
 
 from bezstab.errors import InputError, NumericalError
-from bezstab.mechanism import (
-    Body,
-    compiled_mechanism,
-    constraint_errors,
-    load_scene,
-    motion,
-    regular_motion,
-    turning_normals,
-)
-from bezstab.mechanism.motions import STEPS
+from bezstab.mechanism.constraint_normals import turning_normals
+from bezstab.mechanism.equations import compiled_mechanism
+from bezstab.mechanism.motions import STEPS, motion, regular_motion
+from bezstab.mechanism.scene_files import load_scene
+from bezstab.mechanism.scenes import Body
+from bezstab.mechanism.start import constraint_errors
 from tests.evidence.driven_four_bar import swinging_four_bar
 from tests.mechanism.four_bar_chains import four_bars
 

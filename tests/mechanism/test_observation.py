@@ -1,17 +1,13 @@
 import numpy as np
 import pytest
 
-from bezstab.mechanism import (
-    accelerations,
-    compiled_mechanism,
-    initial_state,
-    load_scene,
-    observe,
-    shipped_scenes,
-    simulate,
-    singular_passages,
-)
-from bezstab.methods import lookup
+from bezstab.mechanism.equations import compiled_mechanism
+from bezstab.mechanism.generated_code import accelerations
+from bezstab.mechanism.observation import observe, singular_passages
+from bezstab.mechanism.runner import simulate
+from bezstab.mechanism.scene_files import load_scene, shipped_scenes
+from bezstab.mechanism.start import initial_state
+from bezstab.methods.registry import lookup
 from tests.mechanism.four_bar_chains import four_bars
 from tests.mechanism.test_scenes import MANY, scene_of
 from tests.reference.literal_equation_9 import literal_equation_9

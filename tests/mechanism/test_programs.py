@@ -4,7 +4,7 @@ import pytest
 
 from bezstab.mechanism.programs import Program, program_of
 from bezstab.mechanism.second_order_memory import memory
-from bezstab.methods import lookup
+from bezstab.methods.registry import lookup
 
 
 def program(name: str) -> Program:

@@ -7,19 +7,15 @@ import numpy as np
 import pytest
 
 from bezstab.errors import InputError
-from bezstab.mechanism import (
-    Mechanism,
-    Simulation,
-    compiled_mechanism,
-    constraint_jacobian,
-    initial_state,
-    load_scene,
-    observe,
-    simulate,
-    simulated,
-    state_function,
-)
-from bezstab.methods import Method, evaluations, implicit, lookup
+from bezstab.mechanism.equations import Mechanism, compiled_mechanism
+from bezstab.mechanism.generated_code import state_function
+from bezstab.mechanism.observation import observe
+from bezstab.mechanism.runner import simulate
+from bezstab.mechanism.scene_files import load_scene
+from bezstab.mechanism.simulation import Simulation, simulated
+from bezstab.mechanism.start import constraint_jacobian, initial_state
+from bezstab.methods.registry import lookup
+from bezstab.methods.schemes import Method, evaluations, implicit
 from bezstab.stabilising import AfterStep, after_step
 from tests.mechanism.test_runner import measured_order
 from tests.mechanism.test_second_order_memory import LEAPFROG

@@ -8,18 +8,15 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from bezstab.mechanism import (
-    Start,
-    compiled_mechanism,
-    constraint_errors,
-    load_scene,
-    observe,
-    perturbed_state,
-    simulate,
-    simulated,
-)
-from bezstab.mechanism.runner import _starters
-from bezstab.methods import Method, accuracy, evaluations, lookup, steps
+from bezstab.mechanism.equations import compiled_mechanism
+from bezstab.mechanism.observation import observe
+from bezstab.mechanism.runner import Start, _starters, simulate
+from bezstab.mechanism.scene_files import load_scene
+from bezstab.mechanism.simulation import simulated
+from bezstab.mechanism.start import constraint_errors, perturbed_state
+from bezstab.methods.orders import accuracy
+from bezstab.methods.registry import lookup
+from bezstab.methods.schemes import Method, evaluations, steps
 from bezstab.stabilising import NOTHING, AfterStep
 from bezstab.units import feedback_gains
 from tests.mechanism.four_bar_chains import four_bars

@@ -7,8 +7,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from bezstab.errors import InputError
-from bezstab.mechanism import shipped_scenes
-from bezstab.mechanism.scene_files import parse_scene, read_scene
+from bezstab.mechanism.scene_files import parse_scene, read_scene, shipped_scenes
 from tests.mechanism.test_scenes import pendulum
 
 SPRING = {"bodies": ["ground", "bob"], "points": [[0, 2], [0, 0]], "stiffness": 3.0, "free_length": 1.0}

@@ -4,9 +4,12 @@ import numpy as np
 import pytest
 
 from bezstab.errors import InputError
-from bezstab.mechanism import Scene, at_speed, compiled_mechanism, initial_state, load_scene, simulate
-from bezstab.mechanism.scene_files import parse_scene
-from bezstab.methods import lookup
+from bezstab.mechanism.equations import compiled_mechanism
+from bezstab.mechanism.runner import simulate
+from bezstab.mechanism.scene_files import load_scene, parse_scene
+from bezstab.mechanism.scenes import Scene, at_speed
+from bezstab.mechanism.start import initial_state
+from bezstab.methods.registry import lookup
 from tests.mechanism.four_bar_chains import four_bars
 
 

@@ -7,7 +7,9 @@ import pytest
 from bezstab.errors import InputError
 from bezstab.mechanism.programs import program_of
 from bezstab.mechanism.second_order_memory import memory
-from bezstab.methods import Quantity, lookup, recipe
+from bezstab.methods.recipes import recipe
+from bezstab.methods.registry import lookup
+from bezstab.methods.step_equations import Quantity
 
 LEAPFROG = recipe({"w": "w[0] + a0", "x1": "x0 + w", "a1": "acceleration(x1, w)", "v1": "w + 1/2 a1"})
 """The velocity half a step back is what it carries."""

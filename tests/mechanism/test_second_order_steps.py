@@ -5,10 +5,13 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from bezstab.mechanism import Mechanism, compiled_mechanism, perturbed_state, simulate
-from bezstab.mechanism.runner import states_needed
+from bezstab.mechanism.equations import Mechanism, compiled_mechanism
+from bezstab.mechanism.runner import simulate, states_needed
 from bezstab.mechanism.scene_files import parse_scene
-from bezstab.methods import Method, closed_loop_at, lookup
+from bezstab.mechanism.start import perturbed_state
+from bezstab.methods.derivation import closed_loop_at
+from bezstab.methods.registry import lookup
+from bezstab.methods.schemes import Method
 from bezstab.units import feedback_gains
 from tests.mechanism.test_scenes import pendulum
 from tests.mechanism.test_second_order_memory import LEAPFROG

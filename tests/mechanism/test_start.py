@@ -7,8 +7,10 @@ import pytest
 from numpy.typing import NDArray
 
 from bezstab.errors import InputError, NumericalError
-from bezstab.mechanism import compiled_mechanism, initial_state, load_scene, observe, perturbed_state, shipped_scenes
-from bezstab.mechanism.scene_files import parse_scene
+from bezstab.mechanism.equations import compiled_mechanism
+from bezstab.mechanism.observation import observe
+from bezstab.mechanism.scene_files import load_scene, parse_scene, shipped_scenes
+from bezstab.mechanism.start import initial_state, perturbed_state
 from tests.mechanism.test_scenes import pendulum
 
 

@@ -7,17 +7,15 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from bezstab.mechanism import (
-    Stepper,
-    compiled_mechanism,
-    lane_function,
-    linearized_step,
-    load_scene,
-    memory,
-    motion,
-    program_of,
-)
-from bezstab.methods import lookup, step_matrix
+from bezstab.mechanism.equations import compiled_mechanism
+from bezstab.mechanism.generated_code import lane_function
+from bezstab.mechanism.motions import motion
+from bezstab.mechanism.programs import program_of
+from bezstab.mechanism.scene_files import load_scene
+from bezstab.mechanism.second_order_memory import memory
+from bezstab.mechanism.stepper import Stepper, linearized_step
+from bezstab.methods.registry import lookup
+from bezstab.methods.step_matrices import step_matrix
 from tests.mechanism.test_varying_runs import ONE_STEP
 
 Array = NDArray[Any]

@@ -6,21 +6,15 @@ from typing import Any
 import numpy as np
 import pytest
 
-from bezstab.mechanism import (
-    Mechanism,
-    Trajectory,
-    compiled_mechanism,
-    even_steps,
-    initial_state,
-    load_scene,
-    march,
-    programs,
-    resume,
-    simulate,
-)
-from bezstab.mechanism.runner import Block, states_needed
+from bezstab.mechanism import programs
+from bezstab.mechanism.equations import Mechanism, compiled_mechanism
+from bezstab.mechanism.programs import even_steps
+from bezstab.mechanism.runner import Block, Trajectory, march, resume, simulate, states_needed
+from bezstab.mechanism.scene_files import load_scene
+from bezstab.mechanism.start import initial_state
 from bezstab.mechanism.stepper import MOST_ITERATIONS, _inverses
-from bezstab.methods import implicit, lookup
+from bezstab.methods.registry import lookup
+from bezstab.methods.schemes import implicit
 from bezstab.stabilising import NOTHING, after_step
 from bezstab.units import feedback_gains
 from tests.reference.plain_runs import FloatArray, plain_run

@@ -6,17 +6,14 @@ import numpy as np
 import pytest
 
 from bezstab.compiling import COMPILED_CHOICE
-from bezstab.mechanism import (
-    Mechanism,
-    Simulation,
-    at_speed,
-    compiled_mechanism,
-    load_scene,
-    observe,
-    simulated,
-)
-from bezstab.methods import lookup, step_matrix
-from bezstab.stability import FloatArray
+from bezstab.mechanism.equations import Mechanism, compiled_mechanism
+from bezstab.mechanism.observation import observe
+from bezstab.mechanism.scene_files import load_scene
+from bezstab.mechanism.scenes import at_speed
+from bezstab.mechanism.simulation import Simulation, simulated
+from bezstab.methods.registry import lookup
+from bezstab.methods.step_matrices import step_matrix
+from bezstab.stability.arrays import FloatArray
 from bezstab.units import feedback_gains
 from tests.mechanism.test_stepping import assert_alike
 

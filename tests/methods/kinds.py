@@ -5,15 +5,9 @@ from typing import Any
 
 import pytest
 
-from bezstab.methods import (
-    REGISTRY,
-    LinearMultistep,
-    PredictorCorrector,
-    RungeKutta,
-    SecondOrder,
-    implicit,
-    lookup,
-)
+from bezstab.methods.registry import REGISTRY, lookup
+from bezstab.methods.schemes import LinearMultistep, PredictorCorrector, RungeKutta, implicit
+from bezstab.methods.second_order import SecondOrder
 
 SECOND_ORDER = [name for name in REGISTRY if isinstance(lookup(name).scheme, SecondOrder)]
 """Equations for positions, velocities and accelerations: P(z; alpha_hat, beta_hat), but no pi(z, mu)."""

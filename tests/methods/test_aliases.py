@@ -4,13 +4,12 @@ import re
 
 import pytest
 
-from bezstab.engines import ENGINES
+from bezstab.engines.engine_list import ENGINES
 from bezstab.errors import InputError
-from bezstab.methods import lookup
 from bezstab.methods.aliases import ADVICE, ALIASES, ANSWERS, OTHER_NAMES, folded
-from bezstab.methods.registry import FOLDED_NAMES
+from bezstab.methods.registry import FOLDED_NAMES, lookup
 from bezstab.methods.second_order_methods import PARAMETRIC
-from bezstab.stability import dominant_pole
+from bezstab.stability.closed_loop import dominant_pole
 
 
 def refusal(text: str) -> str:

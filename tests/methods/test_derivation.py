@@ -7,22 +7,20 @@ import pytest
 import sympy as sp
 from sympy.polys.matrices import DomainMatrix
 
-from bezstab.methods import (
+from bezstab.methods.derivation import (
     ALPHA_HAT,
     BETA_HAT,
     MU,
     H,
-    PredictorCorrector,
-    RungeKutta,
     S,
     Z,
+    characteristic_polynomial,
     closed_loop_at,
     closed_loop_polynomial,
-    lookup,
     mapping_equation,
-    steps,
 )
-from bezstab.methods.derivation import characteristic_polynomial
+from bezstab.methods.registry import lookup
+from bezstab.methods.schemes import PredictorCorrector, RungeKutta, steps
 from tests.methods.kinds import EXPLICIT, SAMPLE, sampled
 from tests.reference.steppers import State, trajectory
 

@@ -8,23 +8,18 @@ import pytest
 import sympy as sp
 from matplotlib.mathtext import MathTextParser
 
-from bezstab.methods import (
-    ALPHA_HAT,
-    BETA_HAT,
-    REGISTRY,
-    Method,
-    Z,
+from bezstab.methods.derivation import ALPHA_HAT, BETA_HAT, Z, closed_loop_polynomial
+from bezstab.methods.formulas import (
     characteristic_text,
-    closed_loop_polynomial,
-    leading_error,
-    lookup,
     mapping_text,
     multiplier_law_text,
     recursion_text,
     stage_torque_text,
     steady_error_text,
 )
-from bezstab.methods.steady_errors import Part
+from bezstab.methods.registry import REGISTRY, lookup
+from bezstab.methods.schemes import Method
+from bezstab.methods.steady_errors import Part, leading_error
 from tests.methods.kinds import FEW, SAMPLE, SOLVED, sampled
 
 NAMES = [*REGISTRY, "RK4@5", "B3@5/2", "hht@1/3"]

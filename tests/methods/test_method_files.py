@@ -9,16 +9,10 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from bezstab.errors import InputError
-from bezstab.methods import (
-    LinearMultistep,
-    Method,
-    RungeKutta,
-    accuracy,
-    implicit,
-    lookup,
-    read_method,
-    steps,
-)
+from bezstab.methods.method_files import read_method
+from bezstab.methods.orders import accuracy
+from bezstab.methods.registry import lookup
+from bezstab.methods.schemes import LinearMultistep, Method, RungeKutta, implicit, steps
 from tests.methods import kinds
 from tests.methods.random_recipes import VERLET
 

@@ -4,7 +4,9 @@ from fractions import Fraction
 
 import pytest
 
-from bezstab.methods import REGISTRY, LinearMultistep, PredictorCorrector, is_bezier, lookup
+from bezstab.methods.multistep_methods import is_bezier
+from bezstab.methods.registry import REGISTRY, lookup
+from bezstab.methods.schemes import LinearMultistep, PredictorCorrector
 from tests.reference.bezier_curves import de_casteljau_weights
 
 

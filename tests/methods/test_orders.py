@@ -11,15 +11,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from bezstab.methods import (
-    Method,
-    SecondOrder,
-    accuracy,
-    accuracy_by_force,
-    lookup,
-    steps,
-)
+from bezstab.methods.orders import accuracy, accuracy_by_force
+from bezstab.methods.registry import lookup
 from bezstab.methods.rooted_trees import _trees
+from bezstab.methods.schemes import Method, steps
+from bezstab.methods.second_order import SecondOrder
 from tests.methods import kinds
 from tests.methods.kinds import EXPLICIT, FEW, sampled
 from tests.reference.made_methods import multistep, runge_kutta

@@ -8,7 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from bezstab.errors import InputError
-from bezstab.methods import Assignment, recipe
+from bezstab.methods.recipes import recipe
+from bezstab.methods.step_equations import Assignment
 from tests.methods.random_recipes import VERLET
 
 F = Fraction

@@ -10,7 +10,8 @@ from pathlib import Path
 import pytest
 
 from bezstab.errors import InputError
-from bezstab.methods import GROUPS, REGISTRY, lookup, read_method
+from bezstab.methods.method_files import read_method
+from bezstab.methods.registry import GROUPS, REGISTRY, lookup
 
 NAMES = list(REGISTRY)
 
@@ -129,7 +130,9 @@ def test_bad_parameters_are_refused_in_one_line(typed: str, why: str) -> None:
 
 
 def test_naming_a_method_loads_no_algebra() -> None:
-    probe = "import sys; from bezstab.methods import lookup; [lookup(name) for name in ('B4', 'RK4@5', 'gauss4')]"
+    probe = (
+        "import sys; from bezstab.methods.registry import lookup; [lookup(name) for name in ('B4', 'RK4@5', 'gauss4')]"
+    )
     run = subprocess.run(
         [sys.executable, "-c", f"{probe}; print('sympy' in sys.modules)"], capture_output=True, text=True, check=True
     )

@@ -9,9 +9,11 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from bezstab.methods import REGISTRY, Method, RungeKutta, SecondOrder, lookup
+from bezstab.methods.registry import REGISTRY, lookup
 from bezstab.methods.rotation_torque import stage_torque
-from bezstab.stability import spectral_radius
+from bezstab.methods.schemes import Method, RungeKutta
+from bezstab.methods.second_order import SecondOrder
+from bezstab.stability.closed_loop import spectral_radius
 from tests.reference.circle_steps import last_gain
 
 A, B = sp.symbols("alpha_hat beta_hat")

@@ -4,7 +4,9 @@ from fractions import Fraction
 
 import pytest
 
-from bezstab.methods import Method, RungeKutta, accuracy, evaluations, lookup
+from bezstab.methods.orders import accuracy
+from bezstab.methods.registry import lookup
+from bezstab.methods.schemes import Method, RungeKutta, evaluations
 from tests.methods.exact_lists import fractions
 from tests.reference.orders import DORMAND_PRINCE
 

@@ -4,11 +4,9 @@ from fractions import Fraction
 
 import pytest
 
-from bezstab.methods import (
-    RungeKutta,
-    evaluation_times,
-    lookup,
-)
+from bezstab.methods.registry import lookup
+from bezstab.methods.scheme_motions import evaluation_times
+from bezstab.methods.schemes import RungeKutta
 from tests.methods.kinds import RUNGE_KUTTA
 
 

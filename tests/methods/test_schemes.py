@@ -8,16 +8,9 @@ import pytest
 import sympy as sp
 
 from bezstab.errors import InputError
-from bezstab.methods import (
-    REGISTRY,
-    LinearMultistep,
-    RungeKutta,
-    closed_loop_polynomial,
-    evaluations,
-    lookup,
-    steps,
-)
-from bezstab.methods.derivation import ALPHA_HAT, BETA_HAT, MU, Z, characteristic_polynomial
+from bezstab.methods.derivation import ALPHA_HAT, BETA_HAT, MU, Z, characteristic_polynomial, closed_loop_polynomial
+from bezstab.methods.registry import REGISTRY, lookup
+from bezstab.methods.schemes import LinearMultistep, RungeKutta, evaluations, steps
 from tests.methods import kinds
 from tests.methods.exact_lists import fractions
 

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from bezstab.methods import is_schur, recursion_verdict
+from bezstab.methods.schur import is_schur, recursion_verdict
 from tests.reference.known_roots import (
     ONE,
     Factor,

@@ -8,15 +8,11 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from bezstab.errors import InputError
-from bezstab.methods import (
-    LinearMultistep,
-    Method,
-    SecondOrder,
-    closed_loop_at,
-    lookup,
-    recipe,
-    steps,
-)
+from bezstab.methods.derivation import closed_loop_at
+from bezstab.methods.recipes import recipe
+from bezstab.methods.registry import lookup
+from bezstab.methods.schemes import LinearMultistep, Method, steps
+from bezstab.methods.second_order import SecondOrder
 from tests.methods import kinds
 from tests.methods.random_recipes import RECIPES, VERLET
 from tests.reference.second_order_steps import step_polynomial

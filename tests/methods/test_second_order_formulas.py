@@ -1,6 +1,6 @@
 from fractions import Fraction
 
-from bezstab.methods import recipe
+from bezstab.methods.recipes import recipe
 from bezstab.methods.second_order_formulas import second_order_text
 
 

@@ -5,15 +5,9 @@ from fractions import Fraction
 import pytest
 import sympy as sp
 
-from bezstab.methods import (
-    ALPHA_HAT,
-    BETA_HAT,
-    SecondOrder,
-    Z,
-    closed_loop_at,
-    closed_loop_polynomial,
-    lookup,
-)
+from bezstab.methods.derivation import ALPHA_HAT, BETA_HAT, Z, closed_loop_at, closed_loop_polynomial
+from bezstab.methods.registry import lookup
+from bezstab.methods.second_order import SecondOrder
 
 a, b, z = ALPHA_HAT, BETA_HAT, Z
 F = Fraction

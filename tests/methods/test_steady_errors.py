@@ -11,19 +11,19 @@ import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from bezstab.methods import (
-    REGISTRY,
+from bezstab.methods.orders import accuracy
+from bezstab.methods.registry import REGISTRY, lookup
+from bezstab.methods.scheme_motions import evaluation_errors
+from bezstab.methods.steady_errors import (
     ExponentialSum,
     ForcedErrors,
-    accuracy,
-    evaluation_errors,
+    Part,
+    PlanePolynomial,
     forced_errors,
     leading_error,
-    lookup,
     turning_error,
 )
-from bezstab.methods.steady_errors import Part, PlanePolynomial
-from bezstab.stability import spectral_radius
+from bezstab.stability.closed_loop import spectral_radius
 from tests.methods.kinds import SOLVED, sampled
 from tests.reference.forced_runs import DIGITS, exact_value, steady_errors
 

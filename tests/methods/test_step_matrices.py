@@ -3,7 +3,10 @@ from fractions import Fraction
 import pytest
 
 from bezstab.errors import InputError
-from bezstab.methods import characteristic, closed_loop_at, lookup, step_matrix
+from bezstab.methods.derivation import closed_loop_at
+from bezstab.methods.determinants import characteristic
+from bezstab.methods.registry import lookup
+from bezstab.methods.step_matrices import step_matrix
 
 ONE_STEP = (
     *("B1", "RK2", "RK4", "RK4@5", "SIE", "tsit5", "gauss4", "radau3", "implicit-euler", "trapezoid"),

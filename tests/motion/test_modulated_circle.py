@@ -8,9 +8,10 @@ import pytest
 from numpy.typing import NDArray
 
 from bezstab.errors import InputError
-from bezstab.methods import REGISTRY, accuracy, lookup
+from bezstab.methods.orders import accuracy
+from bezstab.methods.registry import REGISTRY, lookup
 from bezstab.methods.rotation_torque import stage_torque
-from bezstab.motion import motion_energy, steps_to_breakdown
+from bezstab.motion.modulated_circle import motion_energy, steps_to_breakdown
 
 FloatArray = NDArray[np.float64]
 Field = Callable[[FloatArray, FloatArray], FloatArray]

@@ -6,9 +6,9 @@ from typing import get_args
 import numpy as np
 import pytest
 
-from bezstab.engines import EnergyClass
+from bezstab.engines.conversions import EnergyClass
 from bezstab.errors import InputError
-from bezstab.motion import spin_change
+from bezstab.motion.spinning_bodies import spin_change
 
 MASS, INERTIA = 1.0, 0.5
 ETA = MASS / (INERTIA + MASS)

@@ -4,16 +4,13 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from bezstab.mechanism import (
-    Simulation,
-    accelerations,
-    compiled_mechanism,
-    constraint_jacobian,
-    load_scene,
-    observe,
-    simulated,
-)
-from bezstab.methods import lookup
+from bezstab.mechanism.equations import compiled_mechanism
+from bezstab.mechanism.generated_code import accelerations
+from bezstab.mechanism.observation import observe
+from bezstab.mechanism.scene_files import load_scene
+from bezstab.mechanism.simulation import Simulation, simulated
+from bezstab.mechanism.start import constraint_jacobian
+from bezstab.methods.registry import lookup
 
 H, IMAGINARY = 1e-3, 1e-30
 GAINS = [(10.0, 10.0), (30.0, 30.0), (30.0, 60.0), (100.0, 100.0)]

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from bezstab.engines import Timing
+from bezstab.engines.drives import Timing
 from bezstab.mujoco.controllers import Gains
 from bezstab.mujoco.growth import Growth, goes_on_growing, growth_at, stable_factor
 from bezstab.mujoco.robots import Robot

@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from bezstab.methods import lookup
+from bezstab.methods.registry import lookup
 from bezstab.mujoco.solrefs import Feedback, feedbacks
-from bezstab.stability import verdict
+from bezstab.stability.closed_loop import verdict
 from tests.mujoco.models import FLAT, UNSAFE, mjcf
 from tests.mujoco.test_steps import model_of
 from tests.reference.mujoco_steps import grown

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from bezstab.drives.held_torque import held_method, spectral_radius
-from bezstab.engines import Timing
+from bezstab.engines.drives import Timing
 from bezstab.mujoco.controllers import Gains, controlled
 from bezstab.mujoco.growth import growth_at
 from bezstab.mujoco.reading import loaded_model

@@ -5,8 +5,10 @@ import os
 import time
 
 from bezstab.compiling import COMPILED_CHOICE
-from bezstab.mechanism import compiled_mechanism, load_scene, simulate
-from bezstab.methods import lookup
+from bezstab.mechanism.equations import compiled_mechanism
+from bezstab.mechanism.runner import simulate
+from bezstab.mechanism.scene_files import load_scene
+from bezstab.methods.registry import lookup
 from bezstab.paper.experiments import DURATION, STEP
 from bezstab.paper.printed import COMPARED
 from bezstab.paper.tables import RECORDED

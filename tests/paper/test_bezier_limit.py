@@ -9,8 +9,10 @@ import pytest
 from numpy.polynomial.polynomial import polyval
 from numpy.typing import NDArray
 
-from bezstab.methods import accuracy, lookup
-from bezstab.stability import best_point, region
+from bezstab.methods.orders import accuracy
+from bezstab.methods.registry import lookup
+from bezstab.stability.best_points import best_point
+from bezstab.stability.regions import region
 
 CIRCLE = np.exp(1j * np.linspace(0, np.pi, 4097)[1:])
 LENGTH = 4 / np.expm1(2)  # -mu(-1)

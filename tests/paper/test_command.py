@@ -3,7 +3,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from bezstab.cli import main
+from bezstab.cli.command_group import main
 from bezstab.paper.command import PARTS
 from bezstab.paper.figures import FIGURES
 from bezstab.paper.tables import TABLES

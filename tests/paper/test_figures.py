@@ -1,11 +1,11 @@
 import numpy as np
 import pytest
 
-from bezstab.methods import lookup
+from bezstab.methods.registry import lookup
 from bezstab.paper import figures
 from bezstab.paper.experiments import experiment, kicked_runs, unstabilized_runs
 from bezstab.paper.printed import COMPARED, TABLE_5
-from bezstab.stability import region
+from bezstab.stability.regions import region
 
 
 def test_a_panel_of_fig_1_has_the_regions_s_and_h() -> None:

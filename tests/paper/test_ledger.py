@@ -9,14 +9,15 @@ from typing import Any
 import numpy as np
 import pytest
 
-from bezstab.mechanism import (
-    Simulation,
-    Start,
-    compiled_mechanism,
-    constraint_motion,
-    load_scene,
-)
-from bezstab.methods import accuracy, closed_loop_at, evaluations, lookup
+from bezstab.mechanism.constraint_normals import constraint_motion
+from bezstab.mechanism.equations import compiled_mechanism
+from bezstab.mechanism.runner import Start
+from bezstab.mechanism.scene_files import load_scene
+from bezstab.mechanism.simulation import Simulation
+from bezstab.methods.derivation import closed_loop_at
+from bezstab.methods.orders import accuracy
+from bezstab.methods.registry import lookup
+from bezstab.methods.schemes import evaluations
 from bezstab.paper.experiments import (
     START_NAMES,
     TABLE_4,
@@ -31,16 +32,11 @@ from bezstab.paper.figures import COLLAPSE, GROWTH
 from bezstab.paper.printed import COMPARED, FASTER_LEVEL, TABLE_5
 from bezstab.paper.tables import is_printed
 from bezstab.rationals import exact
-from bezstab.stability import (
-    FloatArray,
-    best_point,
-    dominant_pole,
-    feedback_cost,
-    poles,
-    region,
-    spectral_radius,
-    verdict,
-)
+from bezstab.stability.arrays import FloatArray
+from bezstab.stability.best_points import best_point
+from bezstab.stability.closed_loop import dominant_pole, poles, spectral_radius, verdict
+from bezstab.stability.feedback_costs import feedback_cost
+from bezstab.stability.regions import region
 from tests.paper.record_times import costs
 from tests.reference.derivatives import complex_step_jacobian
 

@@ -3,10 +3,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from bezstab.methods import lookup
+from bezstab.methods.registry import lookup
 from bezstab.paper.experiments import TABLE_4, experiment, kicked_runs, largest, pole
 from bezstab.paper.tables import TABLES, behaviour, is_printed
-from bezstab.stability import dominant_pole, region
+from bezstab.stability.closed_loop import dominant_pole
+from bezstab.stability.regions import region
 
 FIGURES = Path(__file__).parent.parent.parent / "figures"
 

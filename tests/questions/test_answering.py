@@ -10,16 +10,21 @@ import numpy as np
 import pytest
 
 from bezstab.api import check
-from bezstab.engines import ENGINES, Point
+from bezstab.engines.conversions import Point
+from bezstab.engines.engine_list import ENGINES
 from bezstab.errors import InputError
 from bezstab.goals import Goal
-from bezstab.mechanism import Mechanism
-from bezstab.methods import Method, lookup
-from bezstab.motion import spin_change
-from bezstab.questions import Answer, LargestStep, Question, answering, answers, engine_energy_rate
-from bezstab.questions.scene_runs import SceneRun
+from bezstab.mechanism.equations import Mechanism
+from bezstab.methods.registry import lookup
+from bezstab.methods.schemes import Method
+from bezstab.motion.spinning_bodies import spin_change
+from bezstab.questions import answering
+from bezstab.questions.answering import Answer, LargestStep, answers, engine_energy_rate
+from bezstab.questions.question import Question
+from bezstab.questions.scene_runs import SceneRun, scene_run
 from bezstab.rationals import exact, rational
-from bezstab.stability import choose, describe_point, feedback_cost
+from bezstab.stability.choices import choose, describe_point
+from bezstab.stability.feedback_costs import feedback_cost
 from tests.reference.engine_steps import STEPS, matrix
 
 SYM = (lookup("SYM"),)
@@ -167,7 +172,7 @@ def test_a_choice_that_is_not_safe_says_with_which_step_it_is() -> None:
 def test_a_choice_whose_run_fails_says_that_the_goal_robust_is_safe(monkeypatch: pytest.MonkeyPatch) -> None:
     """The run of the fastest point is made to gain energy; that of robust is as it is."""
     question = Question(methods=SYM, goal="fastest", h=Fraction("0.002"), scene="driven_four_bar")
-    fastest, run = choose(lookup("SYM"), "fastest", margins=False), answering.scene_run
+    fastest, run = choose(lookup("SYM"), "fastest", margins=False), scene_run
 
     def gains_there(mechanism: Mechanism, method: Method, h: Fraction, point: Point, time: float | None) -> SceneRun:
         found = run(mechanism, method, h, point, time)

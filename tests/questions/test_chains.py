@@ -7,14 +7,15 @@ from typing import ClassVar, cast
 import pytest
 import sympy as sp
 
-from bezstab.engines import ENGINES
+from bezstab.engines.engine_list import ENGINES
 from bezstab.errors import InputError
-from bezstab.mechanism import Scene, equations
+from bezstab.mechanism import equations
 from bezstab.mechanism.scene_files import parse_scene
-from bezstab.mechanism.scenes import Between, Body, Distance, Joint
-from bezstab.questions import Question, answers, usual_goal
+from bezstab.mechanism.scenes import Between, Body, Distance, Joint, Scene
+from bezstab.questions.answering import answers
 from bezstab.questions.chains import SweptConstraints, constraints_of
-from bezstab.stability import chain, swept_growth
+from bezstab.questions.question import Question, usual_goal
+from bezstab.stability.sweeps import chain, swept_growth
 
 CHIPMUNK = ENGINES["chipmunk"]
 DEFAULT = (Fraction("0.9") ** 60,)

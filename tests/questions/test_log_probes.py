@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from bezstab.errors import InputError
-from bezstab.evidence import probed_pole
-from bezstab.methods import lookup
-from bezstab.questions import PoleQuestion, Probe
-from bezstab.stability import dominant_pole
+from bezstab.evidence.probed_poles import probed_pole
+from bezstab.methods.registry import lookup
+from bezstab.questions.log_probes import PoleQuestion, Probe
+from bezstab.stability.closed_loop import dominant_pole
 
 POINT = (Fraction(1, 2), Fraction(1, 4))
 SYM, RK4 = lookup("SYM"), lookup("RK4")

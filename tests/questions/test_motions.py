@@ -2,9 +2,8 @@ from fractions import Fraction
 
 import pytest
 
-from bezstab.questions import motion_of
-from bezstab.questions.motions import turn_too_far, turning_of
-from bezstab.stability import OMEGA_H
+from bezstab.questions.motions import motion_of, turn_too_far, turning_of
+from bezstab.stability.forced_errors import OMEGA_H
 
 ONE = Fraction(1)
 H = Fraction(1, 100)

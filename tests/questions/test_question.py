@@ -5,10 +5,10 @@ from typing import Any
 
 import pytest
 
-from bezstab.engines import ENGINES
+from bezstab.engines.engine_list import ENGINES
 from bezstab.errors import InputError
-from bezstab.methods import lookup
-from bezstab.questions import Question, meant_in_seconds, usual_goal
+from bezstab.methods.registry import lookup
+from bezstab.questions.question import Question, meant_in_seconds, usual_goal
 
 SYM = (lookup("SYM"),)
 POINT = (Fraction(1), Fraction(1, 2))

@@ -3,11 +3,13 @@ from typing import Any
 
 import pytest
 
-from bezstab.engines import ENGINES
-from bezstab.methods import lookup
-from bezstab.questions import MapAnswer, MapQuestion, region_answer
-from bezstab.questions.regions import moving_regions
-from bezstab.stability import combined_error, moving_pole, region, spectral_radius
+from bezstab.engines.engine_list import ENGINES
+from bezstab.methods.registry import lookup
+from bezstab.questions.regions import MapAnswer, MapQuestion, moving_regions, region_answer
+from bezstab.stability.closed_loop import spectral_radius
+from bezstab.stability.forced_errors import combined_error
+from bezstab.stability.regions import region
+from bezstab.stability.turning import moving_pole
 
 
 def answer_about(name: str, **asked: Any) -> MapAnswer:

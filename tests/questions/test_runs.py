@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from bezstab.errors import InputError
-from bezstab.methods import lookup
-from bezstab.questions import RunQuestion, run_answer
+from bezstab.methods.registry import lookup
+from bezstab.questions.runs import RunQuestion, run_answer
 
 QUESTION = RunQuestion(
     scene="pendulum",

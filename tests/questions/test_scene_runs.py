@@ -7,9 +7,10 @@ import pytest
 
 import bezstab
 from bezstab.errors import InputError
-from bezstab.mechanism import compiled_mechanism, load_scene, simulated
-from bezstab.mechanism.scene_files import parse_scene
-from bezstab.methods import lookup
+from bezstab.mechanism.equations import compiled_mechanism
+from bezstab.mechanism.scene_files import load_scene, parse_scene
+from bezstab.mechanism.simulation import simulated
+from bezstab.methods.registry import lookup
 from bezstab.questions.scene_runs import SceneRun, run_time, scene_run
 from tests.mechanism.test_scenes import pendulum
 

@@ -3,11 +3,11 @@ from fractions import Fraction
 
 import pytest
 
-from bezstab.evidence import NO_FEEDBACK, measured_runs
-from bezstab.methods import lookup
-from bezstab.questions import FrontQuestion, TradeQuestion
+from bezstab.evidence.accuracy_costs import NO_FEEDBACK, measured_runs
+from bezstab.methods.registry import lookup
+from bezstab.questions.trades import FrontQuestion, TradeQuestion
 from bezstab.stabilising import NOTHING, after_step
-from bezstab.stability import spectral_radius
+from bezstab.stability.closed_loop import spectral_radius
 
 SYM = lookup("SYM")
 QUESTION = TradeQuestion(

@@ -2,8 +2,8 @@ from fractions import Fraction
 
 import pytest
 
-from bezstab.methods import lookup
-from bezstab.questions import VerifyQuestion
+from bezstab.methods.registry import lookup
+from bezstab.questions.verifications import VerifyQuestion
 
 SYM = lookup("SYM")
 

@@ -10,7 +10,7 @@ import mpmath
 import numpy as np
 from numpy.typing import NDArray
 
-from bezstab.methods import LinearMultistep, Method, RungeKutta, implicit, steps
+from bezstab.methods.schemes import LinearMultistep, Method, RungeKutta, implicit, steps
 from tests.reference.steppers import Slope, State, one_step
 
 DIGITS = 50

@@ -5,8 +5,9 @@ from functools import cache
 import numpy as np
 from numpy.polynomial import polynomial
 
-from bezstab.methods import Method, closed_loop_table
-from bezstab.stability import ComplexArray, FloatArray
+from bezstab.methods.derivation import closed_loop_table
+from bezstab.methods.schemes import Method
+from bezstab.stability.arrays import ComplexArray, FloatArray
 
 
 @cache

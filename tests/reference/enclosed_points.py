@@ -4,7 +4,7 @@ import numpy as np
 from matplotlib.path import Path
 from numpy.typing import NDArray
 
-from bezstab.stability import FloatArray
+from bezstab.stability.arrays import FloatArray
 
 
 def enclosed(curves: tuple[FloatArray, ...], points: FloatArray) -> NDArray[np.bool_]:

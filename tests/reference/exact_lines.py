@@ -14,8 +14,10 @@ from math import inf
 import sympy as sp
 from sympy.polys.rings import PolyElement
 
-from bezstab.methods import Method, closed_loop_table, is_schur
+from bezstab.methods.derivation import closed_loop_table
 from bezstab.methods.determinants import as_fraction
+from bezstab.methods.schemes import Method
+from bezstab.methods.schur import is_schur
 from bezstab.rationals import exact
 from bezstab.stability.quadrant_proofs import crossing_polynomials
 

@@ -4,7 +4,8 @@ from typing import Any
 
 import mpmath
 
-from bezstab.methods import Method, closed_loop_polynomial
+from bezstab.methods.derivation import closed_loop_polynomial
+from bezstab.methods.schemes import Method
 
 EPS = 2.0**-52
 

@@ -9,7 +9,9 @@ from typing import Any
 
 import mpmath
 
-from bezstab.methods import Evaluation, ExponentialSum, Method, Quantity
+from bezstab.methods.schemes import Method
+from bezstab.methods.steady_errors import ExponentialSum
+from bezstab.methods.step_equations import Evaluation, Quantity
 
 DIGITS = 60
 

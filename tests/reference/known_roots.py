@@ -7,7 +7,8 @@ from fractions import Fraction
 import numpy as np
 from hypothesis import strategies as st
 
-from bezstab.methods import Polynomial, Verdict
+from bezstab.methods.polynomials import Polynomial
+from bezstab.methods.schur import Verdict
 from tests.reference.rationals import rationals
 
 Factor = tuple[Fraction, ...]

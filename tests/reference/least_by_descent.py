@@ -9,8 +9,9 @@ from fractions import Fraction
 
 import numpy as np
 
-from bezstab.methods import Method, RungeKutta, implicit
-from bezstab.stability import BestPoint, FloatArray
+from bezstab.methods.schemes import Method, RungeKutta, implicit
+from bezstab.stability.arrays import FloatArray
+from bezstab.stability.best_points import BestPoint
 from tests.reference.companion_poles import polynomial_at, radius
 from tests.reference.proven_verdicts import proven_stable
 

@@ -7,7 +7,7 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
-from bezstab.mechanism import Mechanism, T
+from bezstab.mechanism.equations import Mechanism, T
 
 FloatArray = NDArray[np.float64]
 

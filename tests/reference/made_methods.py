@@ -1,6 +1,6 @@
 """Methods written in one line, as a user's file would have them."""
 
-from bezstab.methods import LinearMultistep, Method, RungeKutta
+from bezstab.methods.schemes import LinearMultistep, Method, RungeKutta
 from bezstab.rationals import rational
 
 

@@ -9,7 +9,9 @@ from collections.abc import Iterator
 from fractions import Fraction
 from itertools import pairwise, product
 
-from bezstab.methods import Method, closed_loop_table, recipe
+from bezstab.methods.derivation import closed_loop_table
+from bezstab.methods.recipes import recipe
+from bezstab.methods.schemes import Method
 
 MOVES = {"old": "v0", "new": "v1", "mean": "1/2 v0 + 1/2 v1"}
 KICKS = {"": "", " and half a kick": " + 1/2 acc", " less half a kick": " - 1/2 acc"}

@@ -4,9 +4,12 @@ from itertools import islice
 
 import numpy as np
 
-from bezstab.mechanism import Mechanism, even_steps, motion, resume, simulate
-from bezstab.methods import Method, steps
-from bezstab.stability import FloatArray
+from bezstab.mechanism.equations import Mechanism
+from bezstab.mechanism.motions import motion
+from bezstab.mechanism.programs import even_steps
+from bezstab.mechanism.runner import resume, simulate
+from bezstab.methods.schemes import Method, steps
+from bezstab.stability.arrays import FloatArray
 from bezstab.units import feedback_gains
 
 CORRECTIONS = 12  # of Newton's method

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from bezstab.mechanism import Mechanism
+from bezstab.mechanism.equations import Mechanism
 
 FloatArray = NDArray[np.float64]
 

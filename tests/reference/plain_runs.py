@@ -5,8 +5,10 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from bezstab.mechanism import Mechanism, state_function
-from bezstab.methods import Method, SecondOrder, implicit
+from bezstab.mechanism.equations import Mechanism
+from bezstab.mechanism.generated_code import state_function
+from bezstab.methods.schemes import Method, implicit
+from bezstab.methods.second_order import SecondOrder
 from tests.reference.plain_second_order import plain_second_order_run
 from tests.reference.steppers import trajectory
 

@@ -5,7 +5,8 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from bezstab.methods import Combination, Evaluation, Quantity, SecondOrder
+from bezstab.methods.second_order import SecondOrder
+from bezstab.methods.step_equations import Combination, Evaluation, Quantity
 
 FloatArray = NDArray[np.float64]
 Acceleration = Callable[[FloatArray, FloatArray], FloatArray]

@@ -11,9 +11,10 @@ import numpy as np
 from numpy.polynomial import polynomial
 from numpy.typing import NDArray
 
-from bezstab.methods import Method, closed_loop_table
+from bezstab.methods.derivation import closed_loop_table
+from bezstab.methods.schemes import Method
 from bezstab.rationals import exact
-from bezstab.stability import FloatArray
+from bezstab.stability.arrays import FloatArray
 from tests.reference.companion_poles import closed_loop_tables, polynomial_at
 
 BoolArray = NDArray[np.bool_]

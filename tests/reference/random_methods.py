@@ -4,7 +4,8 @@ import random
 from fractions import Fraction
 
 from bezstab.errors import InputError
-from bezstab.methods import LinearMultistep, Method, PredictorCorrector, RungeKutta, recipe
+from bezstab.methods.recipes import recipe
+from bezstab.methods.schemes import LinearMultistep, Method, PredictorCorrector, RungeKutta
 from tests.methods.random_recipes import random_recipe
 from tests.reference.known_roots import product
 

@@ -1,7 +1,7 @@
 """The area of a region that is known to be bounded, as a number."""
 
-from bezstab.methods import Method
-from bezstab.stability import region
+from bezstab.methods.schemes import Method
+from bezstab.stability.regions import region
 
 
 def region_area(method: Method, level: float = 1.0) -> float:

@@ -2,8 +2,9 @@
 
 import numpy as np
 
-from bezstab.methods import Method
-from bezstab.stability import FloatArray, spectral_radius
+from bezstab.methods.schemes import Method
+from bezstab.stability.arrays import FloatArray
+from bezstab.stability.closed_loop import spectral_radius
 
 
 def worst_decay(method: Method, a: float, b: float, shares: FloatArray, spread: float) -> float:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from bezstab.stability import ComplexArray, FloatArray
+from bezstab.stability.arrays import ComplexArray, FloatArray
 
 KICKS = (1e-4, 1e-6, 1e-8, 1e-11)
 """SI units; a linear system's responses to them differ by a factor only."""

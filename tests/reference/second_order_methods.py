@@ -1,6 +1,8 @@
 """Second-order schemes as text, and registered methods written as such."""
 
-from bezstab.methods import Method, lookup, recipe
+from bezstab.methods.recipes import recipe
+from bezstab.methods.registry import lookup
+from bezstab.methods.schemes import Method
 
 RECIPES = {
     "implicit euler": {"a1": "acceleration(x1, v1)", "v1": "v0 + a1", "x1": "x0 + v1"},

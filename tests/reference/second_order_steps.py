@@ -6,7 +6,8 @@ from typing import Any
 import sympy as sp
 from sympy.polys.matrices import DomainMatrix
 
-from bezstab.methods import Assignment, Evaluation, Quantity, SecondOrder
+from bezstab.methods.second_order import SecondOrder
+from bezstab.methods.step_equations import Assignment, Evaluation, Quantity
 
 
 def _kept(scheme: SecondOrder) -> list[Quantity]:

@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from bezstab.methods import LinearMultistep, Method, PredictorCorrector, RungeKutta, SecondOrder, steps
+from bezstab.methods.schemes import LinearMultistep, Method, PredictorCorrector, RungeKutta, steps
+from bezstab.methods.second_order import SecondOrder
 
 State = NDArray[Any]  # of any exact or floating kind of number
 Slope = Callable[[State], State]

@@ -1,7 +1,7 @@
 from fractions import Fraction
 from math import inf
 
-from bezstab.methods import lookup
+from bezstab.methods.registry import lookup
 from tests.reference.exact_lines import stable_parts
 from tests.reference.random_methods import random_method
 

@@ -4,7 +4,7 @@ import csv
 import io
 from pathlib import Path
 
-from bezstab.show import FIELDS
+from bezstab.show.row_kinds import FIELDS
 
 PAGE = Path(__file__).parents[2] / "bezstab" / "show" / "keys.csv"
 

@@ -8,11 +8,12 @@ import pytest
 from matplotlib.axes import Axes
 from matplotlib.contour import QuadContourSet
 
-from bezstab.methods import lookup
-from bezstab.motion import motion_energy
-from bezstab.questions import MapAnswer, MapQuestion
+from bezstab.methods.registry import lookup
+from bezstab.motion.modulated_circle import motion_energy
+from bezstab.questions.regions import MapAnswer, MapQuestion
 from bezstab.show.map_figures import map_figure
-from bezstab.stability import combined_error, spectral_radius
+from bezstab.stability.closed_loop import spectral_radius
+from bezstab.stability.forced_errors import combined_error
 from tests.show.drawn import lines_of
 
 OMEGA_H = Fraction(1, 100)

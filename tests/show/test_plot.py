@@ -2,10 +2,12 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from bezstab.mechanism import compiled_mechanism, initial_state, load_scene
-from bezstab.methods import lookup
+from bezstab.mechanism.equations import compiled_mechanism
+from bezstab.mechanism.scene_files import load_scene
+from bezstab.mechanism.start import initial_state
+from bezstab.methods.registry import lookup
 from bezstab.show import plot
-from bezstab.stability import region
+from bezstab.stability.regions import region
 
 B4 = lookup("B4")
 

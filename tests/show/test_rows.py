@@ -13,23 +13,17 @@ from typing import Literal
 import numpy as np
 import pytest
 
-from bezstab.methods import lookup
-from bezstab.questions import Question, answers, region_answer
-from bezstab.show import (
-    FIELDS,
-    POLES,
-    ROW_KINDS,
-    Field,
-    cells,
-    formatted,
-    left_out,
-    render,
-    row_kinds,
-)
+from bezstab.methods.registry import lookup
+from bezstab.questions.answering import answers
+from bezstab.questions.question import Question
+from bezstab.questions.regions import region_answer
+from bezstab.show import row_kinds
 from bezstab.show.arrays import untimed_arrays, write_arrays
 from bezstab.show.cells import LIMITS, pole_text, safe_step_text
-from bezstab.show.row_kinds import Z_ABS
-from bezstab.show.rows import pole_rows, region_row
+from bezstab.show.fields import Field, cells, formatted
+from bezstab.show.row_kinds import FIELDS, POLES, ROW_KINDS, Z_ABS
+from bezstab.show.rows import left_out, pole_rows, region_row
+from bezstab.show.tables import render
 from tests.show.keys_page import PAGE, page
 
 KINDS = [kind for kinds in ROW_KINDS.values() for kind in kinds]

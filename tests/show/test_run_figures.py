@@ -6,9 +6,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from bezstab.evidence import Cost, ErrorOf, Run, SweptRuns
-from bezstab.mechanism import compiled_mechanism, load_scene, simulated
-from bezstab.methods import lookup
+from bezstab.evidence.accuracy_costs import Cost, ErrorOf, Run, SweptRuns
+from bezstab.mechanism.equations import compiled_mechanism
+from bezstab.mechanism.scene_files import load_scene
+from bezstab.mechanism.simulation import simulated
+from bezstab.methods.registry import lookup
 from bezstab.show.arrays import history_arrays
 from bezstab.show.run_figures import history_figure, projection_figure, work_precision_figure
 from tests.show.drawn import lines_of

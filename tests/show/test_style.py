@@ -7,9 +7,9 @@ import sys
 import matplotlib as mpl
 import pytest
 
-from bezstab.methods import lookup
-from bezstab.questions import MapQuestion
-from bezstab.show import FIGURE_FORMS
+from bezstab.methods.registry import lookup
+from bezstab.questions.regions import MapQuestion
+from bezstab.show.file_forms import FIGURE_FORMS
 from bezstab.show.map_figures import comparison_figure
 from bezstab.show.style import line_at, marked_line_at, new_axes, save, styled, title_lines, with_legend
 
@@ -44,8 +44,8 @@ def test_equal_figures_are_equal_bytes_whatever_the_users_settings(form: str) ->
 def test_two_processes_draw_the_same_bytes() -> None:
     code = (
         "import sys; from bezstab.show.map_figures import comparison_figure; from bezstab.show.style import save;"
-        "from bezstab.methods import lookup;"
-        "from bezstab.questions import MapQuestion;"
+        "from bezstab.methods.registry import lookup;"
+        "from bezstab.questions.regions import MapQuestion;"
         "save(comparison_figure(MapQuestion(methods=(lookup('B4'),))), 'svg', sys.stdout.buffer)"
     )
     first, second = (

@@ -6,8 +6,8 @@ import pytest
 from matplotlib import pyplot
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-from bezstab.methods import lookup
-from bezstab.questions import MapAnswer, MapQuestion
+from bezstab.methods.registry import lookup
+from bezstab.questions.regions import MapAnswer, MapQuestion
 from bezstab.show.map_figures import comparison_figure, map_figure
 from tests.cli.running import run
 

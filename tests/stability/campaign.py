@@ -16,12 +16,11 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).parent.parent.parent))  # run as a script, the tests are no package yet
 
 from bezstab.errors import NumericalError
-from bezstab.methods import Method
+from bezstab.methods.schemes import Method
 from bezstab.rationals import exact
-from bezstab.stability import region
 from bezstab.stability.closed_loop import converges
 from bezstab.stability.lines import Lines
-from bezstab.stability.regions import Region, _lines, _region
+from bezstab.stability.regions import Region, _lines, _region, region
 from tests.reference.random_methods import other_random_method, random_method
 
 METHODS = 5_000  # of either half

@@ -6,9 +6,11 @@ import numpy as np
 import pytest
 
 from bezstab.errors import InputError
-from bezstab.methods import lookup
-from bezstab.stability import choose, forced_error, spectral_radius
+from bezstab.methods.registry import lookup
 from bezstab.stability.accurate_points import default_rate
+from bezstab.stability.choices import choose
+from bezstab.stability.closed_loop import spectral_radius
+from bezstab.stability.forced_errors import forced_error
 from tests.methods.kinds import sampled
 from tests.reference.settling import settling
 

@@ -6,7 +6,7 @@ import pytest
 from numpy.typing import ArrayLike
 
 from bezstab.errors import InputError
-from bezstab.stability import real_array
+from bezstab.stability.arrays import real_array
 
 
 @pytest.mark.parametrize("values", [2, 2.0, Fraction(2), "2", np.float32(2), np.uint8(2)])

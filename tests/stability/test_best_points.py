@@ -5,17 +5,12 @@ import mpmath
 import numpy as np
 import pytest
 
-from bezstab.methods import LinearMultistep, Method, lookup, recipe
-from bezstab.stability import (
-    BestPoint,
-    FarLimit,
-    best_point,
-    falls_towards,
-    poles,
-    region,
-    spectral_radius,
-    window,
-)
+from bezstab.methods.recipes import recipe
+from bezstab.methods.registry import lookup
+from bezstab.methods.schemes import LinearMultistep, Method
+from bezstab.stability.best_points import BestPoint, FarLimit, best_point, falls_towards
+from bezstab.stability.closed_loop import poles, spectral_radius
+from bezstab.stability.regions import region, window
 from tests.methods.kinds import EXPLICIT, sampled
 from tests.reference.companion_poles import radius
 from tests.reference.least_by_descent import least_within, modulus_of, random_implicit_runge_kutta

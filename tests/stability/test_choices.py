@@ -4,14 +4,12 @@ import numpy as np
 import pytest
 
 from bezstab.errors import InputError
-from bezstab.methods import Method, lookup
-from bezstab.stability import (
-    Goal,
-    best_point,
-    choose,
-    describe_point,
-    spectral_radius,
-)
+from bezstab.goals import Goal
+from bezstab.methods.registry import lookup
+from bezstab.methods.schemes import Method
+from bezstab.stability.best_points import best_point
+from bezstab.stability.choices import choose, describe_point
+from bezstab.stability.closed_loop import spectral_radius
 from tests.methods.kinds import sampled
 from tests.reference.made_methods import multistep
 from tests.reference.robust_decay import worst_decay

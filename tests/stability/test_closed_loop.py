@@ -8,15 +8,10 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from bezstab.errors import NumericalError
-from bezstab.methods import (
-    LinearMultistep,
-    Method,
-    RungeKutta,
-    closed_loop_at,
-    lookup,
-)
-from bezstab.stability import dominant_pole, poles, spectral_radius, verdict
-from bezstab.stability.closed_loop import feedback_roots
+from bezstab.methods.derivation import closed_loop_at
+from bezstab.methods.registry import lookup
+from bezstab.methods.schemes import LinearMultistep, Method, RungeKutta
+from bezstab.stability.closed_loop import dominant_pole, feedback_roots, poles, spectral_radius, verdict
 from tests.methods.kinds import EXPLICIT, FEW, IMPLICIT, MULTISTEP, SAMPLE, sampled
 from tests.reference.companion_poles import radius
 from tests.reference.fifty_digit_poles import poles_with_errors

@@ -7,8 +7,10 @@ import numpy as np
 import pytest
 
 from bezstab.errors import InputError, NumericalError
-from bezstab.methods import lookup
-from bezstab.stability import FloatArray, choose, spectral_radius
+from bezstab.methods.registry import lookup
+from bezstab.stability.arrays import FloatArray
+from bezstab.stability.choices import choose
+from bezstab.stability.closed_loop import spectral_radius
 from bezstab.stability.curve_choices import least_along, mildest_along
 from tests.reference.settling import settling
 

@@ -3,12 +3,15 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from bezstab.methods import Method, Verdict, closed_loop_at, lookup
-from bezstab.stability import (
+from bezstab.methods.derivation import closed_loop_at
+from bezstab.methods.registry import lookup
+from bezstab.methods.schemes import Method
+from bezstab.methods.schur import Verdict
+from bezstab.stability.closed_loop import verdict
+from bezstab.stability.damping_limits import (
     critical_damping_limit,
     exact_critical_damping_limit,
     unconditional_damping_ratio,
-    verdict,
 )
 from tests.reference.companion_poles import radius
 from tests.reference.made_methods import multistep, runge_kutta

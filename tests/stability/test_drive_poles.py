@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bezstab.engines import DRIVE_METHODS
-from bezstab.methods import lookup
-from bezstab.stability import drive_pole, drive_verdict, velocity_poles
+from bezstab.engines.drives import DRIVE_METHODS
+from bezstab.methods.registry import lookup
+from bezstab.stability.drive_poles import drive_pole, drive_verdict, velocity_poles
 
 ZERO = Fraction(0)
 EXPLICIT, IMPLICIT = "SYM", ("imex-euler", "stable-pd", "implicit-euler")

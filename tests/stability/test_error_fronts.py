@@ -9,17 +9,13 @@ import numpy as np
 import pytest
 
 from bezstab.errors import InputError, NumericalError
-from bezstab.methods import lookup
-from bezstab.motion import motion_energy
-from bezstab.stability import (
-    FrontPoint,
-    best_point,
-    combined_error,
-    error_front,
-    error_fronts,
-    forced_error,
-    spectral_radius,
-)
+from bezstab.methods.registry import lookup
+from bezstab.motion.modulated_circle import motion_energy
+from bezstab.stability import error_fronts
+from bezstab.stability.best_points import best_point
+from bezstab.stability.closed_loop import spectral_radius
+from bezstab.stability.error_fronts import FrontPoint, error_front
+from bezstab.stability.forced_errors import combined_error, forced_error
 from bezstab.stability.searches import lowest_minima
 
 OMEGA_H = Fraction(1, 100)

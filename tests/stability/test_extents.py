@@ -5,10 +5,11 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from bezstab.methods import Method, recipe
-from bezstab.questions import region_answer
-from bezstab.show import region_row
-from bezstab.stability import region
+from bezstab.methods.recipes import recipe
+from bezstab.methods.schemes import Method
+from bezstab.questions.regions import region_answer
+from bezstab.show.rows import region_row
+from bezstab.stability.regions import region
 from tests.methods.kinds import sampled
 from tests.reference.one_evaluation_schemes import one_evaluation_schemes, polygon_extent
 

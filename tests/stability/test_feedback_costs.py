@@ -5,8 +5,9 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from bezstab.methods import REGISTRY, lookup
-from bezstab.stability import choose, feedback_cost, follows_motion
+from bezstab.methods.registry import REGISTRY, lookup
+from bezstab.stability.choices import choose
+from bezstab.stability.feedback_costs import feedback_cost, follows_motion
 
 
 @pytest.mark.parametrize(("name", "left", "order"), [("RK4", 2, 4), ("dopri5", 2, 5), ("B4", 2, 2), ("AB4", 4, 4)])

@@ -8,8 +8,10 @@ import pytest
 from numpy.polynomial.polynomial import polyroots, polyval
 
 from bezstab.errors import InputError
-from bezstab.methods import forced_errors, lookup, turning_error
-from bezstab.stability import FloatArray, forced_error
+from bezstab.methods.registry import lookup
+from bezstab.methods.steady_errors import forced_errors, turning_error
+from bezstab.stability.arrays import FloatArray
+from bezstab.stability.forced_errors import forced_error
 from tests.reference.forced_runs import exact_value
 
 METHODS = ("B4", "AB4", "AB8", "RK4", "dopri5", "SYM", "verlet-half", "hht", "gauss4")

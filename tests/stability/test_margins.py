@@ -9,17 +9,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from bezstab.errors import InputError, NumericalError
-from bezstab.methods import lookup
-from bezstab.stability import (
-    Margins,
-    largest_stable_step,
-    path_ends,
-    region,
-    stability_margins,
-    stable_up_to,
-    verdict,
-    window,
-)
+from bezstab.methods.registry import lookup
+from bezstab.stability import path_ends
+from bezstab.stability.closed_loop import verdict
+from bezstab.stability.damping_limits import stable_up_to
+from bezstab.stability.margins import Margins, largest_stable_step, stability_margins
+from bezstab.stability.regions import region, window
 from tests.methods.kinds import sampled
 from tests.reference.made_methods import runge_kutta
 from tests.reference.second_order_methods import as_second_order

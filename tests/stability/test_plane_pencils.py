@@ -5,8 +5,10 @@ import numpy as np
 import pytest
 
 from bezstab.errors import NumericalError
-from bezstab.methods import Method, closed_loop_at, lookup
-from bezstab.stability import dominant_pole, poles, spectral_radius, verdict
+from bezstab.methods.derivation import closed_loop_at
+from bezstab.methods.registry import lookup
+from bezstab.methods.schemes import Method
+from bezstab.stability.closed_loop import dominant_pole, poles, spectral_radius, verdict
 from tests.reference.companion_poles import eigenvalues
 from tests.reference.second_order_methods import RECIPES, as_second_order, second_order
 

@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from bezstab.methods import lookup
-from bezstab.stability import dominant_pole, pole_map, poles, spectral_radius
+from bezstab.methods.registry import lookup
+from bezstab.stability.closed_loop import dominant_pole, pole_map, poles, spectral_radius
 from tests.methods.kinds import EXPLICIT, IMPLICIT, sampled
 from tests.reference.companion_poles import radius
 from tests.reference.made_methods import multistep

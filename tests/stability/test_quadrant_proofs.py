@@ -8,11 +8,10 @@ from hypothesis import strategies as st
 from sympy import QQ
 from sympy.polys.rings import ring
 
-from bezstab.methods import lookup
 from bezstab.methods.derivation import PLANE
 from bezstab.methods.determinants import as_fraction
-from bezstab.stability import stable_for_all
-from bezstab.stability.quadrant_proofs import _positive, crossing_polynomials
+from bezstab.methods.registry import lookup
+from bezstab.stability.quadrant_proofs import _positive, crossing_polynomials, stable_for_all
 from tests.reference.made_methods import multistep
 from tests.reference.rationals import rationals
 

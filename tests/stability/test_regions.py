@@ -7,11 +7,13 @@ import numpy as np
 import pytest
 
 from bezstab.errors import NumericalError
-from bezstab.methods import Method, lookup
+from bezstab.methods.registry import lookup
+from bezstab.methods.schemes import Method
 from bezstab.rationals import rational
-from bezstab.stability import Extent, Region, region, verdict, window
+from bezstab.stability.arrays import Extent
+from bezstab.stability.closed_loop import verdict
 from bezstab.stability.lines import Lines
-from bezstab.stability.regions import _region
+from bezstab.stability.regions import Region, _region, region, window
 from tests.methods.kinds import EXPLICIT, SAMPLE, sampled
 from tests.reference.companion_poles import radius
 from tests.reference.enclosed_points import enclosed

@@ -8,9 +8,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bezstab.methods import Method, lookup
+from bezstab.methods.registry import lookup
+from bezstab.methods.schemes import Method
 from bezstab.rationals import exact
-from bezstab.stability import FloatArray, verdict
+from bezstab.stability.arrays import FloatArray
+from bezstab.stability.closed_loop import verdict
 from bezstab.stability.stretches import ALONG_ALPHA, ALONG_BETA, ALONG_H, Stretches, paths
 from tests.methods.kinds import sampled
 from tests.reference.exact_lines import stable_parts

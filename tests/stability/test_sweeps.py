@@ -9,10 +9,11 @@ import sympy
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from bezstab.engines import Move, Pass, SweptStep, hard_velocity_step
+from bezstab.engines.sweeping import Move, Pass, SweptStep, hard_velocity_step
 from bezstab.errors import NumericalError
 from bezstab.methods.schur import recursion_verdict
-from bezstab.stability import FloatArray, Growth, chain, fewest_sweeps, inverse_effective_masses, swept_growth
+from bezstab.stability.arrays import FloatArray
+from bezstab.stability.sweeps import Growth, chain, fewest_sweeps, inverse_effective_masses, swept_growth
 from tests.reference.swept_chains import columns, hard_step, position_step, soft_step
 
 

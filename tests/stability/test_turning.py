@@ -5,8 +5,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bezstab.methods import Method, lookup
-from bezstab.stability import poles, turning_shift
+from bezstab.methods.registry import lookup
+from bezstab.methods.schemes import Method
+from bezstab.stability.closed_loop import poles
+from bezstab.stability.turning import turning_shift
 
 POINTS = [(0.31, 0.13), (0.9, 0.05), (0.2, 0.3)]
 

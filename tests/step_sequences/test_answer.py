@@ -7,9 +7,9 @@ from math import inf
 import pytest
 
 import bezstab
-from bezstab.engines import engine_and_values
+from bezstab.engines.engine_list import engine_and_values
 from bezstab.errors import InputError
-from bezstab.methods import lookup
+from bezstab.methods.registry import lookup
 from bezstab.step_sequences.answer import answers, engine_points, proven_choice, steps, why_words
 from bezstab.step_sequences.varying_steps import Steps, VaryingSteps
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 import sympy as sp
 
-from bezstab.show import page_of_keys
+from bezstab.show.columns import page_of_keys
 from bezstab.step_sequences.columns import COLUMNS
 from tests.cli.running import DATA, rows, run
 from tests.imports import PACKAGE

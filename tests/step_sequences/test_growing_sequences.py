@@ -1,6 +1,7 @@
 from fractions import Fraction
 
-from bezstab.methods import lookup, step_matrix
+from bezstab.methods.registry import lookup
+from bezstab.methods.step_matrices import step_matrix
 from bezstab.step_sequences.growing_sequences import grows
 
 ONE, HALF = Fraction(1), Fraction(1, 2)

@@ -2,7 +2,8 @@ from fractions import Fraction
 
 import numpy as np
 
-from bezstab.methods import lookup, step_matrix
+from bezstab.methods.registry import lookup
+from bezstab.methods.step_matrices import step_matrix
 from bezstab.step_sequences.lyapunov_quadratics import proves_decay
 
 HALF, ONE = Fraction(1, 2), Fraction(1)

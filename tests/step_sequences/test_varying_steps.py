@@ -7,7 +7,7 @@ import pytest
 import sympy as sp
 
 from bezstab.errors import InputError
-from bezstab.methods import lookup
+from bezstab.methods.registry import lookup
 from bezstab.step_sequences.varying_steps import Steps, VaryingSteps, varying_steps
 from tests.reference.symbolic_steps import form_decreases, spectral_radius, symplectic_euler
 

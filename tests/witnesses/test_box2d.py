@@ -11,8 +11,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from bezstab.engines import ENGINES, Move, Pass, SweptStep
-from bezstab.stability import Growth, chain, swept_growth
+from bezstab.engines.engine_list import ENGINES
+from bezstab.engines.sweeping import Move, Pass, SweptStep
+from bezstab.stability.sweeps import Growth, chain, swept_growth
 from tests.witnesses.growths import growth
 
 box2d: Any = pytest.importorskip("Box2D")

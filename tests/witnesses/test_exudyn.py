@@ -7,8 +7,9 @@ import pytest
 from numpy.typing import NDArray
 
 from bezstab.evidence.linear_prediction import fit_dominant_pole
-from bezstab.methods import lookup
-from bezstab.stability import dominant_pole, spectral_radius, stability_margins
+from bezstab.methods.registry import lookup
+from bezstab.stability.closed_loop import dominant_pole, spectral_radius
+from bezstab.stability.margins import stability_margins
 
 exudyn: Any = pytest.importorskip("exudyn")
 

@@ -13,16 +13,10 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from bezstab.mechanism import (
-    GROUND,
-    Mechanism,
-    Revolute,
-    compiled_mechanism,
-    constraint_errors,
-    constraint_jacobian,
-    initial_state,
-)
+from bezstab.mechanism.equations import Mechanism, compiled_mechanism
 from bezstab.mechanism.scene_files import parse_scene
+from bezstab.mechanism.scenes import GROUND, Revolute
+from bezstab.mechanism.start import constraint_errors, constraint_jacobian, initial_state
 
 H = 1 / 60
 SECOND = 60  # steps

@@ -16,10 +16,11 @@ import numpy as np
 import pytest
 
 from bezstab.chains.answer import chain as judge
-from bezstab.engines import ENGINES
-from bezstab.methods import lookup
-from bezstab.motion import spin_change
-from bezstab.stability import chain, spectral_radius, swept_growth
+from bezstab.engines.engine_list import ENGINES
+from bezstab.methods.registry import lookup
+from bezstab.motion.spinning_bodies import spin_change
+from bezstab.stability.closed_loop import spectral_radius
+from bezstab.stability.sweeps import chain, swept_growth
 from tests.witnesses.growths import growth
 
 SCRIPT = Path(__file__).with_name("javascript_runs.js")

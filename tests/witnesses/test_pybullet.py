@@ -15,9 +15,11 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from bezstab.engines import ENGINES
-from bezstab.methods import closed_loop_at, lookup
-from bezstab.stability import Growth, chain, dominant_pole, swept_growth, verdict
+from bezstab.engines.engine_list import ENGINES
+from bezstab.methods.derivation import closed_loop_at
+from bezstab.methods.registry import lookup
+from bezstab.stability.closed_loop import dominant_pole, verdict
+from bezstab.stability.sweeps import Growth, chain, swept_growth
 from tests.witnesses.growths import growth
 
 pybullet: Any = pytest.importorskip("pybullet")

@@ -12,9 +12,10 @@ import numpy as np
 import pytest
 
 from bezstab.chains.answer import chain as judge
-from bezstab.engines import hard_velocity_step
-from bezstab.methods import lookup
-from bezstab.stability import Growth, chain, spectral_radius, swept_growth
+from bezstab.engines.sweeping import hard_velocity_step
+from bezstab.methods.registry import lookup
+from bezstab.stability.closed_loop import spectral_radius
+from bezstab.stability.sweeps import Growth, chain, swept_growth
 from tests.witnesses.growths import growth
 
 pymunk: Any = pytest.importorskip("pymunk")
