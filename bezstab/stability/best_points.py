@@ -28,7 +28,7 @@ from bezstab.rationals import exact
 from bezstab.stability.arrays import DOUBLE, ROUNDING, SAME, FloatArray
 from bezstab.stability.closed_loop import converges, largest_at_mu, mu_table, poles, spectral_radius
 from bezstab.stability.root_finding import companion_roots
-from bezstab.stability.searches import lowest_minima, zoom_on_minimum
+from bezstab.stability.searches import Points, least_between, lowest_minima, zoom_on_minimum
 from bezstab.stability.stretches import ALONG_BETA, float_table, paths
 
 SIZES: FloatArray = np.geomspace(1e-4, 1e4, 129)  # of alpha h, beta h: 15 % from one to the next
@@ -39,6 +39,7 @@ ROUGH, ROUNDS, SHRINK = 8, 45, 0.4  # grids of a zoom, at first and then to 1e-1
 HOPEFUL = 0.02  # above the lowest: a zoom has not stopped so far short after its first grids
 NEAR = 0.03  # of logarithms: starts so near lead to one place
 LINES, LINE_ROUNDS = 17, 18  # the same over lines, each an eighth of the last
+CIRCLE_ROUNDS, WINDOW = 18, 0.2  # over circles; to either side of the best damping ratio, in rad
 OFFSETS: FloatArray = np.linspace(-1, 1, LINES)
 WELL_INSIDE = 0.9  # of the reach: a best line further out says that the valley may lead on
 REACH = 0.3  # of alpha_hat: within it a line as good as any lies, where a start is
@@ -153,14 +154,41 @@ def _over_mu(method: Method) -> tuple[FloatArray, FloatArray]:
 
     axis = np.log(SIZES)
     starts, rough = lowest_minima(modulus, [axis, RATIOS], STARTS, rounds=ROUGH, shrink=SHRINK, fold=within)
-    found = [
-        zoom_on_minimum(modulus, start, np.full(2, SHRINK**ROUGH), rounds=ROUNDS, shrink=SHRINK, fold=within)
-        for start, _ in _hopeful(starts, rough)
-    ]
     (edge, *_), (value, *_) = lowest_minima(on_edge, [axis], 1, rounds=ROUNDS, shrink=SHRINK)
+    found: list[tuple[FloatArray, float]] = []
+    for start, _ in _hopeful(starts, rough):
+        place, zoomed = zoom_on_minimum(
+            modulus, start, np.full(2, SHRINK**ROUGH), rounds=ROUNDS, shrink=SHRINK, fold=within
+        )
+        least = float(zoomed)
+        found.append(_on_circles(modulus, place, least) if AT_ZERO < least < value * (1 - SAME) else (place, least))
     points = np.array([(edge[0], np.pi / 2), *(place for place, _ in found)])
     size, ratio = np.exp(points[:, 0]) / float(method.step_multiple), np.where(points[:, 1] < ROUNDING, 0, points[:, 1])
     return np.stack([2 * size * np.sin(ratio), size**2], axis=-1), np.array([value, *(least for _, least in found)])
+
+
+def _on_circles(modulus: Points, place: FloatArray, least: float) -> tuple[FloatArray, float]:
+    """Return a place near another one, and the value there, once more by circles of constant |mu|, each with its least.
+
+    Valleys that are curved and narrower than a grid's spacing hold grids of points fast.
+    """
+    best, value = place, least
+
+    def on_circles(points: FloatArray) -> FloatArray:
+        nonlocal best, value
+        size = points[..., 0]
+        ends = (np.full(size.shape, np.clip(best[1] + side * WINDOW, 0, np.pi / 2)) for side in (-1, 1))
+        ratios, values = least_between(
+            lambda some: modulus(np.stack(np.broadcast_arrays(size[..., np.newaxis], some), axis=-1)), *ends
+        )
+        k = int(np.argmin(values))
+        if values[k] < value * (1 - SAME):
+            best, value = np.array([size[k], ratios[k]]), float(values[k])
+        return values
+
+    zoom_on_minimum(on_circles, place[:1], np.array([NEAR]), points=LINES, rounds=CIRCLE_ROUNDS, shrink=0.25)
+    undamped = np.array([best[0], 0.0])
+    return (undamped, value) if modulus(undamped[np.newaxis])[0] <= value * (1 + SAME) else (best, value)
 
 
 def _over_lines(method: Method, limit: FarLimit) -> tuple[FloatArray, FloatArray]:

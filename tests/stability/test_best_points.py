@@ -168,6 +168,14 @@ def test_negative_damping_is_no_answer(number: int, alpha_hat: str) -> None:
     assert found.z_abs == pytest.approx(least_within(modulus_of(method), 1e4)[0], rel=1e-6)
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("number", [205, 220])
+def test_a_curved_valley_narrower_than_a_grid_holds_nothing_fast(number: int) -> None:
+    """PECE pairs: grids of points alone end a thousandth above what descent finds."""
+    method = random_method(number)
+    assert best(method).z_abs <= least_within(modulus_of(method), 1e4)[0] * (1 + 1e-6)
+
+
 IMPLICIT_SPRING = Method(
     "implicit spring", recipe({"x1": "x0 + v1", "v1": "v0 + acc", "acc": "acceleration(x1, v0)"}), ""
 )
