@@ -182,10 +182,11 @@ class Lines:
             for section, some in zip(sections, self.kept(sections), strict=True)
             for part in np.array(section.parts)[some]
         }
+        middles = [section.places[len(section.places) // 2] for section in sections]
         wide = {
             part
-            for section in sections
-            for part, (low, high) in zip(section.parts, self.found[section.places[0]], strict=True)
+            for section, place in zip(sections, middles, strict=True)
+            for part, (low, high) in zip(section.parts, self.found[place], strict=True)
             if high - low > THIN * high and section.places[-1] - section.places[0] > THIN * section.places[-1]
         }
         return [point for part, point in self._samples(sections).items() if part in wide - kept]

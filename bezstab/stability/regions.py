@@ -32,6 +32,7 @@ ROUNDED = 1e-9
 """Of an area: ends of stretches are asked to be as exact."""
 
 Approached = tuple[tuple[bool, bool], tuple[bool, bool]]
+NOWHERE: Approached = ((False, False), (False, False))
 
 
 @dataclass(frozen=True, repr=False)
@@ -53,7 +54,7 @@ class Region(ReadOnlyArrays):
     extent: Extent | None = None
     view: Extent | None = None
     boundary: tuple[FloatArray, ...] = ()
-    approached: Approached = ((False, False), (False, False))
+    approached: Approached = NOWHERE
     islands: tuple[tuple[float, float], ...] = ()
 
     def __repr__(self) -> str:
@@ -91,27 +92,26 @@ def region(method: Method, level: float = 1.0) -> Region:
 @cache
 def _region(method: Method, level: float) -> Region:
     across, upwards = _lines(method, level)
-    islands = tuple(across.islands())
+    before, extent = None, _extent(across, upwards)
+    area: float | None = 0.0
+    error, view, boundary = 0.0, before, tuple[FloatArray, ...]()
+    while extent and extent != before:  # lines laid for an area and curves may show two parts where one seemed to be
+        bounded = bool(np.isfinite(extent).all())
+        area, error = _area(across, upwards, extent) if bounded else (None, 0.0)
+        view = extent if bounded else (_in_view(across, extent[0]), _in_view(upwards, extent[1]))
+        beyond = 1 + (MARGIN if bounded else GOES_ON)
+        boundary = boundary_curves(across, beyond * view[0][1], beyond * view[1][1])
+        before, extent = extent, _extent(across, upwards)
+    approached = ((False, _approached(across)), (False, _approached(upwards))) if extent else NOWHERE
+    return Region(method, level, area, error, extent, view, boundary, approached, tuple(across.islands()))
+
+
+def _extent(across: Lines, upwards: Lines) -> Extent | None:
+    """Return the extent along both axes, from the lines across each and from the ends of those along it."""
     of_alpha, of_beta = across.extent(), upwards.extent()
     if of_alpha is None or of_beta is None:
-        return Region(method, level, islands=islands)
-    of_alpha, of_beta = _widest(of_alpha, upwards.reach()), _widest(of_beta, across.reach())
-    extent = of_alpha, of_beta
-    bounded = bool(np.isfinite(extent).all())
-    area, error = _area(across, upwards, extent) if bounded else (None, 0.0)
-    view = extent if bounded else (_in_view(across, of_alpha), _in_view(upwards, of_beta))
-    beyond = 1 + (MARGIN if bounded else GOES_ON)
-    return Region(
-        method,
-        level,
-        area,
-        area_error=error,
-        extent=extent,
-        view=view,
-        boundary=boundary_curves(across, beyond * view[0][1], beyond * view[1][1]),
-        approached=((False, _approached(across)), (False, _approached(upwards))),
-        islands=islands,
-    )
+        return None
+    return _widest(of_alpha, upwards.reach()), _widest(of_beta, across.reach())
 
 
 @cache
