@@ -1,6 +1,7 @@
 """Random methods of every kind with rational coefficients: consistent and zero-stable by construction."""
 
 import random
+from contextlib import suppress
 from fractions import Fraction
 
 from bezstab.errors import InputError
@@ -57,8 +58,14 @@ def random_sigma(rng: random.Random, rho: Polynomial, explicit: bool) -> Polynom
 
 
 def random_multistep(rng: random.Random, steps: int, explicit: bool = True) -> LinearMultistep:
-    rho = random_rho(rng, steps)
-    return LinearMultistep(tuple(rho), tuple(random_sigma(rng, rho, explicit)))
+    return with_sigma(rng, random_rho(rng, steps), explicit)
+
+
+def with_sigma(rng: random.Random, rho: Polynomial, explicit: bool) -> LinearMultistep:
+    """Return a method with this rho and a random sigma that shares no factor with it."""
+    while True:
+        with suppress(InputError):
+            return LinearMultistep(tuple(rho), tuple(random_sigma(rng, rho, explicit)))
 
 
 def random_runge_kutta(rng: random.Random, stages: int) -> RungeKutta:
@@ -95,12 +102,10 @@ def random_method(number: int) -> Method:
         scheme = random_runge_kutta(rng, size)
     else:
         rho = random_rho(rng, size)
-        predictor = LinearMultistep(tuple(rho), tuple(random_sigma(rng, rho, explicit=True)))
+        predictor = with_sigma(rng, rho, explicit=True)
         if rng.random() < 0.5:
             rho = random_rho(rng, size)
-        scheme = PredictorCorrector(
-            predictor, LinearMultistep(tuple(rho), tuple(random_sigma(rng, rho, explicit=False)))
-        )
+        scheme = PredictorCorrector(predictor, with_sigma(rng, rho, explicit=False))
     return Method(f"{kind}{size}-{number}", scheme, "random")
 
 
