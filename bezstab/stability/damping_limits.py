@@ -68,7 +68,7 @@ def unconditional_damping_ratio(method: Method) -> float | None:
 
     def is_limited(ratios: FloatArray) -> BoolArray:
         found = paths(method, 2 * ratios, np.ones_like(ratios), ALONG_H).stretches()
-        unlimited = found.path[(found.low == 0) & np.isinf(found.high)]
+        unlimited = found.path[(found.low < float(PROVEN_TO)) & np.isinf(found.high)]  # but for rounding of zero
         return ~np.isin(np.arange(len(ratios)), unlimited)
 
     ends = first_where(is_limited, RATIOS)

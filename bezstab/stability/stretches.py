@@ -260,7 +260,7 @@ def _without_slivers(stable: BoolArray, low: FloatArray, high: FloatArray) -> Bo
     told = high > low * (1 + NEGLIGIBLE)
     told[:, 0] = True
     latest = np.maximum.accumulate(np.where(told, np.arange(told.shape[1]), 0), axis=1)
-    return np.take_along_axis(stable, latest, axis=1) & (low < high)
+    return np.take_along_axis(stable, latest, axis=1) & np.isfinite(low)
 
 
 def _joined(path: NDArray[np.intp], low: FloatArray, high: FloatArray) -> tuple[NDArray[np.intp], list[FloatArray]]:

@@ -96,3 +96,9 @@ def test_levels_may_differ_from_path_to_path() -> None:
         )
         assert found.low[found.path == number] == pytest.approx(alone.low, rel=1e-9)
         assert found.high[found.path == number] == pytest.approx(alone.high, rel=1e-9)
+
+
+def test_two_places_that_rounding_makes_one_leave_no_gap() -> None:
+    """Just above bdf3's least damping ratio two places of its path of steps are complex, with one real part."""
+    found = paths(lookup("bdf3"), np.array([2 * 0.069193]), np.ones(1), ALONG_H).stretches()
+    assert (found.low.tolist(), found.high.tolist()) == ([0.0], [np.inf])
