@@ -111,14 +111,26 @@ def completed_chunks(
             arriving = Parallel(return_as="generator_unordered", pre_dispatch="all")(jobs)
         with closing(arriving):  # which ends what processes still do
             for number, result in arriving:
+                if isinstance(result, Exception):
+                    with suppress(BrokenProcessPool):  # of the workers that this ends
+                        arriving.throw(result)
+                    raise result
                 kept.save(number, result)
                 yield number, result
 
 
-def _numbered(work: Callable[[Chunk], Arrays], number: int, chunk: Chunk, parent: int) -> tuple[int, Arrays]:
-    """Return a chunk's number and what work finds of it; a worker ends with the process that started it."""
+def _numbered(
+    work: Callable[[Chunk], Arrays], number: int, chunk: Chunk, parent: int
+) -> tuple[int, Arrays | Exception]:
+    """Return a chunk's number and what work finds of it, or raises; a worker ends with the process that started it.
+
+    What it raises is returned: a pool that is told of it ends its workers, and may report their end in its place.
+    """
     _end_with(parent)
-    return number, work(chunk)
+    try:
+        return number, work(chunk)
+    except Exception as error:
+        return number, error
 
 
 @contextmanager

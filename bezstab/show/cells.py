@@ -51,7 +51,7 @@ def area_text(row: Row) -> str:
     """Return an area to the digits that it has: 0.8096847 ± 2e-8."""
     area, error = row["area"], row["area_error"]
     if not area:
-        return unbounded(row) if area is None else "0"
+        return "0"
     decimals = max(0, -math.floor(math.log10(error)))
     size, exponent = f"{error:.0e}".split("e")
     return f"{area:.{decimals}f} ± {size}e{int(exponent)}"

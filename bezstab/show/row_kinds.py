@@ -129,6 +129,7 @@ AREA = number(
     "Area of the region in alpha_hat and beta_hat",
     "area",
     text=area_text,
+    otherwise=unbounded,
     null="where it is infinite or empty",
     path="region.area",
 )

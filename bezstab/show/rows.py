@@ -127,7 +127,10 @@ def region_row(answer: RegionAnswer) -> Row:
     where = best_point_words(inside) if inside else reason
     approached = ", ".join(compress(LIMITS, chain(*region.approached))) or None
     islands = ", ".join(f"({alpha_hat:.4g}, {beta_hat:.4g})" for alpha_hat, beta_hat in region.islands) or None
-    return REGIONS.row(answer, approached=approached, islands=islands, best_where=where, best_reason=reason)
+    error = None if region.area is None else region.area_error
+    return REGIONS.row(
+        answer, area_error=error, approached=approached, islands=islands, best_where=where, best_reason=reason
+    )
 
 
 def map_rows(answer: MapAnswer) -> list[Row]:

@@ -52,9 +52,11 @@ def test_without_numba_runs_are_pythons(monkeypatch: pytest.MonkeyPatch) -> None
 
 KEPT_SCENES = """
 import sys
-from bezstab.mechanism import compiled_mechanism, load_scene, simulate
+from bezstab.mechanism.equations import compiled_mechanism
+from bezstab.mechanism.runner import simulate
+from bezstab.mechanism.scene_files import load_scene
 from bezstab.mechanism.compiled_stepping import machine_steps
-from bezstab.methods import lookup
+from bezstab.methods.registry import lookup
 hits = 0
 for scene in sys.argv[1:]:
     mechanism = compiled_mechanism(load_scene(scene))

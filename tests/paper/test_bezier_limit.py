@@ -51,4 +51,5 @@ def test_the_regions_of_the_methods_tend_to_it() -> None:
         assert best
         found.append((shape.area, shape.extent[0][1], best.z_abs))
     limits = np.polynomial.polynomial.polyfit(1 / m, found, len(m) - 1)[0]
-    assert limits == pytest.approx([0.61962308, 2 * LENGTH, 0.68734989], abs=1e-7)
+    # areas and extents are good to 1e-9, which the polynomial through ten of them multiplies by some thousands
+    assert limits == pytest.approx([0.61962308, 2 * LENGTH, 0.68734989], abs=1e-5)

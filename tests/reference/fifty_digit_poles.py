@@ -27,7 +27,7 @@ def poles_with_errors(method: Method, alpha_hat: float, beta_hat: float) -> list
         while coefficients[0] == 0:  # exact zeros, which polyroots would only approach
             pairs.append((mpmath.mpf(0), mpmath.mpf(0)))
             coefficients, sizes = coefficients[1:], sizes[1:]
-        for z in mpmath.polyroots(coefficients[::-1], maxsteps=500, extraprec=200):
+        for z in mpmath.polyroots(coefficients[::-1], maxsteps=5000, extraprec=200):
             rounding = 50 * EPS * sum(size * abs(z) ** k for k, size in enumerate(sizes))
             derivative, error = coefficients, mpmath.inf
             for k in range(1, len(coefficients)):
@@ -48,4 +48,4 @@ def modulus_from_p(method: Method, alpha_hat: float, beta_hat: float) -> float:
         for coefficient in polynomial.all_coeffs():
             terms = coefficient.as_poly(*polynomial.domain.symbols).terms()
             coefficients.append(sum(mpmath.mpf(int(c.p)) / int(c.q) * a**i * b**j for (i, j), c in terms))
-        return float(max(abs(z) for z in mpmath.polyroots(coefficients, maxsteps=500, extraprec=300)))
+        return float(max(abs(z) for z in mpmath.polyroots(coefficients, maxsteps=5000, extraprec=300)))
