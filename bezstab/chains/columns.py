@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from bezstab.chains.answer import ChainAnswer
-from bezstab.show.columns import Column
+from bezstab.show.columns import Column, in_seconds
 
 COLUMNS: Sequence[Column[ChainAnswer]] = (
     Column("engine", "engine", lambda answer: answer.engine.name, "engine that sweeps over its constraints"),
@@ -23,7 +23,7 @@ COLUMNS: Sequence[Column[ChainAnswer]] = (
     Column(
         "settles in (s)",
         "settle_seconds",
-        lambda answer: None if answer.settle_steps is None else answer.settle_steps * float(answer.h),
+        lambda answer: in_seconds(answer.settle_steps, answer.h),
         "time until an error is a thousandth; null where it does not fall",
         unit="s",
         form=".4g",

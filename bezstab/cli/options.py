@@ -158,18 +158,6 @@ OPTIONS = {
         ENGINE_VALUES,
         "An engine's own values, such as mujoco=0.02,1 [its defaults], in place of --alpha and --beta; needs --h.",
     ),
-    "every": option(
-        "--every",
-        int,
-        "With --pd: the torque is computed every so many steps and held in between.",
-        default=1,
-    ),
-    "late": option(
-        "--late",
-        NUMBER,
-        "With --pd: the torque is applied so many steps late. Fractions are allowed.",
-        default="0",
-    ),
     "scene": option("--scene", SCENE, "A shipped scene's name, or a .toml file."),
     "speed": option(
         "--speed", SPEED, "Multiply the speed of the scene's drivers and initial velocities by this.", default="1"
@@ -254,10 +242,6 @@ def refuse_beside(option: str, others: Collection[str], why: str) -> None:
         raise click.UsageError(f"{other} does not go with {option}: {why}")
 
 
-OF_A_CONTROLLER = Rule(
-    ("--every", "--late", "--filter", "--bandwidth"), "it is about a drive's controller", needs=("--pd",)
-)
-
 GROUPS: Mapping[str, tuple[str | Option | Rule, ...]] = {
     "point": ("alpha", "beta", "physical"),
     "given_point": (  # in the plane, or by an engine's own values
@@ -269,17 +253,6 @@ GROUPS: Mapping[str, tuple[str | Option | Rule, ...]] = {
             "With --engine: take the values as typed, without what the engine does to them, such as clamps.",
         ),
         Rule(("--engine",), "it gives the point itself", excludes=("--alpha", "--beta", "--physical")),
-    ),
-    "timing": (
-        "every",
-        "late",
-        option(
-            "--filter filter_seconds",
-            NUMBER,
-            "With --pd: the time constant in s of a first-order filter of the measured velocity.",
-            default="0",
-        ),
-        OF_A_CONTROLLER,
     ),
     "holding": (
         "stabilise",

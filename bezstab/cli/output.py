@@ -80,15 +80,16 @@ def show_answers(columns: Sequence[Column[Item]], answers: Sequence[Item], sente
         return
     many = len(answers) > 1
     shown = [each for each in columns if each.heading and (every_column or each.brief or (each.apart and many))]
-    answer = _table_of(shown, answers)
-    if form == "text" and not (many and fits(answer, text_width())):
-        headings = [each.heading for each in shown]
-        cells = [[each.text(answer) for each in shown] for answer in answers]
-        blocks = zip(sentences, cells, strict=True)
-        answer = "\n\n".join(
-            lines_below(sentence, list(zip(headings, row, strict=True)), text_width()) for sentence, row in blocks
-        )
-    click.echo(answer)
+    if many or form == "markdown":
+        as_table = _table_of(shown, answers)
+        if form == "markdown" or fits(as_table, text_width()):
+            click.echo(as_table)
+            return
+    blocks = (
+        lines_below(sentence, [(each.heading, each.text(answer)) for each in shown], text_width())
+        for sentence, answer in zip(sentences, answers, strict=True)
+    )
+    click.echo("\n\n".join(blocks))
 
 
 def show_tables(parts: Sequence[tuple[Sequence[Column[Any]], Sequence[Any]]]) -> None:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from bezstab.drives.answer import DriveAnswer
 from bezstab.drives.limits import Stretch
 from bezstab.engines.drives import Timing
-from bezstab.show.columns import Column
+from bezstab.show.columns import Column, in_seconds
 from bezstab.words import seconds_words
 
 NOT_JUDGED = (
@@ -46,7 +46,7 @@ COLUMNS: Sequence[Column[DriveAnswer]] = (
     Column(
         "a tenth in (s)",
         "tenth_seconds",
-        lambda answer: None if answer.tenth_steps is None else answer.tenth_steps * float(answer.h),
+        lambda answer: in_seconds(answer.tenth_steps, answer.h),
         "time until an error is a tenth",
         unit="s",
         form=".4g",
@@ -60,7 +60,7 @@ COLUMNS: Sequence[Column[DriveAnswer]] = (
     Column(
         "settles in (s)",
         "settle_seconds",
-        lambda answer: None if answer.settle_steps is None else answer.settle_steps * float(answer.h),
+        lambda answer: in_seconds(answer.settle_steps, answer.h),
         "the same in seconds",
         unit="s",
         form=".4g",

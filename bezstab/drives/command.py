@@ -89,8 +89,8 @@ def drive(
     number, seconds = late
     timing = timing_of(h, every, number / h if seconds else number, filter_seconds)
     if bandwidth is not None or settle is not None:
-        if kp is not None or kd is not None:
-            raise InputError("--bandwidth and --settle find gains: leave out --kp and --kd")
+        if kp is not None or kd is not None or ki:
+            raise InputError("--bandwidth and --settle find kp and kd: leave out --kp, --kd and --ki")
         judged = gains_for(inertia, h, ways, timing, bandwidth=bandwidth, settle=settle)
         show_text(f"kp = {float(judged.kp):g}, kd = {float(judged.kd):g}\n")
     elif kp is None or kd is None:

@@ -3,7 +3,6 @@
 Each kind of scheme gives both (schemes.py); here they are taken to the user's h, and to sympy's expressions.
 """
 
-from collections.abc import Sequence
 from fractions import Fraction
 from functools import cache
 
@@ -15,18 +14,6 @@ from bezstab.methods.schemes import Method, RungeKutta
 
 Z, MU, ALPHA_HAT, BETA_HAT, S, H = sp.symbols("z mu alpha_hat beta_hat s h")
 PLANE = sp.QQ[ALPHA_HAT, BETA_HAT]
-
-
-def rho_and_sigma(method: Method) -> tuple[Sequence[Fraction], Sequence[Fraction]] | None:
-    """Return rho and sigma, ascending, where pi(z, mu) = rho(z) - mu sigma(z): of a linear multistep method, at least.
-
-    None of other methods.
-    """
-    by_power_of_mu = list(zip(*method.scheme.mu_table, strict=True))
-    if len(by_power_of_mu) != 2:
-        return None
-    rho, minus_sigma = by_power_of_mu
-    return rho, [-c for c in minus_sigma]
 
 
 @cache

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Generic, TypeVar
+from typing import Generic, SupportsFloat, TypeVar
 
 from bezstab.show.fields import Form, Row, Value, formatted, visible
 
@@ -29,6 +29,11 @@ class Column(Generic[Answer]):
     def text(self, answer: Answer) -> str:
         """Return what a table shows of an answer, on one line; a dash where there is no value."""
         return visible(formatted(self.value(answer), self.form))
+
+
+def in_seconds(steps: int | None, h: SupportsFloat) -> float | None:
+    """Return how long so many steps of h (s) take; None where there are none."""
+    return None if steps is None else steps * float(h)
 
 
 def row_of(columns: Sequence[Column[Answer]], answer: Answer) -> Row:

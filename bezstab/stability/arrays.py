@@ -27,9 +27,6 @@ is left is its square, which is rounding."""
 DOUBLE = 1e-6
 """Relative: what is known to the root of rounding: where two roots meet, and the place of a flat extreme."""
 
-MULTIPLE = 1e-3
-"""Relative: a root of multiplicity m is known to eps^(1/m), and so is all that is near one; m is four at most."""
-
 SLOW = 4096 * EPS
 """1 - |z_p| of which rounding leaves three digits: such a decay takes 1e13 steps, and counts as none."""
 

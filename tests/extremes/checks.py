@@ -23,7 +23,6 @@ from bezstab.mechanism.programs import even_steps
 from bezstab.mechanism.runner import march, simulate
 from bezstab.mechanism.scene_files import load_scene
 from bezstab.mechanism.start import constraint_errors, initial_state
-from bezstab.methods.derivation import rho_and_sigma
 from bezstab.methods.registry import lookup
 from bezstab.methods.schemes import LinearMultistep, Method
 from bezstab.stability.closed_loop import poles
@@ -81,9 +80,8 @@ def double_mu(name: str) -> Found:
 
 def double_root(name: str) -> Found:
     """At d mu/dz = 0, rho' sigma = rho sigma', two roots meet; rounding alpha_hat, beta_hat parts them by 1e-8."""
-    mapping = rho_and_sigma(lookup(name))
-    assert mapping
-    rho, sigma = (np.array(part[::-1], float) for part in mapping)
+    rho, minus_sigma = (np.array(part[::-1], float) for part in zip(*lookup(name).scheme.mu_table, strict=True))
+    sigma = -minus_sigma
     branch = np.roots(np.polysub(np.polymul(np.polyder(rho), sigma), np.polymul(rho, np.polyder(sigma))))
     mu = np.polyval(rho, branch) / np.polyval(sigma, branch)
     # Where a branch point is a root at 0, or mu is infinite or huge, nothing is to be learnt.
