@@ -19,6 +19,9 @@ Stretch = tuple[float, float]
 FACTORS = np.geomspace(1e-8, 1e8, 756)
 """alpha_hat or beta_hat at which ends of stability are looked for first, 5 % apart: a shorter stretch is not seen."""
 
+FEW_FACTORS = np.geomspace(1e-5, 1e5, 57)
+"""Times a drive's own number, 50 % apart."""
+
 
 @dataclass(frozen=True)
 class Limits:
@@ -52,9 +55,9 @@ def limits(drive: Drive, h: Fraction, method: Method, timing: Timing) -> Limits:
         return verdict(changed, step, method, replace(timing, **timed)) == "converges"
 
     if drive.ki:  # the closed loop itself depends on these
-        inertia = _around(drive.inertia, lambda some: stable_with(replace(drive, inertia=some)))
-        step = _around(h, lambda some: stable_with(drive, some))
-        ki = _around(drive.ki, lambda some: stable_with(replace(drive, ki=some)))
+        inertia = _proven_around(drive.inertia, lambda some: stable_with(replace(drive, inertia=some)))
+        step = _proven_around(h, lambda some: stable_with(drive, some))
+        ki = _proven_around(drive.ki, lambda some: stable_with(replace(drive, ki=some)))
     else:
         inertia = _times(float(drive.inertia), _stable_stretch(1.0, lambda some: decays(a / some, b / some)))
         step = _times(float(h), _stable_stretch(1.0, lambda some: decays(a * some, b * some**2)))
@@ -71,46 +74,25 @@ def limits(drive: Drive, h: Fraction, method: Method, timing: Timing) -> Limits:
     )
 
 
-WIDENING = Fraction(3, 2)
-"""From one number to the next farther one, where each takes a closed loop of its own."""
-
-FARTHEST = 30
-"""So many: a factor of 2e5."""
-
-
-def _around(own: Fraction, stable: Callable[[Fraction], bool]) -> Stretch | None:
-    """Return the stretch of proven stable numbers around a drive's own, else the nearest one; None if there is none."""
-    far = [WIDENING**power for power in range(FARTHEST)]
-    numbers = [own / factor for factor in far[:0:-1]] + [own * factor for factor in far]
-    held = [stable(number) for number in numbers]
-    places = [place for place, each in enumerate(held) if each]
-    if not places:
-        return None
-    first = last = min(places, key=lambda place: abs(place - FARTHEST + 1))
-    while first > 0 and held[first - 1]:
-        first -= 1
-    while last < len(held) - 1 and held[last + 1]:
-        last += 1
-    low = _turn(numbers[first - 1], numbers[first], stable) if first else 0.0
-    high = _turn(numbers[last + 1], numbers[last], stable) if last < len(held) - 1 else np.inf
-    return low, high
+def _proven_around(own: Fraction, stable: Callable[[Fraction], bool]) -> Stretch | None:
+    """Return the stretch around a drive's own number where each takes a closed loop and a verdict of its own."""
+    each = np.vectorize(lambda some: stable(Fraction(some)), otypes=[bool])
+    return _stable_stretch(float(own), each, float(own) * FEW_FACTORS)
 
 
-def _turn(unstable: Fraction, inside: Fraction, stable: Callable[[Fraction], bool]) -> float:
-    """Return the last stable number between one that is not and one that is, to a part in a million."""
-    while abs(unstable - inside) > abs(inside) / 10**6:
-        middle = Fraction(float(unstable + inside) / 2)
-        unstable, inside = (unstable, middle) if stable(middle) else (middle, inside)
-    return float(inside)
+def _stable_stretch(
+    own: float, decays: Callable[[FloatArray], BoolArray], numbers: FloatArray = FACTORS
+) -> Stretch | None:
+    """Return the stretch that decays around a drive's own number, else that nearest to it; None if there is none.
 
-
-def _stable_stretch(own: float, decays: Callable[[FloatArray], BoolArray]) -> Stretch | None:
-    """Return the stretch that decays around a drive's own number, else that nearest to it; None if there is none."""
-    numbers = np.sort(np.append(FACTORS, own)) if own > 0 else FACTORS
+    `numbers`: at which ends are looked for first, rising.
+    """
+    if own > 0:
+        numbers = np.sort(np.append(numbers, own))
     stable = np.flatnonzero(decays(numbers))
     if not stable.size:
         return None
-    start = stable[np.argmin(np.abs(np.log(numbers[stable] / max(own, FACTORS[0]))))]  # the own one, if it is stable
+    start = stable[np.argmin(np.abs(np.log(numbers[stable] / max(own, numbers[0]))))]  # the own one, if it is stable
     down, up = (first_where(lambda some: ~decays(some), way) for way in (numbers[start::-1], numbers[start:]))
     return (down[0] if down else 0.0, up[0] if up else np.inf)
 

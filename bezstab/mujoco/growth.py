@@ -7,6 +7,7 @@ Poles are compared in order, the fastest first. Where a step damps, as MuJoCo's 
 limit as h shrinks.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
 
@@ -160,8 +161,15 @@ def stable_factor(robot: Robot, state: State, growth: Growth) -> float | None:
         safe = lost / 2 if lost else np.inf
     if safe is None or safe == np.inf:
         return safe
-    ends = [safe, 2 * safe]
-    for _ in range(BISECTIONS):
-        middle = float(np.sqrt(ends[0] * ends[1]))
-        ends[unsafe(middle)] = middle
-    return ends[0]
+    return last_safe(lambda factor: not unsafe(factor), safe, 2 * safe, BISECTIONS)
+
+
+def last_safe(safe: Callable[[float], bool], inside: float, outside: float, halvings: int) -> float:
+    """Return the limit between a value that is safe and one that is not, on the safe side: their ratio is halved."""
+    for _ in range(halvings):
+        middle = float(np.sqrt(inside * outside))
+        if safe(middle):
+            inside = middle
+        else:
+            outside = middle
+    return inside

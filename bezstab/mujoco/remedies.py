@@ -11,7 +11,7 @@ import numpy as np
 from bezstab.mujoco.blame import Shown, Suspect
 from bezstab.mujoco.controllers import name_of
 from bezstab.mujoco.elements import Element, acting
-from bezstab.mujoco.growth import growth_at
+from bezstab.mujoco.growth import growth_at, last_safe
 from bezstab.mujoco.robots import Robot, State
 from bezstab.mujoco.solrefs import METHODS
 from bezstab.rationals import rounded_down
@@ -144,18 +144,7 @@ def _safe_with(unsafe: Unsafe, knobs: "Sequence[_Knob]", factor: float) -> bool:
 def _largest(safe: Callable[[float], bool]) -> float | None:
     """Return the largest factor below one that is safe, to two in a hundred; None where none is found."""
     found = next((0.25**power for power in range(1, QUARTERS + 1) if safe(0.25**power)), None)
-    return found and _bisected(safe, found, 4 * found)
-
-
-def _bisected(safe: Callable[[float], bool], inside: float, outside: float, halvings: int = BISECTIONS) -> float:
-    """Return the limit between a value that is safe and one that is not, on the safe side."""
-    for _ in range(halvings):
-        middle = float(np.sqrt(inside * outside))
-        if safe(middle):
-            inside = middle
-        else:
-            outside = middle
-    return inside
+    return found and last_safe(safe, found, 4 * found, BISECTIONS)
 
 
 # Changes
@@ -265,7 +254,7 @@ def _least_armature(unsafe: Unsafe, joints: Sequence[int]) -> float | None:
     largest = own * 4.0**QUARTERS
     if not safe(largest):
         return None
-    least = _bisected(safe, largest, own / 4.0**QUARTERS, 2 * BISECTIONS)
+    least = last_safe(safe, largest, own / 4.0**QUARTERS, 2 * BISECTIONS)
     digit = 10.0 ** (np.floor(np.log10(least)) - 1)
     return float(np.ceil(least / digit) * digit)
 
