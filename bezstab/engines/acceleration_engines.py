@@ -1,5 +1,6 @@
 """Engines whose feedback is Baumgarte's: c'' + 2 alpha c' + beta^2 c = 0 in their equations, then an integrator."""
 
+import math
 from fractions import Fraction
 from typing import Any
 
@@ -19,7 +20,8 @@ from bezstab.units import feedback_gains, from_dimensionless, from_feedback_gain
 # which d takes part: r = d / dmax scales damping once and stiffness twice. r = d0 / dmax at c = 0, 1 past the width.
 
 LEAST_IMPEDANCE, MOST_IMPEDANCE = Fraction("0.0001"), Fraction("0.9999")  # mjMINIMP and mjMAXIMP: it keeps d between
-DEFAULT_SOLIMP = Fraction("0.9"), Fraction("0.95")
+DEFAULT_SOLIMP = Fraction("0.9"), Fraction("0.95"), Fraction("0.001"), Fraction("0.5"), Fraction(2)
+LEAST_WIDTH = 1e-15  # mjMINVAL: below, d is the mean of both
 LEAST_TIME_CONSTANT = 2  # steps: below, refsafe raises it
 
 
@@ -42,7 +44,7 @@ def _read_solref(h: Fraction, first: Fraction, second: Fraction, *_solimp: Fract
 def _impedances(_first: Fraction, _second: Fraction, *solimp: Fraction) -> tuple[Fraction, Fraction]:
     """Return d at no error and past solimp's width."""
     given = (*solimp, *DEFAULT_SOLIMP[len(solimp) :])
-    d0, dmax = (min(max(each, LEAST_IMPEDANCE), MOST_IMPEDANCE) for each in given)
+    d0, dmax = (min(max(each, LEAST_IMPEDANCE), MOST_IMPEDANCE) for each in given[:2])
     return d0, dmax
 
 
@@ -67,6 +69,37 @@ def _apply_mujoco(h: Fraction, first: Fraction, second: Fraction, *solimp: Fract
     )
 
 
+def _mujoco_rest(h: Fraction, acceleration: Fraction, first: Fraction, second: Fraction, *solimp: Fraction) -> float:
+    """Return the error at which the constraint holds a load: (1 - d) a0 = d K d c, with d what it is there.
+
+    MuJoCo's R is for the whole of a constraint's inverse mass, as `diagApprox` has it for one body at qpos0.
+    """
+    time_constant = max(first, LEAST_TIME_CONSTANT * h)
+    stiffness = 1 / (time_constant * second) ** 2 if first > 0 else -first
+    if not stiffness:
+        raise InputError("--engine mujoco: a stiffness of 0 holds no load")
+    shape = tuple(map(float, (*solimp, *DEFAULT_SOLIMP[len(solimp) :])))
+    limits = tuple(map(float, _impedances(first, second, *solimp)))
+    own, load = float(stiffness) / limits[1] ** 2, abs(float(acceleration))
+    least = min(limits)
+    low, high = 0.0, (1 - least) * load / (least**2 * own)  # where solimp stiffens, with one place between
+    while low < (middle := (low + high) / 2) < high:
+        impedance = _impedance_at(middle, limits, shape)
+        low, high = (middle, high) if impedance**2 * own * middle < (1 - impedance) * load else (low, middle)
+    return math.copysign(high, acceleration)
+
+
+def _impedance_at(error: float, limits: tuple[float, ...], shape: tuple[float, ...]) -> float:
+    """Return d at an error, between its limits: what MuJoCo's getimpedance computes."""
+    width, mid, power = max(shape[2], 0.0), min(max(shape[3], float(LEAST_IMPEDANCE)), float(MOST_IMPEDANCE)), shape[4]
+    if limits[0] == limits[1] or width <= LEAST_WIDTH:
+        return sum(limits) / 2
+    share, power = min(error / width, 1.0), max(power, 1.0)
+    way, end = (share, mid) if share <= mid else (1 - share, 1 - mid)
+    risen = end * math.pow(way / end, power)
+    return limits[0] + (risen if share <= mid else 1 - risen) * (limits[1] - limits[0])
+
+
 def _write_solref(alpha_hat: float, beta_hat: float, h: float) -> tuple[float, ...]:
     damping, stiffness = feedback_gains(alpha_hat, beta_hat, h)
     impedance = float(DEFAULT_SOLIMP[1])  # of d0 as well: r = 1 whatever the error
@@ -78,13 +111,14 @@ MUJOCO = Engine(
     energy_class="acceleration",
     level="acceleration",
     parameters={"solref[0]": "s or -1/s^2", "solref[1]": "- or -1/s"},
-    optional={"solimp[0]": "-", "solimp[1]": "-"},
+    optional={"solimp[0]": "-", "solimp[1]": "-", "solimp[2]": "m", "solimp[3]": "-", "solimp[4]": "-"},
     defaults="0.02,1,0.9,0.95",
     read=_read_solref,
     write=_write_solref,
     paste='solref="{} {}" solimp="{} {}"',
     apply=_apply_mujoco,
     impedances=_impedances,
+    rest=_mujoco_rest,
     marks={
         "MuJoCo: timeconst = 2h": "2h 1 0.95 0.95",  # equal impedances: r = 1
         "MuJoCo: solref = 0.02 1": "0.02 1 0.95 0.95",
@@ -136,7 +170,9 @@ GENESIS = Engine(
     reaches=f"β̂ = α̂²/4 with α̂ <= {2 / LEAST_TIME_CONSTANT:g}, as it has one time constant",
     apply=_apply_genesis,
     curve=_critical_damping(1 / LEAST_TIME_CONSTANT),
-    source="Genesis source, options/solvers.py (RigidOptions), rigid_solver.py (_sol_min_timeconst); else as mujoco",
+    rest=lambda h, acceleration, time_constant: _mujoco_rest(h, acceleration, time_constant, ONE),
+    source="Genesis source, options/solvers.py (RigidOptions), rigid_solver.py (_sol_min_timeconst), geom.py "
+    "(imp_aref, default_solver_params); else as mujoco",
     excludes="h is the substep's; sol_params of single joints and shapes; what mujoco leaves out, and that its solimp "
     "makes the feedback milder where the error is small",
 )
@@ -247,6 +283,12 @@ CHRONO_EXPLICIT = Engine(
 # Joints that are springs between bodies: forces of the old state, the new velocity moves; no turn of the normals
 
 
+def _spring_rest(acceleration: Fraction, stiffness: Fraction) -> Fraction:
+    if not stiffness:
+        raise InputError("a stiffness of 0 holds no load")
+    return acceleration / stiffness
+
+
 def _engine_of_springs(name: str, stiffness: str, damping: str, defaults: str, **facts: Any) -> Engine:
     """Return an engine with springs at its joints, by its two words; `facts` are the other fields of `Engine`."""
     return Engine(
@@ -259,6 +301,7 @@ def _engine_of_springs(name: str, stiffness: str, damping: str, defaults: str, *
         above_zero=("mass",),
         read=lambda h, stiffness, damping, mass=ONE: point_of_gains(h, stiffness / mass, damping / mass),
         write=lambda alpha_hat, beta_hat, h: (*stiffness_and_damping(alpha_hat, beta_hat, h), 1.0),
+        rest=lambda h, acceleration, stiffness, _damping, mass=ONE: _spring_rest(acceleration, stiffness / mass),
         **facts,
     )
 

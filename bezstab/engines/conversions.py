@@ -68,6 +68,8 @@ class Engine:
     acceleration level, too. `sweeping` is how it goes through a step in which it solves one after another, None where
     that is not written down here. `energy_class` is how it takes errors back, None likewise. `impedances(*values)` are
     the shares that soft constraints get of what they want, at no error and at large ones, None where they get all.
+    `rest(h, acceleration, *values)` is the error at which a constraint holds a load, None where that follows from the
+    rest: stability/rest_offsets.py.
     """
 
     name: str
@@ -92,6 +94,7 @@ class Engine:
     sweeping: Sweeping | None = None
     energy_class: EnergyClass | None = None
     impedances: Callable[..., tuple[Fraction, Fraction]] | None = None
+    rest: Callable[..., Fraction | float] | None = None
 
     @property
     def units(self) -> Mapping[str, str]:

@@ -204,6 +204,14 @@ def _read_matter(h: Fraction, stiffness: Fraction, iterations: Fraction = Fracti
     return Fraction(alpha_hat), Fraction(beta_hat)
 
 
+def _matter_rest(
+    h: Fraction, acceleration: Fraction, stiffness: Fraction, iterations: Fraction = Fraction(2)
+) -> Fraction:
+    """Return where both passes and what they keep take back what the load moves in a step."""
+    left = 1 - _share_of_all("matter.js", stiffness * _matter_scale(h, stiffness), iterations)
+    return h**2 * acceleration * left * (31 * left - 10) / (5 * (1 - left) * (9 * left + 5))
+
+
 def _matter_curve(share: Any) -> Any:
     import numpy as np
 
@@ -242,6 +250,7 @@ MATTER_JS = Engine(
     reaches="the points of its stiffness",
     marks={"matter.js: stiffness 1": "1"},
     curve=_matter_curve,
+    rest=_matter_rest,
     source="matter.js source, Constraint.js (solve, _warming), Engine.js (update: two passes), Body.js (update)",
     excludes="pins (length 0) in steps below 1/60 s; anchors away from centres of mass, where it takes more than the "
     "share; damping; frictionAir (0.01 unless set); contacts; the smallest of its three poles",

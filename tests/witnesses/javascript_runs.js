@@ -6,10 +6,10 @@
 global.P2_ARRAY_TYPE = Array; // float64
 const LENGTH = 1;
 
-function inMatter({ h, stiffness, iterations, places, spin }) {
+function inMatter({ h, stiffness, iterations, places, spin, gravity = 0 }) {
   const Matter = require("matter-js");
   const engine = Matter.Engine.create({ constraintIterations: iterations });
-  engine.gravity.scale = 0;
+  engine.gravity = { x: 1, y: 0, scale: gravity / 1e6 }; // its time is in ms
   const bodies = places.map((x) => Matter.Bodies.circle(x, 0, 0.1, { frictionAir: 0, collisionFilter: { mask: 0 } }));
   bodies.forEach((bodyB, i) => {
     const held = i ? { bodyA: bodies[i - 1] } : { pointA: { x: 0, y: 0 } };

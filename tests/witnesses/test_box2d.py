@@ -5,6 +5,7 @@ Position sweeps end as soon as no error is above the slop of 5 mm: so with one o
 three they are three only while errors are larger.
 """
 
+from fractions import Fraction
 from itertools import pairwise
 from typing import Any
 
@@ -13,6 +14,7 @@ import pytest
 
 from bezstab.engines.engine_list import ENGINES
 from bezstab.engines.sweeping import Move, Pass, SweptStep
+from bezstab.stability.rest_offsets import offset_at_rest
 from bezstab.stability.sweeps import Growth, chain, swept_growth
 from tests.witnesses.growths import growth
 
@@ -101,3 +103,35 @@ def test_hanging_chains_hold_as_predicted(bodies: int, ratio: float, sweeps: int
         world.Step(H, sweeps, 3)
         worst.append(worst_link(links))
     assert max(worst[1500:]) < max(0.1, 1.001 * max(worst[600:1500]))
+
+
+@pytest.mark.parametrize("frequency", [2, 5, 12])
+@pytest.mark.parametrize("damping_ratio", [0.3, 1])
+def test_a_soft_joint_sags_as_the_spring_that_jolt_has_too(frequency: float, damping_ratio: float) -> None:
+    """Its joints' frequencyHz is Catto's soft constraint without relaxation, which is Jolt's spring; to a hundredth."""
+    world = box2d.b2World(gravity=(9.81, 0))
+    body = world.CreateDynamicBody(position=(1, 0), allowSleep=False)
+    body.massData = box2d.b2MassData(mass=3, I=3, center=(0, 0))
+    world.CreateDistanceJoint(
+        bodyA=world.CreateStaticBody(position=(0, 0)),
+        bodyB=body,
+        length=1,
+        anchorA=(0, 0),
+        anchorB=(1, 0),
+        frequencyHz=frequency,
+        dampingRatio=damping_ratio,
+    )
+    for _ in range(1200):
+        world.Step(H, 8, 3)
+    values = Fraction(frequency), Fraction(damping_ratio)
+    offset = offset_at_rest(ENGINES["jolt-spring"], values, Fraction(1, 60), Fraction("9.81"))
+    assert body.position[0] - 1 == pytest.approx(offset, rel=0.01)
+
+
+def test_its_hard_joint_does_not_sag() -> None:
+    world, (body,) = chained(1, 1, gravity=9.81)
+    start = body.position[0]
+    for _ in range(1200):
+        world.Step(H, 8, 3)
+    assert body.position[0] - start == pytest.approx(0, abs=1e-6)
+    assert offset_at_rest(ENGINES["box2d-v2"], (), Fraction(1, 60), Fraction("9.81")) == 0

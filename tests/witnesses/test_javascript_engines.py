@@ -20,6 +20,7 @@ from bezstab.engines.engine_list import ENGINES
 from bezstab.methods.registry import lookup
 from bezstab.motion.spinning_bodies import spin_change
 from bezstab.stability.closed_loop import spectral_radius
+from bezstab.stability.rest_offsets import offset_at_rest
 from bezstab.stability.sweeps import chain, swept_growth
 from tests.witnesses.growths import growth
 
@@ -102,6 +103,17 @@ def test_matter_js_leaves_no_error_of_a_stiffness_of_one() -> None:
     run = links("matter.js", 3, h=1 / 60, stiffness=1, iterations=2, places=[1.1])
     assert np.abs(run[1:]).max() < 1e-12
     assert predicted("matter.js", "1/60", 1) < 1e-6
+
+
+@pytest.mark.parametrize("h", ["1/60", "1/120"])
+@pytest.mark.parametrize(("stiffness", "iterations"), [(0.7, 2), (0.2, 1), (0.05, 4), (1, 2)])
+def test_matter_js_sags_as_predicted(h: str, stiffness: float, iterations: int) -> None:
+    """To a hundredth; with a stiffness of one not at all."""
+    settings = {"stiffness": stiffness, "iterations": iterations, "gravity": 9.81}
+    run = links("matter.js", 2000, h=float(Fraction(h)), places=[1], **settings)
+    values = Fraction(str(stiffness)), Fraction(iterations)
+    offset = offset_at_rest(ENGINES["matter.js"], values, Fraction(h), Fraction("9.81"))
+    assert run[-1, 0] == pytest.approx(offset, rel=0.01, abs=1e-12)
 
 
 def test_matter_js_brakes_what_goes_round_as_its_class_of_energy_says() -> None:

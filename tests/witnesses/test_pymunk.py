@@ -5,6 +5,7 @@ Source: Chipmunk's bias_coef(errorBias, dt) = 1 - errorBias^dt, and bias = -bias
 Chains: pin joints between the centres of bodies in a straight line, which no motion along that line turns.
 """
 
+from fractions import Fraction
 from itertools import pairwise
 from typing import Any
 
@@ -12,9 +13,11 @@ import numpy as np
 import pytest
 
 from bezstab.chains.answer import chain as judge
+from bezstab.engines.engine_list import ENGINES
 from bezstab.engines.sweeping import hard_velocity_step
 from bezstab.methods.registry import lookup
 from bezstab.stability.closed_loop import spectral_radius
+from bezstab.stability.rest_offsets import offset_at_rest
 from bezstab.stability.sweeps import Growth, chain, swept_growth
 from tests.witnesses.growths import growth
 
@@ -161,3 +164,18 @@ def test_hanging_chains_do_not_sag_where_impulses_are_kept(bodies: int, ratio: f
     answer = judge("chipmunk", h="1/60", bodies=bodies, mass_ratio=ratio, iterations=sweeps, load=981)
     assert answer.sag == 0
     assert -chained[-1].position.y - LINK * bodies == pytest.approx(0, abs=LINK * bodies / 1000)
+
+
+@pytest.mark.parametrize("error_bias", [0.5**60, 0.9**60])
+def test_one_joint_does_not_sag(error_bias: float) -> None:
+    """Its bodies fall after they have moved: what gravity adds to a velocity is taken back before it moves anything."""
+    space = pymunk.Space()
+    space.gravity = (9.81, 0)
+    body = pymunk.Body(2, 3)
+    held = pymunk.PivotJoint(space.static_body, body, (0, 0), (0, 0))
+    held.error_bias = error_bias
+    space.add(body, held)
+    for _ in range(600):
+        space.step(H)
+    assert body.position.x == pytest.approx(0, abs=1e-9)
+    assert offset_at_rest(ENGINES["chipmunk"], (Fraction(error_bias),), Fraction(1, 60), Fraction("9.81")) == 0

@@ -1,0 +1,166 @@
+"""Where a constraint rests under a load: each engine's own step, MuJoCo itself, and the least feedback for a sag."""
+
+from fractions import Fraction
+from math import pi, sqrt
+from typing import Any
+
+import pytest
+
+from bezstab.engines.engine_list import ENGINES, engine_and_values
+from bezstab.errors import InputError
+from bezstab.methods.registry import lookup
+from bezstab.rationals import rational
+from bezstab.stability.closed_loop import converges
+from bezstab.stability.rest_offsets import least_feedback, offset_at_rest
+from tests.reference.engine_steps import STEPS
+
+H = Fraction(1, 60)
+GRAVITY = Fraction("9.81")
+
+AFTER_THE_VELOCITY = [
+    *("bullet", "ode=0.2,0.01,2", "dart", "box2d", "box2d=5,1", "rapier=10,1", "drake-sap", "drake-sap=1e4,0.1,0.5"),
+    *("godot", "godot-2d", "jolt-spring=5,0.5", "bepu=8,0.3", "physx-drive=300,5", "sofa", "physx", "physx-tgs"),
+    *("box2d-v2", "jolt", "pbd=0.5,3", "xpbd=0.001,1,2", "brax-positional", "brax-contact", "chrono-linearized"),
+]
+"""The load changes the velocity, then the step of tests/reference/engine_steps.py is taken."""
+
+
+def offset(engine: str, acceleration: Fraction = GRAVITY, h: Fraction = H) -> float:
+    named, values = engine_and_values(engine)
+    return offset_at_rest(named, values, h, acceleration)
+
+
+@pytest.mark.parametrize("engine", AFTER_THE_VELOCITY)
+def test_a_load_rests_where_the_engines_own_step_leaves_it(engine: str) -> None:
+    named, values = engine_and_values(engine)
+    c, v = 0.0, 0.0
+    for _ in range(3000):
+        c, v = STEPS[named.name](c, v + float(H * GRAVITY), float(H), *map(float, values))
+    assert offset(engine) == pytest.approx(c, rel=1e-9, abs=1e-15)
+    assert offset(engine, -GRAVITY) == pytest.approx(-c, rel=1e-9, abs=1e-15)
+
+
+@pytest.mark.parametrize(("stiffness", "iterations"), [("0.7", 2), ("0.2", 1), ("0.05", 3), ("1", 2)])
+def test_so_it_does_in_matter_js_where_a_little_less_than_all_pulls_too_far(stiffness: str, iterations: int) -> None:
+    place, before, impulse = 0.0, 0.0, 0.0
+    for _ in range(3000):
+        before -= float(H**2 * GRAVITY)
+        place, before, impulse = STEPS["matter.js"](place, before, impulse, 1 / 60, float(stiffness), iterations)
+    assert offset(f"matter.js={stiffness},{iterations}") == pytest.approx(place, rel=1e-9)
+    assert (place < 0) is (stiffness == "0.7")
+
+
+@pytest.mark.parametrize(
+    ("engine", "expected"),
+    [
+        ("crocoddyl=100,20", 0),
+        ("pinocchio=100,20", 0),
+        ("rbdl=0.1", 0),
+        ("chipmunk", 0),
+        ("kamino", 0),
+        ("brax-spring=2000,5,2", 9.81 * 2 / 2000),
+        ("newton-semi-implicit=300,10,2", 9.81 * 2 / 300),
+        ("box2d=5,3", 9.81 / (2 * pi * 5) ** 2),
+        ("box2d=60,2", 9.81 / (2 * pi * 15) ** 2),  # clamped to a quarter of the steps
+        ("jolt-spring=5,3", 9.81 / (2 * pi * 5) ** 2),
+        ("xpbd=0.002,0,4", 9.81 * 0.002 / 4),
+        ("p2=1e4,3,2", 9.81 * 2 / 1e4),
+        ("cannon-es=1e4,3,1/60,2", 9.81 * 2 / 1e4),
+        ("mujoco=-400,-40,0.95,0.95", 0.05 * 9.81 / 400),
+        ("mujoco=0.001,1,0.9,0.9", 0.1 * 9.81 / 900),  # the time constant is raised to two steps
+        ("genesis=0.2", 0.05 * 9.81 * 0.04),  # far past the width
+    ],
+)
+def test_a_spring_rests_at_load_over_stiffness_and_a_hard_constraint_nowhere_else(engine: str, expected: float) -> None:
+    assert offset(engine) == pytest.approx(expected, rel=1e-12)
+
+
+@pytest.mark.parametrize("solref", ["0.02 1", "0.001 1", "-40000 -300", "-600 -40"])
+@pytest.mark.parametrize(
+    "solimp", ["0.9 0.95", "0.5 0.95 0.01 0.3 3", "0.2 0.95 0.01 0.7 1", "0.95 0.95", "0.9 2 0.02", "0.6 0.8 0"]
+)
+@pytest.mark.parametrize("load", ["9.81", "-200"])
+def test_mujoco_rests_where_it_is_said_to(solref: str, solimp: str, load: str) -> None:
+    """Also within solimp's width, past it, and with clamps; a run from there does not move."""
+    mujoco: Any = pytest.importorskip("mujoco")
+    h = Fraction(2, 1000)
+    model = mujoco.MjModel.from_xml_string(f"""<mujoco>
+        <option timestep="{float(h)!r}" gravity="{load} 0 0" tolerance="0" iterations="200"/>
+        <worldbody><body><joint name="x" type="slide" axis="1 0 0"/>
+          <inertial pos="0 0 0" mass="3" diaginertia="1 1 1"/></body></worldbody>
+        <equality><joint joint1="x" solref="{solref}" solimp="{solimp}"/></equality></mujoco>""")
+    data = mujoco.MjData(model)
+    for _ in range(3000):
+        mujoco.mj_step(model, data)
+    values = tuple(map(Fraction, f"{solref} {solimp}".split()))
+    assert offset_at_rest(ENGINES["mujoco"], values, h, Fraction(load)) == pytest.approx(data.qpos[0], rel=1e-6)
+
+
+@pytest.mark.parametrize("engine", ["mujoco=0,-10", "brax-spring=0,1", "physx-drive=0,1", "ode=0,0.1", "bullet=0"])
+def test_what_has_no_stiffness_has_no_place_to_rest(engine: str) -> None:
+    with pytest.raises(InputError, match=r"a stiffness of 0 holds no load|no place to rest"):
+        offset(engine)
+
+
+MILLIMETRE = Fraction(1, 1000)
+
+
+@pytest.mark.parametrize(
+    ("name", "beta_hat"),
+    [
+        ("mujoco", 0.05),  # of h^2 a / sag: an impedance of 0.95 leaves a twentieth
+        ("genesis", 0.05),
+        ("jolt-spring", 1),
+        ("bepu", 1),
+        ("xpbd", 1),
+        ("brax-spring", 1),
+    ],
+)
+@pytest.mark.parametrize("sag", [MILLIMETRE, 20 * MILLIMETRE])
+def test_the_least_feedback_for_a_sag_is_that_of_its_formula_and_is_stable(
+    name: str, beta_hat: float, sag: Fraction
+) -> None:
+    engine = ENGINES[name]
+    method = lookup(engine.method or "SYM")
+    point = least_feedback(engine, method, H, GRAVITY, sag)
+    assert point
+    assert float(point[1]) == pytest.approx(beta_hat * 9.81 / 3600 / float(sag), rel=1e-6)
+    assert converges(method, *point)
+    values = tuple(map(rational, engine.values(point, H)))
+    assert 0.999 < offset_at_rest(engine, values, H, GRAVITY) / float(sag) <= 1
+
+
+def test_where_all_of_the_plane_is_open_it_decays_as_fast_as_any_with_that_stiffness() -> None:
+    """Symplectic Euler has a double pole at 1 - sqrt(beta_hat) for alpha_hat = 2 sqrt(beta_hat) - beta_hat."""
+    point = least_feedback(ENGINES["mujoco"], lookup("SYM"), H, GRAVITY, MILLIMETRE)
+    assert point
+    assert float(point[0]) == pytest.approx(2 * sqrt(point[1]) - float(point[1]), rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("name", "sag"),
+    [
+        ("box2d", "0.00110"),  # at its fastest it sags by 1.1044 mm
+        ("brax-spring", "0.00068"),  # symplectic Euler ends at beta_hat = 4
+        ("mujoco", "0.000034"),
+        ("genesis", "0.00067"),  # refsafe's floor, beta_hat = 1/4
+    ],
+)
+def test_a_sag_that_no_stable_feedback_keeps_has_none_and_a_little_more_has(name: str, sag: str) -> None:
+    engine = ENGINES[name]
+    method = lookup("SYM")
+    assert least_feedback(engine, method, H, GRAVITY, Fraction(sag)) is None
+    assert least_feedback(engine, method, H, GRAVITY, Fraction(sag) * Fraction(102, 100))
+
+
+def test_with_a_spread_it_is_stable_also_if_it_were_stronger() -> None:
+    engine, method, sag = ENGINES["brax-spring"], lookup("SYM"), Fraction("0.00075")
+    point = least_feedback(engine, method, H, GRAVITY, sag)
+    assert point
+    assert not converges(method, point[0] * Fraction(11, 10), point[1] * Fraction(121, 100))
+    assert least_feedback(engine, method, H, GRAVITY, sag, spread=0.1) is None
+
+
+def test_no_sag_at_all_cannot_be_asked_for() -> None:
+    with pytest.raises(InputError, match=r"^--sag 0: expected above 0$"):
+        least_feedback(ENGINES["box2d"], lookup("SYM"), H, GRAVITY, Fraction(0))
