@@ -16,10 +16,7 @@ if TYPE_CHECKING:
     from bezstab.api import dominant_pole as dominant_pole
     from bezstab.api import feedback_cost as feedback_cost
     from bezstab.api import largest_step as largest_step
-    from bezstab.api import method as method
     from bezstab.api import poles as poles
-    from bezstab.api import probe as probe
-    from bezstab.api import probe_step as probe_step
     from bezstab.api import region as region
     from bezstab.api import scene as scene
     from bezstab.api import simulate as simulate
@@ -28,7 +25,10 @@ if TYPE_CHECKING:
     from bezstab.api import verify as verify
     from bezstab.chains.answer import chain as chain
     from bezstab.drives.answer import drive as drive
+    from bezstab.methods.registry import method as method
     from bezstab.mujoco.linting import lint as lint
+    from bezstab.probes.answer import probe as probe
+    from bezstab.probes.answer import probe_step as probe_step
     from bezstab.show import plot as plot
     from bezstab.step_sequences.answer import steps as steps
     from bezstab.units import from_dimensionless as from_dimensionless
@@ -45,10 +45,7 @@ HOMES = {
             "dominant_pole",
             "feedback_cost",
             "largest_step",
-            "method",
             "poles",
-            "probe",
-            "probe_step",
             "region",
             "scene",
             "simulate",
@@ -62,7 +59,10 @@ HOMES = {
     "drive": "bezstab.drives.answer",
     "from_dimensionless": "bezstab.units",
     "lint": "bezstab.mujoco.linting",
+    "method": "bezstab.methods.registry",
     "plot": "bezstab.show.plot",
+    "probe": "bezstab.probes.answer",
+    "probe_step": "bezstab.probes.answer",
     "steps": "bezstab.step_sequences.answer",
     "to_dimensionless": "bezstab.units",
 }

@@ -9,27 +9,27 @@ of a TOML file, or what `scene` returns.
 from __future__ import annotations  # so that help() shows annotations as they are written
 
 import inspect
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any, Generic, TypedDict, TypeVar, Unpack, get_args, get_origin, get_type_hints
 
 from numpy.typing import ArrayLike
 
-from bezstab.arguments import Number, exact_number, in_keywords, real_number, whole_number
+from bezstab.arguments import Number, exact_number, in_keywords, plane_point, point_if_given, real_number, whole_number
 from bezstab.engines.engine_list import engine_and_values, engine_named
 from bezstab.errors import InputError, shown
-from bezstab.evidence import measured_poles, probed_poles
+from bezstab.evidence import measured_poles
 from bezstab.goals import Goal
 from bezstab.mechanism import equations, runner, scene_files, scenes
 from bezstab.mechanism.scenes import Scene
 from bezstab.mechanism.simulation import Simulation
-from bezstab.methods.registry import lookup
+from bezstab.methods.registry import method as method_named
 from bezstab.methods.schemes import Method
 from bezstab.methods.schur import Verdict
-from bezstab.questions import answering, log_probes, question, runs
+from bezstab.questions import answering, question, runs
 from bezstab.stabilising import Stabilise
 from bezstab.stability import arrays, best_points, closed_loop, feedback_costs, regions
 from bezstab.stability.arrays import ComplexArray, FloatArray
-from bezstab.units import check_step, to_dimensionless
+from bezstab.units import check_step
 
 Given = TypeVar("Given")
 
@@ -76,21 +76,6 @@ def _spelled_out(function: Function) -> Function:
     return function
 
 
-def method(name: str | Method) -> Method:
-    """Return the integration method of that name.
-
-    name: a name as `bezstab methods` lists it ("B4", "RK4"), the path of a .toml file, or a method that
-        is returned as it is. "RK4@5" is RK4 with steps of 5 h, where h is your step (s).
-
-    Returns a Method. Its `source` names the book or paper.
-
-    InputError if there is no such method; it suggests the nearest name.
-    """
-    if not isinstance(name, str | Method):
-        raise InputError(f"method {shown(name)}: expected one name such as 'B4', or what bezstab.method makes of one")
-    return name if isinstance(name, Method) else lookup(name)
-
-
 def scene(name: str | Scene, speed: float = 1.0) -> Scene:
     """Return the planar mechanism of that name, in SI units and rad.
 
@@ -123,7 +108,7 @@ def poles(method: str | Method, **point: Unpack[PointAtStep[ArrayLike]]) -> Comp
     InputError unless the point is given in one of the two ways. NumericalError if a pole leaves the
     range of float64. Source: the roots of paper Eq. 17.
     """
-    return closed_loop.poles(_method(method), *_plane_arrays(point))
+    return closed_loop.poles(method_named(method), *_plane_arrays(point))
 
 
 @_spelled_out
@@ -138,7 +123,7 @@ def dominant_pole(method: str | Method, **point: Unpack[PointAtStep[ArrayLike]])
 
     Errors as for `poles`. Source: the paper's section 4.
     """
-    return closed_loop.dominant_pole(_method(method), *_plane_arrays(point))
+    return closed_loop.dominant_pole(method_named(method), *_plane_arrays(point))
 
 
 @_spelled_out
@@ -153,7 +138,7 @@ def spectral_radius(method: str | Method, **point: Unpack[PointAtStep[ArrayLike]
     Errors as for `poles`. Close to 1 rounding may decide: `verdict` is exact. Source: the paper's Figs.
     1 to 3.
     """
-    return closed_loop.spectral_radius(_method(method), *_plane_arrays(point))
+    return closed_loop.spectral_radius(method_named(method), *_plane_arrays(point))
 
 
 @_spelled_out
@@ -168,7 +153,7 @@ def verdict(method: str | Method, **point: Unpack[PointAtStep[Number]]) -> Verdi
     InputError unless the numbers are finite and the point is given in one of the two ways. Source: the
     Schur-Cohn test (I. Schur, J. reine angew. Math. 147, 1917) on the polynomial of paper Eq. 17.
     """
-    return closed_loop.verdict(_method(method), *_plane_point(point))
+    return closed_loop.verdict(method_named(method), *_plane_point(point))
 
 
 @in_keywords()
@@ -184,7 +169,7 @@ def region(method: str | Method, level: float = 1.0) -> regions.Region:
     InputError for another level. NumericalError if an edge cannot be found. Source: boundary locus of
     paper Eq. 17.
     """
-    return regions.region(_method(method), real_number(level, "level"))
+    return regions.region(method_named(method), real_number(level, "level"))
 
 
 def best_point(method: str | Method) -> best_points.BestPoint | None:
@@ -196,7 +181,7 @@ def best_point(method: str | Method) -> best_points.BestPoint | None:
 
     NumericalError if a pole leaves the range of float64. Source: the paper's section 5.1.
     """
-    return best_points.best_point(_method(method))
+    return best_points.best_point(method_named(method))
 
 
 @_spelled_out
@@ -323,7 +308,7 @@ def largest_step(method: str | Method, *, alpha: Number, beta: Number) -> float:
     InputError unless the numbers are finite. Source: the path of all steps through the plane of paper
     Eq. 17.
     """
-    return answering.LargestStep(_method(method), exact_number(alpha, "alpha"), exact_number(beta, "beta")).h_limit
+    return answering.LargestStep(method_named(method), exact_number(alpha, "alpha"), exact_number(beta, "beta")).h_limit
 
 
 @_spelled_out
@@ -397,7 +382,7 @@ def simulate(
     wanted = _asked(
         runs.RunQuestion,
         scene=scene,
-        method=_method(method),
+        method=method_named(method),
         duration=duration,
         h=h,
         point=_point_if_given({**point, "h": h}, needed=stabilise == "baumgarte"),
@@ -429,84 +414,7 @@ def verify(
     step = real_number(h, "h")
     check_step(step)
     kicked = equations.compiled_mechanism(_scene(scene))
-    return measured_poles.measure_poles(kicked, _method(method), step, alpha_hat.ravel(), beta_hat.ravel())
-
-
-@_spelled_out
-@in_keywords()
-def probe(
-    c: ArrayLike,
-    *,
-    minus: ArrayLike | None = None,
-    differenced: bool = False,
-    methods: Sequence[str | Method] | None = None,
-    every: int = 1,
-    turning: float | None = None,
-    **point: Unpack[PointAtStep[Number]],
-) -> log_probes.Probe:
-    """Return the dominant pole in samples of a decaying error, and which integrator could have made them.
-
-    c: samples of one constraint error in any unit, shape (samples,), or (samples, responses) of one
-        system.
-    minus: another run of that shape, to subtract. differenced: c is such a difference already.
-    methods: which integrators to compare; of less than two, the ten most used too.
-    With a point, `alpha_hat` and `beta_hat`, or `alpha` and `beta` in 1/s with `h` in s, the pole of
-    each method there is compared. Without a point the one is found at which each of `methods` has that
-    pole.
-    every: steps of h from one sample to the next.
-    turning: how fast the directions of the constraints turn, in 1/s; needs h.
-
-    Returns a Probe. `pole` is the pole a sample, dimensionless; `reason` says why there is no answer.
-    `likenesses` has the methods, the nearest first, and `fitting` the names of those that have the
-    pole. `points` has the points, where none was given.
-
-    InputError unless point, shapes and h fit together. Source: linear prediction (Prony).
-    """
-    if methods is not None and (isinstance(methods, str | Method) or not isinstance(methods, Iterable)):
-        raise InputError(f"methods = {shown(methods)}: expected a list of methods")
-    h = point.get("h")
-    wanted = log_probes.PoleQuestion(
-        point=_point_if_given(point),
-        methods=tuple(map(_method, methods or ())),
-        every=every,
-        h=None if h is None else exact_number(h, "h"),
-        turning=None if turning is None else exact_number(turning, "turning"),
-    )
-    c = arrays.real_array(c, "c")
-    minus = None if minus is None else arrays.real_array(minus, "minus")
-    return log_probes.Probe(wanted, "c", probed_poles.probed_pole(c, minus, differenced))
-
-
-@_spelled_out
-def probe_step(
-    step: Callable[[FloatArray], FloatArray],
-    state: ArrayLike,
-    constraint: Callable[[FloatArray], float],
-    kick: ArrayLike,
-    *,
-    steps: int = 600,
-    methods: Sequence[str | Method] | None = None,
-    turning: float | None = None,
-    **point: Unpack[PointAtStep[Number]],
-) -> log_probes.Probe:
-    """Return what `probe` does, for a simulator of your own: a function that takes a state to the next.
-
-    step: a function of an array, the state, that returns the next one. It is called six times `steps`
-        times.
-    state: where to start, an array.
-    constraint: a function of a state that returns the constraint error, in any unit.
-    kick: an array of the shape of the state. It is added to the state and subtracted from it, whole and
-        in parts.
-    The other keywords are those of `probe`.
-
-    Returns a Probe, as `probe` does; poles are dimensionless. Errors as there; InputError, too, for shapes that differ.
-    """
-    responses = probed_poles.kicked_responses(step, state, constraint, kick, steps)
-    return probe(responses, differenced=True, methods=methods, turning=turning, **point)
-
-
-def _method(method_or_name: str | Method) -> Method:
-    return method(method_or_name)
+    return measured_poles.measure_poles(kicked, method_named(method), step, alpha_hat.ravel(), beta_hat.ravel())
 
 
 def _scene(scene_or_name: str | Scene, _name: str = "scene") -> Scene:
@@ -534,31 +442,26 @@ READ: Mapping[str, Callable[[Any, str], Any]] = {
     **dict.fromkeys(("iterations",), whole_number),
     "spread": real_number,
     "scene": _scene,
-    "methods": lambda given, _name: (method(given),),
+    "methods": lambda given, _name: (method_named(given),),
 }
 """How keywords are read; the others are taken as they are."""
 
 
-def _plane_point(point: Mapping[str, Any], read: Callable[[Any, str], Any] = exact_number) -> tuple[Any, Any]:
-    """Return alpha_hat and beta_hat from whichever of the two ways was taken, exact unless numbers are `read` else."""
-    given = {name: value for name, value in point.items() if value is not None}
-    h = given.pop("h", None)
-    if given.keys() == {"alpha_hat", "beta_hat"}:
-        return read(given["alpha_hat"], "alpha_hat"), read(given["beta_hat"], "beta_hat")
-    if given.keys() != {"alpha", "beta"}:
-        expected = "alpha_hat= and beta_hat=, or as alpha= and beta= in 1/s with h= in s"
-        raise InputError(f"a point is given as {expected}, not as {', '.join(given) or 'nothing'}")
-    if h is None:
-        raise InputError("alpha and beta in 1/s need the step h in s")
-    return to_dimensionless(read(given["alpha"], "alpha"), read(given["beta"], "beta"), exact_number(h, "h"))
+def _four(point: Mapping[str, Any]) -> tuple[Any, Any, Any, Any, Any]:
+    """Return the coordinates of a point in both ways, None where they are not given, and the step."""
+    return point.get("alpha_hat"), point.get("beta_hat"), point.get("alpha"), point.get("beta"), point.get("h")
 
 
-def _point_if_given(point: Mapping[str, Any], *, needed: bool = False) -> tuple[Any, Any] | None:
+def _plane_point(point: Mapping[str, Any]) -> tuple[Any, Any]:
+    """Return alpha_hat and beta_hat from whichever of the two ways was taken, exact."""
+    return plane_point(*_four(point))
+
+
+def _point_if_given(point: Mapping[str, Any], *, needed: bool) -> tuple[Any, Any] | None:
     """Return the same; None if no coordinate is given, unless a point is needed."""
-    given = any(point.get(name) is not None for name in Point.__annotations__)
-    return _plane_point(point) if given or needed else None
+    return _plane_point(point) if needed else point_if_given(*_four(point))
 
 
 def _plane_arrays(point: Mapping[str, Any]) -> tuple[FloatArray, FloatArray]:
     """Return the same as float64 arrays, broadcast; InputError if their shapes do not fit each other."""
-    return arrays.plane_arrays(*_plane_point(point, arrays.real_array))
+    return arrays.plane_arrays(*plane_point(*_four(point), arrays.real_array))

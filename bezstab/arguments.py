@@ -1,14 +1,16 @@
 """Arguments of functions in Python: numbers read exactly, and mistakes told in the names of keywords."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from fractions import Fraction
+from typing import Any
 
 import numpy as np
 
 from bezstab.errors import InputError, shown
 from bezstab.rationals import rational
+from bezstab.units import to_dimensionless
 
 Number = int | float | str | Fraction
 """A number that is read exactly: a float as the decimal it shows, a text as a decimal or a fraction such as "6/11"."""
@@ -50,3 +52,37 @@ def whole_number(value: int, name: str) -> int:
 def real_number(value: Number, name: str) -> float:
     """Return one number as float64; errors as `exact_number`."""
     return float(exact_number(value, name))
+
+
+def plane_point(
+    alpha_hat: Any,
+    beta_hat: Any,
+    alpha: Any,
+    beta: Any,
+    h: Number | None,
+    read: Callable[[Any, str], Any] = exact_number,
+) -> tuple[Any, Any]:
+    """Return (alpha_hat, beta_hat) from whichever two were given, alpha and beta in 1/s with the step h in s.
+
+    Numbers are exact, unless they are `read` else. InputError if anything else is given, or nothing.
+    """
+    all_four = {"alpha_hat": alpha_hat, "beta_hat": beta_hat, "alpha": alpha, "beta": beta}
+    given = {name: value for name, value in all_four.items() if value is not None}
+    if given.keys() not in ({"alpha_hat", "beta_hat"}, {"alpha", "beta"}):
+        expected = "alpha_hat= and beta_hat=, or as alpha= and beta= in 1/s with h= in s"
+        raise InputError(f"a point is given as {expected}, not as {', '.join(given) or 'nothing'}")
+    if "alpha" in given and h is None:
+        raise InputError("alpha and beta in 1/s need the step h in s")
+    first, second = (read(value, name) for name, value in given.items())
+    return (
+        (first, second) if h is None or "alpha_hat" in given else to_dimensionless(first, second, exact_number(h, "h"))
+    )
+
+
+def point_if_given(
+    alpha_hat: Number | None, beta_hat: Number | None, alpha: Number | None, beta: Number | None, h: Number | None
+) -> tuple[Fraction, Fraction] | None:
+    """Return the same, exact; None if none of the four is given."""
+    if alpha_hat is alpha is beta_hat is beta is None:
+        return None
+    return plane_point(alpha_hat, beta_hat, alpha, beta, h)

@@ -21,6 +21,7 @@ ROOMS = (
     "drives",
     "step_sequences",
     "mujoco",
+    "probes",
     "paper",
 )
 """From data upwards: a room imports only from rooms before it."""

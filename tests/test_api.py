@@ -19,7 +19,7 @@ TESTS = Path(__file__).parent
 
 
 @pytest.mark.parametrize(
-    "page", ["../README.md", "../bezstab/README.md", "../configs/logs/README.md", "mistakes_in_python.md"]
+    "page", ["../README.md", "../bezstab/README.md", "../bezstab/probes/README.md", "mistakes_in_python.md"]
 )
 def test_what_a_page_shows_of_python_is_what_python_prints(page: str) -> None:
     found = doctest.testfile(str(TESTS / page), module_relative=False, optionflags=doctest.ELLIPSIS, encoding="utf-8")

@@ -53,7 +53,7 @@ STRANGERS = {
 SHARED_WITH_EXTENSIONS = {"cli.options", "cli.output", "cli.shared_options"}
 """What a command outside the room `cli`, such as the paper's, is written with."""
 
-SUBJECTS = {"chains", "drives", "mujoco", "step_sequences"}
+SUBJECTS = {"chains", "drives", "mujoco", "probes", "step_sequences"}
 """Folders of one question each, with its command and its figure: each name is imported from where it is defined."""
 
 APPOINTED = {

@@ -25,7 +25,7 @@ PAGES = (
     "bezstab/evidence/README.md",
     "bezstab/mujoco/README.md",
     "bezstab/paper/README.md",
-    "configs/logs/README.md",
+    "bezstab/probes/README.md",
     "configs/methods/README.md",
     "configs/scenes/README.md",
     "tests/README.md",
@@ -81,7 +81,7 @@ def _with_the_files_of_the_pages(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     monkeypatch.chdir(tmp_path)
     response = of_poles(poles(lookup("B4"), 0.5, 0.1), 300, seed=2)  # at the point that the page asks about
     np.savetxt("log.csv", response, "%.9g", header="c", comments="")
-    (logging,) = re.findall(r"```python\n(.*?)```", (ROOT / "configs/logs/README.md").read_text("utf-8"), re.DOTALL)
+    (logging,) = re.findall(r"```python\n(.*?)```", (ROOT / "bezstab/probes/README.md").read_text("utf-8"), re.DOTALL)
     exec(logging, {})  # writes the logs of that page
     shutil.copy(DATA / "two_joints.xml", "robot.xml")
     Path("run.csv").write_text("time,shoulder,elbow\n0,0,0\n0.1,0.2,0.3\n", encoding="utf-8")

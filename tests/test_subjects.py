@@ -10,7 +10,14 @@ import pytest
 
 from tests.imports import PACKAGE
 
-COMMANDS = {"chains": "chain", "drives": "drive", "mujoco": "lint", "paper": "paper", "step_sequences": "steps"}
+COMMANDS = {
+    "chains": "chain",
+    "drives": "drive",
+    "mujoco": "lint",
+    "paper": "paper",
+    "probes": "probe",
+    "step_sequences": "steps",
+}
 """Of each folder the command."""
 
 LISTS = ("__init__.py", "cli/command_group.py")

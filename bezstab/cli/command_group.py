@@ -34,7 +34,7 @@ COMMANDS: Mapping[str, Mapping[str, str]] = {
     "Evidence": {
         "simulate": "bezstab.cli.simulate_command",
         "verify": "bezstab.cli.verify_command",
-        "probe": "bezstab.cli.probe_command",
+        "probe": "bezstab.probes.command",
         "tradeoff": "bezstab.cli.tradeoff_command",
     },
     "Paper": {

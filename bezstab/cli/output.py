@@ -74,37 +74,48 @@ def show_answers(columns: Sequence[Column[Item]], answers: Sequence[Item], sente
     As text each answer is its sentence, with a line for each column below; several are a table, if that is not wider
     than the terminal.
     """
-    form, every_column = chosen_format(), click.get_current_context().params["every_column"]
     if not for_reading():
-        click.echo(render([row_of(columns, answer) for answer in answers], [], form))
+        click.echo(render([row_of(columns, answer) for answer in answers], [], chosen_format()))
         return
-    many = len(answers) > 1
-    shown = [each for each in columns if each.heading and (every_column or each.brief or (each.apart and many))]
-    if many or form == "markdown":
-        as_table = _table_of(shown, answers)
-        if form == "markdown" or fits(as_table, text_width()):
-            click.echo(as_table)
-            return
-    blocks = (
-        lines_below(sentence, [(each.heading, each.text(answer)) for each in shown], text_width())
-        for sentence, answer in zip(sentences, answers, strict=True)
-    )
-    click.echo("\n\n".join(blocks))
+    shown = _shown(columns, answers, click.get_current_context().params["every_column"])
+    click.echo(_table_or_blocks(shown, answers, sentences, table_of_one=False))
 
 
 def show_tables(parts: Sequence[tuple[Sequence[Column[Any]], Sequence[Any]]]) -> None:
     """Print answers of several kinds: a table of each that there are, below an empty line; as JSON and CSV one list.
 
-    There every row has the keys of all kinds.
+    There every row has the keys of all kinds. A command that has --all shows brief columns alone without it.
     """
-    form = chosen_format()
+    context = click.get_current_context()
+    every_column = context.params.get("every_column", True)
     if not for_reading():
         rows = [row_of(columns, answer) for columns, answers in parts for answer in answers]
-        click.echo(render(rows, [], form))
+        click.echo(render(rows, [], chosen_format()))
         return
     for columns, answers in parts:
-        if answers:
-            click.echo(f"\n{_table_of([each for each in columns if each.heading], answers)}")
+        shown = _shown(columns, answers, every_column)
+        if answers and shown:
+            click.echo(f"\n{_table_or_blocks(shown, answers, [''] * len(answers), table_of_one=True)}")
+
+
+def _shown(columns: Sequence[Column[Item]], answers: Sequence[Item], every_column: bool) -> list[Column[Item]]:
+    """Return the columns that people see: every one, or the brief ones and those that tell several answers apart."""
+    many = len(answers) > 1
+    return [each for each in columns if each.heading and (every_column or each.brief or (each.apart and many))]
+
+
+def _table_or_blocks(
+    columns: Sequence[Column[Item]], answers: Sequence[Item], sentences: Sequence[str], *, table_of_one: bool
+) -> str:
+    """Return a table of answers; or of one, and where a table is wider than the terminal, a line for each column."""
+    if table_of_one or len(answers) > 1 or chosen_format() == "markdown":
+        as_table = _table_of(columns, answers)
+        if chosen_format() == "markdown" or fits(as_table, text_width()):
+            return as_table
+    return "\n\n".join(
+        lines_below(sentence, [(each.heading, each.text(answer)) for each in columns], text_width())
+        for sentence, answer in zip(sentences, answers, strict=True)
+    )
 
 
 def _table_of(columns: Sequence[Column[Item]], answers: Sequence[Item]) -> str:

@@ -6,7 +6,7 @@ from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
-from bezstab.errors import InputError
+from bezstab.errors import InputError, shown
 from bezstab.methods.aliases import ALIASES, folded, unknown_method
 from bezstab.methods.method_files import read_method
 from bezstab.methods.multistep_methods import EXPLICIT_MULTISTEP, IMPLICIT_MULTISTEP
@@ -53,6 +53,21 @@ def lookup(text: str) -> Method:
         return replace(method, name=f"{method.name}@{multiple}", step_multiple=rational(multiple))
     except InputError as error:
         raise InputError(f"method {text!r}: {error}") from None
+
+
+def method(name: str | Method) -> Method:
+    """Return the integration method of that name.
+
+    name: a name as `bezstab methods` lists it ("B4", "RK4"), the path of a .toml file, or a method that
+        is returned as it is. "RK4@5" is RK4 with steps of 5 h, where h is your step (s).
+
+    Returns a Method. Its `source` names the book or paper.
+
+    InputError if there is no such method; it suggests the nearest name.
+    """
+    if not isinstance(name, str | Method):
+        raise InputError(f"method {shown(name)}: expected one name such as 'B4', or what bezstab.method makes of one")
+    return name if isinstance(name, Method) else lookup(name)
 
 
 def _built_in(name: str) -> Method:

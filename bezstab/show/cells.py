@@ -23,13 +23,15 @@ NAMES_ROOM = 22
 
 
 def pole_text(row: Row) -> str:
-    """Return a complex pole, from z_real and z_imag: 0.762694 ± 0.142074i; a dash where there is none."""
-    real, imaginary = row["z_real"], row["z_imag"]
-    if real is None:
-        return MISSING
-    form = ".6f" if max(abs(real), imaginary) < MOST_FIXED else ".6e"
-    visible = round(imaginary / max(1, abs(real)), 6) != 0
-    return f"{real:{form}} ± {imaginary:{form}}i" if visible else f"{real:{form}}"
+    """Return a complex pole, from z_real and z_imag, as `pole_words`; a dash where there is none."""
+    return MISSING if row["z_real"] is None else pole_words(complex(row["z_real"], row["z_imag"]))
+
+
+def pole_words(pole: complex) -> str:
+    """Return a pole and its conjugate, or a real one: 0.762694 ± 0.142074i."""
+    form = ".6f" if max(abs(pole.real), pole.imag) < MOST_FIXED else ".6e"
+    visible = round(pole.imag / max(1, abs(pole.real)), 6) != 0
+    return f"{pole.real:{form}} ± {pole.imag:{form}}i" if visible else f"{pole.real:{form}}"
 
 
 def modulus_words(modulus: float) -> str:

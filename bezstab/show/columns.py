@@ -1,34 +1,90 @@
 """Columns: what is printed of an answer, each a typed function of it. Text, CSV, JSON and pages of keys follow."""
 
+import cmath
+import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Generic, SupportsFloat, TypeVar
 
+from bezstab.show.cells import modulus_words, pole_words
 from bezstab.show.fields import Form, Row, Value, formatted, visible
 
 Answer = TypeVar("Answer")
+Answer_contra = TypeVar("Answer_contra", contravariant=True)
+Part = TypeVar("Part")
 
 
 @dataclass(frozen=True)
-class Column(Generic[Answer]):
+class Column(Generic[Answer_contra]):
     """One value of an answer: its heading in text, its key in CSV and JSON, how it is found, its unit and meaning.
 
     `form` is a format, or a function from the value to its text. A `brief` column is printed without --all; one that
-    tells answers `apart` is printed where there are several.
+    tells answers `apart` is printed where there are several. Without a heading it is for programs alone, without a key
+    for people.
     """
 
     heading: str
     key: str
-    value: Callable[[Answer], Value]
+    value: Callable[[Answer_contra], Value]
     meaning: str
     unit: str = ""
     form: Form = ""
     brief: bool = False
     apart: bool = False
 
-    def text(self, answer: Answer) -> str:
+    def text(self, answer: Answer_contra) -> str:
         """Return what a table shows of an answer, on one line; a dash where there is no value."""
         return visible(formatted(self.value(answer), self.form))
+
+
+def of_part(part: Callable[[Answer], Part | None], columns: Sequence[Column[Part]]) -> list[Column[Answer]]:
+    """Return the columns of a part of an answer as columns of the answer, without a value where it has no such part."""
+
+    def lifted(column: Column[Part]) -> Callable[[Answer], Value]:
+        def value(answer: Answer) -> Value:
+            found = part(answer)
+            return None if found is None else column.value(found)
+
+        return value
+
+    return [
+        Column(each.heading, each.key, lifted(each), each.meaning, each.unit, each.form, each.brief, each.apart)
+        for each in columns
+    ]
+
+
+POLE: Sequence[Column[complex]] = (
+    Column("pole z", "", pole_words, "the pole and its conjugate"),
+    Column("", "z_real", lambda z: z.real, "real part of the pole"),
+    Column("", "z_imag", lambda z: z.imag, "imaginary part of the pole, that of the upper one of a pair"),
+    Column("|z_p|", "z_abs", abs, "modulus of the pole: each step multiplies errors by it", form=modulus_words),
+    Column(
+        "∠z (deg)",
+        "z_angle_deg",
+        lambda z: math.degrees(cmath.phase(z)),
+        "angle of the pole: errors turn by it in each step",
+        "degrees",
+        ".3f",
+    ),
+)
+
+
+def pole_columns(
+    pole: Callable[[Answer], complex | None], name: str, which: str, *, brief: bool = False
+) -> list[Column[Answer]]:
+    """Return the columns of one pole of several, called by its name; people read its modulus, and its angle."""
+    named = [
+        replace(
+            each,
+            heading=each.heading and f"{name} {each.heading}",
+            key=f"{name}_{each.key}",
+            meaning=each.meaning.replace("the pole", f"the pole {which}"),
+            brief=brief and each.key == "z_abs",
+        )
+        for each in POLE
+        if each.key
+    ]
+    return of_part(pole, named)
 
 
 def in_seconds(steps: int | None, h: SupportsFloat) -> float | None:
@@ -37,11 +93,15 @@ def in_seconds(steps: int | None, h: SupportsFloat) -> float | None:
 
 
 def row_of(columns: Sequence[Column[Answer]], answer: Answer) -> Row:
-    """Return the values of an answer by key."""
-    return {column.key: column.value(answer) for column in columns}
+    """Return the values of an answer by key; None for what is not finite."""
+    return {column.key: _finite(column.value(answer)) for column in columns if column.key}
+
+
+def _finite(value: Value) -> Value:
+    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def page_of_keys(columns: Sequence[Column[Answer]]) -> str:
     """Return the table of keys, units and meanings as Markdown, for the page of a command."""
     lines = ["| key | unit | meaning |", "|---|---|---|"]
-    return "\n".join([*lines, *(f"| `{each.key}` | {each.unit} | {each.meaning} |" for each in columns)])
+    return "\n".join([*lines, *(f"| `{each.key}` | {each.unit} | {each.meaning} |" for each in columns if each.key)])

@@ -465,27 +465,6 @@ SWEPT_OVER = (
     STABLE_ITERATIONS,
 )
 """What an engine that sweeps adds: the first to all, the others to --chain and --scene."""
-# what `probe --alpha --beta` adds for each method
-LIKENESS = (
-    METHOD,
-    PREDICTED_Z_ABS,
-    PREDICTED_Z_ANGLE_DEG,
-    number("distance", "Distance of the fitted pole from that of the method", "distance", ".1e"),
-    number("allowed", "Largest distance that still fits", "allowed", ".1e"),
-    truth("fits", "Whether the log may be the method's: it agrees with it within its uncertainty", "fits"),
-    truth("told", "Whether that is an answer: it is none where more is allowed than methods differ by"),
-)
-# what `probe` adds for each method whose point it finds
-LIKE_POINT = (
-    METHOD,
-    ALPHA_HAT,
-    BETA_HAT,
-    number("alpha_hat_error", "How far alpha_hat may be off by the error of the fit", "± of α̂", ".1e"),
-    number("beta_hat_error", "How far beta_hat may be off by the error of the fit", "± of β̂", ".1e"),
-    H,
-    ALPHA,
-    BETA,
-)
 # what `region --scene` adds
 MOVING_REGION = (
     number("speed", "Factor on the scene's own speed at which it moves", "speed", null=LEVEL_ROW),
@@ -1023,21 +1002,6 @@ VERDICT_MAPS = RowKind(
     ),
     sentence=verdict_map_sentence,
 )
-# printed by `probe`: three tables for reading, one list for programs
-PROBED = RowKind(
-    "the pole in a column of a log, or a method beside it, or a point at which a method has it",
-    fields=(
-        text("column", "Name of the column of the log", "column"),
-        Z_REAL.shown("pole z", text=pole_text),
-        Z_IMAG,
-        Z_ABS,
-        Z_ANGLE_DEG,
-        number("uncertainty", "How far the fitted pole may be off", "± of z", ".1e", null=NOT_MEASURED),
-        integer("samples", "Samples that the fit has used", "rows"),
-        REASON,
-    ),
-    added=(*LIKENESS, *LIKE_POINT[1:]),
-)
 # printed by `tradeoff`
 SWEPT = RowKind(
     "a run of a method with a step",
@@ -1156,7 +1120,6 @@ ROW_KINDS: Mapping[str, Sequence[RowKind]] = {
         MEASUREMENTS,
         VERDICT_MAPS,
     ),
-    "probe": (PROBED,),
     "tradeoff": (
         SWEPT,
         FRONTS,

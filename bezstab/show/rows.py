@@ -47,7 +47,6 @@ if TYPE_CHECKING:  # so that a small row does not load what makes the large ones
     from collections.abc import Iterable
 
     from bezstab.engines.conversions import Engine
-    from bezstab.evidence.probed_poles import LikePoint
     from bezstab.questions.answering import Answer, LargestStep
     from bezstab.questions.question import Question
     from bezstab.questions.regions import MapAnswer, RegionAnswer
@@ -158,7 +157,7 @@ def _nowhere(answer: RegionAnswer) -> str | None:
     return None
 
 
-def row_in_seconds(fields: Sequence[Field], point: FrontPoint | LikePoint, h: float | None) -> Row:
+def row_in_seconds(fields: Sequence[Field], point: FrontPoint, h: float | None) -> Row:
     """Return the row of a point with a step (s), and with alpha and beta (1/s); None without a step."""
     alpha, beta = alpha_and_beta(point.alpha_hat, point.beta_hat, h)
     return cells(fields, point, {"h": h, "alpha": alpha, "beta": beta})

@@ -1,21 +1,49 @@
-"""The table of keys, made of the kinds of rows: `python -m tests.show.keys_page` writes it."""
+"""The table of keys, made of the columns: `python -m tests.show.keys_page` writes it."""
 
 import csv
 import io
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
-from bezstab.show.row_kinds import FIELDS
+from bezstab.chains import columns as chains
+from bezstab.drives import columns as drives
+from bezstab.mujoco import columns as mujoco
+from bezstab.probes import columns as probes
+from bezstab.show.columns import Column
+from bezstab.show.row_kinds import ROW_KINDS
+from bezstab.step_sequences import columns as step_sequences
 
 PAGE = Path(__file__).parents[2] / "bezstab" / "show" / "keys.csv"
 
+COLUMNS: Mapping[str, Sequence[Sequence[Column[Any]]]] = {
+    "chain": [chains.COLUMNS],
+    "drive": [drives.COLUMNS],
+    "lint": [mujoco.STATES, mujoco.SUSPECTS, mujoco.REMEDIES, mujoco.ENERGIES, mujoco.SETTINGS],
+    "probe": [probes.POLES, probes.COMPARED, probes.FOUND],
+    "steps": [step_sequences.COLUMNS],
+}
+"""The columns that each command prints."""
+
 
 def page() -> str:
-    """Return the table: a line for each key, by name; what a command prints means the same in every other."""
+    """Return the table: a line for each key of each command, by name."""
     file = io.StringIO()
     table = csv.writer(file, lineterminator="\n")
-    table.writerow(("key", "unit", "meaning", "null"))
-    table.writerows((each.key, each.unit, each.meaning, each.null) for _, each in sorted(FIELDS.items()))
+    table.writerow(("command", "key", "unit", "meaning"))
+    table.writerows(sorted(_lines()))
     return file.getvalue()
+
+
+def _lines() -> Iterator[tuple[str, str, str, str]]:
+    for command, kinds in ROW_KINDS.items():
+        fields = {field.key: field for kind in kinds for field in (*kind.fields, *kind.added)}
+        for field in fields.values():
+            null = f"; null {field.null}" if field.null else ""
+            yield command, field.key, field.unit, f"{field.meaning}{null}"
+    for command, tables in COLUMNS.items():
+        columns = {column.key: column for table in reversed(tables) for column in table if column.key}
+        yield from ((command, column.key, column.unit, column.meaning) for column in columns.values())
 
 
 if __name__ == "__main__":

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from bezstab.errors import InputError
-from bezstab.evidence.logs import Log, read_log
+from bezstab.probes.logs import Log, read_log
 
 
 def read(text: str, row_step: float | None = None) -> Log:

@@ -8,7 +8,12 @@ import numpy as np
 import pytest
 
 from bezstab.errors import InputError
-from bezstab.evidence.probed_poles import (
+from bezstab.mechanism.equations import compiled_mechanism
+from bezstab.mechanism.scene_files import load_scene
+from bezstab.mechanism.simulation import simulated
+from bezstab.methods.registry import REGISTRY, lookup
+from bezstab.probes.answer import MOST_USED
+from bezstab.probes.probed_poles import (
     FEWEST,
     SAME,
     ProbedPole,
@@ -18,16 +23,11 @@ from bezstab.evidence.probed_poles import (
     probed_pole,
     told,
 )
-from bezstab.mechanism.equations import compiled_mechanism
-from bezstab.mechanism.scene_files import load_scene
-from bezstab.mechanism.simulation import simulated
-from bezstab.methods.registry import REGISTRY, lookup
-from bezstab.questions.log_probes import MOST_USED
 from bezstab.stability.arrays import FloatArray
 from bezstab.stability.closed_loop import dominant_pole, poles
 from bezstab.stability.regions import region, window
-from tests.evidence.random_logs import H, kicked_logs, rounded
 from tests.evidence.samples import of_campaign
+from tests.probes.random_logs import H, kicked_logs, rounded
 from tests.reference.sampled_responses import geometric, of_poles, two_poles
 
 ALL = list(map(lookup, REGISTRY))

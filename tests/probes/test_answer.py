@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from bezstab.errors import InputError
-from bezstab.evidence.probed_poles import probed_pole
 from bezstab.methods.registry import lookup
-from bezstab.questions.log_probes import PoleQuestion, Probe
+from bezstab.probes.answer import Probe, compared_with, probe_response
+from bezstab.probes.probed_poles import probed_pole
 from bezstab.stability.closed_loop import dominant_pole
 
 POINT = (Fraction(1, 2), Fraction(1, 4))
@@ -19,7 +19,7 @@ def answer(every: int = 1, **asked: object) -> Probe:
     """Return the answer for the error of SYM at the point, of which every so many steps are logged."""
     z = complex(dominant_pole(SYM, *map(float, POINT)))
     c = (z ** (every * np.arange(100))).real
-    return Probe(PoleQuestion(every=every, **asked), "c", probed_pole(c, 0 * c))  # type: ignore[arg-type]
+    return probe_response("c", probed_pole(c, 0 * c), compared_with(every=every, **asked))  # type: ignore[arg-type]
 
 
 def test_the_method_that_made_a_log_has_its_pole() -> None:
@@ -34,6 +34,6 @@ def test_without_a_point_it_is_found() -> None:
 
 
 def test_rows_are_a_whole_number_of_a_methods_own_steps_apart() -> None:
-    assert PoleQuestion(every=10, methods=(lookup("RK4@5"),)).compared
+    assert compared_with(every=10, methods=(lookup("RK4@5"),)).methods
     with pytest.raises(InputError, match="--every 6: expected a multiple of 5"):
-        PoleQuestion(every=6, methods=(lookup("RK4@5"),))
+        compared_with(every=6, methods=(lookup("RK4@5"),))

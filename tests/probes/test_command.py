@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from bezstab.cli.command_group import main
 from bezstab.methods.registry import lookup
-from bezstab.questions.log_probes import MOST_USED
+from bezstab.probes.answer import MOST_USED
 from bezstab.stability.arrays import FloatArray
 from bezstab.stability.closed_loop import poles
 from tests.cli.running import rows, run

@@ -1,0 +1,1 @@
+"""Logs of other simulators: which integrator, with which feedback, made them?"""

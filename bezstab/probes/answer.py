@@ -1,0 +1,248 @@
+"""Which integrator made the log of a constraint error, and with which feedback?
+
+a response, a point or methods, steps   →   probe_response   →   Probe: the pole, and which methods or points have it
+"""
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+
+from numpy.typing import ArrayLike
+
+from bezstab.arguments import Number, exact_number, in_keywords, point_if_given, whole_number
+from bezstab.engines.conversions import Point
+from bezstab.errors import InputError, shown
+from bezstab.methods.registry import lookup
+from bezstab.methods.registry import method as method_named
+from bezstab.methods.schemes import Method
+from bezstab.probes.probed_poles import (
+    TURNED,
+    Likeness,
+    LikePoint,
+    ProbedPole,
+    kicked_responses,
+    likenesses,
+    point_like,
+    probed_pole,
+    told,
+)
+from bezstab.stability.arrays import FloatArray, real_array
+from bezstab.words import point_words
+
+MOST_USED = ("SYM", "RK1", "RK2", "RK4", "AB2", "verlet-kdk", "implicit-euler", "trapezoid", "bdf2", "hht")
+"""The methods that most simulators use, and their own: what is compared where less than two are named."""
+
+MOST_STEPS = 10**4
+"""From one row of a log to the next."""
+
+ONE_POLE = "a single real pole, or one that no such method has: it gives no α and β"
+
+
+@dataclass(frozen=True)
+class Compared:
+    """What the pole of a log is compared with: the `methods` at a `point`, or without one at whichever has the pole.
+
+    The integrator takes `every` steps of `h` (s) from row to row; constraints turn by `turned` rad in a step.
+    """
+
+    point: Point | None
+    methods: Sequence[Method]
+    every: int
+    h: Fraction | None
+    turned: float
+
+
+def compared_with(
+    point: Point | None = None,
+    methods: Sequence[Method] = (),
+    every: int = 1,
+    h: Fraction | None = None,
+    turning: Fraction | None = None,
+) -> Compared:
+    """Return what a log is compared with; at a point one method alone, or none, is joined by MOST_USED.
+
+    Constraints turn at the rate `turning` (1/s); None: by TURNED in a step. InputError for a rate below 0 or without a
+    step, and for rows that are no whole number of a method's own steps apart, or more than MOST_STEPS.
+    """
+    if not 1 <= every <= MOST_STEPS:
+        raise InputError(f"--every {every}: expected 1 to {MOST_STEPS} steps")
+    turned = TURNED
+    if turning is not None:
+        if turning < 0:
+            raise InputError(f"--turning {float(turning):g}: expected 0 or more, in 1/s")
+        if h is None:
+            raise InputError("--turning is a rate in 1/s: it needs --h")
+        turned = float(turning * h)
+    beside = map(lookup, MOST_USED if point and len(methods) < 2 else ())
+    compared = tuple(dict.fromkeys((*methods, *beside)))
+    for method in compared:
+        if Fraction(every) % method.step_multiple:
+            own = float(method.step_multiple)
+            raise InputError(f"--every {every}: expected a multiple of {own:g}: a step of {method.name}")
+    return Compared(point, compared, every, h, turned)
+
+
+@dataclass(frozen=True, repr=False)
+class Probe:
+    """The pole in a column of a log, and what has it.
+
+    `likenesses`: how near it is to the pole of each method at the point, the nearest first; `fitting`: the names of the
+    methods that have it there, none where more is allowed than methods differ by. Without a point `points`: where each
+    method has it. `reason`: why there is no answer, "" where there is one. `sentence`: the answer in words.
+    """
+
+    column: str
+    found: ProbedPole
+    likenesses: Sequence[Likeness]
+    fitting: tuple[str, ...]
+    points: Sequence[LikePoint]
+    reason: str
+    sentence: str = field(compare=False)
+
+    def __repr__(self) -> str:
+        return f"Probe({self.sentence})"
+
+    @property
+    def pole(self) -> complex | None:
+        """The dominant pole per row; None if none can be told."""
+        return self.found.pole
+
+
+@in_keywords()
+def probe(
+    c: ArrayLike,
+    *,
+    minus: ArrayLike | None = None,
+    differenced: bool = False,
+    methods: Sequence[str | Method] | None = None,
+    every: int = 1,
+    turning: Number | None = None,
+    alpha_hat: Number | None = None,
+    beta_hat: Number | None = None,
+    alpha: Number | None = None,
+    beta: Number | None = None,
+    h: Number | None = None,
+) -> Probe:
+    """Return the dominant pole in samples of a decaying error, and which integrator could have made them.
+
+    c: samples of one constraint error in any unit, shape (samples,), or (samples, responses) of one
+        system.
+    minus: another run of that shape, to subtract. differenced: c is such a difference already.
+    methods: which integrators to compare; of less than two, the ten most used too.
+    With a point, `alpha_hat` and `beta_hat`, or `alpha` and `beta` in 1/s with `h` in s, the pole of
+    each method there is compared. Without a point the one is found at which each of `methods` has that
+    pole.
+    every: steps of h from one sample to the next.
+    turning: how fast the directions of the constraints turn, in 1/s; needs h.
+
+    Returns a Probe. `pole` is the pole a sample, dimensionless; `reason` says why there is no answer.
+    `likenesses` has the methods, the nearest first, and `fitting` the names of those that have the
+    pole. `points` has the points, where none was given.
+
+    InputError unless point, shapes and h fit together. Source: linear prediction (Prony).
+    """
+    if methods is not None and (isinstance(methods, str | Method) or not isinstance(methods, Iterable)):
+        raise InputError(f"methods = {shown(methods)}: expected a list of methods")
+    compared = compared_with(
+        point_if_given(alpha_hat, beta_hat, alpha, beta, h),
+        tuple(map(method_named, methods or ())),
+        whole_number(every, "every"),
+        None if h is None else exact_number(h, "h"),
+        None if turning is None else exact_number(turning, "turning"),
+    )
+    c = real_array(c, "c")
+    minus = None if minus is None else real_array(minus, "minus")
+    return probe_response("c", probed_pole(c, minus, differenced), compared)
+
+
+def probe_step(
+    step: Callable[[FloatArray], FloatArray],
+    state: ArrayLike,
+    constraint: Callable[[FloatArray], float],
+    kick: ArrayLike,
+    *,
+    steps: int = 600,
+    methods: Sequence[str | Method] | None = None,
+    turning: Number | None = None,
+    alpha_hat: Number | None = None,
+    beta_hat: Number | None = None,
+    alpha: Number | None = None,
+    beta: Number | None = None,
+    h: Number | None = None,
+) -> Probe:
+    """Return what `probe` does, for a simulator of your own: a function that takes a state to the next.
+
+    step: a function of an array, the state, that returns the next one. It is called six times `steps`
+        times.
+    state: where to start, an array.
+    constraint: a function of a state that returns the constraint error, in any unit.
+    kick: an array of the shape of the state. It is added to the state and subtracted from it, whole and
+        in parts.
+    The other keywords are those of `probe`.
+
+    Returns a Probe, as `probe` does; poles are dimensionless. Errors as there; InputError, too, for shapes that differ.
+    """
+    responses = kicked_responses(step, state, constraint, kick, steps)
+    return probe(
+        responses,
+        differenced=True,
+        methods=methods,
+        turning=turning,
+        alpha_hat=alpha_hat,
+        beta_hat=beta_hat,
+        alpha=alpha,
+        beta=beta,
+        h=h,
+    )
+
+
+def probe_response(column: str, found: ProbedPole, compared: Compared) -> Probe:
+    """Return whose the pole of a response is, called by its column's name. NumericalError as `point_like`."""
+    alike: Sequence[Likeness] = ()
+    points: Sequence[LikePoint] = ()
+    if compared.point:
+        alike = likenesses(found, compared.methods, compared.every, *compared.point, compared.turned)
+    else:
+        candidates = (point_like(found, method, compared.every) for method in compared.methods)
+        points = [point for point in candidates if point]
+    fitting = tuple(one.method.name for one in told(alike))
+    reason = _reason(found, compared, alike, fitting, points)
+    return Probe(column, found, alike, fitting, points, reason, _sentence(column, found, compared, fitting, reason))
+
+
+def _reason(
+    found: ProbedPole,
+    compared: Compared,
+    alike: Sequence[Likeness],
+    fitting: Sequence[str],
+    points: Sequence[LikePoint],
+) -> str:
+    """Return why there is no answer; "" where there is one."""
+    if found.pole is None:
+        return found.reason
+    if compared.point is None:
+        return "" if points or not compared.methods else ONE_POLE
+    fits = [one for one in alike if one.fits]
+    if not fits:
+        return "none of these methods has this pole there"
+    if fitting:
+        return ""
+    names, allowed = ", ".join(one.method.name for one in fits), max(one.allowed for one in fits)
+    return f"{names} cannot be told from others: {allowed:.1g} is allowed to the pole, and theirs differ by less"
+
+
+def _sentence(column: str, found: ProbedPole, compared: Compared, fitting: Sequence[str], reason: str) -> str:
+    """Return the pole and whose it is.
+
+    c: |z_p| = 0.577373 ± 0.001, as SYM has it at α̂ = 0.666667, β̂ = 0.25.
+    """
+    if found.pole is None:
+        return f"{column}: {reason}."
+    z = f"{column}: |z_p| = {abs(found.pole):.6g} ± {found.uncertainty:.1g}"
+    if reason:
+        return f"{z}; {reason}."
+    if not compared.point:
+        return f"{z}."
+    alpha_hat, beta_hat = map(float, compared.point)
+    place = point_words(alpha_hat, beta_hat, compared.h)
+    return f"{z}, as {' and '.join(fitting)} {'has' if len(fitting) == 1 else 'have'} it at {place}."

@@ -1,0 +1,82 @@
+"""What is printed of a log: columns of the pole, of the methods that are compared with it, and of the points found."""
+
+from collections.abc import Sequence
+from fractions import Fraction
+from typing import NamedTuple
+
+from bezstab.probes.answer import Probe
+from bezstab.probes.probed_poles import Likeness, LikePoint
+from bezstab.show.columns import POLE, Column, of_part, pole_columns
+from bezstab.units import alpha_and_beta
+
+
+class Compared(NamedTuple):
+    """A method whose pole is compared with that of a log."""
+
+    answer: Probe
+    one: Likeness
+
+
+class Found(NamedTuple):
+    """A point at which a method has the pole of a log; `h` is the integrator's step (s), if it is known."""
+
+    answer: Probe
+    point: LikePoint
+    h: Fraction | None
+
+
+def _pole(answer: Probe) -> complex | None:
+    return answer.pole
+
+
+def _predicted(it: Compared) -> complex | None:
+    return it.one.predicted
+
+
+def _rates(it: Found) -> tuple[float | None, float | None]:
+    return alpha_and_beta(it.point.alpha_hat, it.point.beta_hat, it.h)
+
+
+POLES: Sequence[Column[Probe]] = (
+    Column("column", "column", lambda answer: answer.column, "column of the log"),
+    *of_part(_pole, POLE),
+    Column(
+        "± of z",
+        "uncertainty",
+        lambda answer: answer.found.uncertainty if answer.pole is not None else None,
+        "how far the pole may be off; null without a pole",
+        form=".1e",
+    ),
+    Column("rows", "samples", lambda answer: answer.found.samples, "rows that the fit has used"),
+    Column("remark", "reason", lambda answer: answer.found.reason, "why there is no pole; empty where there is one"),
+)
+
+COMPARED: Sequence[Column[Compared]] = (
+    Column("column", "column", lambda it: it.answer.column, "column of the log", apart=True),
+    Column("method", "method", lambda it: it.one.method.name, "integration method", brief=True),
+    *pole_columns(_predicted, "predicted", "of the method at the point", brief=True),
+    Column("distance", "distance", lambda it: it.one.distance, "distance of both poles", form=".1e", brief=True),
+    Column("allowed", "allowed", lambda it: it.one.allowed, "largest distance that still fits", form=".1e", brief=True),
+    Column("fits", "fits", lambda it: it.one.fits, "whether the log may be the method's", brief=True),
+    Column(
+        "",
+        "told",
+        lambda it: it.one.method.name in it.answer.fitting,
+        "whether that is an answer: it is none where more is allowed than methods differ by",
+    ),
+)
+
+FOUND: Sequence[Column[Found]] = (
+    Column("column", "column", lambda it: it.answer.column, "column of the log", apart=True),
+    Column("method", "method", lambda it: it.point.method.name, "integration method", brief=True),
+    Column("α̂", "alpha_hat", lambda it: it.point.alpha_hat, "2αh where the method has the pole", brief=True),
+    Column("β̂", "beta_hat", lambda it: it.point.beta_hat, "β²h² where the method has the pole", brief=True),
+    Column(
+        "± of α̂", "alpha_hat_error", lambda it: it.point.alpha_hat_error, "how far α̂ may be off", form=".1e", brief=True
+    ),
+    Column(
+        "± of β̂", "beta_hat_error", lambda it: it.point.beta_hat_error, "how far β̂ may be off", form=".1e", brief=True
+    ),
+    Column("α (1/s)", "alpha", lambda it: _rates(it)[0], "damping; null without h", "1/s", brief=True),
+    Column("β (1/s)", "beta", lambda it: _rates(it)[1], "stiffness as a rate; null without h", "1/s", brief=True),
+)

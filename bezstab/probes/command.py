@@ -1,0 +1,80 @@
+"""The command that tells from a log which integrator and which feedback made it: probe."""
+
+from collections.abc import Sequence
+from fractions import Fraction
+from typing import BinaryIO
+
+import click
+
+from bezstab.cli import shared_options as shared
+from bezstab.cli.asking import say_if_units_were_mistaken
+from bezstab.cli.options import NUMBER, SECONDS, TypedPoint
+from bezstab.cli.output import show_tables, show_text
+from bezstab.errors import NumericalError
+from bezstab.methods.schemes import Method
+
+
+@click.command()
+@click.argument("log", type=click.File("rb"))
+@click.option(
+    "--minus", type=click.File("rb"), help="Another run's log, to subtract: without the kick, or with the opposite one."
+)
+@click.option("--column", "columns", multiple=True, help="A column by name [all but t or time]. Repeatable.")
+@click.option("--every", type=int, default=1, help="The integrator takes so many steps from one row to the next.")
+@shared.methods
+@shared.point
+@click.option("--h", type=SECONDS, help="Step size of the integrator in s, for α and β in 1/s and --turning.")
+@click.option("--turning", type=NUMBER, help="How fast directions of constraints turn, 1/s: 0 at rest [0.03 a step].")
+@shared.form
+@shared.every_column
+def probe(
+    log: BinaryIO,
+    minus: BinaryIO | None,
+    columns: Sequence[str],
+    every: int,
+    methods: tuple[Method, ...],
+    alpha: Fraction | None,
+    beta: Fraction | None,
+    physical: bool,
+    h: Fraction | None,
+    turning: Fraction | None,
+    **_: object,
+) -> None:
+    """Tell from a simulator's log which integrator made it.
+
+    LOG is a CSV file, or - for standard input, with names in the first line and a row for each step from the kick on.
+    The answer is the pole with which the error in each column decays. With --alpha and --beta it says which methods
+    have that pole there, of less than two --method the ten most used too; without them which α and β it means.
+
+    Exit status 3 if no column has an answer; a message says why.
+
+    Example: bezstab probe log.csv --minus unkicked.csv --alpha 1 --beta 0.25
+    """
+    from bezstab.probes.answer import compared_with, probe_response
+    from bezstab.probes.columns import COMPARED, FOUND, POLES, Compared, Found
+    from bezstab.probes.logs import read_log
+    from bezstab.probes.probed_poles import probed_pole
+
+    typed = TypedPoint(alpha, beta, physical)
+    compared = compared_with(typed.at(h), methods, every, h, turning)
+    kicked = read_log(log, float(every * h) if h else None)
+    other = read_log(minus, kicked.row_step) if minus else None
+    poles = {
+        name: probed_pole(kicked.column(name), other.column(name) if other else None)
+        for name in columns or kicked.errors
+    }
+    answers = [probe_response(name, pole, compared) for name, pole in poles.items()]
+    say_if_units_were_mistaken(methods, typed, h)
+    failed = all(answer.reason for answer in answers)
+    for answer in answers:
+        if answer.pole is not None or not failed:
+            show_text(answer.sentence)
+    show_tables(
+        [
+            (POLES, answers),
+            (COMPARED, [Compared(answer, one) for answer in answers for one in answer.likenesses]),
+            (FOUND, [Found(answer, point, h) for answer in answers for point in answer.points]),
+        ]
+    )
+    if failed:
+        raise NumericalError("; ".join(f"{answer.column}: {answer.reason}" for answer in answers))
