@@ -1,4 +1,4 @@
-"""Columns: what is printed of an answer, each a typed function of it. Text, CSV, JSON and pages of keys follow."""
+"""Columns: what is printed of an answer, each a typed function of it. Text, CSV, JSON and the table of keys follow."""
 
 import cmath
 import math
@@ -99,9 +99,3 @@ def row_of(columns: Sequence[Column[Answer]], answer: Answer) -> Row:
 
 def _finite(value: Value) -> Value:
     return None if isinstance(value, float) and not math.isfinite(value) else value
-
-
-def page_of_keys(columns: Sequence[Column[Answer]]) -> str:
-    """Return the table of keys, units and meanings as Markdown, for the page of a command."""
-    lines = ["| key | unit | meaning |", "|---|---|---|"]
-    return "\n".join([*lines, *(f"| `{each.key}` | {each.unit} | {each.meaning} |" for each in columns if each.key)])

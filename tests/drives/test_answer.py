@@ -96,6 +96,19 @@ def test_what_cannot_be_reached_is_refused_with_what_can() -> None:
         gains(timing, settle=Fraction("0.01"))
 
 
+@pytest.mark.parametrize(
+    ("kp", "kd", "ki", "load", "part"),
+    [
+        (500, 5, 0, 2, "rests 0.229° (of a slider 4 mm) from its target"),  # 2 / 500 rad
+        (500, 5, 2000, 2, "rests at its target"),
+        (1000, 0, 0, None, "nothing but the integrator damps: its damping ratio is"),
+        (0, 1, 0, None, "nothing holds the position, so the velocity is judged"),
+    ],
+)
+def test_the_sentence_says_what_is_special(kp: int, kd: int, ki: int, load: int | None, part: str) -> None:
+    assert part in drive(kp, kd, 0.1, h=0.001, ki=ki, load=load, method="SYM").sentence
+
+
 LIMITS = [
     ("SYM", "1", "1/4", 2 - 1 / 8, 2),  # 2 kd + kp < 4
     ("SYM", "1/10", "3", 1 / 2, 4 - 1 / 5),

@@ -8,10 +8,7 @@ from pathlib import Path
 import pytest
 import sympy as sp
 
-from bezstab.show.columns import page_of_keys
-from bezstab.step_sequences.columns import COLUMNS
 from tests.cli.running import DATA, rows, run
-from tests.imports import PACKAGE
 from tests.reference.symbolic_steps import form_decreases, symplectic_euler
 
 EXAMPLE = "--method SYM --alpha 2 --beta 100"
@@ -83,8 +80,3 @@ def test_anyone_can_verify_the_certificate_that_is_printed() -> None:
 def test_the_status_is_1_unless_all_are_proven() -> None:
     both = f"steps --method RK4 {EXAMPLE} {STEPS}"
     assert [each["verdict"] for each in rows(both, status=1)] == ["proven", "refuted"]
-
-
-def test_the_page_has_the_table_of_keys() -> None:
-    page = (PACKAGE / "step_sequences" / "README.md").read_text(encoding="utf-8")
-    assert page_of_keys(COLUMNS) in page
