@@ -7,6 +7,7 @@ from bezstab.mujoco.blame import Suspect
 from bezstab.mujoco.energy import Kept
 from bezstab.mujoco.linting import Judged
 from bezstab.mujoco.remedies import Remedy
+from bezstab.mujoco.sags import Sag
 from bezstab.mujoco.solrefs import Feedback
 from bezstab.show.columns import Column
 
@@ -58,6 +59,28 @@ ENERGIES: Sequence[Column[Kept]] = (
         lambda kept: kept.kept,
         "share of the energy that a second keeps, without drives and friction; null where the run breaks down",
         form=".2%",
+    ),
+)
+
+SAGS: Sequence[Column[Sag]] = (
+    Column("", "row", lambda _: "sag", "what the row is about"),
+    Column("from", "at", lambda sag: sag.at, "qpos0, a keyframe, a row of a log"),
+    Column("element", "element", lambda sag: sag.element, "element of the model"),
+    Column(
+        "off by (mm)",
+        "sag_mm",
+        lambda sag: None if sag.length is None else 1000 * sag.length,
+        "how far it is off where the model comes to rest; of a drive at its joint",
+        "mm",
+        ".3g",
+    ),
+    Column(
+        "off by (°)",
+        "sag_degrees",
+        lambda sag: None if sag.angle is None else math.degrees(sag.angle),
+        "the same of what turns",
+        "°",
+        ".3g",
     ),
 )
 

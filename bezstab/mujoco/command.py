@@ -36,6 +36,20 @@ def _rate(text: str) -> tuple[str, float]:
     return joint, float(rational(rate))
 
 
+def _load(text: str) -> tuple[str, tuple[float, ...]]:
+    """Return the body and the force that gripper=0,0,-20 says; of gravity alone no body."""
+    if text == "gravity":
+        return "", ()
+    body, equals, force = text.rpartition("=")
+    numbers = force.split(",")
+    if not (body and equals and len(numbers) == AXES):
+        raise InputError(f"{text!r}: expected gravity, or BODY=FX,FY,FZ in N")
+    return body, tuple(float(rational(number)) for number in numbers)
+
+
+AXES = 3
+
+
 @click.command()
 @click.argument("model", type=click.Path(path_type=Path))
 @click.option("--at", multiple=True, help="Look there: qpos0, a keyframe, or a CSV log of qpos. Repeatable [all].")
@@ -54,6 +68,13 @@ def _rate(text: str) -> tuple[str, float]:
     multiple=True,
     help="Run a second from a joint's rate (rad/s or m/s) at the first state: what is kept of the energy? Repeatable.",
 )
+@click.option(
+    "--load",
+    "loads",
+    type=ParsedType("gravity|body=fx,fy,fz", _load, lambda: ["gravity"]),
+    multiple=True,
+    help="How far is all off where it comes to rest, under gravity, and forces (N) on bodies? Repeatable.",
+)
 @click.option("--deep", is_flag=True, help="Judge constraints past solimp's width, too.")
 @shared.form
 def lint(
@@ -63,6 +84,7 @@ def lint(
     every: int,
     late: Fraction,
     spin: Sequence[tuple[str, float]],
+    loads: Sequence[tuple[str, tuple[float, ...]]],
     deep: bool,
     **_: object,
 ) -> int:
@@ -80,13 +102,14 @@ def lint(
     Example: bezstab lint robot.xml
     """
     from bezstab.engines.drives import Timing
-    from bezstab.mujoco.columns import ENERGIES, REMEDIES, SETTINGS, STATES, SUSPECTS
+    from bezstab.mujoco.columns import ENERGIES, REMEDIES, SAGS, SETTINGS, STATES, SUSPECTS
     from bezstab.mujoco.linting import linted_model
 
     timing = Timing(every, late)
     if timing != Timing() and not gains:
         raise InputError("--every and --late need --pd: they are about a controller")
-    linted = linted_model(model, at, gains, timing, deep=deep, spin=dict(spin), shown=progress)
+    load = {body: force for body, force in loads if body} if loads else None
+    linted = linted_model(model, at, gains, timing, deep=deep, spin=dict(spin), load=load, shown=progress)
     show_text(linted.sentence)
     show_tables(
         [
@@ -94,6 +117,7 @@ def lint(
             (SUSPECTS, linted.suspects),
             (REMEDIES, linted.remedies),
             (ENERGIES, linted.kept),
+            (SAGS, linted.sags or ()),
             (SETTINGS, linted.feedbacks),
         ]
     )

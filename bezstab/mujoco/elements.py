@@ -47,6 +47,12 @@ def without(robot: Robot, elements: Collection[Element]) -> Iterator[Robot]:
             array[where] = values
 
 
+def element_name(robot: Robot, sort: str, number: int) -> str:
+    """Return what an element is called: actuator 'servo', or equality 0 where it has no name."""
+    name = name_of(robot.mujoco, robot.model, sort, number)
+    return f"{sort} {name}" if name == str(number) else f"{sort} {name!r}"
+
+
 def _array(model: Any, name: str) -> Any:
     """Return an array of the model; None where this version of MuJoCo has none of that name."""
     return getattr(model, name, None)
@@ -98,11 +104,7 @@ class _Model:
 
     def _element(self, kind: str, sort: str, number: int, *arrays: str, where: Any = None) -> Element:
         place = number if where is None else where
-        return Element(self._named(sort, number), kind, tuple((name, place) for name in arrays))
-
-    def _named(self, sort: str, number: int) -> str:
-        name = name_of(self.robot.mujoco, self.robot.model, sort, number)
-        return f"{sort} {name}" if name == str(number) else f"{sort} {name!r}"
+        return Element(element_name(self.robot, sort, number), kind, tuple((name, place) for name in arrays))
 
     def _rows(self, kind: str) -> list[int]:
         """Return the numbers of what has rows of a kind among MuJoCo's constraints."""
@@ -131,12 +133,12 @@ class _Model:
                 entries += [(name, slice(starts[number], end))] * bool(starts[number] >= 0)
             elif _array(model, name) is not None:
                 entries.append((name, number))
-        return Element(self._named("flex", number), "flex", tuple(entries))
+        return Element(element_name(self.robot, "flex", number), "flex", tuple(entries))
 
     def _contacts(self) -> Iterator[Element]:
         pairs = np.sort(self.data.contact.geom, axis=1)
         for pair in np.unique(pairs[pairs[:, 0] >= 0], axis=0).tolist():  # those of flexes have no two geoms
-            names = " and ".join(self._named("geom", geom) for geom in pair)
+            names = " and ".join(element_name(self.robot, "geom", geom) for geom in pair)
             yield Element(names, "contact", geoms=frozenset(pair))
 
 

@@ -1,5 +1,6 @@
 """The question and its answer: is a MuJoCo model safe at its time step, where, and what makes it unsafe?"""
 
+import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -15,6 +16,7 @@ from bezstab.mujoco.growth import Growth, Kind, goes_on_growing, growth_at, stab
 from bezstab.mujoco.reading import Loaded, loaded_model, silent
 from bezstab.mujoco.remedies import Remedy, remedies
 from bezstab.mujoco.robots import Robot, State
+from bezstab.mujoco.sags import SECONDS, Sag, sags
 from bezstab.mujoco.solrefs import METHODS, Feedback, feedbacks
 from bezstab.mujoco.states import chosen_states, touching, touching_nothing, within_limits
 from bezstab.mujoco.steps import NUDGE, step_at
@@ -56,8 +58,9 @@ class Linted:
     """What was found of a model: h in s; every state, the worst of them, and the suspects there if it is unsafe.
 
     `accuracy` is by how much |z| of the worst changes with twice the nudge. `feedbacks` are the settings of
-    constraints, `kept` what a second keeps of the energy of states that move. `status` is the exit status of the
-    command.
+    constraints, `kept` what a second keeps of the energy of states that move, `sags` how far elements are off where the
+    first state comes to rest: None where it does not, empty where no load was given. `status` is the exit status of
+    the command.
     """
 
     name: str
@@ -70,6 +73,7 @@ class Linted:
     remedies: tuple[Remedy, ...]
     feedbacks: tuple[Feedback, ...]
     kept: tuple[Kept, ...]
+    sags: tuple[Sag, ...] | None
     sentence: str
     status: int
 
@@ -83,6 +87,7 @@ def lint(
     late: Number = 0,
     deep: bool = False,
     spin: Mapping[str, Number] | None = None,
+    load: Mapping[str, Sequence[Number]] | None = None,
 ) -> Linted:
     """Return whether a MuJoCo model is safe at its timestep: what errors do at its states, and what to write.
 
@@ -106,7 +111,8 @@ def lint(
         gains = [Gains(pattern, *(exact_number(value, "pd") for value in both)) for pattern, both in (pd or {}).items()]
         timing = Timing(whole_number(every, "every"), exact_number(late, "late"))
         rates = {joint: real_number(rate, "spin") for joint, rate in (spin or {}).items()}
-        return linted_model(model, at, gains, timing, deep=deep, spin=rates)
+        forces = None if load is None else {name: [real_number(n, "load") for n in load[name]] for name in load}
+        return linted_model(model, at, gains, timing, deep=deep, spin=rates, load=forces)
 
 
 def linted_model(
@@ -117,6 +123,7 @@ def linted_model(
     *,
     deep: bool = False,
     spin: Mapping[str, float] | None = None,
+    load: Mapping[str, Sequence[float]] | None = None,
     shown: Shown = lambda items, _label, _length: items,
 ) -> Linted:
     """Return the same; while it takes long, `shown` shows how far it is."""
@@ -130,6 +137,7 @@ def linted_model(
     with silent(mujoco):
         moving = [spun(robot, states[0], spin)] if spin else states
         kept = tuple(shown(energy_kept(robot, moving), "energy", len(moving)))
+        off = () if load is None else sags(robot, states[0], load)
         many = len(states) > MOST_WITH_LIMITS
         found = [each for state in shown(states, "states", len(states)) for each in _looked_at(robot, state, not many)]
         worst = min(found, key=_badness)
@@ -166,12 +174,13 @@ def linted_model(
         remedies=tuple(written),
         feedbacks=settings,
         kept=kept,
-        sentence=_sentence(loaded, robot, worst.judged(), settings, kept),
+        sags=off,
+        sentence=_sentence(loaded, robot, worst.judged(), settings, [*_kept_words(kept), *_sag_words(off)]),
         status=1 if is_unsafe else 3 if rough else 0,
     )
 
 
-def _sentence(loaded: Loaded, robot: Robot, worst: Judged, settings: Iterable[Feedback], kept: Sequence[Kept]) -> str:
+def _sentence(loaded: Loaded, robot: Robot, worst: Judged, settings: Iterable[Feedback], more: Sequence[str]) -> str:
     """Return the answer in words."""
     unsafe = [each for each in settings if each.unsafe]
     match worst.kind:
@@ -190,14 +199,29 @@ def _sentence(loaded: Loaded, robot: Robot, worst: Judged, settings: Iterable[Fe
         case _:
             answer = "is safe: no error grows"
     step = f"timestep {robot.h:g} s, integrator {INTEGRATORS[robot.model.opt.integrator]}"
-    notes = [loaded.left_out] if loaded.left_out else []
-    if kept and kept[0].kept is not None:
-        notes.append(f"a second without drives and friction keeps {100 * kept[0].kept:.4g} % of its energy")
-    elif kept:
-        notes.append(f"without drives and friction it breaks down within a second at {kept[0].at}")
+    notes = [*[loaded.left_out] * bool(loaded.left_out), *more]
     if alone := uncontrolled(robot.mujoco, robot.model, robot.drives):
         notes.append(f"motors without a controller: {', '.join(alone)}: --pd NAME=KP,KD judges them with one")
     return " ".join([f"{loaded.name} {answer} ({step}).", *(f"{note[0].upper()}{note[1:]}." for note in notes)])
+
+
+def _kept_words(kept: Sequence[Kept]) -> Iterator[str]:
+    if kept and kept[0].kept is not None:
+        yield f"a second without drives and friction keeps {100 * kept[0].kept:.4g} % of its energy"
+    elif kept:
+        yield f"without drives and friction it breaks down within a second at {kept[0].at}"
+
+
+def _sag_words(off: Sequence[Sag] | None) -> Iterator[str]:
+    """Yield the largest length and the largest angle by which something is off."""
+    if off is None:
+        yield f"under that load it does not come to rest within {SECONDS:g} s"
+    lengths = [(each.length, each.element) for each in off or () if each.length is not None]
+    angles = [(each.angle, each.element) for each in off or () if each.angle is not None]
+    if lengths:
+        yield f"at rest {max(lengths)[1]} is off by {1000 * max(lengths)[0]:.3g} mm"
+    if angles:
+        yield f"at rest {max(angles)[1]} is off by {math.degrees(max(angles)[0]):.3g}°"
 
 
 @dataclass(frozen=True, eq=False)

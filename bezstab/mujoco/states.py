@@ -26,6 +26,9 @@ DAMPING = 20.0
 AT_REST = 1e-9
 """m, rad: where no step moves anything by more, a model has settled."""
 
+ROUNDED = 1e-12
+"""m, rad: where no step moves anything by more, the rest is rounding."""
+
 SHORTER = (1, 4, 16)
 """By these the step is divided until a model settles that is unsafe at its own."""
 
@@ -113,10 +116,11 @@ def touching(robot: Robot, state: State) -> Iterator[State]:
     """Yield states near one at which more touches than a nudge can end: in its limits, then after some settling."""
     inside = replace(state, name=f"{state.name}, touching", positions=_into_limits(robot, state.positions))
     yield inside
-    settled = _settled(robot, inside)
-    if settled is not None:
-        yield settled
-        yield replace(settled, positions=_into_limits(robot, settled.positions))
+    data = settled(robot, inside, SETTLING)
+    if data is not None:
+        activations, controls = np.array(data.act), np.array(data.ctrl)
+        for positions in (np.array(data.qpos), _into_limits(robot, data.qpos)):
+            yield replace(inside, positions=positions, velocities=None, activations=activations, controls=controls)
 
 
 def touching_nothing(robot: Robot, state: State) -> tuple[Robot, State]:
@@ -158,29 +162,30 @@ def _ends_of_ranges(robot: Robot) -> Iterator[tuple[int, float, int]]:
             yield int(model.jnt_qposadr[joint]), float(end - outwards * model.jnt_margin[joint]), outwards
 
 
-def _settled(robot: Robot, state: State) -> State | None:
-    """Return where a state settles within a second, its velocities damped; None where it does not stay finite."""
+def settled(
+    robot: Robot, state: State, seconds: float, forces: FloatArray | None = None, *, at_rest: bool = False
+) -> Any:
+    """Return data where a state settles, its velocities damped; None where it does not stay finite, or come to rest.
+
+    `forces` act on bodies as `xfrc_applied` does. Without `at_rest` what still moves after so many seconds will do.
+    """
     mujoco, model = robot.mujoco, robot.model
     h = robot.h
     for shorter in SHORTER:
         data = robot.data_at(replace(state, velocities=None))
         data.qfrc_applied[:] = 0
+        if forces is not None:
+            data.xfrc_applied[:] = forces
         model.opt.timestep = h / shorter
         kept = np.exp(-DAMPING * model.opt.timestep)
-        steps = int(SETTLING / model.opt.timestep)
-        for _ in range(steps):
+        for _ in range(int(seconds / model.opt.timestep)):
             mujoco.mj_step(model, data)
             data.qvel[:] *= kept
             moved = np.abs(data.qvel).max(initial=0.0) * model.opt.timestep
-            if not moved < 1 or moved < AT_REST:
+            if not moved < 1 or moved < (ROUNDED if at_rest else AT_REST):
                 break
         model.opt.timestep = h
         if np.isfinite(data.qpos).all() and moved < 1:
-            return replace(
-                state,
-                positions=np.array(data.qpos),
-                velocities=None,
-                activations=np.array(data.act),
-                controls=np.array(data.ctrl),
-            )
+            mujoco.mj_forward(model, data)
+            return data if moved < AT_REST or not at_rest else None
     return None
