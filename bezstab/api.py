@@ -17,7 +17,6 @@ from numpy.typing import ArrayLike
 from bezstab.arguments import Number, exact_number, in_keywords, plane_point, point_if_given, real_number, whole_number
 from bezstab.engines.engine_list import engine_and_values, engine_named
 from bezstab.errors import InputError, shown
-from bezstab.evidence import measured_poles
 from bezstab.goals import Goal
 from bezstab.mechanism import equations, runner, scene_files, scenes
 from bezstab.mechanism.scenes import Scene
@@ -25,7 +24,8 @@ from bezstab.mechanism.simulation import Simulation
 from bezstab.methods.registry import method as method_named
 from bezstab.methods.schemes import Method
 from bezstab.methods.schur import Verdict
-from bezstab.questions import answering, question, runs
+from bezstab.questions import answering, question
+from bezstab.runs import measured_poles, simulating
 from bezstab.stabilising import Stabilise
 from bezstab.stability import arrays, best_points, closed_loop, feedback_costs, regions
 from bezstab.stability.arrays import ComplexArray, FloatArray
@@ -380,7 +380,7 @@ def simulate(
     paper Eqs. 6 to 9.
     """
     wanted = _asked(
-        runs.RunQuestion,
+        simulating.RunQuestion,
         scene=scene,
         method=method_named(method),
         duration=duration,
@@ -391,7 +391,7 @@ def simulate(
         perturb=perturb,
         start=start,
     )
-    return runs.run_answer(wanted)
+    return simulating.run_answer(wanted)
 
 
 @_spelled_out

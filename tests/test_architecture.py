@@ -6,13 +6,15 @@ other; only appointed files see a library.
 
     paper                  an extension: the main group finds its command by name
       |
-    cli        api         what people type, on the command line and in Python
+    subjects               a folder for each: chains, drives, step_sequences, probes, mujoco
+      |
+    runs       api         runs of mechanisms, and whether predictions hold; what people type in Python
+      |         |
+    cli         |          what they type on the command line
       |         |
     show -------+          what they see
       |         |
-    questions --+          what they ask, and the answers
-      |
-    evidence               the only place where stability and mechanism meet
+    questions --+          what they ask, and the answers: where stability and mechanism meet
       |      \
     stability  mechanism
       |      /
@@ -65,16 +67,17 @@ APPOINTED = {
         *("mechanism/equations.py", "mechanism/generated_code.py", "mechanism/start.py", "mechanism/observation.py"),
     },
     "matplotlib": {
-        *("show/style.py", "show/plot.py", "show/map_figures.py", "show/run_figures.py"),
+        *("show/style.py", "show/plot.py", "show/map_figures.py", "runs/figures.py"),
         *("show/window.py", "paper/figures.py"),
         *(f"{subject}/figure.py" for subject in SUBJECTS),
     },
     "click": {path.relative_to(PACKAGE).as_posix() for path in (PACKAGE / "cli").glob("*.py")}
     | {"paper/command.py"}
+    | {f"runs/{command}_command.py" for command in ("simulate", "verify", "tradeoff")}
     | {f"{subject}/command.py" for subject in SUBJECTS},
     "mujoco": {"mujoco/reading.py"},
-    "distributed": {"evidence/parallel.py"},
-    "joblib": {"evidence/parallel.py"},
+    "distributed": {"runs/parallel.py"},
+    "joblib": {"runs/parallel.py"},
     "numba": {"compiling.py"},
     "mpmath": {"stability/forced_errors.py"},
 }

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import bezstab
-from bezstab.evidence.accuracy_costs import reference_run
-from bezstab.evidence.verdict_maps import VerdictMap, map_rows, simulated_verdicts, verdict_map
+from bezstab.runs.accuracy_costs import reference_run
+from bezstab.runs.verdict_maps import VerdictMap, map_rows, simulated_verdicts, verdict_map
 
 ERROR = 1e-4 * 0.7 ** np.arange(60) * np.cos(0.9 * np.arange(60))
 

@@ -22,7 +22,7 @@ PAGES = (
     "bezstab/chains/README.md",
     "bezstab/drives/README.md",
     "bezstab/step_sequences/README.md",
-    "bezstab/evidence/README.md",
+    "bezstab/runs/README.md",
     "bezstab/mujoco/README.md",
     "bezstab/paper/README.md",
     "bezstab/probes/README.md",

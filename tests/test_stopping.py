@@ -8,7 +8,7 @@ from textwrap import indent
 
 import pytest
 
-from bezstab.evidence.parallel import _deaf_to_terminals
+from bezstab.runs.parallel import _deaf_to_terminals
 
 ROOT = Path(__file__).parent.parent
 START = """

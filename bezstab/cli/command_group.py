@@ -32,10 +32,10 @@ COMMANDS: Mapping[str, Mapping[str, str]] = {
         "chain": "bezstab.chains.command",
     },
     "Evidence": {
-        "simulate": "bezstab.cli.simulate_command",
-        "verify": "bezstab.cli.verify_command",
+        "simulate": "bezstab.runs.simulate_command",
+        "verify": "bezstab.runs.verify_command",
         "probe": "bezstab.probes.command",
-        "tradeoff": "bezstab.cli.tradeoff_command",
+        "tradeoff": "bezstab.runs.tradeoff_command",
     },
     "Paper": {
         "paper": "bezstab.paper.command",

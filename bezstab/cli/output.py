@@ -5,7 +5,7 @@ import shutil
 import sys
 import textwrap
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -13,17 +13,15 @@ from typing import TYPE_CHECKING, Any, BinaryIO, TypeVar
 
 import click
 
-from bezstab.errors import InputError
 from bezstab.files import output_directory, write_whole
 from bezstab.show.columns import Column, row_of
 from bezstab.show.fields import MISSING, Row, RowKind, visible
 from bezstab.show.tables import Format, block, fits, lines_below, render, table, wrapped
-from bezstab.stopping import Stopped
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from bezstab.evidence.parallel import Arrays
+    from bezstab.stability.arrays import Arrays
 
 Item = TypeVar("Item")
 INDENT = " " * 4
@@ -251,35 +249,3 @@ def worked_out(work: Callable[[], Item], label: str | None) -> Item:
     """Return what some work finds, with a bar as `progress` has it."""
     (found,) = [each() for each in progress([work], label)]
     return found
-
-
-@contextmanager
-def results_of_chunks(
-    compute: "Callable[[Any], Arrays]", chunks: Sequence[Any], path: Path, job: str, work: Work
-) -> "Iterator[list[Arrays]]":
-    """Give the results of independent chunks, in their order; processes or a cluster's workers compute them.
-
-    Finished chunks are kept in `path` + .chunks, so that a run of the same `job` can resume; once the results are used
-    they are deleted. Without joblib this process computes them, and none are kept.
-    """
-    from bezstab.evidence.parallel import KeptResults, completed_chunks, joblib_is_installed
-
-    if not joblib_is_installed():
-        if work.resume or work.scheduler or (work.workers or 1) > 1:
-            raise InputError(
-                "--workers, --scheduler and --resume need an optional package: pip install 'bezstab[parallel]'"
-            )
-        yield [compute(chunk) for chunk in progress(chunks, path.name)]
-        return
-    kept = KeptResults(path.with_name(f"{path.name}.chunks"), job)
-    if not work.resume:
-        kept.discard()
-    output_directory(kept.folder)
-    try:
-        arriving = completed_chunks(compute, chunks, kept, work.workers, work.scheduler)
-        results = dict(progress(arriving, path.name, len(chunks)))
-        yield [results[number] for number in range(len(chunks))]
-    except Stopped:
-        say(f"bezstab: what is finished lies in {kept.folder}: --resume goes on from there")
-        raise
-    kept.discard()

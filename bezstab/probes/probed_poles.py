@@ -22,11 +22,11 @@ from numpy.polynomial.polynomial import polyder, polyval2d, polyval3d
 from numpy.typing import ArrayLike
 
 from bezstab.errors import InputError, NumericalError
-from bezstab.evidence.kicks import GROWN
-from bezstab.evidence.linear_prediction import Fit, fit_dominant_pole
-from bezstab.evidence.measured_poles import CLOSE
 from bezstab.methods.derivation import closed_loop_table
 from bezstab.methods.schemes import Method
+from bezstab.runs.kicks import GROWN
+from bezstab.runs.linear_prediction import Fit, fit_dominant_pole
+from bezstab.runs.measured_poles import CLOSE
 from bezstab.stability.arrays import ComplexArray, FloatArray
 from bezstab.stability.closed_loop import dominant_pole, spectral_radius
 from bezstab.stability.regions import region, window

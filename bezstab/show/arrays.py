@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import math
 from collections.abc import Mapping, Sequence
 from io import TextIOWrapper
 from typing import TYPE_CHECKING, Any, BinaryIO
@@ -11,16 +10,11 @@ from typing import TYPE_CHECKING, Any, BinaryIO
 import numpy as np
 from numpy.typing import NDArray
 
-from bezstab.show.fields import Row
-from bezstab.show.row_kinds import FIELDS
-from bezstab.stability.arrays import ComplexArray, FloatArray
+from bezstab.stability.arrays import Arrays, ComplexArray, FloatArray
 from bezstab.stability.regions import Region
 from bezstab.units import feedback_gains
 
 if TYPE_CHECKING:  # so that an array of the plane does not load what runs mechanisms
-    from bezstab.evidence.parallel import Arrays
-    from bezstab.evidence.verdict_maps import VerdictMap
-    from bezstab.mechanism.simulation import Simulation
     from bezstab.questions.regions import MapAnswer
 
 
@@ -30,12 +24,12 @@ def map_arrays(answer: MapAnswer, z: ComplexArray) -> Arrays:
     z has shape (beta_hat.size, alpha_hat.size). Dimensionless; the angle of z in degrees; with a step also 2 alpha and
     beta^2 in 1/s and 1/s^2; with the errors that feedback forces where they are asked about.
     """
-    arrays = _over_the_plane(*answer.axes, z_abs=np.abs(z), z_angle_deg=np.angle(z, deg=True))
+    arrays = over_the_plane(*answer.axes, z_abs=np.abs(z), z_angle_deg=np.angle(z, deg=True))
     arrays |= _gains(arrays["alpha_hat"], arrays["beta_hat"], answer.question.seconds)
     return {**arrays, "combined_error": answer.errors(z).ravel()} if answer.question.motion else arrays
 
 
-def _over_the_plane(alpha_hat: FloatArray, beta_hat: FloatArray, **values: NDArray[Any]) -> dict[str, NDArray[Any]]:
+def over_the_plane(alpha_hat: FloatArray, beta_hat: FloatArray, **values: NDArray[Any]) -> dict[str, NDArray[Any]]:
     """Return values of shape (beta_hat.size, alpha_hat.size), with their points before them, in shape (points,)."""
     alpha_grid, beta_grid = np.meshgrid(alpha_hat, beta_hat)
     grids = {"alpha_hat": alpha_grid, "beta_hat": beta_grid, **values}
@@ -69,41 +63,6 @@ def _gains(alpha_hat: FloatArray, beta_hat: FloatArray, h: float | None) -> dict
         return {}
     two_alpha, beta_squared = feedback_gains(alpha_hat, beta_hat, h)
     return {"two_alpha": two_alpha, "beta_squared": beta_squared}
-
-
-def verdict_arrays(verdicts: VerdictMap) -> Arrays:
-    """Return a map of verdicts as arrays of shape (runs,), alpha_hat running fastest; 1 for diverges, for undecided."""
-    judged = {"diverges": verdicts.diverges.astype(int), "undecided": verdicts.undecided.astype(int)}
-    return _over_the_plane(verdicts.alpha_hat, verdicts.beta_hat, z_abs=verdicts.z_abs, **judged)
-
-
-def history_arrays(simulation: Simulation) -> Arrays:
-    """Return t, every q and d/dt q, c_1, cdot_1, lambda_1, ..., energy and work: shape (times,), SI units."""
-    coordinates = simulation.mechanism.scene.coordinates
-    constraint_histories = {"c": simulation.c, "cdot": simulation.cdot, "lambda": simulation.multipliers}
-    return {
-        "t": simulation.t,
-        **dict(zip(coordinates, simulation.q.T, strict=True)),
-        **{f"d/dt {name}": rate for name, rate in zip(coordinates, simulation.v.T, strict=True)},
-        **{
-            f"{name}_{number}": history
-            for name, histories in constraint_histories.items()
-            for number, history in enumerate(histories.T, start=1)
-        },
-        "energy": simulation.energy,
-        "driver_work": simulation.driver_work,
-        "force_work": simulation.force_work,
-    }
-
-
-def untimed_arrays(rows: Sequence[Row]) -> Arrays:
-    """Return rows as arrays of shape (rows,) without processor times, which no two runs share.
-
-    What is missing is nan among numbers and an empty text among texts.
-    """
-    keys = [key for key in rows[0] if not key.startswith("seconds")]
-    missing = {key: "" if FIELDS[key].kind == "text" else math.nan for key in keys}
-    return {key: np.array([missing[key] if row[key] is None else row[key] for row in rows]) for key in keys}
 
 
 def write_arrays(arrays: Mapping[str, NDArray[np.generic]], form: str, file: BinaryIO) -> None:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.colors import FuncNorm, ListedColormap
+from matplotlib.colors import FuncNorm
 from matplotlib.contour import QuadContourSet
 from matplotlib.figure import Figure
 from matplotlib.path import Path
@@ -18,11 +18,7 @@ from bezstab.methods.schemes import Method
 from bezstab.show import plot
 from bezstab.show.style import (
     ABOVE_THE_AXES,
-    ACCENT,
-    CONVERGES,
     DASHES,
-    DIVERGES,
-    cells,
     line_at,
     mark_in_alpha_and_beta,
     new_axes,
@@ -69,7 +65,6 @@ PARTS = 300
 
 
 if TYPE_CHECKING:  # so that a picture of the plane does not load what runs mechanisms
-    from bezstab.evidence.verdict_maps import VerdictMap
     from bezstab.questions.regions import MapAnswer, MapQuestion
 
 
@@ -257,27 +252,4 @@ def comparison_figure(question: MapQuestion) -> Figure:
             _draw_open_edges(region, axes, h, inset=EDGE_LINES * (place + 1), **line_at(place))
         if question.alpha_beta:
             mark_in_alpha_and_beta(axes)
-        return with_legend(figure)
-
-
-def verdict_figure(verdicts: VerdictMap, region: Region) -> Figure:
-    """Return the simulated verdicts as cells under the exact boundary; cells that disagree with it are crossed."""
-    run = (verdicts.scene.name, verdicts.method.name, f"h = {verdicts.h:g} s", f"{verdicts.run} steps")
-    given = f"{verdicts.judged} of {verdicts.undecided.size} runs gave a verdict"
-    agreeing = f"{given}, {verdicts.agreeing} of them agree" if verdicts.judged else "no run gave a verdict"
-    meanings = {"run converges": CONVERGES, "run diverges": DIVERGES}
-    if verdicts.undecided.any():
-        meanings["no verdict"] = "white"
-    with styled():
-        figure, axes = new_axes(*plane_words(f"{title_lines(*run)}\n{title_lines(agreeing)}", None))
-        diverges = np.ma.masked_array(verdicts.diverges, verdicts.undecided)
-        colours = ListedColormap([CONVERGES, DIVERGES])
-        cells(axes, verdicts.alpha_hat, verdicts.beta_hat, diverges, cmap=colours, vmin=0, vmax=1)
-        for meaning, colour in meanings.items():
-            axes.plot([], [], "s", color=colour, markeredgecolor="0.5", label=meaning)
-        plot.region(region, axes, color="black", linestyle="-", label=r"$|z_p| = 1$")
-        if verdicts.disagrees.any():
-            rows, columns = np.nonzero(verdicts.disagrees)
-            x, y = verdicts.alpha_hat[columns], verdicts.beta_hat[rows]
-            axes.plot(x, y, "x", color=ACCENT, markersize=3, label="disagree")
         return with_legend(figure)

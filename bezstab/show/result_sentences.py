@@ -9,10 +9,8 @@ from bezstab.units import from_dimensionless
 from bezstab.words import counted, times_words
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
     from fractions import Fraction
 
-    from bezstab.evidence.measured_poles import Measurement
     from bezstab.questions.answering import Answer
     from bezstab.questions.motions import ReferenceMotion
     from bezstab.stability.best_points import BestPoint, FarLimit
@@ -22,8 +20,6 @@ COSTLY = 10.0
 
 GAIN = 0.95
 """Of an error: what is not below is called no gain."""
-
-MOST_LISTED = 20  # times in a message
 
 
 def costs_words(answer: Answer) -> str | None:
@@ -159,21 +155,3 @@ def falling_words(limit: FarLimit) -> str:
 
 def _power(name: str, exponent: int) -> str:
     return name if exponent == 1 else f"{name}^{exponent}"
-
-
-def exact_rate_words(measurement: Measurement) -> str:
-    """Return along which motion the exact rates of a method are; why there are none, where the motion ends."""
-    name = measurement.method.name
-    if measurement.periodic:
-        return f"Exact rates of {name}: along the motion of the mechanism."
-    shown = "What is shown is how errors grow over the run."
-    return f"No rate of {name} is exact: the motion does not begin anew. {shown}"
-
-
-def passages_words(times: Sequence[float]) -> str:
-    """Return where a run has gone through singular configurations, and what that means; times in s."""
-    listed = ", ".join(f"{time:.6g}" for time in times[:MOST_LISTED])
-    more = ", ..." if len(times) > MOST_LISTED else ""
-    what = "a singular configuration" if len(times) == 1 else f"{len(times)} singular configurations"
-    where = f"the run goes through {what}, at t = {listed}{more} s"
-    return f"{where}: there the motion can branch, and which way it goes is left to rounding"

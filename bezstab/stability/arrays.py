@@ -1,5 +1,6 @@
 """Names for the arrays of this room, how exact their numbers are, even points, and how arrays of others are read."""
 
+from collections.abc import Mapping
 from typing import SupportsFloat
 
 import numpy as np
@@ -10,6 +11,9 @@ from bezstab.errors import InputError, shown
 BoolArray = NDArray[np.bool_]
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
+
+Arrays = Mapping[str, NDArray[np.generic]]
+"""Arrays by name."""
 
 Extent = tuple[tuple[float, float], tuple[float, float]]
 """((alpha_hat_min, alpha_hat_max), (beta_hat_min, beta_hat_max)), dimensionless."""

@@ -21,7 +21,7 @@ How fast constraints turn is kappa, the largest |eig K| along a motion. So no po
     |z chi| kappa h (1 + min(1, kappa h / r)),      r = |alpha_hat^2/4 - beta_hat|^(1/2), half the distance of both mu:
 
 twice as far as first order says where both mu are one, as the motion mixes their poles (not proven: exact rates come
-so far, and none further, tests/evidence/test_moving_poles.py). Errors decay where that leaves
+so far, and none further, tests/runs/test_moving_poles.py). Errors decay where that leaves
 every |z| below one. Nothing is settled where chi has no bound, two poles of one mu meet; nor where first order says
 little, as constraints turn by more than LAW_HOLDS in a step, or faster than feedback works, kappa h > SLOWER |mu|.
 """

@@ -21,8 +21,6 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
-from bezstab.evidence.exact_rates import exact_rates
-from bezstab.evidence.verdict_maps import MapRows, map_rows, simulated_verdicts
 from bezstab.mechanism.equations import Mechanism, T, compiled_mechanism
 from bezstab.mechanism.motions import motion
 from bezstab.mechanism.programs import even_steps
@@ -33,6 +31,8 @@ from bezstab.methods.multistep_methods import bezier
 from bezstab.methods.recipes import recipe
 from bezstab.methods.registry import lookup
 from bezstab.methods.schemes import LinearMultistep, Method, RungeKutta, steps
+from bezstab.runs.exact_rates import exact_rates
+from bezstab.runs.verdict_maps import MapRows, map_rows, simulated_verdicts
 from bezstab.stability.arrays import FloatArray
 from bezstab.stability.closed_loop import spectral_radius
 from bezstab.stability.regions import region, window
@@ -41,13 +41,13 @@ HERE = Path(__file__).parent
 sys.path.insert(0, str(HERE.parent.parent))  # run as a script, the tests are no package yet
 
 from tests.bench.timing import interleaved  # noqa: E402
-from tests.evidence.mujoco_witness import model_xml  # noqa: E402
 from tests.mechanism.four_bar_chains import four_bars  # noqa: E402
 from tests.reference.companion_poles import radius  # noqa: E402
 from tests.reference.fifty_digit_poles import modulus_from_p  # noqa: E402
 from tests.reference.literal_equation_9 import literal_equation_9  # noqa: E402
 from tests.reference.perturbed_revolutions import runner_motion  # noqa: E402
 from tests.reference.second_order_methods import RECIPES, second_order  # noqa: E402
+from tests.runs.mujoco_witness import model_xml  # noqa: E402
 
 BASELINE, REPORT = HERE / "bench.json", HERE.parent.parent / "figures" / "bench.md"
 FALLEN = 2 / 3  # of the ratio in BASELINE

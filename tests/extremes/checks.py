@@ -14,7 +14,6 @@ import mpmath as mp
 import numpy as np
 
 from bezstab.errors import NumericalError
-from bezstab.evidence.kicks import kicked_fates
 from bezstab.mechanism.compiled_stepping import runs_compiled
 from bezstab.mechanism.equations import compiled_mechanism
 from bezstab.mechanism.generated_code import state_function
@@ -25,6 +24,7 @@ from bezstab.mechanism.scene_files import load_scene
 from bezstab.mechanism.start import constraint_errors, initial_state
 from bezstab.methods.registry import lookup
 from bezstab.methods.schemes import LinearMultistep, Method
+from bezstab.runs.kicks import kicked_fates
 from bezstab.stability.closed_loop import poles
 from bezstab.stability.damping_limits import critical_damping_limit
 from bezstab.units import feedback_gains

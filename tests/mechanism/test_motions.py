@@ -12,8 +12,8 @@ from bezstab.mechanism.motions import STEPS, motion, regular_motion
 from bezstab.mechanism.scene_files import load_scene
 from bezstab.mechanism.scenes import Body
 from bezstab.mechanism.start import constraint_errors
-from tests.evidence.driven_four_bar import swinging_four_bar
 from tests.mechanism.four_bar_chains import four_bars
+from tests.runs.driven_four_bar import swinging_four_bar
 
 MECHANISM = compiled_mechanism(load_scene("driven_four_bar"))
 

@@ -8,8 +8,6 @@ from itertools import pairwise
 
 import numpy as np
 
-from bezstab.evidence.kicks import kicked_motions
-from bezstab.evidence.measured_poles import SURROUNDINGS
 from bezstab.mechanism.constraint_normals import turning_normals
 from bezstab.mechanism.equations import Mechanism, compiled_mechanism
 from bezstab.mechanism.motions import motion
@@ -17,6 +15,8 @@ from bezstab.mechanism.scene_files import load_scene
 from bezstab.mechanism.start import constraint_jacobian
 from bezstab.methods.registry import REGISTRY, lookup
 from bezstab.rationals import exact
+from bezstab.runs.kicks import kicked_motions
+from bezstab.runs.measured_poles import SURROUNDINGS
 from bezstab.stability.arrays import FloatArray
 from bezstab.stability.closed_loop import spectral_radius
 from bezstab.stability.regions import region, window

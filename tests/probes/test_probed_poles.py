@@ -26,9 +26,9 @@ from bezstab.probes.probed_poles import (
 from bezstab.stability.arrays import FloatArray
 from bezstab.stability.closed_loop import dominant_pole, poles
 from bezstab.stability.regions import region, window
-from tests.evidence.samples import of_campaign
 from tests.probes.random_logs import H, kicked_logs, rounded
 from tests.reference.sampled_responses import geometric, of_poles, two_poles
+from tests.runs.samples import of_campaign
 
 ALL = list(map(lookup, REGISTRY))
 POINT = Fraction(1, 2), Fraction(1, 10)

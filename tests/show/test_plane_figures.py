@@ -8,11 +8,12 @@ import numpy as np
 import pytest
 from matplotlib.collections import QuadMesh
 
-from bezstab.evidence.verdict_maps import map_rows, simulated_verdicts, verdict_map
 from bezstab.mechanism.scene_files import load_scene
 from bezstab.methods.registry import lookup
 from bezstab.questions.regions import MapAnswer, MapQuestion
-from bezstab.show.map_figures import comparison_figure, map_figure, verdict_figure
+from bezstab.runs.figures import verdict_figure
+from bezstab.runs.verdict_maps import map_rows, simulated_verdicts, verdict_map
+from bezstab.show.map_figures import comparison_figure, map_figure
 from bezstab.stability.regions import region
 from tests.show.drawn import lines_of
 

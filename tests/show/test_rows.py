@@ -17,8 +17,9 @@ from bezstab.methods.registry import lookup
 from bezstab.questions.answering import answers
 from bezstab.questions.question import Question
 from bezstab.questions.regions import region_answer
+from bezstab.runs.tables import untimed_arrays
 from bezstab.show import row_kinds
-from bezstab.show.arrays import untimed_arrays, write_arrays
+from bezstab.show.arrays import write_arrays
 from bezstab.show.cells import LIMITS, pole_text, safe_step_text
 from bezstab.show.fields import Field, cells, formatted
 from bezstab.show.row_kinds import FIELDS, POLES, REGIONS, ROW_KINDS, Z_ABS

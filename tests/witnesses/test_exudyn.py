@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from bezstab.evidence.linear_prediction import fit_dominant_pole
 from bezstab.methods.registry import lookup
+from bezstab.runs.linear_prediction import fit_dominant_pole
 from bezstab.stability.closed_loop import dominant_pole, spectral_radius
 from bezstab.stability.margins import stability_margins
 

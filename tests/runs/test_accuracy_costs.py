@@ -1,0 +1,163 @@
+"""Errors, costs and orders of swept runs, their Pareto fronts, and the reference that they are compared with."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from bezstab.errors import NumericalError
+from bezstab.mechanism.scene_files import load_scene
+from bezstab.methods.orders import accuracy
+from bezstab.methods.registry import lookup
+from bezstab.methods.schemes import evaluations
+from bezstab.rationals import exact
+from bezstab.runs.accuracy_costs import (
+    METHODS,
+    NO_FEEDBACK,
+    Cost,
+    ErrorOf,
+    SweptRuns,
+    measured_runs,
+    pareto_front,
+    reference_run,
+    swept_runs,
+)
+from bezstab.stabilising import after_step
+from bezstab.stability.choices import choose
+from tests.reference.undominated import Point, undominated
+from tests.runs.samples import of_campaign
+from tests.runs.small_sweeps import DURATION, OMEGA, SOFT, cost_for, reference, small_sweep, swept
+
+QUICK = ("B4", "ABM4", "RK4", "SYM")
+"""One of each kind."""
+
+
+@pytest.mark.parametrize("name", [*of_campaign(METHODS, ("B2", *QUICK)), "trapezoid", "verlet-predicted"])
+@pytest.mark.slow
+def test_a_run_knows_its_error_its_cost_and_its_order(name: str) -> None:
+    coarse, fine = swept(name, (8e-4, 1.6e-3), SOFT)
+    assert (coarse.h, fine.h) == (1.6e-3, 8e-4)
+    assert fine.order == pytest.approx(accuracy(lookup(name))[0], abs=0.2)  # with alpha, beta fixed none is lost
+    assert 0 < fine.c_rms <= fine.c_max
+    assert 0 < fine.cdot_rms <= fine.cdot_max
+    assert fine.seconds_min <= fine.seconds <= fine.seconds_max
+    # a trapezoidal step takes three iterations or four, each an evaluation, and now and then a Jacobian
+    least, most = (3, 6) if name == "trapezoid" else (evaluations(lookup(name)), evaluations(lookup("RK4")))
+    for run in (coarse, fine):
+        assert least <= run.evaluations / round(DURATION / run.h) <= most
+
+
+@pytest.mark.parametrize("name", [pytest.param("RK4", marks=pytest.mark.slow), "B4"])
+def test_its_own_choice_at_each_step_costs_no_order(name: str) -> None:
+    *_, fine = swept(name, (8e-4, 1.6e-3))
+    assert fine.order == pytest.approx(accuracy(lookup(name))[0], abs=0.2)
+    chosen = choose(lookup(name), "accurate", omega_h=OMEGA * exact(fine.h), margins=False)
+    assert (fine.alpha_hat, fine.beta_hat) == (chosen.alpha_hat, chosen.beta_hat)
+
+
+@pytest.mark.parametrize(("name", "within"), [("AB2", 0.03), ("B4", 0.03), ("AB4", 0.03), ("SYM", 0.2)])
+def test_so_is_the_work_that_the_energy_gains_by_it(name: str, within: float) -> None:
+    """To leading order, which of symplectic Euler is the first power of the step."""
+    for run in swept(name, (8e-4, 1.6e-3), SOFT):
+        assert run.measured_work
+        assert run.measured_work == pytest.approx(run.predicted_work, rel=within)
+        assert run.energy_drift / run.measured_work > 1  # the method's own is beside it, of the same sign here
+
+
+@pytest.mark.parametrize(("name", "within"), [("B4", 0.01), ("AB4", 0.01), ("SYM", 0.01), ("RK4", 0.35)])
+def test_in_the_later_half_of_a_run_the_constraint_error_is_the_predicted_one(name: str, within: float) -> None:
+    """Of RK4 at its gentle choice, whose errors curved constraints change the most, within a third.
+
+    Symplectic Euler has another point than its choice, which damps so little that there the start is still seen.
+    """
+    for run in swept(name, (8e-4, 1.6e-3), (0.96, 0.93) if name == "SYM" else None):
+        assert run.predicted_error
+        assert run.measured_error
+        assert run.measured_error == pytest.approx(run.predicted_error, rel=within)
+        assert run.measured_error <= run.c_max
+
+
+def test_strong_feedback_costs_rk4_what_the_page_of_stability_says() -> None:
+    robust = choose(lookup("RK4"), "robust", margins=False)
+    (strong,), (own,) = swept("RK4", (0.005,), (robust.alpha_hat, robust.beta_hat)), swept("RK4", (0.005,))
+    assert strong.c_max / own.c_max == pytest.approx(2500, rel=0.05)
+    assert (strong.trajectory_error or 0) / (own.trajectory_error or 1) == pytest.approx(700, rel=0.05)
+
+
+@pytest.mark.slow
+def test_b4_costs_17_times_as_much_as_ab4_and_rk4_as_much_as_ab4() -> None:
+    b4, ab4 = swept("B4", (1e-4, 2e-4)), swept("AB4", (0.0004, 0.0008, 0.0016, 0.0032))
+    rk4 = swept("RK4", (0.0032, 0.008, 0.0125))
+    least_error = b4[-1].trajectory_error
+    assert least_error == pytest.approx(1.2e-6, rel=0.05)
+    dear, cheap, same = (cost_for(least_error, each, "evaluations") for each in (b4, ab4, rk4))
+    assert dear / cheap == pytest.approx(17, rel=0.05)
+    assert 0.5 < same / cheap < 2
+
+
+@pytest.mark.parametrize(("name", "order"), [("RK4", 2), ("AB4", 5)])
+def test_at_one_point_of_the_plane_while_h_shrinks_stages_lose_order(name: str, order: int) -> None:
+    fine, coarse = (run.measured_error or np.nan for run in swept(name, (5e-4, 1e-3), (0.5, 0.1))[::-1])
+    assert np.log2(coarse / fine) == pytest.approx(order, abs=0.1)
+
+
+@pytest.mark.parametrize(("name", "times"), [("RK4", 1.2), ("SYM", 4.4)])
+def test_projection_costs_what_the_front_page_says_for_the_same_trajectory(name: str, times: float) -> None:
+    """In factorizations, on a free mechanism; at equal steps it is nearer to the constraints by far."""
+    sweep = small_sweep(name, (8e-4, 1.6e-3))
+    projected = replace(sweep, point=NO_FEEDBACK, omega=None, after=after_step("projection"))
+    held, exact = (swept_runs(each, measured_runs(each)) for each in (sweep, projected))
+    error = max(runs[-1].trajectory_error or np.inf for runs in (held, exact))
+    found = cost_for(error, exact, "projection") / cost_for(error, held, "projection")
+    assert found == pytest.approx(times, rel=0.05)
+    assert exact[-1].c_max < 4e-12 < held[-1].c_max
+
+
+def test_a_run_that_fails_is_kept_and_says_so() -> None:
+    failed, ended = swept("AB4", (0.002, 0.0125), SOFT)
+    assert (failed.z_abs or 0) > 1 > (ended.z_abs or 2)
+    assert failed.failure is not None
+    assert "blow-up" in failed.failure
+    assert (failed.trajectory_error, failed.predicted_error, failed.measured_error) == (None, None, None)
+    assert ended.predicted_error
+    assert ended.failure is None
+    assert ended.order is None  # there is nothing to compare with
+    assert (failed.alpha_hat, failed.beta_hat) == (1.25, 0.390625)  # 2 * 50 * 0.0125, (50 * 0.0125)^2, rounded once
+
+
+@pytest.mark.parametrize("against", ["evaluations", "time"])
+def test_a_sweep_knows_its_fronts(against: Cost) -> None:
+    runs = [*swept("B2", (0.004, 0.0125), SOFT), *swept("AB4", (0.004, 0.0125), SOFT)]
+    assert any(run.failure for run in runs)  # AB4 at the larger step
+    whole = SweptRuns(runs, reference().error, 1e-6, against)
+    of: ErrorOf
+    for of, letter in (("trajectory", "T"), ("constraint", "c")):
+        front, points = whole.front(of), [(run.cost(against), run.error(of)) for run in runs]
+        assert {points[index] for index in front} == undominated(points)
+        assert [index for index, label in enumerate(whole.front_labels) if letter in label] == sorted(front)
+
+
+points_of_a_sweep = st.lists(st.tuples(st.floats(1, 9), st.one_of(st.none(), st.floats(1, 9))))
+
+
+@given(points_of_a_sweep)
+def test_the_front_is_what_no_pair_excludes_by_ascending_cost(points: list[Point]) -> None:
+    front = [points[k] for k in pareto_front(points)]
+    assert set(front) == undominated(points)
+    assert front == sorted(set(front))
+
+
+@pytest.mark.slow
+def test_the_reference_has_the_digits_it_claims() -> None:
+    # one coordinate, by quadrature with 30 digits: see tests/mechanism/test_runner.py
+    true = reference_run(load_scene("slider_crank"), 1e-3, 2.3456)
+    assert true.error < 1e-12
+    angles = true.along.at(np.array([1.0, 2.0]))[0][:, 0]  # between its steps
+    assert angles == pytest.approx([1.822086334469, 2.872938352485], abs=max(true.error, 5e-13))
+
+
+def test_a_reference_that_fails_says_where() -> None:
+    with pytest.raises(NumericalError, match=r"the motion of .* breaks down at t = "):
+        reference_run(load_scene("four_bar"), 5.0, 500.0)

@@ -1,0 +1,84 @@
+"""Exact rates of a moving mechanism: against the poles at rest, and the runner's own."""
+
+import numpy as np
+import pytest
+
+from bezstab.mechanism.equations import Mechanism, compiled_mechanism
+from bezstab.mechanism.scene_files import load_scene
+from bezstab.methods.registry import lookup
+from bezstab.runs.exact_rates import exact_rates, stepped_motion
+from bezstab.stability.closed_loop import spectral_radius
+from tests.reference.perturbed_revolutions import runner_motion, settled_multiplier
+from tests.runs.driven_four_bar import four_bar, swinging_four_bar
+
+
+def rate(name: str, h: float, alpha_hat: float, beta_hat: float, mechanism: Mechanism | None = None) -> float:
+    """Return |z| at a point, by default of the four-bar; h in s."""
+    at = mechanism or four_bar(), lookup(name), h, np.array([alpha_hat]), np.array([beta_hat]), 1.0
+    return float(exact_rates(*at)[0])
+
+
+def test_drivers_that_turn_and_oscillate_have_a_rate_over_their_common_period() -> None:
+    """Beside the motion that a run makes, found by the runner alone; truncation errors leave the rest."""
+    mechanism, at = swinging_four_bar(2 * np.pi, 4 * np.pi), (0.3, 0.115)
+    expected = runner_motion(mechanism, lookup("AB4"), 60, *at)
+    assert expected is not None
+    assert rate("AB4", 1 / 60, *at, mechanism) == pytest.approx(expected[1], abs=1e-5)
+    assert abs(spectral_radius(lookup("AB4"), *at) - expected[1]) > 1e-3
+
+
+@pytest.mark.parametrize(("name", "apart"), [("trapezoid", 2e-5), ("sdirk2", 1e-5), ("gauss4", 3e-8)])
+@pytest.mark.slow
+def test_methods_that_solve_equations_have_the_rate_of_the_motion_to_which_they_settle(name: str, apart: float) -> None:
+    """By differences of whole runs: what truncation errors leave falls with the order."""
+    settled = settled_multiplier(four_bar(), lookup(name), 60, 0.03, 0.03)
+    assert rate(name, 1 / 60, 0.03, 0.03) == pytest.approx(settled, abs=apart)
+
+
+def test_a_batch_gives_what_single_points_give() -> None:
+    """Of an explicit method, and of one whose equations share Jacobians at a point."""
+    alpha_hat, beta_hat = np.array([0.3, 0.05, 1.5]), np.array([0.115, 0.01, 2.0])
+    for name in ("AB4", "sdirk2"):
+        together = exact_rates(four_bar(), lookup(name), 1 / 30, alpha_hat, beta_hat, 1.0)
+        alone = [rate(name, 1 / 30, *point) for point in zip(alpha_hat, beta_hat, strict=True)]
+        assert together == pytest.approx(alone, rel=1e-12)
+
+
+@pytest.mark.parametrize(("name", "count"), [("B8", 1), ("AB4", 3), ("SYM", 7), ("RK4", 30), ("ABM4", 30)])
+def test_no_point_and_no_step_is_too_extreme_for_a_number(name: str, count: int) -> None:
+    """No feedback, hardly any, and so much that a step multiplies errors by 1e38; fewer steps than are carried."""
+    gains = np.array([0.0, 1e-8, 0.3, 1e3, 1e10])
+    assert np.isfinite(exact_rates(four_bar(), lookup(name), 1 / count, gains, gains, 1.0)).all()
+
+
+def test_a_step_that_leaves_all_numbers_has_no_rate() -> None:
+    gains = np.array([0.3, 1e100])
+    rates = exact_rates(four_bar(), lookup("RK4"), 1 / 30, gains, gains, 1.0)
+    assert np.isfinite(rates).tolist() == [True, False]
+
+
+@pytest.mark.parametrize("name", ["B4", "RK4", "SYM", "ABM3", "trapezoid", "verlet-half", "newmark(1/4,1/2)"])
+def test_a_mechanism_that_hardly_moves_has_the_poles_at_rest(name: str) -> None:
+    """What the motion does to a pole falls with omega h, like it or like its square: here from 0.13 to 0.013."""
+    method = lookup(name)
+    alpha_hat, beta_hat = np.array([0.3, 0.4]), np.array([0.1, 0.08])
+    at_rest = spectral_radius(method, alpha_hat, beta_hat)
+    moved = [np.abs(exact_rates(four_bar(), method, h, alpha_hat, beta_hat, 1.0) - at_rest).max() for h in (2e-2, 2e-3)]
+    assert moved[1] < 0.2 * moved[0] < 0.2 * 2e-2
+
+
+def test_a_run_without_a_driver_has_the_rate_of_its_constraint_errors() -> None:
+    """On the slider-crank, which is hardly turned, the error of 1000 steps decays as the pole at rest says."""
+    mechanism = compiled_mechanism(load_scene("slider_crank"))
+    rates = exact_rates(mechanism, lookup("B4"), 1e-3, np.array([0.1, 0.5]), np.array([0.1, 0.1]), 0.2)
+    at_rest = spectral_radius(lookup("B4"), np.array([0.1, 0.5]), np.array([0.1, 0.1]))
+    assert rates == pytest.approx(at_rest, rel=2e-2)  # a conjugate pair is seen at several phases
+
+
+def test_a_step_before_the_revolution_is_its_last_but_for_a_turn() -> None:
+    """The crank has turned by 2 pi, nothing else has moved; the motion is known to 1e-11 of a turn."""
+    stepped = stepped_motion(four_bar(), lookup("bdf2"), 0.01, 1.0)
+    older, newest = [k for k, quantity in enumerate(stepped.memory.carried) if quantity.name == "x"][-2:]
+    starts = stepped.starts()
+    moved = starts[-2, newest] - starts[0, older]
+    assert moved == pytest.approx([2 * np.pi, *np.zeros(len(moved) - 1)], abs=1e-10)

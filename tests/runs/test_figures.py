@@ -1,0 +1,84 @@
+"""Figures of runs that are made up: each error and each front is drawn where it is."""
+
+from dataclasses import fields
+from typing import Any
+
+import numpy as np
+import pytest
+
+from bezstab.mechanism.equations import compiled_mechanism
+from bezstab.mechanism.scene_files import load_scene
+from bezstab.mechanism.simulation import simulated
+from bezstab.methods.registry import lookup
+from bezstab.runs.accuracy_costs import Cost, ErrorOf, Run, SweptRuns
+from bezstab.runs.figures import history_figure, projection_figure, work_precision_figure
+from bezstab.runs.tables import history_arrays
+from tests.show.drawn import lines_of
+
+
+def a_run(method: str, evaluations: int, error: float, **other: Any) -> Run:
+    """Return a run whose |c| is a tenth of its error, and whose energy falls by twice that error; the rest is None."""
+    nothing: dict[str, Any] = {each.name: None for each in fields(Run)}
+    errors = {"trajectory_error": error, "c_max": error / 10, "energy_drift": -2 * error}
+    costs = {"evaluations": evaluations, "factorizations": 2 * evaluations, "seconds": evaluations / 1e3}
+    return Run(**{**nothing, "method": lookup(method), **errors, **costs, **other})
+
+
+RUNS = [
+    a_run("B2", 100, 1e-2),
+    a_run("B2", 200, 3e-3, h=0.01),
+    a_run("AB4", 80, 9.0, failure="too far"),
+    a_run("AB4", 300, 5e-3),
+]
+
+
+@pytest.mark.parametrize(("error", "against"), [("constraint", "evaluations"), ("trajectory", "time")])
+def test_the_work_precision_figure_has_every_run_and_rings_the_front(error: ErrorOf, against: Cost) -> None:
+    (axes,) = work_precision_figure(SweptRuns(RUNS, 0.0, 6e-3, against), "made up", error).axes
+    scale = [1 if against == "evaluations" else 1e-3, 0.1 if error == "constraint" else 1]
+    lines = lines_of(axes)
+    for name, places in {
+        "B2": [(100, 1e-2), (200, 3e-3)],
+        "AB4": [(300, 5e-3)],
+        "front": [(100, 1e-2), (200, 3e-3)],  # AB4 costs more and errs more than the second
+    }.items():
+        assert lines[name] == pytest.approx(np.multiply(places, scale)), name
+    if error == "trajectory":  # AB4's 5e-3 is good enough as well, but dearer
+        assert lines["cheapest: B2, h = 0.01 s"] == pytest.approx(np.array([[0.2, 3e-3]]))
+        assert set(lines["tolerance 0.006"][:, 1]) == {6e-3}
+    else:
+        assert not any(label.startswith(("cheapest", "tolerance")) for label in lines)
+    crosses = [np.array(line.get_xydata()).tolist() for line in axes.lines if line.get_marker() == "x"]
+    assert [x for points in crosses for x, _ in points] == pytest.approx([80 * scale[0]])
+
+
+def test_the_projection_figure_shows_all_three_errors_of_every_way_to_hold_the_constraints() -> None:
+    """A line for each method and way in each axes."""
+    ways = [("baumgarte", True), ("baumgarte", False), ("projection", False)]
+    runs = [
+        a_run(method, 10 + number, 10.0**-number, stabilise=stabilise, advised=advised, h=0.02)
+        for method in ("B2", "SYM")
+        for number, (stabilise, advised) in enumerate(ways)
+    ]
+    figure = projection_figure(SweptRuns(runs, 0.0, 0.1, "projection"), "made up")
+    assert lines_of(figure.axes[0])["cheapest: B2, h = 0.02 s"].tolist() == [[22, 0.1]]
+    for axes, share in zip(figure.axes, (1, 0.1, 2), strict=True):
+        of_runs = [line for line in axes.lines if str(line.get_label()).startswith(("B2", "SYM"))]
+        drawn = [point for line in of_runs for point in np.array(line.get_xydata()).tolist()]
+        assert np.array(drawn) == pytest.approx(np.array([(20 + 2 * k, share * 10.0**-k) for k in range(3)] * 2))
+    assert len({(line.get_color(), line.get_marker(), line.get_markerfacecolor()) for line in of_runs}) == 6
+
+
+def test_the_history_figure_and_the_table_show_the_run() -> None:
+    pendulum = compiled_mechanism(load_scene("pendulum"))
+    run = simulated(pendulum, lookup("SYM"), h=0.002, duration=0.2, alpha_hat=0.5, beta_hat=0.1, perturb=1e-4)
+    figure = history_figure(run)
+    shown = (run.c[:, 0], run.cdot[:, 0], np.abs(run.c).max(axis=1))
+    for axes, values in zip(figure.axes, shown, strict=True):
+        assert np.array(axes.lines[0].get_xydata()).T.tolist() == [run.t.tolist(), values.tolist()]
+    assert figure.axes[2].get_yscale() == "log"
+    table = history_arrays(run)
+    for place, name in enumerate(pendulum.scene.coordinates):
+        assert table[name].tolist() == run.q[:, place].tolist()
+        assert table[f"d/dt {name}"].tolist() == run.v[:, place].tolist()
+    assert table["cdot_1"].tolist() == run.cdot[:, 0].tolist()

@@ -1,0 +1,115 @@
+"""Bounds on the poles of a moving mechanism against the exact rates: never safe where errors grow."""
+
+import numpy as np
+import pytest
+
+from bezstab.methods.registry import lookup
+from bezstab.runs.exact_rates import exact_rates
+from bezstab.stability.arrays import FloatArray
+from bezstab.stability.regions import region, window
+from bezstab.stability.turning import moduli_and_shifts, moving_modulus, moving_pole, turn_limits
+from tests.methods.kinds import sampled
+from tests.runs.driven_four_bar import four_bar, turning
+
+
+def anywhere(name: str, random: np.random.Generator, count: int) -> FloatArray:
+    low, high = np.transpose(window(region(lookup(name))))
+    return np.asarray(random.uniform(low - 0.1 * (high - low), high + 0.1 * (high - low), (count, 2)).T)
+
+
+def near_a_double_pole(name: str, random: np.random.Generator, count: int) -> FloatArray:
+    """Return points on and beside the curve on which both mu are one, or symplectic Euler's poles."""
+    (_, high), _ = window(region(lookup(name)))
+    alpha_hat = random.uniform(0, 0.99 if name == "SYM" else high, count)
+    both_one = (1 - np.sqrt(1 - alpha_hat)) ** 2 if name == "SYM" else alpha_hat**2 / 4
+    return np.array([alpha_hat, both_one * (1 + random.choice([0, 1e-6, -1e-4, 1e-3, -1e-2], count))])
+
+
+def weak(name: str, random: np.random.Generator, count: int) -> FloatArray:
+    """Return feedback of damping ratios 0.1 to 10, down to much slower than the constraints turn."""
+    alpha_hat, damping_ratio = 10 ** random.uniform([[-4], [-1]], [[0], [1]], (2, count))
+    return np.array([alpha_hat, (alpha_hat / 2 / damping_ratio) ** 2])
+
+
+@pytest.mark.parametrize("count", [203, 60, 34])
+@pytest.mark.parametrize("name", sampled(["B4", "AB2", "AB4", "RK2", "RK4", "SYM", "bdf2"], quick=["SYM"]))
+def test_errors_decay_wherever_the_bound_says_so(name: str, count: int) -> None:
+    """On the driven four-bar at kappa h = 0.016, 0.054 and 0.095; half of the points are nearly unsettled."""
+    method, h, random = lookup(name), 1 / count, np.random.default_rng(5)
+    alpha_hat, beta_hat = np.hstack([kind(name, random, 3000) for kind in (anywhere, near_a_double_pole, weak)])
+    turned, limits = turning().kappa * h, turn_limits(method, alpha_hat, beta_hat)
+    safe = np.flatnonzero(limits > turned)
+    hardly = safe[limits[safe] < 1.2 * turned]
+    some = np.concatenate([random.permutation(each)[:20] for each in (safe, hardly)])
+    assert some.size
+    assert (exact_rates(four_bar(), method, h, alpha_hat[some], beta_hat[some], 1.0) < 1).all()
+
+
+@pytest.mark.slow
+def test_most_of_what_decays_is_called_safe_and_nothing_that_grows() -> None:
+    """A hundred random points of four methods at two steps; 0.8 of those that decay are, and no wrong "diverges"."""
+    decaying, called = 0, 0
+    for name in ("B4", "AB4", "RK4", "SYM"):
+        for count in (203, 60):
+            method, h = lookup(name), 1 / count
+            alpha_hat, beta_hat = anywhere(name, np.random.default_rng(11), 50)
+            rates = exact_rates(four_bar(), method, h, alpha_hat, beta_hat, 1.0)
+            found = [
+                moving_pole(method, turning().kappa, h, *at).verdict for at in zip(alpha_hat, beta_hat, strict=True)
+            ]
+            verdicts = np.array(found)
+            assert (rates[verdicts == "converges"] < 1).all()
+            assert (rates[verdicts == "diverges"] > 1).all()
+            decaying, called = decaying + (rates < 1).sum(), called + (verdicts == "converges").sum()
+    assert called > 0.75 * decaying
+
+
+@pytest.mark.parametrize(
+    ("name", "at"), [("B4", (0.6, 0.3)), ("AB4", (0.3, 0.03)), ("SYM", (1.2, 0.5)), ("AB2@1/2", (0.9, 0.2))]
+)
+def test_a_point_is_safe_up_to_the_speed_that_is_said(name: str, at: tuple[float, float]) -> None:
+    """There the bound is one, or first order ends; a mechanism F times as fast turns F times as far in a step."""
+    method, kappa, h = lookup(name), 3.0, 0.005
+    safe = moving_pole(method, kappa, h, *at).safe_speed
+    slower, faster = (moving_pole(method, share * safe * kappa, h, *at) for share in (0.999, 1.001))
+    assert (slower.verdict, faster.verdict) == ("converges", "not settled")
+    assert slower.at_most < 1
+    assert moving_modulus(method, slower.turned)(np.array(at[0]), np.array(at[1])) == slower.at_most
+
+
+def test_where_both_mu_are_one_the_motion_mixes_their_poles() -> None:
+    """RK4 where alpha is beta: to first order errors decay, and they grow; twice the first order is enough."""
+    method, h, alpha_hat, beta_hat = lookup("RK4"), 1 / 203, 5.5173, 5.5173**2 / 4
+    z_abs, shift = moduli_and_shifts(method, alpha_hat, beta_hat)
+    (exact,) = exact_rates(four_bar(), method, h, np.array([alpha_hat]), np.array([beta_hat]), 1.0)
+    pole = moving_pole(method, turning().kappa, h, alpha_hat, beta_hat)
+    assert (z_abs + shift * pole.turned).max() < 1 < exact < pole.at_most
+    assert pole.at_most == pytest.approx((z_abs + 2 * shift * pole.turned).max(), rel=1e-12)
+
+
+def test_at_rest_poles_stay_where_they_are_however_large_chi_is() -> None:
+    """SYM at (1, 1/2): the pole 0 has no finite chi."""
+    pole = moving_pole(lookup("SYM"), 0.0, 0.01, 1.0, 0.5)
+    assert (pole.verdict, pole.at_least, pole.at_most, pole.safe_speed) == ("converges", 0.5, 0.5, np.inf)
+
+
+def test_nothing_converges_beyond_first_order() -> None:
+    """At kappa h = 0.19: an error of AB4 grows, where |z_p| is 0.93 and hardly moves, chi being 1e-4."""
+    step, at = 0.06, (0.15, 0.006)
+    (exact,) = exact_rates(four_bar(), lookup("AB4"), step, np.array([0.15]), np.array([0.006]), 1.0)
+    of_ab4 = moving_pole(lookup("AB4"), turning().kappa, step, *at)
+    of_rk4 = moving_pole(lookup("RK4"), turning().kappa, step, 0.5, 0.3)
+    assert of_ab4.z_abs - of_ab4.at_least < 1e-4
+    assert exact > 1.05
+    assert of_rk4.at_most < 0.95
+    assert of_ab4.verdict == of_rk4.verdict == "not settled"
+
+
+def test_two_poles_of_one_mu_that_meet_are_not_settled() -> None:
+    """Symplectic Euler's, both 1/2: they move like the root of kappa h."""
+    pole = moving_pole(lookup("SYM"), 1.0, 1e-3, 0.75, 0.25)
+    assert (pole.verdict, pole.at_most) == ("not settled", np.inf)
+
+
+def test_where_a_pole_has_no_bound_a_number_stands_that_can_be_raised_to_a_power() -> None:
+    assert moving_modulus(lookup("SYM"), 1e-3)(np.array([0.75, 1e9]), np.array([0.25, 1e9])).tolist() == [1e4, 1e4]

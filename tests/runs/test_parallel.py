@@ -1,0 +1,180 @@
+"""Chunks over processes and over a real Dask cluster: each done once, none lost, resumed to the same bytes."""
+
+import multiprocessing
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from bezstab.errors import InputError, NumericalError
+from bezstab.runs.parallel import KeptResults, completed_chunks
+from bezstab.stability.arrays import Arrays
+
+
+@dataclass(frozen=True)
+class Job:
+    """What a worker is to do: square a number, after having killed itself once for each file it still finds missing."""
+
+    number: int
+    deaths: tuple[Path, ...] = ()
+    seconds: float = 0
+
+
+def square(job: Job) -> Arrays:
+    for death in job.deaths:
+        if not death.exists():
+            death.touch()
+            os.kill(os.getpid(), signal.SIGKILL)
+    if job.number < 0:
+        raise InputError(f"at {job.number}")
+    time.sleep(job.seconds)
+    return {"square": np.array(job.number**2), "by": np.array(os.getpid())}
+
+
+def squares(found: dict[int, Arrays]) -> list[int]:
+    return [int(found[number]["square"]) for number in sorted(found)]
+
+
+def kept_in(folder: Path, job: str = "squares") -> KeptResults:
+    return KeptResults(folder / "job", job)
+
+
+def arrived(jobs: list[Job], folder: Path, workers: int = 1, scheduler: str | None = None) -> dict[int, Arrays]:
+    """Return what all chunks of a job in this folder give, those that are there already included."""
+    kept = kept_in(folder)
+    found = list(completed_chunks(square, jobs, kept, workers, scheduler))
+    assert all(kept.load(number) for number in range(len(jobs)))
+    assert sorted(number for number, _ in found) == list(range(len(jobs)))  # each done once
+    return dict(found)
+
+
+def test_a_resumed_job_does_only_what_is_missing_or_damaged(tmp_path: Path) -> None:
+    kept = kept_in(tmp_path)
+    kept.save(1, {"square": np.array(-1)})
+    kept.file(2).write_bytes(b"damaged")
+    kept.save(3, {"square": np.array(-9)})  # one more than there are jobs
+    assert squares(arrived([Job(number) for number in range(3)], tmp_path)) == [
+        0,
+        -1,
+        4,
+    ]  # the second was not done again
+
+
+@pytest.mark.slow
+def test_a_lost_worker_is_one_line_and_what_is_done_is_kept(tmp_path: Path) -> None:
+    jobs = [Job(0), Job(1, (tmp_path / "death",)), Job(2)]
+    kept_in(tmp_path).save(0, {"square": np.array(-9)})
+    with pytest.raises(NumericalError, match=r"a worker was lost, .* --resume goes on"):
+        arrived(jobs, tmp_path, workers=2)
+    assert squares(arrived(jobs, tmp_path, workers=2)) == [-9, 1, 4]  # the first was not done again
+
+
+@pytest.mark.slow
+def test_what_a_worker_raises_is_raised_here_at_once_and_no_worker_is_left(tmp_path: Path) -> None:
+    begin = time.monotonic()
+    with pytest.raises(InputError, match="at -1"):
+        arrived([Job(1, seconds=1000), Job(-1)], tmp_path, workers=2)
+    assert time.monotonic() - begin < 100
+    assert not multiprocessing.active_children()
+
+
+def test_a_scheduler_that_does_not_answer_is_one_line(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="--scheduler nonsense"):
+        arrived([Job(1)], tmp_path, scheduler="nonsense://x")
+
+
+@pytest.fixture
+def cluster() -> Iterator[str]:
+    """Run a real scheduler and two workers, each a process of its own, on loopback."""
+    environment = os.environ | {"PYTHONPATH": str(Path(__file__).parent.parent.parent)}  # where workers find this file
+    port = 20000 + os.getpid() % 20000
+    address = f"tcp://127.0.0.1:{port}"
+    commands = f"scheduler --host 127.0.0.1 --port {port}", f"worker {address} --nworkers 2 --nthreads 1"
+    running = [
+        subprocess.Popen(
+            [sys.executable, "-m", *f"distributed.cli.dask_{command} --no-dashboard".split()],
+            env=environment,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
+        for command in commands
+    ]
+    try:
+        yield address
+    finally:
+        for process in reversed(running):
+            process.terminate()
+            process.wait(timeout=30)
+
+
+@pytest.mark.slow
+def test_a_cluster_does_the_same_work(cluster: str, tmp_path: Path) -> None:
+    death = tmp_path / "died"
+    jobs = [Job(number, (death,) * (number == 2)) for number in range(6)]
+    found = arrived(jobs, tmp_path, scheduler=cluster)
+    command = [sys.executable, "-m", "bezstab", "verify", "--map", "4", "--method", "SYM", "--scene", "pendulum"]
+    maps = {}
+    for name, more in (("here", ["--workers", "1"]), ("there", ["--scheduler", cluster])):
+        subprocess.run([*command, "-o", name, *more], cwd=tmp_path, check=True, capture_output=True, timeout=120)
+        maps[name] = (tmp_path / name / "verify_pendulum_SYM.csv").read_bytes()
+    assert maps["here"] == maps["there"]
+    assert squares(found) == [number**2 for number in range(6)]
+    assert death.exists()  # one worker was lost, and replaced, on the way
+    assert os.getpid() not in {int(arrays["by"]) for arrays in found.values()}
+
+
+SQUARES = {"square": np.array([1, 4, 9]), "name": np.array(["a", "b"])}
+
+
+@pytest.fixture
+def kept(tmp_path: Path) -> KeptResults:
+    results = kept_in(tmp_path)
+    results.save(0, SQUARES)
+    return results
+
+
+def test_what_is_kept_comes_back_and_nothing_damaged_is_taken_for_it(kept: KeptResults) -> None:
+    np.testing.assert_equal(kept.load(0), SQUARES)
+    assert kept.load(1) is None
+    content = kept.file(0).read_bytes()
+    for length in range(0, len(content) - 4, 7):  # the last four bytes are a check sum
+        kept.file(0).write_bytes(content[:length])
+        assert kept.load(0) is None
+    kept.file(7).mkdir()
+    assert kept.load(7) is None
+
+
+def test_chunks_of_another_job_are_not_gone_on_with(kept: KeptResults) -> None:
+    other = replace(kept, job="cubes")
+    with pytest.raises(InputError, match=r"--resume: .*job is of a run with other options"):
+        other.load(0)
+    assert other.load(1) is None
+    assert kept.load(0) is not None
+
+
+def test_a_second_run_of_the_same_job_goes_on_when_the_first_is_finished(kept: KeptResults) -> None:
+    kept.discard()
+    assert not kept.folder.exists()
+    kept.save(1, SQUARES)
+    assert kept.load(1) is not None
+
+
+def test_what_a_killed_run_had_half_written_goes_and_what_is_not_ours_stays(kept: KeptResults) -> None:
+    (kept.folder / f".{kept.file(3).name}.0a1b").touch()
+    (kept.folder / "mine").mkdir()
+    kept.discard()
+    assert [path.name for path in kept.folder.iterdir()] == ["mine"]
+
+
+def test_what_cannot_be_kept_is_refused(kept: KeptResults) -> None:
+    kept.discard()
+    kept.folder.touch()
+    with pytest.raises(InputError, match=r"cannot write into .*job: "):
+        kept.save(0, SQUARES)
