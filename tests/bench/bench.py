@@ -535,14 +535,23 @@ def growth() -> Iterator[Growth]:
     yield fitted("derivation, in four-bars of a chain", (1, 2, 4), derived, "four-bars")
 
 
-def report(lines: Sequence[Line], grown: Sequence[Growth], before: dict[str, float]) -> str:
-    """Return the Markdown report."""
-    rows = ["# Speed", "", "Written by `make bench`, from one run. A ratio is the other's time over ours.", ""]
-    rows += ["| | against | ratio | promised | last accepted | |", "| - | - | - | - | - | - |"]
+def report(lines: Sequence[Line], grown: Sequence[Growth]) -> str:
+    """Return the Markdown report: a row for all that is compared with the same and has the same promise."""
+    rows = [
+        "# Speed",
+        "",
+        "Written by `make bench`, from one run: how many times as fast as something else bezstab is.",
+        "",
+    ]
+    rows += ["| | beside | ratio | promised |", "| - | - | - | - |"]
+    beside: dict[tuple[str, str, float | None], list[str]] = {}
     for line in lines:
-        promise = "" if line.promise is None else f"{line.promise:.3g}"
-        last = f"{before[line.name]:.3g}" if line.name in before else ""
-        rows.append(f"| {line.section} | {line.what} | {line.ratio:.3g} | {promise} | {last} | {line.note} |")
+        subject, _, other = line.what.partition(": ")
+        beside.setdefault((line.section, other, line.promise), []).append(f"{subject} {line.ratio:.3g}")
+    for (section, other, promise), ratios in beside.items():
+        rows.append(
+            f"| {section} | {other} | {', '.join(ratios)} | {'' if promise is None else format(promise, '.3g')} |"
+        )
     rows += ["", "Cost grows as a power of", "", "| cost | exponent | fitted over |", "| - | - | - |"]
     rows += [f"| {each.what} | {each.exponent:.2f} | {each.sizes} |" for each in grown]
     return "\n".join([*rows, ""])
@@ -569,7 +578,7 @@ def main() -> int:
     grown = list(growth())
     for each in grown:
         print(f"growth    {each.what:50} {each.exponent:8.2f}  {each.sizes}")
-    REPORT.write_text(report(lines, grown, before), encoding="utf-8")
+    REPORT.write_text(report(lines, grown), encoding="utf-8")
     if "--accept" in sys.argv:
         BASELINE.write_text(
             json.dumps({line.name: round(line.ratio, 3) for line in lines}, indent=1) + "\n", encoding="utf-8"
