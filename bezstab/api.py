@@ -364,7 +364,8 @@ def simulate(
     h: the step in s. duration: how long, in s.
     The point is `alpha_hat` and `beta_hat`, or `alpha` and `beta` in 1/s.
     start: where a multistep method has its first values from: steps of "rk4", its family's members of
-        fewer steps ("ramp"), or explicit "euler".
+        fewer steps ("ramp"), or explicit "euler". "steady": with the velocity that the method has in the
+        long run, half a step back for symplectic Euler.
     perturb: by how much the first constraint is off at the start, in its own unit.
     stabilise: what holds the constraints: feedback ("baumgarte"), "projection" of each new state onto
         them, or "none". Only feedback has a point.

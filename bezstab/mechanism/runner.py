@@ -31,11 +31,11 @@ from bezstab.methods.second_order import SecondOrder
 from bezstab.read_only import ReadOnlyArrays
 from bezstab.stabilising import NOTHING, AfterStep
 
-Start = Literal["rk4", "ramp", "euler"]
+Start = Literal["rk4", "ramp", "euler", "steady"]
 """Where a multistep method's first values come from: RK4, its family's members of fewer steps, or explicit Euler.
 
 For an implicit method, which may bear stronger feedback than any of these: Gauss's method of order four, BDF methods of
-fewer steps, or implicit Euler.
+fewer steps, or implicit Euler. What is steady differs from rk4 in the state that a run begins with (`steady_velocity`).
 """
 FloatArray = NDArray[np.float64]
 
@@ -172,7 +172,7 @@ def march(
     """
     history = [np.asarray(state)]
     of_start = steps
-    if start == "rk4" and _keeps_constraints(mechanism, float(steps.times[0]), history[0]):
+    if start in ("rk4", "steady") and _keeps_constraints(mechanism, float(steps.times[0]), history[0]):
         of_start = steps._replace(gains=np.zeros_like(steps.gains))
     for starter, count in _starters(method, start):
         taken = len(history) - 1
@@ -318,5 +318,5 @@ def _starters(method: Method, start: Start) -> list[tuple[Method, int]]:
     if start == "ramp":
         make = bezier if is_bezier(method.scheme) else adams_bashforth
         return [(lookup(f"bdf{n}") if implicit(method) else make(n), 1) for n in range(1, needed + 1)]
-    explicit_one, implicit_one = {"rk4": ("RK4", "gauss4"), "euler": ("RK1", "implicit-euler")}[start]
+    explicit_one, implicit_one = ("RK1", "implicit-euler") if start == "euler" else ("RK4", "gauss4")
     return [(lookup(implicit_one if implicit(method) else explicit_one), needed)]

@@ -20,7 +20,7 @@ from bezstab.mechanism.observation import (
 )
 from bezstab.mechanism.programs import Steps, even_steps
 from bezstab.mechanism.runner import Start, Trajectory, simulate_steps
-from bezstab.mechanism.start import perturbed_state
+from bezstab.mechanism.start import perturbed_state, steady_velocity
 from bezstab.methods.schemes import Method, check_one_step
 from bezstab.stabilising import NOTHING, AfterStep, Stabilise, held_by
 from bezstab.units import check_step, feedback_gains
@@ -113,7 +113,10 @@ def simulated(
         steps = Steps(np.append(0.0, np.cumsum(lengths)), lengths, gains[:, :, np.newaxis])
     else:
         steps = even_steps(h * multiple, round(duration / (h * multiple)), constant)
-    run = simulate_steps(mechanism, method, steps, perturbed_state(mechanism, perturb), start, after=after)
+    q, v = perturbed_state(mechanism, perturb)
+    if start == "steady":
+        v = steady_velocity(mechanism, method, float(steps.lengths[0]) / multiple, q, v)
+    run = simulate_steps(mechanism, method, steps, (q, v), start, after=after)
     times = len(run.t)
     observation = observe(mechanism, run.t, run.q, run.v, *steps.gains[:times, :, 0].T)
     apart = steps.lengths[: times - 1] if sequence else h * multiple

@@ -10,8 +10,10 @@ from numpy.typing import NDArray
 
 from bezstab.errors import InputError, NumericalError
 from bezstab.mechanism.equations import Mechanism, T
-from bezstab.mechanism.generated_code import SINGULAR
+from bezstab.mechanism.generated_code import SINGULAR, accelerations
 from bezstab.mechanism.newton import newton
+from bezstab.methods.schemes import Method
+from bezstab.methods.steady_errors import velocity_lag
 
 FloatArray = NDArray[np.float64]
 
@@ -133,6 +135,16 @@ def _check_number(mechanism: Mechanism, key: str, given: Mapping[str, float]) ->
     if len(given) not in (n - m, n):
         expected = f"{n - m}, or all" if n >= m else f"all, as there are {m} constraints"
         raise InputError(f"initial: {key} gives {len(given)} of {n} coordinates: expected {expected}")
+
+
+def steady_velocity(mechanism: Mechanism, method: Method, h: float, q: FloatArray, v: FloatArray) -> FloatArray:
+    """Return v, qdot at t = 0, as the method has it in the long run, off by its lag of a step h (s); shapes (n,), SI.
+
+    From v itself symplectic Euler begins with cdot = h C_q qddot / 2, so that constraints swing by that over beta, and
+    a free mechanism moves for good as if its velocity were half a step ahead.
+    """
+    lag = float(velocity_lag(method)) * h
+    return v + lag * accelerations(mechanism, 0.0, 0.0, 0.0, q, v) if lag else v
 
 
 def perturbed_state(mechanism: Mechanism, error: float) -> tuple[FloatArray, FloatArray]:

@@ -185,6 +185,18 @@ def leading_error(method: Method, part: Part = "x") -> LeadingTerm:
 
 
 @cache
+def velocity_lag(method: Method) -> Fraction:
+    """Return s where velocities are off by a share of a step whatever the feedback, v = phi' + s h phi''; else 0.
+
+    Symplectic Euler's are those of half a step earlier, s = -1/2. Errors as `forced_errors`.
+    """
+    term = leading_error(method, "v")
+    shares = {term.numerator.get(powers, ZERO) / c for powers, c in term.denominator.items()}
+    alike = term.power == len(shares) == 1 and term.numerator.keys() == term.denominator.keys()
+    return shares.pop() if alike else ZERO
+
+
+@cache
 def turning_error(method: Method) -> LeadingTerm | None:
     """Return what normals that turn add to the leading error of x; None where nothing of its order.
 

@@ -31,10 +31,11 @@ from bezstab.methods.schemes import implicit
     option("--perturb", NUMBER, "Initial error of the first constraint, in its own unit.", default="0"),
     option(
         "--start",
-        click.Choice(["rk4", "ramp", "euler"]),
+        click.Choice(["rk4", "ramp", "euler", "steady"]),
         "How a multistep method gets its first values: by RK4, by members of its family with fewer steps, or by "
         "explicit Euler. An implicit method: by Gauss's method of order four, by BDF methods with fewer steps, or by "
-        "implicit Euler.",
+        "implicit Euler. steady: with the velocity that the method has in the long run, half a step back for "
+        "symplectic Euler.",
         default="rk4",
     ),
     "compiled",

@@ -53,6 +53,9 @@ def _point_words(point: tuple[float, float], h: Fraction | None) -> str:
 
 def trade_words(answer: Answer) -> list[str]:
     """Return how long a disturbance of a choice lasts, and what faster or slower decay would change, where known."""
+    from bezstab.methods.schemes import implicit  # with sympy, which answers have loaded
+    from bezstab.methods.steady_errors import velocity_lag
+
     if answer.cost is None or answer.cost.total_error is None:
         return []
     lines = []
@@ -61,6 +64,11 @@ def trade_words(answer: Answer) -> list[str]:
             "Errors of the start and of disturbances decay as slowly. If a run is short or often disturbed, give a "
             "shorter --settle."
         )
+        if velocity_lag(answer.method) < 0 and not implicit(answer.method):
+            lines.append(
+                "Start with velocities half a step back, v − ½hq̈ (simulate --start steady): begun on the motion the "
+                "method moves as if they were half a step ahead."
+            )
     faster, slower, settle = answer.faster, answer.slower, answer.slower_settle
     if faster is None:
         lines.append("No other goal decays faster.")

@@ -8,9 +8,14 @@ from numpy.typing import NDArray
 
 from bezstab.errors import InputError, NumericalError
 from bezstab.mechanism.equations import compiled_mechanism
+from bezstab.mechanism.generated_code import accelerations
+from bezstab.mechanism.motions import motion
 from bezstab.mechanism.observation import observe
+from bezstab.mechanism.runner import Start
 from bezstab.mechanism.scene_files import load_scene, parse_scene, shipped_scenes
-from bezstab.mechanism.start import initial_state, perturbed_state
+from bezstab.mechanism.simulation import Simulation, simulated
+from bezstab.mechanism.start import constraint_jacobian, initial_state, perturbed_state
+from bezstab.methods.registry import lookup
 from tests.mechanism.test_scenes import pendulum
 
 
@@ -129,3 +134,34 @@ def test_a_spring_without_a_direction_is_refused_unless_it_needs_none() -> None:
     for changes in ({}, {"damping": 1.0}):
         with pytest.raises(InputError, match="spring 1: its ends meet"):
             start(**changes)
+
+
+BETA = 400.0
+
+
+def run_from(start: Start) -> Simulation:
+    h, mechanism = 0.0005, compiled_mechanism(load_scene("four_bar"))
+    return simulated(
+        mechanism, lookup("SYM"), h=h, duration=0.3, alpha_hat=16 * h, beta_hat=(BETA * h) ** 2, start=start
+    )
+
+
+def test_from_the_motion_itself_symplectic_euler_excites_its_feedback_and_half_a_step_back_it_does_not() -> None:
+    """From the motion the constraints begin with cdot = h C_q qddot / 2, and swing by h C_q qddot / 2 beta."""
+    on, off = run_from("rk4"), run_from("steady")
+    q, v = initial_state(on.mechanism)
+    jacobian, qddot = constraint_jacobian(on.mechanism, 0.0, q), accelerations(on.mechanism, 0.0, 0.0, 0.0, q, v)
+    swing = on.h * np.abs(jacobian @ qddot) / (2 * BETA)
+    first = on.t < np.pi / BETA
+    assert np.abs(on.c[first]).max(axis=0) == pytest.approx(swing, rel=0.15)
+    assert (np.abs(off.c[first]).max(axis=0) < 0.3 * swing).all()
+
+
+def test_half_a_step_back_symplectic_euler_moves_as_the_mechanism_does() -> None:
+    """Else it is off as if its velocity were half a step ahead."""
+    errors = []
+    for start in ("rk4", "steady"):
+        run = run_from(start)
+        exactly, _, _ = motion(run.mechanism, 0.3).at(run.t)
+        errors.append(np.abs(run.q - exactly).max())
+    assert errors[1] < errors[0] / 100

@@ -22,6 +22,7 @@ from bezstab.methods.steady_errors import (
     forced_errors,
     leading_error,
     turning_error,
+    velocity_lag,
 )
 from bezstab.stability.closed_loop import spectral_radius
 from tests.methods.kinds import SOLVED, sampled
@@ -119,3 +120,10 @@ def test_a_step_of_several_h_forces_what_its_own_parameters_do(name: str, tenths
 
     expected = multiple**short.power * at(short.numerator, multiple) / at(short.denominator, multiple)
     assert at(long.numerator, Fraction(1)) / at(long.denominator, Fraction(1)) == expected
+
+
+def test_velocities_lag_by_half_a_step_where_positions_use_the_new_ones() -> None:
+    """q(t + h) = q(t) + h v(t + h) makes v that of the middle of the step, whatever the feedback; v(t) likewise."""
+    lags = {name: velocity_lag(lookup(name)) for name in ("SYM", "imex-euler", "AB1", "verlet-half", "heun", "AB2")}
+    half = Fraction(1, 2)
+    assert lags == {"SYM": -half, "imex-euler": -half, "AB1": half, "verlet-half": 0, "heun": 0, "AB2": 0}
