@@ -66,9 +66,9 @@ def stage_torque(method: Method, at: tuple[Fraction, Fraction] | None = None) ->
     highest = accuracy(method)[0] + BEYOND_ORDER
     for power, torque in enumerate(_Rotation(method, domain, *point).torques(highest + 2)):
         if written and torque:
-            return StageTorque(power - 1, sp.factor(torque.as_expr()), highest)
+            return StageTorque(power, sp.factor(torque.as_expr()), highest)
         if not written and abs(value := as_fraction(torque)) > method.rounding:
-            return StageTorque(power - 1, value if at else None, highest)
+            return StageTorque(power, value if at else None, highest)
     return StageTorque(None, Fraction(0), highest)
 
 
@@ -94,41 +94,27 @@ class _Rotation:
             self.values[self.places[name]] = self.ring(domain.convert(powers[0][AT_REST]))
 
     def torques(self, powers: int) -> Iterator[Any]:
-        """Yield the coefficients of -T, from theta^0 on."""
+        """Yield the coefficients of -T, from theta^1 on."""
         inverse = DomainMatrix(self._at_rest(), (self.size, self.size), self.domain).to_field().inv().to_list()
-        for power in range(powers):
-            left = [
-                series.coeff(self.theta**power) if power else series.coeff(1) for series in self._left_over(power + 1)
-            ]
+        for power in range(1, powers):
+            left = self._left_over(power)
             for number, row in enumerate(inverse):
                 change = sum((a * b for a, b in zip(row, left, strict=True) if b), self.domain.zero)
                 self.values[number] -= change * self.theta**power
-            yield -self.values[-1].coeff(self.theta**power if power else 1)
+            yield -self.values[-1].coeff(self.theta**power)
 
     def _at_rest(self) -> list[list[Any]]:
-        """Return what changes of the unknowns leave in the equations, and in the angle of x, where theta = 0."""
-        rows = [
-            [self.domain.convert(int(i == j and i + 1 < self.size)) for j in range(self.size)] for i in range(self.size)
-        ]
+        """Return by how much each unknown's coefficient of theta changes what is left over at theta."""
+        before, columns = self._left_over(1), []
+        for number, value in enumerate(self.values):
+            self.values[number] = value + self.theta
+            columns.append([after - left for after, left in zip(self._left_over(1), before, strict=True)])
+            self.values[number] = value
+        return [list(row) for row in zip(*columns, strict=True)]
 
-        def add(row: int, factor: Any, combination: Combination, component: int) -> None:
-            for coefficient, quantity in combination:
-                rows[row][self.places[quantity.name] + component] += factor * self.domain.convert(coefficient)
-
-        for place, equation in zip(self.places.values(), self.equations, strict=True):
-            if isinstance(equation, Assignment):
-                add(place, -self.domain.one, equation.value, 0)
-                add(place + 1, -self.domain.one, equation.value, 1)
-            else:  # the radius alone is pulled back
-                add(place, self.beta_hat, equation.position, 0)
-                add(place, self.alpha_hat, equation.velocity, 0)
-                rows[place + 1][-1] -= self.domain.one
-        rows[-1][self.places[POSITION] + 1] = self.domain.one
-        return rows
-
-    def _left_over(self, terms: int) -> list[Any]:
-        """Return what the equations leave, and the angle of x, as series of so many terms."""
-        left = []
+    def _left_over(self, power: int) -> list[Any]:
+        """Return what the equations leave, and the angle of x, at one power of theta."""
+        left, terms = [], power + 1
         for place, equation in zip(self.places.values(), self.equations, strict=True):
             step = equation.result.step
             if isinstance(equation, Assignment):
@@ -137,7 +123,7 @@ class _Rotation:
                 position = self._sum_of(equation.position, step, terms)
                 found = self._acceleration(position, self._sum_of(equation.velocity, step, terms), terms)
             left += [own - other for own, other in zip(self.values[place : place + 2], found, strict=True)]
-        return [*left, self.values[self.places[POSITION] + 1]]
+        return [series.coeff(self.theta**power) for series in (*left, self.values[self.places[POSITION] + 1])]
 
     def _sum_of(self, combination: Combination, step: int, terms: int) -> Pair:
         """Return a sum of quantities as it is seen from the frame of a step: each is turned by e^(i theta steps)."""

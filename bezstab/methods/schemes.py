@@ -21,16 +21,9 @@ from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
 from functools import cached_property
-from itertools import zip_longest
 
 from bezstab.errors import InputError
-from bezstab.methods.polynomials import (
-    MuTable,
-    check_no_shared_factor,
-    polynomial_gcd,
-    quotient_and_remainder,
-    without_zeros,
-)
+from bezstab.methods.polynomials import MuTable, check_no_shared_factor
 from bezstab.methods.schur import recursion_verdict
 from bezstab.methods.second_order import SecondOrder
 from bezstab.methods.step_equations import (
@@ -187,20 +180,11 @@ class RungeKutta:
 
     @cached_property
     def mu_table(self) -> MuTable:
-        """z - R(mu), R = 1 + mu b^T (I - mu A)^-1 1, times det(I - mu A), which is one for an explicit method.
-
-        det(I - mu A + mu 1 b^T) / det(I - mu A) = R(mu) (Hairer & Wanner II, Proposition IV.3.2), less a factor of
-        stages that the step does not depend on.
-        """
-        from bezstab.methods.determinants import characteristic  # loads sympy
-
-        less_weights = [[a - b for a, b in zip(row, self.weights, strict=True)] for row in self.tableau]
-        # det(I - mu M) is the characteristic polynomial of M backwards
-        above, below = (without_zeros(characteristic(each)[::-1]) for each in (less_weights, self.tableau))
-        unused = polynomial_gcd(above, below)
-        above, below = ([c * unused[0] for c in quotient_and_remainder(each, unused)[0]] for each in (above, below))
-        columns = list(zip_longest(above, below, fillvalue=ZERO))
-        return tuple(-a for a, _ in columns), tuple(b for _, b in columns)
+        """z - R(mu) times det(I - mu A), which is one for an explicit method, from P(z; -mu, 0) = (z - 1) pi(z, mu)."""
+        constant, _, leading = (
+            [(-1) ** i * by_alpha[0] for i, by_alpha in enumerate(in_plane)] for in_plane in self.second_order.table
+        )
+        return tuple(-c for c in constant), tuple(leading)
 
     @cached_property
     def second_order(self) -> SecondOrder:

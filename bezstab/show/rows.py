@@ -79,7 +79,7 @@ def method_row(method: Method) -> Row:
         "implicit": implicit(method),
         "order_position_forces": by_force.position[0],
         "order_velocity_forces": by_force.velocity[0],
-        "other_names": OTHER_NAMES.get(method.name),
+        "other_names": OTHER_NAMES.get(method.name, "").replace(" ", ", ") or None,
     }
     return cells(LISTED_METHODS.fields[:-1], method, found)  # those of a group are beside it in the list
 
