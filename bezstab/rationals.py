@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Callable, Sequence
-from decimal import ROUND_FLOOR, Context
+from decimal import ROUND_CEILING, ROUND_FLOOR, Context
 from fractions import Fraction
 from math import lcm
 
@@ -68,7 +68,16 @@ def bisected_integers(holds: Callable[[int], bool], before: int, after: int) -> 
 
 def rounded_down(value: float, digits: int) -> str:
     """Return a positive number to so many digits, not above it: what is safe up to the number is safe up to these."""
-    return f"{float(Context(prec=digits, rounding=ROUND_FLOOR).create_decimal_from_float(value)):.{digits}g}"
+    return _rounded(value, digits, ROUND_FLOOR)
+
+
+def rounded_up(value: float, digits: int) -> str:
+    """Return a positive number to so many digits, not below it: what is safe from the number on is safe from these."""
+    return _rounded(value, digits, ROUND_CEILING)
+
+
+def _rounded(value: float, digits: int, rounding: str) -> str:
+    return f"{float(Context(prec=digits, rounding=rounding).create_decimal_from_float(value)):.{digits}g}"
 
 
 def typed_number(number: Fraction) -> str:

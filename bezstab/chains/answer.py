@@ -17,7 +17,7 @@ from bezstab.engines.sweeping import check_iterations
 from bezstab.errors import InputError
 from bezstab.questions.chains import Constraints, SweptConstraints
 from bezstab.stability.arrays import FloatArray
-from bezstab.stability.choices import steps_to_settle
+from bezstab.stability.choices import TENTH, steps_to_settle
 from bezstab.stability.sweeps import LARGEST_RATIO, MOST_BODIES, inverse_effective_masses
 from bezstab.units import check_step
 from bezstab.words import change_words, counted, decay_words
@@ -86,7 +86,9 @@ class ChainAnswer:
     """All that is known of a chain in an engine with such values, at a step of h (s) with so many sweeps.
 
     `z_abs` is the factor by which a step multiplies its errors in the long run, computed and off by at most `accuracy`;
-    `alone_z_abs` that of one constraint alone. `stable_iterations`: from how many sweeps errors decay; None if
+    `alone_z_abs` that of one constraint alone. `growing` are the errors of its links, from the world on, that decay
+    last, or grow: sizes as shares of the largest. `tenth_steps` and `settle_steps`: steps until an error is a tenth, a
+    thousandth; None where it does not fall. `stable_iterations`: from how many sweeps errors decay; None if
     from none that is tried. `setting`: the strongest values with which this chain is stable even if they were SPREAD
     stronger; None where there are none, or where the engine has nothing to set. `sag`: how far (m) some body rests from
     its place, at most, where all accelerate by `load` (m/s^2) along the chain; None without a load, and if not safe.
@@ -102,6 +104,8 @@ class ChainAnswer:
     z_abs: float
     accuracy: float
     alone_z_abs: float
+    growing: tuple[float, ...]
+    tenth_steps: int | None
     settle_steps: int | None
     stable_iterations: int | None
     setting: str | None
@@ -174,6 +178,8 @@ def judge_chain(
         z_abs=found.growth.factor,
         accuracy=found.growth.accuracy,
         alone_z_abs=found.alone,
+        growing=tuple(swept.slowest_errors(values).tolist()),
+        tenth_steps=steps_to_settle(found.growth.factor, TENTH) if safe else None,
         settle_steps=steps_to_settle(found.growth.factor) if safe else None,
         stable_iterations=found.stable_iterations,
         setting=_setting(swept),
@@ -216,6 +222,8 @@ def _sentence(answer: ChainAnswer) -> str:
     """Return whether a chain is stable, how fast its errors fall or grow, and from how many sweeps it is stable."""
     judged = f"{answer.engine.name}, {answer.links.words}, {counted(answer.iterations, 'sweep')}"
     change = change_words(answer.z_abs, "converges" if answer.safe else "diverges")
+    if not answer.safe and len(answer.growing) > 1:
+        change += f", most at link {1 + int(np.argmax(answer.growing))} from the world"
     if answer.settle_steps:
         change = decay_words(answer.settle_steps, float(answer.h))
     enough = "No number of sweeps that was tried is stable"
@@ -223,7 +231,8 @@ def _sentence(answer: ChainAnswer) -> str:
         enough = f"It is stable from {counted(answer.stable_iterations, 'sweep')}"
     sentence = f"{judged}: {'safe' if answer.safe else 'not safe'}. {change[0].upper()}{change[1:]}. {enough}."
     if answer.sag is not None:
-        sentence += f" Under {float(answer.load or 0):g} m/s² along it, it sags by {1000 * answer.sag:.3g} mm."
+        sags = f"sags by {1000 * answer.sag:.3g} mm" if answer.sag else "does not sag"
+        sentence += f" Under {float(answer.load or 0):g} m/s² along it, it {sags}."
     if answer.setting and not answer.safe:
         sentence += f" With these sweeps {answer.setting} is stable, with {SPREAD:.0%} to spare."
     return sentence

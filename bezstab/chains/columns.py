@@ -21,6 +21,22 @@ COLUMNS: Sequence[Column[ChainAnswer]] = (
         brief=True,
     ),
     Column(
+        "by link",
+        "growing",
+        lambda answer: list(answer.growing),
+        "errors of the links from the world on that grow, or decay last, as shares of the largest",
+        form=".3g",
+    ),
+    Column(
+        "a tenth in (s)",
+        "tenth_seconds",
+        lambda answer: in_seconds(answer.tenth_steps, answer.h),
+        "time until an error is a tenth; null where it does not fall",
+        unit="s",
+        form=".4g",
+        brief=True,
+    ),
+    Column(
         "settles in (s)",
         "settle_seconds",
         lambda answer: in_seconds(answer.settle_steps, answer.h),

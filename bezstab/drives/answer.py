@@ -15,14 +15,14 @@ import numpy as np
 
 from bezstab.arguments import Number, exact_number, in_keywords, whole_number
 from bezstab.drives.held_torque import dominant_pole, verdict
-from bezstab.drives.limits import Limits, limits
+from bezstab.drives.limits import Limits, Stretch, limits
 from bezstab.engines.drives import DRIVE_METHODS, FRESH, Drive, Timing, timing_of
 from bezstab.errors import InputError
 from bezstab.methods.registry import lookup
 from bezstab.methods.schemes import Method
 from bezstab.methods.schur import Verdict
-from bezstab.rationals import exact, rounded_down
-from bezstab.stability.choices import steps_to_settle
+from bezstab.rationals import exact, rounded_down, rounded_up
+from bezstab.stability.choices import TENTH, steps_to_settle
 from bezstab.stability.searches import first_where
 from bezstab.units import check_step
 from bezstab.words import change_words, counted, decay_words, gains_words, seconds_words
@@ -48,9 +48,6 @@ NEAREST: Mapping[UsedUp, str] = {
 
 
 GAINS = ("kp", "kd", "inertia", "ki")
-
-TENTH = 10.0
-"""Falls tenfold: as quick as an eye sees it."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -285,33 +282,44 @@ def _one_gain(answer: DriveAnswer) -> str:
 
 
 def _changes(answer: DriveAnswer) -> list[str]:
-    """Return how far each number alone may go with which a drive is stable."""
+    """Return how far each number alone may go with which a drive is stable; what is to be changed is stable as printed.
+
+    An armature adds to the inertia.
+    """
     ends, drive = answer.limits, answer.drive
-    changes = []
-    if ends.kp and math.isfinite(ends.kp[1]):
-        changes.append(f"kp {'lowered' if drive.kp > ends.kp[1] else 'up'} to {_digits(ends.kp[1])}")
-    if ends.kd and drive.kd > ends.kd[1]:
-        changes.append(f"kd lowered to {_digits(ends.kd[1])}")
-    elif ends.kd and (ends.kd[0] or math.isfinite(ends.kd[1])):
-        least, most = ends.kd
+    changes = [_upper("kp", ends.kp, drive.kp)]
+    if ends.kd and ends.kd[0] and drive.kd <= ends.kd[1]:
         changes.append(
-            f"kd {f'from {_digits(least)} ' if least else ''}{'on' if math.isinf(most) else f'up to {_digits(most)}'}"
+            f"kd from {_digits(ends.kd[0])} {'on' if math.isinf(ends.kd[1]) else f'up to {_digits(ends.kd[1])}'}"
         )
-    if ends.ki and math.isfinite(ends.ki[1]):
-        changes.append(f"ki {'lowered' if drive.ki > ends.ki[1] else 'up'} to {_digits(ends.ki[1])}")
-    if ends.inertia and ends.inertia[0]:
-        changes.append(
-            f"inertia {'raised to' if drive.inertia < ends.inertia[0] else 'from'} {_digits(ends.inertia[0])} on"
+    else:
+        changes.append(_upper("kd", ends.kd, drive.kd))
+    changes.append(_upper("ki", ends.ki, drive.ki))
+    if ends.inertia and drive.inertia < ends.inertia[0]:
+        least, armature = (
+            rounded_up(each, DIGITS) for each in (ends.inertia[0], ends.inertia[0] - float(drive.inertia))
         )
+        changes.append(f"inertia raised to {_digits(float(least))} (armature {_digits(float(armature))})")
+    elif ends.inertia and ends.inertia[0]:
+        changes.append(f"inertia from {_digits(ends.inertia[0])} on")
     if ends.h and math.isfinite(ends.h[1]):
-        changes.append(f"a step {'lowered' if answer.h > ends.h[1] else 'up'} to {seconds_words(ends.h[1])}")
-    if answer.timing == FRESH:
-        return changes
-    if ends.every is not None:
+        lowered = answer.h > ends.h[1]
+        most = float(rounded_down(ends.h[1], DIGITS)) if lowered else ends.h[1]
+        changes.append(f"a step {'lowered' if lowered else 'up'} to {seconds_words(most)}")
+    if answer.timing != FRESH and ends.every is not None:
         changes.append("a torque every step" if ends.every == 1 else f"a torque every {ends.every} steps")
-    if ends.late is not None:
+    if answer.timing != FRESH and ends.late is not None:
         changes.append(f"at most {counted(ends.late, 'step')} late")
-    return changes
+    return [change for change in changes if change]
+
+
+def _upper(name: str, ends: Stretch | None, own: Fraction) -> str:
+    """Return up to what a gain may go; nothing where it has no limit."""
+    if ends is None or math.isinf(ends[1]):
+        return ""
+    if own > ends[1]:
+        return f"{name} lowered to {_digits(float(rounded_down(ends[1], DIGITS)))}"
+    return f"{name} up to {_digits(ends[1])}"
 
 
 def _digits(number: float) -> str:

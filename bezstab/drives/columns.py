@@ -50,6 +50,7 @@ COLUMNS: Sequence[Column[DriveAnswer]] = (
         "time until an error is a tenth",
         unit="s",
         form=".4g",
+        brief=True,
     ),
     Column(
         "settles in (steps)",

@@ -29,6 +29,22 @@ STATES: Sequence[Column[Judged]] = (
         "decays, neutral, moves on, falls by itself, unsafe, not smooth",
     ),
     Column("|z|", "z_abs", lambda judged: judged.z_abs, "a step multiplies errors by it, at most"),
+    Column(
+        "a tenth in (s)",
+        "tenth_seconds",
+        lambda judged: judged.seconds_to(10.0),
+        "until errors are a tenth",
+        "s",
+        ".3g",
+    ),
+    Column(
+        "a thousandth",
+        "settle_seconds",
+        lambda judged: judged.seconds_to(1000.0),
+        "until they are a thousandth; null where some do not fall",
+        "s",
+        ".3g",
+    ),
     Column("falls (1/s)", "rate", lambda judged: judged.rate, "how fast it falls by itself", "1/s", ".3g"),
     Column("safe up to h (s)", "largest_step", _largest_step, "largest safe step, also any or none", "s"),
 )

@@ -20,6 +20,7 @@ from bezstab.mujoco.sags import SECONDS, Sag, sags
 from bezstab.mujoco.solrefs import METHODS, Feedback, feedbacks
 from bezstab.mujoco.states import chosen_states, touching, touching_nothing, within_limits
 from bezstab.mujoco.steps import NUDGE, step_at
+from bezstab.stability.choices import steps_to_settle
 
 MOST_DOFS = 400
 """That are judged: the eigenvalues of twice as many are found within a second, those of a robot in no time."""
@@ -42,15 +43,21 @@ ORDER: tuple[Kind, ...] = ("unsafe", "not smooth", "falls by itself", "moves on"
 class Judged:
     """A state and what errors do there: |z| of a step, None where nothing holds or it is not known.
 
-    `rate` (1/s) is that of what falls by itself. `h_limit` (s) is the largest safe step: infinity for any, None where
-    it was not looked for, or no step is small enough.
+    `h` is the step in s. `rate` (1/s) is that of what falls by itself. `h_limit` (s) is the largest safe step: infinity
+    for any, None where it was not looked for, or no step is small enough.
     """
 
     at: str
     kind: Kind
     z_abs: float | None
+    h: float
     rate: float | None = None
     h_limit: float | None = None
+
+    def seconds_to(self, fall: float) -> float | None:
+        """Return the time until every error is so many times smaller; None where that is never so."""
+        steps = steps_to_settle(self.z_abs, fall) if self.kind == "decays" and self.z_abs is not None else None
+        return None if steps is None else steps * self.h
 
 
 @dataclass(frozen=True)
@@ -235,7 +242,8 @@ class _Found:
 
     def judged(self) -> Judged:
         h_limit = None if self.h_factor is None else self.h_factor * self.robot.h
-        return Judged(self.state.name, self.growth.kind, self.growth.z_abs, self.growth.rate, h_limit)
+        growth = self.growth
+        return Judged(self.state.name, growth.kind, growth.z_abs, self.robot.h, growth.rate, h_limit)
 
 
 def _badness(found: _Found) -> tuple[int, float]:

@@ -14,7 +14,7 @@ from bezstab.mujoco.elements import Element, acting
 from bezstab.mujoco.growth import growth_at, last_safe
 from bezstab.mujoco.robots import Robot, State
 from bezstab.mujoco.solrefs import METHODS
-from bezstab.rationals import rounded_down
+from bezstab.rationals import rounded_down, rounded_up
 from bezstab.stability.arrays import FloatArray
 
 MARGIN = 0.9
@@ -254,9 +254,7 @@ def _least_armature(unsafe: Unsafe, joints: Sequence[int]) -> float | None:
     largest = own * 4.0**QUARTERS
     if not safe(largest):
         return None
-    least = last_safe(safe, largest, own / 4.0**QUARTERS, 2 * BISECTIONS)
-    digit = 10.0 ** (np.floor(np.log10(least)) - 1)
-    return float(np.ceil(least / digit) * digit)
+    return float(rounded_up(last_safe(safe, largest, own / 4.0**QUARTERS, 2 * BISECTIONS), 2))
 
 
 # solref

@@ -17,7 +17,15 @@ from bezstab.questions.motions import name_of, scene_at_speed
 from bezstab.rationals import rational
 from bezstab.stability.arrays import FloatArray
 from bezstab.stability.searches import first_where
-from bezstab.stability.sweeps import Growth, chain, fewest_sweeps, inverse_effective_masses, swept_growth, swept_rest
+from bezstab.stability.sweeps import (
+    Growth,
+    chain,
+    fewest_sweeps,
+    inverse_effective_masses,
+    slowest_errors,
+    swept_growth,
+    swept_rest,
+)
 
 SHARES = np.geomspace(1e-6, 1 - 1e-9, 50)
 """Shares of the strongest feedback. The largest share that constraints allow is searched for between two neighbours.
@@ -92,6 +100,10 @@ class SweptConstraints:
     def growth(self, values: Sequence[Fraction], sweeps: int | None = None) -> Growth:
         """Return the factor by which a step multiplies their errors, with another number of sweeps if one is given."""
         return swept_growth(self.constraints.inverse_masses, *self._step(values, sweeps))
+
+    def slowest_errors(self, values: Sequence[Fraction]) -> FloatArray:
+        """Return the sizes of their errors that decay last, or grow, as shares of the largest; shape (constraints,)."""
+        return slowest_errors(self.constraints.inverse_masses, *self._step(values))
 
     def rest(self, values: Sequence[Fraction], pull: FloatArray) -> FloatArray:
         """Return the errors at which they rest, for what a steady acceleration adds to their rates times h."""

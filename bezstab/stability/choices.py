@@ -28,6 +28,7 @@ from bezstab.stability.searches import lowest_minima
 SCOUTS = 64  # of the points one in so many is looked at first, for a value that the others must be below
 USUAL_SPREAD = 0.1  # the share by which alpha and beta may be off
 THOUSANDFOLD = 1e-3  # what "settled" means for the constraint error
+TENTH = 10.0  # falls tenfold: as quick as an eye sees it
 
 FIRST_GRID = 52  # points per axis of the first grid over the region's box: every valley is seen
 GRID = 49  # points per axis of a zoom: few fine grids take less time than many coarse ones, and lose no valley

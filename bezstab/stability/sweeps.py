@@ -91,6 +91,17 @@ def swept_growth(inverse_masses: FloatArray, step: SweptStep, joints: Sequence[i
     return _spectral_radius(matrix)
 
 
+def slowest_errors(inverse_masses: FloatArray, step: SweptStep, joints: Sequence[int] | None = None) -> FloatArray:
+    """Return the sizes of the errors at the end of a step that decay last, or grow, over the largest; shape (m,).
+
+    Those of the eigenvector of the factor that `swept_growth` has; arguments and errors as there.
+    """
+    scale, root, take = _scaled_step(inverse_masses, step, joints)
+    values, vectors = np.linalg.eig(take(np.eye(3 * len(root)), np.zeros((len(root), 1))))
+    sizes = np.abs(root.T @ vectors[: len(root), int(np.argmax(np.abs(values)))] / scale)
+    return np.asarray(sizes / (sizes.max() or 1.0))
+
+
 def swept_rest(
     inverse_masses: FloatArray, step: SweptStep, pull: FloatArray, joints: Sequence[int] | None = None
 ) -> FloatArray:

@@ -62,3 +62,17 @@ def test_a_motor_is_judged_with_its_controllers_gains_and_gravity() -> None:
         kp, kd = gains.split(",")
         (answer,) = rows(f"drive --kp {kp} --kd {kd} --inertia 0.094 --h 0.002 --method SYM", timing, status=exit_code)
         assert row["z_abs"] == pytest.approx(answer["z_abs"], rel=1e-9)
+
+
+def test_the_least_armature_is_that_of_drive_to_its_two_digits(tmp_path: Path) -> None:
+    """An inertia of 0.001: kd = 5 at 2 ms."""
+    model = tmp_path / "hinge.xml"
+    body = '<body><joint name="j"/><inertial pos="0 0 0" mass="1" diaginertia="1 1 .001"/></body>'
+    text = f'<mujoco><worldbody>{body}</worldbody><actuator><motor name="m" joint="j"/></actuator></mujoco>'
+    model.write_text(text, encoding="utf-8")
+    written = [row["write"] for row in rows("lint", str(model), "--pd m=20,5", status=1) if row["row"] == "remedy"]
+    (lints,) = [float(text.split('"')[1]) for text in written if text.startswith("armature")]
+    (answer,) = rows("drive --kp 20 --kd 5 --inertia 0.001 --h 0.002 --method SYM", status=1)
+    least = answer["inertia_min"] - 0.001
+    assert least <= lints <= 1.05 * least
+    assert "(armature 0.00403)" in answer["sentence"]

@@ -1,5 +1,6 @@
 """Answers about drives: the number that is nearest to its limit, and gains to write."""
 
+import re
 from fractions import Fraction
 from math import atan, inf, log, pi
 
@@ -174,3 +175,20 @@ def test_rates_are_steps() -> None:
     assert rates(None, Fraction(1000), None, Fraction(200)) == (Fraction(1, 1000), 5)
     with pytest.raises(InputError, match="no multiple"):
         rates(None, Fraction(1000), None, Fraction(300))
+
+
+@pytest.mark.parametrize(("kp", "kd", "inertia", "h"), [(20, 5, "0.001", "0.002"), (1000, 80, "0.1", "1/240")])
+def test_what_is_to_be_changed_is_stable_as_it_is_printed(kp: int, kd: int, inertia: str, h: str) -> None:
+    """Explicit: 2 kd h / inertia + kp h^2 / inertia < 4; an armature adds to the inertia."""
+    sentence = drive(kp, kd, inertia, h=h).sentence
+    lowered = Fraction(re.findall(r"kd lowered to ([\d.]+)", sentence)[0])
+    raised, armature = map(Fraction, re.findall(r"inertia raised to ([\d.]+) \(armature ([\d.]+)\)", sentence)[0])
+    own, step = Fraction(inertia), Fraction(h)
+    least = (2 * kd * step + kp * step**2) / 4
+    assert least < raised < least * Fraction(101, 100)
+    assert least < own + armature < own + (least - own) * Fraction(101, 100)
+    most = (4 * own - kp * step**2) / (2 * step)
+    assert most * Fraction(99, 100) < lowered < most
+    assert drive(kp, lowered, inertia, h=h)
+    assert drive(kp, kd, raised, h=h)
+    assert drive(kp, kd, own + armature, h=h)

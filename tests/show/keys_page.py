@@ -19,7 +19,7 @@ PAGE = Path(__file__).parents[2] / "bezstab" / "show" / "keys.csv"
 COLUMNS: Mapping[str, Sequence[Sequence[Column[Any]]]] = {
     "chain": [chains.COLUMNS],
     "drive": [drives.COLUMNS],
-    "lint": [mujoco.STATES, mujoco.SUSPECTS, mujoco.REMEDIES, mujoco.ENERGIES, mujoco.SETTINGS],
+    "lint": [mujoco.STATES, mujoco.SUSPECTS, mujoco.REMEDIES, mujoco.ENERGIES, mujoco.SAGS, mujoco.SETTINGS],
     "probe": [probes.POLES, probes.COMPARED, probes.FOUND],
     "steps": [step_sequences.COLUMNS],
 }
