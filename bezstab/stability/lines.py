@@ -47,7 +47,7 @@ AGREE = 1e-9
 """Of the area: so near both halves of a panel come to the whole."""
 HALVINGS = 40
 TOUCHING = 100 * CLOSE
-"""Of a place along a line: parts that overlap by less only touch, in a corner."""
+"""Of a place along a line: parts that overlap by less only touch, in a corner, as do points no further off."""
 THIN = 1e-6
 """Of its place: an island narrower than that is not mentioned, and a region that narrow far out goes on for ever."""
 FAR = 1e5
@@ -133,11 +133,11 @@ class Lines:
         return [np.isin(section.parts, list(parts)) for section in sections]
 
     def holds(self, place: float, along: float) -> bool:
-        """Return whether a point on a line that was looked at belongs to the region."""
+        """Return whether a point on a line that was looked at belongs to the region, or touches it."""
         sections = self.sections()
         number = int(np.searchsorted([section.places[0] for section in sections], place, side="right")) - 1
         low, high = self.found[place][self.kept(sections)[number]].T
-        return bool(((low < along) & (along < high)).any())
+        return bool(((low * (1 - TOUCHING) < along) & (along < high * (1 + TOUCHING))).any())
 
     def _samples(self, sections: list[Section]) -> dict[int, tuple[float, float]]:
         """Return a point of each part: on the middle line of its first section, in the middle of the stretch."""
@@ -187,7 +187,7 @@ class Lines:
             part
             for section, place in zip(sections, middles, strict=True)
             for part, (low, high) in zip(section.parts, self.found[place], strict=True)
-            if high - low > THIN * high and section.places[-1] - section.places[0] > THIN * section.places[-1]
+            if low < (1 - THIN) * high and section.places[-1] - section.places[0] > THIN * section.places[-1]
         }
         return [point for part, point in self._samples(sections).items() if part in wide - kept]
 

@@ -33,24 +33,25 @@ SHORT = 2**24
 
 @dataclass(frozen=True)
 class Path:
-    """The points (s^i alpha_hat, s^j beta_hat), s > 0, (i, j) the powers: exact, dimensionless."""
+    """The points (s^i alpha_hat, s^j beta_hat), s > 0, (i, j) the powers: exact, dimensionless. Stable is |z_p| < level."""
 
     method: Method
     alpha_hat: Fraction
     beta_hat: Fraction
     powers: Powers
+    level: Fraction = ONE
 
     def converges_at(self, s: Fraction) -> bool:
-        """Return whether the verdict there is 'converges', proven."""
+        """Return whether |z_p| < level there, proven."""
         i, j = self.powers
-        return converges(self.method, self.alpha_hat * s**i, self.beta_hat * s**j)
+        return converges(self.method, self.alpha_hat * s**i, self.beta_hat * s**j, self.level)
 
 
 @lru_cache  # a margin looks both ways along one
 def places(path: Path) -> tuple[Fraction, ...]:
-    """Return, ascending, factors s > 0 at which a root may pass |z| = 1, as good as eigenvalues, and WAYPOINTS."""
+    """Return, ascending, factors s > 0 at which a root may pass |z| = level, as good as eigenvalues, and WAYPOINTS."""
     alpha_hat, beta_hat = (np.array([float(each)]) for each in (path.alpha_hat, path.beta_hat))
-    found = paths(path.method, alpha_hat, beta_hat, path.powers).places().ravel()
+    found = paths(path.method, alpha_hat, beta_hat, path.powers, float(path.level)).places().ravel()
     return tuple(sorted({*(_short(s) for s in found[np.isfinite(found)].tolist()), *WAYPOINTS}))
 
 

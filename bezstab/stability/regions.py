@@ -8,12 +8,15 @@ from numpy.typing import ArrayLike
 
 from bezstab.errors import InputError, NumericalError
 from bezstab.methods.schemes import Method
+from bezstab.rationals import exact
 from bezstab.read_only import ReadOnlyArrays
 from bezstab.stability.arrays import BoolArray, Extent, FloatArray
 from bezstab.stability.best_points import best_point_or_reason
-from bezstab.stability.closed_loop import spectral_radius
+from bezstab.stability.closed_loop import mu_table, spectral_radius
 from bezstab.stability.curves import boundary_curves
 from bezstab.stability.lines import FAR, FIRST_LINES, Lines
+from bezstab.stability.path_ends import Path, verdict_end
+from bezstab.stability.stretches import ALONG_H
 
 MARGIN = 0.05
 """Of what is to be seen of a bounded region."""
@@ -107,11 +110,27 @@ def _region(method: Method, level: float) -> Region:
 
 
 def _extent(across: Lines, upwards: Lines) -> Extent | None:
-    """Return the extent along both axes, from the lines across each and from the ends of those along it."""
+    """Return the extent along both axes, from the lines across each, the ends of those along it, and tips."""
     of_alpha, of_beta = across.extent(), upwards.extent()
     if of_alpha is None or of_beta is None:
         return None
-    return _widest(of_alpha, upwards.reach()), _widest(of_beta, across.reach())
+    tips = [tip for end, downwards in zip(of_alpha, (True, False)) if (tip := _tip(across, end, downwards))]
+    alphas = [*of_alpha, *upwards.reach(), *(alpha_hat for alpha_hat, _ in tips)]
+    betas = [*of_beta, *across.reach(), *(beta_hat for _, beta_hat in tips)]
+    return (min(alphas), max(alphas)), (min(betas), max(betas))
+
+
+def _tip(across: Lines, alpha_hat: float, downwards: bool) -> tuple[float, float] | None:
+    """Return where alpha = beta leaves the region beyond its last line, if it is there that the line meets it.
+
+    There poles of a method with a mu pair up, and lines next to a tip on it are stable for less than float64 tells.
+    """
+    method, level = across.method, across.level
+    if not 0 < alpha_hat < np.inf or not mu_table(method).size or not across.holds(alpha_hat, alpha_hat**2 / 4):
+        return None
+    on_line = exact(alpha_hat)
+    end = verdict_end(Path(method, on_line, on_line**2 / 4, ALONG_H, exact(level)), downwards=downwards)
+    return None if end is None else (float(on_line * end), float((on_line * end) ** 2 / 4))
 
 
 @cache
@@ -139,11 +158,6 @@ def _area(across: Lines, upwards: Lines, extent: Extent) -> tuple[float, float]:
         )
     known = abs(one - other) + ROUNDED * one
     return (one, max(error, known)) if error < other_error else (other, max(other_error, known))
-
-
-def _widest(lines: tuple[float, float], along: tuple[float, float]) -> tuple[float, float]:
-    """Return the extent along one axis from the lines across it and from the ends of those that run along it."""
-    return min(lines[0], along[0]), max(lines[1], along[1])
 
 
 def _in_view(lines: Lines, ends: tuple[float, float]) -> tuple[float, float]:

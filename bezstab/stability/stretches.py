@@ -204,7 +204,7 @@ def float_table(method: Method) -> FloatArray:
 def table_in_w(method: Method, level: float = 1.0) -> FloatArray:
     """Return P(level (1 + w) / (1 - w)) (1 - w)^n, computed exactly and rounded; as `float_table` by powers of w."""
     table = np.array(closed_loop_table(method))
-    powers = exact(level) ** np.arange(len(table)).astype(object)
+    powers = np.array([exact(level) ** k for k in range(len(table))])  # a fraction to the power of an array is a float
     return _rounded(method, np.tensordot(in_w(len(table) - 1) * powers, table, axes=1))
 
 

@@ -12,6 +12,7 @@ from bezstab.methods.schemes import Method
 from bezstab.rationals import rational
 from bezstab.stability.arrays import Extent
 from bezstab.stability.closed_loop import verdict
+from bezstab.stability.damping_limits import critical_damping_limit
 from bezstab.stability.lines import Lines
 from bezstab.stability.regions import Region, _region, region, window
 from tests.methods.kinds import EXPLICIT, SAMPLE, sampled
@@ -19,7 +20,7 @@ from tests.reference.companion_poles import radius
 from tests.reference.enclosed_points import enclosed
 from tests.reference.fifty_digit_poles import modulus_from_p
 from tests.reference.made_methods import multistep, runge_kutta
-from tests.reference.random_methods import random_method
+from tests.reference.random_methods import other_random_method, random_method
 
 NAMES = [*EXPLICIT, "RK4@5"]
 
@@ -120,10 +121,19 @@ def test_the_curves_are_closed_touch_the_extent_and_enclose_the_area_and_what_is
         ("SYM", (0, 2, 0, 4)),
         ("AB2", (0, 2, 0, 1)),  # mu(-1) = -1 twice, and the line of z = -1
         ("RK2", (0, 4, 0, 2 + 2 * sqrt(2))),  # beta_hat = p - s + 1 over the disc s^2 + (p - 1)^2 < 4
+        ("ABM2", (0, 4, 0, 4)),  # a cusp on alpha = beta: mu = -2 twice
     ],
 )
 def test_extents_in_closed_form(name: str, extent: tuple[float, ...]) -> None:
     assert np.ravel(found_extent(region(lookup(name)))) == pytest.approx(extent, abs=1e-9)
+
+
+@pytest.mark.parametrize("name", ["ABM3", "ABM4"])
+def test_an_extent_reaches_to_the_tip_of_a_cusp_on_critical_damping(name: str) -> None:
+    limit = critical_damping_limit(lookup(name))  # between two verdicts in rationals
+    assert limit
+    tip = (2 * limit, limit**2)
+    assert tuple(high for _, high in found_extent(region(lookup(name)))) == pytest.approx(tip, rel=1e-9)
 
 
 @pytest.mark.parametrize("level", [1.0, 0.9])
@@ -171,6 +181,15 @@ def plain_area(shape: Region) -> float:
     places = low + (high - low) * (np.arange(20_000) + 0.5) / 20_000
     lengths = [np.diff(stretches).sum() for stretches in lines._stretches(places)]
     return float(np.mean(lengths) * (high - low))
+
+
+def test_an_island_without_end_is_mentioned_too() -> None:
+    """On each line of constant alpha_hat up to the last one the region is a stretch from zero, the island goes on."""
+    shape = region(other_random_method(91))
+    ((alpha_hat, beta_hat),) = shape.islands
+    assert shape.bounded
+    assert found_extent(shape)[1][1] < 1 < beta_hat
+    assert (radius(shape.method, np.full(2, alpha_hat), np.array([beta_hat, 1e6])) < 1).all()
 
 
 def test_an_island_is_mentioned_and_not_measured() -> None:

@@ -16,6 +16,7 @@ from bezstab.stability.closed_loop import verdict
 from bezstab.stability.stretches import ALONG_ALPHA, ALONG_BETA, ALONG_H, Stretches, paths
 from tests.methods.kinds import sampled
 from tests.reference.exact_lines import stable_parts
+from tests.reference.random_methods import random_method
 
 BESIDE = 1e-5
 """Of an end: on alpha = beta every root of P is double, and float64 knows ends to the root of rounding, and less."""
@@ -102,3 +103,11 @@ def test_two_places_that_rounding_makes_one_leave_no_gap() -> None:
     """Just above bdf3's least damping ratio two places of its path of steps are complex, with one real part."""
     found = paths(lookup("bdf3"), np.array([2 * 0.069193]), np.ones(1), ALONG_H).stretches()
     assert (found.low.tolist(), found.high.tolist()) == ([0.0], [np.inf])
+
+
+@pytest.mark.parametrize("number", [103, 154, 178, 182])
+def test_a_line_that_is_stable_next_to_weak_feedback_is_so_from_zero(number: int) -> None:
+    """As beta_hat falls to zero one pole comes to z = 1 and stays inside: rounding of P(1) would let it out."""
+    found = paths(random_method(number), np.array([1e-3]), np.ones(1), ALONG_BETA).stretches(exact=True)
+    assert found.low[0] == 0
+    assert verdict(random_method(number), exact(1e-3), exact(1e-25)) == "converges"
