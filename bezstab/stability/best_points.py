@@ -27,7 +27,7 @@ from bezstab.methods.schemes import Method
 from bezstab.rationals import exact
 from bezstab.stability.arrays import DOUBLE, ROUNDING, SAME, FloatArray
 from bezstab.stability.closed_loop import converges, largest_at_mu, mu_table, poles, spectral_radius
-from bezstab.stability.root_finding import companion_roots
+from bezstab.stability.root_finding import roots_of_rows
 from bezstab.stability.searches import Points, least_between, lowest_minima, zoom_on_minimum
 from bezstab.stability.stretches import ALONG_BETA, float_table, paths
 
@@ -259,7 +259,7 @@ def _narrowed(method: Method, alpha_hat: float, beta_hat: float, level: float) -
         lines, before, low, start = np.abs(alpha_hat + reach * OFFSETS), alpha_hat, 0.0, level
         while level - low > ENOUGH * level and level > AT_ZERO / 2:
             tried = max(level - fall, (low + level) / 2)
-            stable = paths(method, lines, np.ones_like(lines), ALONG_BETA, np.full_like(lines, tried)).stretches()
+            stable = paths(method, lines, np.ones_like(lines), ALONG_BETA, tried).stretches()
             if stable.path.size:
                 _, first = np.unique(stable.path, return_index=True)
                 middle = int(first[len(first) // 2])
@@ -309,7 +309,7 @@ def _far_limit(method: Method) -> FarLimit:
     def at(log_alpha: FloatArray, log_beta: FloatArray) -> FloatArray:
         rows = np.stack([polyval2d(np.exp(log_alpha), np.exp(log_beta), in_plane).ravel() for in_plane in table])
         lost = np.abs(rows[-1]) < VANISHES * np.abs(rows).max(axis=0)
-        return np.where(lost, math.inf, np.abs(companion_roots(rows)).max(axis=0)).reshape(log_alpha.shape)
+        return np.where(lost, math.inf, np.abs(roots_of_rows(rows)).max(axis=0)).reshape(log_alpha.shape)
 
     ((angle,), *_), (value, *_) = lowest_minima(modulus, [WAYS], STARTS)
     value = 0.0 if value < AT_ZERO else float(value)

@@ -2,7 +2,7 @@ r"""The boundary of a region as curves, from its lines of constant alpha_hat: th
 
       beta_hat |      .-o-.
                |   o-'  |  'o        o: an end of a stretch. Those of one number on neighbouring lines are joined, and
-               |   |    |   |           so, at a section's ends, are those of what is stable on one side alone.
+               |   |    |   |           so, at a strip's ends, are those of what is stable on one side alone.
                |   o----o---o
                +---------------- alpha_hat
 
@@ -31,20 +31,17 @@ def boundary_curves(lines: Lines, right: float, top: float) -> tuple[FloatArray,
     lines.look(np.linspace(0, right, DRAWN + 1)[1:].tolist())
     lines.area(0.0, right, top)  # which lays lines to corners
     scale = np.array([right, top])
-    sections = lines.sections()
+    strips = lines.region()
     edges: list[FloatArray] = []
-    before, place = np.zeros((0, 2)), 0.0
-    for section, kept in zip(sections, lines.kept(sections), strict=True):
-        places = [each for each in section.places if each <= right]
-        if not places:
-            break
-        edges += _closing(places[0], before, lines.found[places[0]][kept], top)
-        ends = np.stack([lines.found[each][kept] for each in places])  # (lines, stretches, 2)
-        for along in ends.reshape(len(places), -1).T:
-            edges += _pieces(np.column_stack([places, along]), top)
-        before, place = ends[-1], places[-1]
-    if place < right:
-        edges += _closing(place, before, np.zeros((0, 2)), top)
+    for strip in strips:
+        points = np.column_stack([strip.places, strip.ends])
+        points = points[points[:, 0] <= right]
+        edges += [piece for k in (1, 2) for piece in _pieces(points[:, [0, k]], top)]
+    for last, first in pairwise([0.0, *sorted(lines.found)]):
+        before = [strip.ends[-1] for strip in strips if strip.places[-1] == last]
+        after = [strip.ends[0] for strip in strips if strip.places[0] == first]
+        if first <= right and (before or after):
+            edges += _closing(first, np.reshape(before, (-1, 2)), np.reshape(after, (-1, 2)), top)
     thinned = (_thinned(curve, scale) for curve in joined(edges, SEEN * scale))
     return tuple(curve for curve in thinned if (np.ptp(curve, axis=0) > SEEN * scale).any())
 

@@ -28,7 +28,7 @@ from bezstab.errors import InputError
 from bezstab.methods.schemes import Method
 from bezstab.methods.steady_errors import forced_errors, leading_error
 from bezstab.stability.arrays import ComplexArray, FloatArray
-from bezstab.stability.root_finding import companion_roots
+from bezstab.stability.root_finding import roots_of_rows
 
 OMEGA_H = Fraction(1, 100)
 """Where no motion is given: some 600 steps for each time it comes round, as engineers choose them."""
@@ -168,7 +168,7 @@ def _stationary(d: FloatArray, highest: float) -> FloatArray:
     degree, end = len(d) - 1, 4 * np.sin(highest / 2) ** 2
     powers = np.arange(degree + 1)
     squared = np.einsum("jp,kp,jkm->mp", d, d, _products(degree))
-    by_x = companion_roots((squared * (powers * end**powers)[:, np.newaxis])[1:])  # of the share of x in its end
+    by_x = np.nan_to_num(roots_of_rows((squared * (powers * end**powers)[:, np.newaxis])[1:]))  # shares of x in its end
     return np.asarray(2 * np.arcsin(np.sqrt(by_x.real.clip(0.0, 1.0) * end) / 2))
 
 

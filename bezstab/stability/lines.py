@@ -2,21 +2,22 @@ r"""A region by lines of constant alpha_hat or beta_hat: what of it hangs togeth
 
 On a line all stable stretches are known (stretches.py). Where two neighbours have different numbers of them another
 line is laid between, until they are neighbours in rounding. So lines fall into sections of one number, and within a
-section the k-th stretches belong together; from one section to the next those do that overlap:
+section the k-th stretches make a strip. Strips that overlap from one section to the next are of one part of the plane:
 
-      beta_hat |        .-.                     sections 1: one stretch
-               |   .---'   '.   ..                       2: two, both overlap the one of section 1
-               |  ( 1  |2 .-'|3(4)                       3: none
-               |   '---|- '--|  ''                       4: one, an island: it does not hang together with 1
+      beta_hat |        .-.                     a: a strip, alone in its section
+               |   .---' b '.   ..              b, c: two of the next section, both overlap a
+               |  ( a  |  .-'| ( d)             then a section without any
+               |   '---|-c'--|  ''              d: an island, it does not hang together with a
                +-------+-----+-+------ alpha_hat
 
 The region is the part that hangs together with weak feedback. Its area is the integral of its stretches' lengths:
 Lobatto's rule on panels that are halved until both halves agree with the whole, in a variable that takes away the
-roots with which a length may begin at a section's ends. A corner is found by halving, and lines crowd there: so the
+roots with which a length may begin at a strip's ends. A corner is found by halving, and lines crowd there: so the
 stretches' ends, as curves, have it sharp. Lines of either direction measure the area on their own.
 """
 
 from collections.abc import Iterable
+from contextlib import suppress
 from dataclasses import dataclass, field
 from itertools import groupby, pairwise
 
@@ -25,7 +26,7 @@ from numpy.polynomial import Legendre
 
 from bezstab.errors import NumericalError
 from bezstab.methods.schemes import Method
-from bezstab.stability.arrays import BoolArray, FloatArray
+from bezstab.stability.arrays import FloatArray
 from bezstab.stability.stretches import ALONG_ALPHA, ALONG_BETA, paths
 
 FIRST_LINES: FloatArray = np.concatenate([[1e-12], np.geomspace(1e-5, 1e6, 177)])
@@ -55,12 +56,29 @@ FAR = 1e5
 MOST_LINES = 6_000
 
 
-@dataclass(frozen=True)
-class Section:
-    """Neighbouring lines of one number of stretches, and of each stretch the part of the plane that it belongs to."""
+@dataclass(eq=False)
+class Strip:
+    """One stretch of so `many`, the k-th, on each of neighbouring lines: their places, and its ends, shape (lines, 2).
+
+    `part` is the number of the part of the plane that it is of, `kept` whether that is of the region.
+    """
 
     places: list[float]
-    parts: list[int]
+    ends: FloatArray
+    k: int
+    many: int
+    part: int
+    kept: bool = False
+
+    def middle(self) -> tuple[float, float]:
+        """Return the place of the middle line, and the middle of the stretch there."""
+        line = len(self.places) // 2
+        low, high = self.ends[line].tolist()
+        return self.places[line], (low + high) / 2 if high < np.inf else 2 * low + 1
+
+
+class MoreStripsError(Exception):
+    """A line within a strip has another number of stretches: there are more strips."""
 
 
 @dataclass(eq=False)
@@ -99,62 +117,55 @@ class Lines:
     def _stretches(self, places: FloatArray) -> list[FloatArray]:
         one = np.ones_like(places)
         at = (places, one) if self.axis == 0 else (one, places)
-        found = paths(self.method, *at, (ALONG_BETA, ALONG_ALPHA)[self.axis], self.level).stretches(exact=True)
+        found = paths(self.method, *at, (ALONG_BETA, ALONG_ALPHA)[self.axis], self.level).stretches()
         ends = np.stack([found.low, found.high], axis=-1)
         return np.split(ends, np.cumsum(found.counts(len(places)))[:-1])
 
-    def sections(self) -> list[Section]:
-        """Return the sections in ascending order, with the parts of the plane numbered from the weakest line on."""
-        groups = [list(group) for _, group in groupby(sorted(self.found), key=lambda place: len(self.found[place]))]
-        parts: list[list[int]] = []
-        before: FloatArray = np.zeros((0, 2))
-        for number, group in enumerate(groups):
-            here = self.found[group[0]]
-            parts.append([])
-            for low, high in here:
-                overlapping = [k for k, (a, b) in enumerate(before) if min(b, high) > max(a, low) * (1 + TOUCHING)]
-                known = sorted({parts[number - 1][k] for k in overlapping})
-                part = known[0] if known else 1 + max((p for each in parts for p in each), default=-1)
-                parts[-1].append(part)
-                for other in known[1:]:  # two parts that meet are one
-                    parts = [[part if p == other else p for p in each] for each in parts]
-            before = self.found[group[-1]]
-        return [Section(places, part) for places, part in zip(groups, parts, strict=True)]
+    def strips(self) -> list[Strip]:
+        """Return all strips, from the weakest lines on: what belongs to the region is kept."""
+        strips: list[Strip] = []
+        before: list[Strip] = []
+        for many, group in groupby(sorted(self.found), key=lambda place: len(self.found[place])):
+            places = list(group)
+            here: list[Strip] = []
+            for k in range(many):
+                ends = np.array([self.found[place][k] for place in places])
+                parts = {strip.part for strip in before if _overlap(strip.ends[-1], ends[0])}
+                part = min(parts, default=1 + max((strip.part for strip in [*strips, *here]), default=-1))
+                here.append(Strip(places, ends, k, many, part))
+                for strip in [*strips, *here]:
+                    if strip.part in parts:  # two parts that meet are one
+                        strip.part = part
+            strips += here
+            before = here
+        region = {0} if self.stable is None else {p for p, point in _points(strips).items() if self._in_stable(*point)}
+        for strip in strips:
+            strip.kept = strip.part in region
+        return strips
 
-    def kept(self, sections: list[Section]) -> list[BoolArray]:
-        """Return of each section which of its stretches belong to the region."""
-        if self.stable is None:  # what hangs together with weak feedback
-            parts = {0}
-        else:
-            samples = self._samples(sections)
-            points = [sample if self.axis == 0 else sample[::-1] for sample in samples.values()]
-            self.stable.look(alpha_hat for alpha_hat, _ in points)
-            parts = {part for part, point in zip(samples, points, strict=True) if self.stable.holds(*point)}
-        return [np.isin(section.parts, list(parts)) for section in sections]
+    def _in_stable(self, place: float, along: float) -> bool:
+        """Return whether a point lies where what hangs together with weak feedback is stable."""
+        assert self.stable
+        alpha_hat, beta_hat = (place, along) if self.axis == 0 else (along, place)
+        self.stable.look([alpha_hat])
+        return self.stable.holds(alpha_hat, beta_hat)
 
     def holds(self, place: float, along: float) -> bool:
         """Return whether a point on a line that was looked at belongs to the region, or touches it."""
-        sections = self.sections()
-        number = int(np.searchsorted([section.places[0] for section in sections], place, side="right")) - 1
-        low, high = self.found[place][self.kept(sections)[number]].T
+        kept = [strip.k for strip in self.strips() if strip.kept and strip.places[0] <= place <= strip.places[-1]]
+        low, high = self.found[place][kept].T
         return bool(((low * (1 - TOUCHING) < along) & (along < high * (1 + TOUCHING))).any())
 
-    def _samples(self, sections: list[Section]) -> dict[int, tuple[float, float]]:
-        """Return a point of each part: on the middle line of its first section, in the middle of the stretch."""
-        samples: dict[int, tuple[float, float]] = {}
-        for section in sections:
-            place = section.places[len(section.places) // 2]
-            for part, (low, high) in zip(section.parts, self.found[place].tolist(), strict=True):
-                samples.setdefault(part, (place, (low + high) / 2 if high < np.inf else 2 * low + 1))
-        return samples
+    def region(self) -> list[Strip]:
+        """Return the strips of the region."""
+        return [strip for strip in self.strips() if strip.kept]
 
     def extent(self) -> tuple[float, float] | None:
         """Return from which to which line the region reaches, 0 and infinity where it goes on; None if it is empty."""
-        sections = self.sections()
-        kept = [section.places for section, some in zip(sections, self.kept(sections), strict=True) if some.any()]
-        if not kept:
+        places = [strip.places for strip in self.region()]
+        if not places:
             return None
-        low, high = kept[0][0], kept[-1][-1]
+        low, high = min(each[0] for each in places), max(each[-1] for each in places)
         before = max((place for place in self.found if place < high / 2), default=high)
         goes_on = high == max(self.found) or (high > FAR and self._width(before) < THIN)
         return 0.0 if low == min(self.found) else low, np.inf if goes_on else high
@@ -165,31 +176,23 @@ class Lines:
 
     def reach(self) -> tuple[float, float]:
         """Return from where to where along the lines that were looked at the region reaches."""
-        sections = self.sections()
-        kept = zip(sections, self.kept(sections), strict=True)
-        ends = np.concatenate([self.found[place][some] for section, some in kept for place in section.places])
+        ends = np.concatenate([strip.ends for strip in self.region()])
         return float(ends[:, 0].min()), float(ends[:, 1].max())
 
-    def samples(self) -> list[tuple[float, float]]:
-        """Return a point of each part of the plane where |z_p| < level, of the region or not."""
-        return list(self._samples(self.sections()).values())
+    def points(self) -> list[tuple[float, float]]:
+        """Return a point (place, along) of each part of the plane where |z_p| < level, of the region or not."""
+        return list(_points(self.strips()).values())
 
     def islands(self) -> list[tuple[float, float]]:
         """Return a point of each other part, those left out that are too thin to be more than rounding."""
-        sections = self.sections()
-        kept = {
-            part
-            for section, some in zip(sections, self.kept(sections), strict=True)
-            for part in np.array(section.parts)[some]
-        }
-        middles = [section.places[len(section.places) // 2] for section in sections]
+        strips = [strip for strip in self.strips() if not strip.kept]
         wide = {
-            part
-            for section, place in zip(sections, middles, strict=True)
-            for part, (low, high) in zip(section.parts, self.found[place], strict=True)
-            if low < (1 - THIN) * high and section.places[-1] - section.places[0] > THIN * section.places[-1]
+            strip.part
+            for strip in strips
+            if strip.places[0] < (1 - THIN) * strip.places[-1]
+            and (strip.ends[:, 0] < (1 - THIN) * strip.ends[:, 1])[len(strip.places) // 2]
         }
-        return [point for part, point in self._samples(sections).items() if part in wide - kept]
+        return [point for part, point in _points(strips).items() if part in wide]
 
     def area(self, low: float, high: float, top: float = np.inf) -> tuple[float, float]:
         """Return the region's area between two lines and below `top` along them, and by how much it may be off.
@@ -197,54 +200,55 @@ class Lines:
         NumericalError as `look`.
         """
         while True:
-            sections = self.sections()
-            measured = self._measured(sections, self.kept(sections), low, high, top)
-            if measured:
-                return measured
+            with suppress(MoreStripsError):
+                return self._measured(self.region(), low, high, top)
 
-    def _measured(
-        self, sections: list[Section], kept: list[BoolArray], low: float, high: float, top: float
-    ) -> tuple[float, float] | None:
-        """Return `area` from these sections; None where a line between shows that there are more."""
-        ends = np.array([(section.places[0], section.places[-1]) for section in sections]).clip(low, high)
-        counts = np.array([len(section.parts) for section in sections])
+    def _measured(self, strips: list[Strip], low: float, high: float, top: float) -> tuple[float, float]:
+        """Return `area` of these strips."""
+        ends = np.array([(strip.places[0], strip.places[-1]) for strip in strips]).clip(low, high)
 
-        def integrals(panels: FloatArray) -> FloatArray | None:
-            """Return those over panels, each a section's number and from and to which t, 0 <= t <= pi."""
+        def integrals(panels: FloatArray) -> FloatArray:
+            """Return those over panels, each a strip's number and from and to which t, 0 <= t <= pi."""
             number, start, end = panels[:, 0].astype(int), panels[:, 1:2], panels[:, 2:]
-            width = np.diff(ends[number], axis=1)
             t = (start + end) / 2 + (end - start) / 2 * NODES
             low, high = ends[number, :1], ends[number, 1:]
-            places = low + width * (1 - np.cos(t)) / 2
+            places = low + (high - low) * (1 - np.cos(t)) / 2
             places = np.where(places - low < CLOSE * high, low, np.where(high - places < CLOSE * high, high, places))
-            self.look(places.ravel().tolist())
-            stretches = [self.found[place] for place in places.ravel().tolist()]
-            of_section = np.repeat(number, len(NODES))
-            if any(len(each) != counts[k] for each, k in zip(stretches, of_section, strict=True)):
-                return None
-            lengths = [np.diff(each[kept[k]].clip(0, top)).sum() for each, k in zip(stretches, of_section, strict=True)]
-            return np.asarray((np.reshape(lengths, t.shape) * width / 2 * np.sin(t) * (end - start) / 2) @ WEIGHTS)
+            of = np.repeat(number, len(NODES)).tolist()
+            lengths = self._lengths(places.ravel().tolist(), [strips[k] for k in of], top).reshape(t.shape)
+            return np.asarray((lengths * (high - low) / 2 * np.sin(t) * (end - start) / 2) @ WEIGHTS)
 
         cuts = np.arccos(1 - 2 * CUTS).tolist()
-        panels = np.array(
-            [(k, *ts) for k, some in enumerate(kept) if some.any() and ends[k, 0] < ends[k, 1] for ts in pairwise(cuts)]
-        )
-        total, known, whole = 0.0, 0.0, integrals(panels) if len(panels) else np.zeros(0)
+        panels = np.array([(k, *ts) for k, (a, b) in enumerate(ends) if a < b for ts in pairwise(cuts)]).reshape(-1, 3)
+        total, known, whole = 0.0, 0.0, integrals(panels)
         for _ in range(HALVINGS):
-            if whole is None:
-                return None
-            if not len(panels):
-                break
             number, start, end = panels.T
             middle = (start + end) / 2
-            panels = np.stack([number, start, middle, number, middle, end], axis=1).reshape(-1, 3)
-            parts = integrals(panels)
-            if parts is None:
-                return None
-            off = np.abs(parts.reshape(-1, 2).sum(axis=1) - whole)
+            halves = np.stack([number, start, middle, number, middle, end], axis=1).reshape(-1, 3)
+            parts = integrals(halves).reshape(-1, 2)
+            off = np.abs(parts.sum(axis=1) - whole)
             agree = off <= AGREE * (total + parts.sum())
-            total += float(parts.reshape(-1, 2)[agree].sum())
+            total += float(parts[agree].sum())
             known += float(off[agree].sum())
-            panels, whole = panels[np.repeat(~agree, 2)], parts[np.repeat(~agree, 2)]
-        assert whole is not None
+            panels, whole = halves[np.repeat(~agree, 2)], parts[~agree].ravel()
+            if not whole.size:
+                break
         return total + float(whole.sum()), known + float(np.abs(whole).sum())
+
+    def _lengths(self, places: list[float], strips: list[Strip], top: float) -> FloatArray:
+        """Return how long strips are below `top`, each on one line; MoreStripsError if that has more stretches."""
+        self.look(places)
+        stretches = [self.found[place] for place in places]
+        if any(len(each) != strip.many for each, strip in zip(stretches, strips, strict=True)):
+            raise MoreStripsError
+        return np.array([np.ptp(each[strip.k].clip(0, top)) for each, strip in zip(stretches, strips, strict=True)])
+
+
+def _overlap(one: FloatArray, other: FloatArray) -> bool:
+    """Return whether two stretches of neighbouring lines overlap by more than rounding."""
+    return bool(min(one[1], other[1]) > max(one[0], other[0]) * (1 + TOUCHING))
+
+
+def _points(strips: list[Strip]) -> dict[int, tuple[float, float]]:
+    """Return a point of each part of the plane: of its first strip."""
+    return {strip.part: strip.middle() for strip in reversed(strips)}

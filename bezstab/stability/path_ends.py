@@ -33,7 +33,10 @@ SHORT = 2**24
 
 @dataclass(frozen=True)
 class Path:
-    """The points (s^i alpha_hat, s^j beta_hat), s > 0, (i, j) the powers: exact, dimensionless. Stable is |z_p| < level."""
+    """The points (s^i alpha_hat, s^j beta_hat), s > 0, (i, j) the powers, dimensionless; stable where |z_p| < level.
+
+    All are exact.
+    """
 
     method: Method
     alpha_hat: Fraction

@@ -114,7 +114,7 @@ def _extent(across: Lines, upwards: Lines) -> Extent | None:
     of_alpha, of_beta = across.extent(), upwards.extent()
     if of_alpha is None or of_beta is None:
         return None
-    tips = [tip for end, downwards in zip(of_alpha, (True, False)) if (tip := _tip(across, end, downwards))]
+    tips = [tip for k in (0, 1) if (tip := _tip(across, of_alpha[k], downwards=k == 0))]
     alphas = [*of_alpha, *upwards.reach(), *(alpha_hat for alpha_hat, _ in tips)]
     betas = [*of_beta, *across.reach(), *(beta_hat for _, beta_hat in tips)]
     return (min(alphas), max(alphas)), (min(betas), max(betas))
@@ -144,7 +144,7 @@ def _lines(method: Method, level: float) -> tuple[Lines, Lines]:
     for lines, first in zip(both, (2 * FIRST_LINES / multiple, (FIRST_LINES / multiple) ** 2), strict=True):
         lines.look([*first.tolist(), *(place for place in [through[lines.axis]] if place)])
     for lines, others in (both, both[::-1]):
-        lines.look([along for _, along in others.samples()])
+        lines.look([along for _, along in others.points()])
     return both
 
 
@@ -164,16 +164,15 @@ def _in_view(lines: Lines, ends: tuple[float, float]) -> tuple[float, float]:
     """Return what is to be seen along one axis, up to the last change where there is no end, in reason."""
     if np.isfinite(ends[1]):
         return ends
-    changes = [section.places[0] for section in lines.sections()]
+    changes = [place for strip in lines.strips() for place in (strip.places[0], strip.places[-1])]
     return 0.0, max([USUAL_SIZE, *(place for place in changes if place <= LARGEST_VIEW)])
 
 
 def _approached(lines: Lines) -> bool:
     """Return whether the region comes near its last line only far out."""
-    sections = lines.sections()
-    section, kept = [both for both in zip(sections, lines.kept(sections), strict=True) if both[1].any()][-1]
-    last = lines.found[section.places[-1]][kept]
-    return bool(section is not sections[-1] and last[:, 0].min() > FAR)
+    last = max(strip.places[-1] for strip in lines.region())
+    lows = [strip.ends[-1, 0] for strip in lines.region() if strip.places[-1] == last]
+    return bool(last < max(lines.found) and min(lows) > FAR)
 
 
 def check_level(level: float) -> None:

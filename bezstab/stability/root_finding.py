@@ -215,22 +215,6 @@ def newton_polygon_starts(coefficients: ComplexArray) -> ComplexArray:
     return np.asarray(np.exp(log_radii) * directions[:, np.newaxis])
 
 
-def companion_roots(coefficients: NDArray[np.inexact]) -> ComplexArray:
-    """Return eigenvalues of companion matrices, the roots of polynomials but for rounding; shape (n, points).
-
-    Coefficients ascending, of shape (n + 1, points). Zeros where the leading one vanishes beside another.
-    LinAlgError where eigenvalues are not found.
-    """
-    n, points = len(coefficients) - 1, coefficients.shape[1]
-    with np.errstate(all="ignore"):
-        monic = coefficients[:-1] / coefficients[-1]
-    companion = np.zeros((points, n, n), coefficients.dtype)
-    companion[:, range(1, n), range(n - 1)] = 1
-    companion[:, :, -1] = -monic.T
-    companion[~np.isfinite(monic).all(axis=0)] = 0
-    return np.linalg.eigvals(companion).T.astype(complex)
-
-
 def _aberth(coefficients: ComplexArray) -> ComplexArray:
     """Return the roots of sum_k a_k z^k, coefficients of shape (n + 1, points), from the Newton polygon's starts.
 

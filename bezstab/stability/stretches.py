@@ -31,7 +31,7 @@ Area, extent, margins, limits by damping ratio and the least |z_p| are all read 
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 from itertools import zip_longest
 from math import comb, inf
 
@@ -44,7 +44,7 @@ from bezstab.methods.derivation import closed_loop_table
 from bezstab.methods.schemes import Method
 from bezstab.rationals import exact
 from bezstab.stability.arrays import BoolArray, ComplexArray, FloatArray
-from bezstab.stability.root_finding import companion_roots
+from bezstab.stability.root_finding import roots_of_rows
 from bezstab.stability.searches import bisected
 
 Powers = tuple[int, int]
@@ -68,8 +68,7 @@ NEARLY_REAL = 1e-2
 no harm, as verdicts tell what is beside it."""
 
 NEGLIGIBLE = 1e-11
-"""Of its place: a stretch, or a gap, so short is rounding of one place that two expressions share. Of a path's own
-size: a place so near to s = 0 is rounding of zero."""
+"""Of its place: a stretch, or a gap, so short is rounding of one place that two expressions share."""
 
 END_ACCURACY = 1e-10
 """Of an end: within it the verdict must turn, or the end is bisected."""
@@ -109,12 +108,10 @@ class Paths:
         """Return, ascending, all s > 0 where a root may pass |z| = level; shape (paths, most), filled up with inf."""
         with np.errstate(all="ignore"):
             least, largest = _sizes(self.coefficients)
-            of_pairs = [self._of_pairs(least)] + (
-                [self._of_pairs(largest)] if (largest > FAR_APART * least).any() else []
-            )
+            sizes = [least, largest] if (largest > FAR_APART * least).any() else [least]
+            of_pairs = [self._of_pairs(size) for size in sizes]
             found = np.concatenate([_roots(self.coefficients[0]), _roots(self.coefficients[-1]), *of_pairs]).T
-        nearly_zero = NEGLIGIBLE * least[:, np.newaxis]
-        real = np.isfinite(found) & (np.abs(found.imag) <= NEARLY_REAL * np.abs(found)) & (found.real > nearly_zero)
+        real = np.isfinite(found) & (np.abs(found.imag) <= NEARLY_REAL * np.abs(found)) & (found.real > 0)
         return np.sort(np.where(real, found.real, inf), axis=1)
 
     def _of_pairs(self, size: FloatArray) -> ComplexArray:
@@ -129,32 +126,25 @@ class Paths:
         hurwitz = padded[np.where((k >= 0) & (k <= n), k, n + 1)]
         return centre + _singular_places(np.moveaxis(hurwitz, (2, 3), (1, 0)))
 
-    def stretches(self, exact: bool = False) -> Stretches:
+    def stretches(self) -> Stretches:
         """Return all stable stretches of all paths.
 
-        Their ends are as good as eigenvalues: some 1e-10, and less where several places meet. `exact`: held against
-        verdicts, and bisected where these turn elsewhere.
+        Their ends are those of eigenvalues, held against verdicts, and bisected where these turn elsewhere.
         """
         places = np.pad(self.places(), ((0, 0), (1, 0)))
         ends = np.pad(places, ((0, 0), (0, 1)), constant_values=inf)
         low, high = ends[:, :-1], ends[:, 1:]
         between = np.where(np.isinf(high), 2 * low + 1, (low + high) / 2)
-        stable = _without_slivers(self.within(between), low, high)
+        stable = self.within(between) & np.isfinite(low)
         turns = np.diff(np.pad(stable, ((0, 0), (1, 1))).astype(int), axis=1)
         path, first = np.nonzero(turns == 1)
         _, beyond = np.nonzero(turns == -1)
-        bounds = [ends[path, first], ends[path, beyond]]
-        if exact:
-            last = between.shape[1] - 1
-            outside = between[path, np.maximum(first - 1, 0)], between[path, np.minimum(beyond, last)]
-            inside = between[path, first], between[path, beyond - 1]
-            bounds = [self._held_to_verdicts(path, *each) for each in zip(bounds, outside, inside, strict=True)]
-            path, bounds = _joined(path, *bounds)
-        return Stretches(path, *bounds)
+        last = between.shape[1] - 1
+        lower = self._held(path, ends[path, first], between[path, np.maximum(first - 1, 0)], between[path, first])
+        upper = self._held(path, ends[path, beyond], between[path, np.minimum(beyond, last)], between[path, beyond - 1])
+        return _joined(path, lower, upper)
 
-    def _held_to_verdicts(
-        self, path: NDArray[np.intp], end: FloatArray, outside: FloatArray, inside: FloatArray
-    ) -> FloatArray:
+    def _held(self, path: NDArray[np.intp], end: FloatArray, outside: FloatArray, inside: FloatArray) -> FloatArray:
         """Return ends at which the verdict turns, from those of eigenvalues and a point to either side of each."""
         found = end.copy()
         asked = np.flatnonzero((end > 0) & np.isfinite(end))
@@ -177,21 +167,13 @@ class Paths:
         return found
 
 
-def paths(
-    method: Method, alpha_hat: FloatArray, beta_hat: FloatArray, powers: Powers, level: float | FloatArray = 1.0
-) -> Paths:
+def paths(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray, powers: Powers, level: float = 1.0) -> Paths:
     """Return the paths (s^i alpha_hat, s^j beta_hat) of |z_p| < level, (i, j) the powers, at most two.
 
-    alpha_hat and beta_hat are dimensionless, of one shape (paths,), and so is level, if it is not one for all. P is
-    that of paper Eq. 17, or of any other method. NumericalError if its coefficients leave the range of float64.
+    alpha_hat and beta_hat are dimensionless, of one shape (paths,). P is that of paper Eq. 17, or of any other method.
+    NumericalError if its coefficients leave the range of float64.
     """
-    if np.ndim(level) == 0:
-        return Paths(
-            np.stack([_in_s(plane, alpha_hat, beta_hat, powers) for plane in table_in_w(method, float(level))])
-        )
-    in_z = np.stack([_in_s(plane, alpha_hat, beta_hat, powers) for plane in float_table(method)])
-    scaled = in_z * level ** np.arange(len(in_z))[:, np.newaxis, np.newaxis]
-    return Paths(np.tensordot(in_w(len(in_z) - 1).astype(float), scaled, axes=1))
+    return Paths(np.stack([_in_s(plane, alpha_hat, beta_hat, powers) for plane in table_in_w(method, level)]))
 
 
 @cache
@@ -200,11 +182,14 @@ def float_table(method: Method) -> FloatArray:
     return _rounded(method, np.array(closed_loop_table(method)))
 
 
-@cache
+@lru_cache  # the least |z_p| is looked for by hundreds of levels
 def table_in_w(method: Method, level: float = 1.0) -> FloatArray:
-    """Return P(level (1 + w) / (1 - w)) (1 - w)^n, computed exactly and rounded; as `float_table` by powers of w."""
+    """Return P(level (1 + w) / (1 - w)) (1 - w)^n by powers of w, as `float_table`: exact until it is rounded.
+
+    So what vanishes without feedback is zero, however near to z = 1 poles come.
+    """
     table = np.array(closed_loop_table(method))
-    powers = np.array([exact(level) ** k for k in range(len(table))])  # a fraction to the power of an array is a float
+    powers = np.array([exact(level) ** k for k in range(len(table))])  # a Fraction to the power of an array is a float
     return _rounded(method, np.tensordot(in_w(len(table) - 1) * powers, table, axes=1))
 
 
@@ -255,22 +240,13 @@ def _in_s(plane: FloatArray, alpha_hat: FloatArray, beta_hat: FloatArray, powers
     return found
 
 
-def _without_slivers(stable: BoolArray, low: FloatArray, high: FloatArray) -> BoolArray:
-    """Return verdicts between neighbouring places, those of negligible lengths taken from their neighbours below."""
-    told = high > low * (1 + NEGLIGIBLE)
-    told[:, 0] = True
-    latest = np.maximum.accumulate(np.where(told, np.arange(told.shape[1]), 0), axis=1)
-    return np.take_along_axis(stable, latest, axis=1) & np.isfinite(low)
-
-
-def _joined(path: NDArray[np.intp], low: FloatArray, high: FloatArray) -> tuple[NDArray[np.intp], list[FloatArray]]:
+def _joined(path: NDArray[np.intp], low: FloatArray, high: FloatArray) -> Stretches:
     """Return stretches without those of negligible lengths, and those joined between which the gap is negligible."""
     long = high > low * (1 + NEGLIGIBLE)
     path, low, high = path[long], low[long], high[long]
-    low = np.where((low < NEGLIGIBLE * high) & np.isfinite(high), 0.0, low)  # rounding of a place at zero
     apart = (path[1:] != path[:-1]) | (low[1:] > high[:-1] * (1 + NEGLIGIBLE))
     first, last = np.append(True, apart)[: len(path)], np.append(apart, True)[: len(path)]
-    return path[first], [low[first], high[last]]
+    return Stretches(path[first], low[first], high[last])
 
 
 def _sizes(polynomials: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -279,11 +255,10 @@ def _sizes(polynomials: FloatArray) -> tuple[FloatArray, FloatArray]:
     Polynomials along axis 0, powers of s along axis 1; shape (paths,). One where there is none.
     """
     k = np.arange(1, polynomials.shape[1])[:, np.newaxis]
-    with np.errstate(all="ignore"):
-        sizes = np.abs(polynomials[:, :1] / polynomials[:, 1:]) ** (1 / k)
-    sizes = np.where(np.isfinite(sizes) & (sizes > 0), sizes, np.nan).reshape(-1, sizes.shape[2])
-    sizes = np.where(np.isnan(sizes).all(axis=0), 1.0, sizes)
-    return np.nanmin(sizes, axis=0), np.nanmax(sizes, axis=0)
+    sizes = np.abs(polynomials[:, :1] / polynomials[:, 1:]) ** (1 / k)
+    sizes = np.where(np.isfinite(sizes) & (sizes > 0), sizes, np.nan)
+    sizes = np.where(np.isnan(sizes).all(axis=(0, 1)), 1.0, sizes)
+    return np.nanmin(sizes, axis=(0, 1)), np.nanmax(sizes, axis=(0, 1))
 
 
 def _roots(p: FloatArray) -> ComplexArray:
@@ -291,7 +266,7 @@ def _roots(p: FloatArray) -> ComplexArray:
     present = np.flatnonzero(p.any(axis=1))
     if len(present) < 2:
         return np.zeros((0, p.shape[1]), complex)
-    return companion_roots(p[present[0] : present[-1] + 1])
+    return roots_of_rows(p[present[0] : present[-1] + 1])
 
 
 def _singular_places(m: FloatArray) -> ComplexArray:
