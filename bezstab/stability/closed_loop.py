@@ -9,9 +9,10 @@ the roots of P(z; alpha_hat, beta_hat) itself.
 from collections.abc import Callable, Iterator
 from fractions import Fraction
 from functools import cache, lru_cache
+from typing import Any
 
 import numpy as np
-from numpy.polynomial.polynomial import polyval, polyval2d
+from numpy.polynomial.polynomial import polyval2d
 from numpy.typing import ArrayLike, NDArray
 
 from bezstab.errors import NumericalError
@@ -32,7 +33,6 @@ from bezstab.stability.stretches import float_table
 BLOCK = 32 * CHUNK  # points whose poles are found in one go: their work arrays stay below 50 MB
 CANCELS = 0.1  # of (alpha_hat/2)^2: where the discriminant is below it, float64 would lose digits of mu
 LEADING = 4 * EPS  # of the sum of its terms' sizes: a leading coefficient below it is rounding of zero
-UNSURE = 2.0  # |z_p|: of an n-fold pole beyond all sizes rounding may leave 1e15^(1/n)
 LARGE = 1e10  # |mu|: of larger ones powers may overflow
 SPLITTER = 2.0**27 + 1  # multiplying by it parts the 53 bits of a float64 into two halves (Dekker)
 
@@ -197,25 +197,40 @@ def _careful_root(half: FloatArray, beta_hat: FloatArray) -> ComplexArray:
 
 
 def _in_mu(table: FloatArray, mu: ComplexArray) -> ComplexArray:
-    """Return pi's coefficients in z, ascending; where mu is LARGE times mu^-d: a common factor moves no root."""
+    """Return pi's coefficients in z, ascending; where mu is LARGE times mu^-d: a common factor moves no root.
+
+    A leading one is zero where it is but rounding: there an implicit step has no solution.
+    """
     large = np.abs(mu) > LARGE
-    if not large.any():
-        rows = np.empty((len(table), mu.size), complex)
-        for k, row in enumerate(table.tolist()):
-            rows[k] = horner(row, mu)
-        return rows
-    inverse = np.divide(1, mu, out=np.zeros_like(mu), where=large)
     small = np.where(large, 0, mu)
-    return np.stack([np.where(large, horner(row[::-1], inverse), horner(row, small)) for row in table.tolist()])
+    rows = np.empty((len(table), mu.size), complex)
+    for k, row in enumerate(table.tolist()):
+        rows[k] = horner(row, small)
+    rows[-1] = _certain(rows[-1], horner(np.abs(table[-1]).tolist(), np.abs(small)))
+    if large.any():
+        inverse = 1 / mu[large]
+        rows[:, large] = [np.broadcast_to(horner(row[::-1], inverse), inverse.shape) for row in table.tolist()]
+    return rows
 
 
 def _in_plane(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray) -> FloatArray:
-    """Return P's coefficients in z, ascending."""
-    table = float_table(method).tolist()
+    """Return P's coefficients in z, ascending, a leading one that is but rounding zero."""
+    table = float_table(method)
     rows = np.empty((len(table), alpha_hat.size))
-    for k, in_plane in enumerate(table):
-        rows[k] = horner([horner(row, beta_hat) for row in in_plane], alpha_hat)
+    for k, in_plane in enumerate(table.tolist()):
+        rows[k] = _at(in_plane, alpha_hat, beta_hat)
+    rows[-1] = _certain(rows[-1], _at(np.abs(table[-1]).tolist(), np.abs(alpha_hat), np.abs(beta_hat)))
     return rows
+
+
+def _at(in_plane: list[list[float]], alpha_hat: FloatArray, beta_hat: FloatArray) -> Any:
+    """Return a polynomial in the plane, from its rows by powers of alpha_hat; a number where it is constant."""
+    return horner([horner(row, beta_hat) for row in in_plane], alpha_hat)
+
+
+def _certain(leading: NDArray[np.inexact], size: FloatArray | float) -> NDArray[np.inexact]:
+    """Return leading coefficients, zero where they are small against the sizes of their terms."""
+    return np.where(np.abs(leading) <= LEADING * np.asarray(size), 0, leading)
 
 
 def _all_poles(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray) -> ComplexArray:
@@ -255,36 +270,26 @@ def largest_at_mu(method: Method, mu: ComplexArray) -> ComplexArray:
 
 
 def _with_infinite(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray, z: ComplexArray) -> ComplexArray:
-    """Return poles in columns, changed in place: all infinite where the leading coefficient is zero to its rounding.
+    """Return poles in columns, changed in place: all infinite where an implicit step has no solution.
 
-    There an implicit step has no solution. NumericalError where another pole is not finite: it is beyond float64.
+    NumericalError where a pole is beyond float64 elsewhere.
     """
-    in_mu = mu_table(method)
-    leading = in_mu[-1] if in_mu.size else float_table(method)[-1].ravel()
-    certain = np.abs(z) < UNSURE if leading[1:].any() else np.isfinite(z)
-    unsure = np.flatnonzero(~certain.all(axis=0))
-    if not unsure.size:
+    lost = np.flatnonzero(~np.isfinite(z).all(axis=0))
+    if not lost.size:
         return z
-    alpha_hat, beta_hat = alpha_hat[unsure], beta_hat[unsure]
+    alpha_hat, beta_hat = alpha_hat[lost], beta_hat[lost]
     with np.errstate(all="ignore"):
-        if in_mu.size:
-            first, real, other = feedback_roots(method, alpha_hat, beta_hat)
-            infinite = _vanishes(polyval(first, leading), polyval(np.abs(first), np.abs(leading)))
-            infinite[real] |= _vanishes(polyval(other, leading), polyval(np.abs(other), np.abs(leading)))
+        if not (in_mu := mu_table(method)).size:
+            infinite = _in_plane(method, alpha_hat, beta_hat)[-1] == 0
         else:
-            in_plane = float_table(method)[-1]
-            size = polyval2d(np.abs(alpha_hat), np.abs(beta_hat), np.abs(in_plane))
-            infinite = _vanishes(polyval2d(alpha_hat, beta_hat, in_plane), size)
-    z[:, unsure[infinite]] = np.inf
-    lost = ~(infinite | np.isfinite(z[:, unsure]).all(axis=0))
-    if lost.any():
-        place = f"alpha_hat = {alpha_hat[lost][0]:.6g}, beta_hat = {beta_hat[lost][0]:.6g}"
+            first, real, other = feedback_roots(method, alpha_hat, beta_hat)
+            infinite = _in_mu(in_mu, first)[-1] == 0
+            infinite[real] |= _in_mu(in_mu, other)[-1] == 0
+    z[:, lost[infinite]] = np.inf
+    if not infinite.all():
+        place = f"alpha_hat = {alpha_hat[~infinite][0]:.6g}, beta_hat = {beta_hat[~infinite][0]:.6g}"
         raise NumericalError(f"{method.name}: at {place} a pole leaves the range of float64")
     return z
-
-
-def _vanishes(leading: NDArray[np.inexact], size: FloatArray) -> BoolArray:
-    return np.asarray((np.abs(leading) <= LEADING * size) & np.isfinite(size))
 
 
 def all_within(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray, level: FloatArray | float) -> BoolArray:

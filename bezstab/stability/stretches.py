@@ -68,7 +68,8 @@ NEARLY_REAL = 1e-2
 no harm, as verdicts tell what is beside it."""
 
 NEGLIGIBLE = 1e-11
-"""Of its place: a stretch, or a gap, so short is rounding of one place that two expressions share."""
+"""Of its place: a stretch, or a gap, so short is rounding of one place that two expressions share. Of a path's own
+size: a place so near to s = 0 is rounding of zero."""
 
 END_ACCURACY = 1e-10
 """Of an end: within it the verdict must turn, or the end is bisected."""
@@ -111,7 +112,8 @@ class Paths:
             sizes = [least, largest] if (largest > FAR_APART * least).any() else [least]
             of_pairs = [self._of_pairs(size) for size in sizes]
             found = np.concatenate([_roots(self.coefficients[0]), _roots(self.coefficients[-1]), *of_pairs]).T
-        real = np.isfinite(found) & (np.abs(found.imag) <= NEARLY_REAL * np.abs(found)) & (found.real > 0)
+        nearly_zero = NEGLIGIBLE * least[:, np.newaxis]
+        real = np.isfinite(found) & (np.abs(found.imag) <= NEARLY_REAL * np.abs(found)) & (found.real > nearly_zero)
         return np.sort(np.where(real, found.real, inf), axis=1)
 
     def _of_pairs(self, size: FloatArray) -> ComplexArray:
