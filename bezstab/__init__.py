@@ -18,17 +18,17 @@ if TYPE_CHECKING:
     from bezstab.api import largest_step as largest_step
     from bezstab.api import poles as poles
     from bezstab.api import region as region
-    from bezstab.api import scene as scene
-    from bezstab.api import simulate as simulate
     from bezstab.api import spectral_radius as spectral_radius
     from bezstab.api import verdict as verdict
-    from bezstab.api import verify as verify
     from bezstab.chains.answer import chain as chain
     from bezstab.drives.answer import drive as drive
+    from bezstab.mechanism.scene_files import scene as scene
     from bezstab.methods.registry import method as method
     from bezstab.mujoco.linting import lint as lint
     from bezstab.probes.answer import probe as probe
     from bezstab.probes.answer import probe_step as probe_step
+    from bezstab.runs.simulating import simulate as simulate
+    from bezstab.runs.verifying import verify as verify
     from bezstab.show import plot as plot
     from bezstab.step_sequences.answer import steps as steps
     from bezstab.units import from_dimensionless as from_dimensionless
@@ -47,11 +47,8 @@ HOMES = {
             "largest_step",
             "poles",
             "region",
-            "scene",
-            "simulate",
             "spectral_radius",
             "verdict",
-            "verify",
         ),
         "bezstab.api",
     ),
@@ -63,8 +60,11 @@ HOMES = {
     "plot": "bezstab.show.plot",
     "probe": "bezstab.probes.answer",
     "probe_step": "bezstab.probes.answer",
+    "scene": "bezstab.mechanism.scene_files",
+    "simulate": "bezstab.runs.simulating",
     "steps": "bezstab.step_sequences.answer",
     "to_dimensionless": "bezstab.units",
+    "verify": "bezstab.runs.verifying",
 }
 """The module of each public name, which type checkers read above."""
 

@@ -16,20 +16,15 @@ from numpy.typing import ArrayLike
 
 from bezstab.arguments import Number, exact_number, in_keywords, plane_point, point_if_given, real_number, whole_number
 from bezstab.engines.engine_list import engine_and_values, engine_named
-from bezstab.errors import InputError, shown
 from bezstab.goals import Goal
-from bezstab.mechanism import equations, runner, scene_files, scenes
+from bezstab.mechanism import scene_files
 from bezstab.mechanism.scenes import Scene
-from bezstab.mechanism.simulation import Simulation
 from bezstab.methods.registry import method as method_named
 from bezstab.methods.schemes import Method
 from bezstab.methods.schur import Verdict
 from bezstab.questions import answering, question
-from bezstab.runs import measured_poles, simulating
-from bezstab.stabilising import Stabilise
 from bezstab.stability import arrays, best_points, closed_loop, feedback_costs, regions
 from bezstab.stability.arrays import ComplexArray, FloatArray
-from bezstab.units import check_step
 
 Given = TypeVar("Given")
 
@@ -74,25 +69,6 @@ def _spelled_out(function: Function) -> Function:
         others.append(inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=usual))
     function.__signature__ = signature.replace(parameters=others)  # type: ignore[attr-defined]
     return function
-
-
-def scene(name: str | Scene, speed: float = 1.0) -> Scene:
-    """Return the planar mechanism of that name, in SI units and rad.
-
-    name: a name of a shipped scene ("pendulum", "slider_crank"), the path of a .toml file, or a scene.
-    speed: its drivers and initial velocities become so many times as fast.
-
-    Returns a Scene. "slider_crank" is that of the paper's section 5.2.
-
-    InputError if the file cannot be read; it names the file and the key. InputError, too, if a speed is
-    given and nothing in the scene moves by itself.
-    """
-    if not isinstance(name, str | Scene):
-        raise InputError(
-            f"scene {shown(name)}: expected one name such as 'pendulum', or what bezstab.scene makes of one"
-        )
-    given = name if isinstance(name, Scene) else scene_files.load_scene(name)
-    return scenes.at_speed(given, real_number(speed, "speed"))
 
 
 @_spelled_out
@@ -345,81 +321,8 @@ def feedback_cost(
     return feedback_costs.feedback_cost(wanted.methods[0], *wanted.given.point, wanted.motion.omega_h)
 
 
-@_spelled_out
-@in_keywords()
-def simulate(
-    scene: str | Scene,
-    method: str | Method,
-    *,
-    h: float,
-    duration: float,
-    start: runner.Start = "rk4",
-    perturb: float = 0.0,
-    stabilise: Stabilise = "baumgarte",
-    iterations: int | None = None,
-    **point: Unpack[Point[float]],
-) -> Simulation:
-    """Return a run of a mechanism with a method and a feedback, as arrays in SI units.
-
-    h: the step in s. duration: how long, in s.
-    The point is `alpha_hat` and `beta_hat`, or `alpha` and `beta` in 1/s.
-    start: where a multistep method has its first values from: steps of "rk4", its family's members of
-        fewer steps ("ramp"), or explicit "euler". "steady": with the velocity that the method has in the
-        long run, half a step back for symplectic Euler.
-    perturb: by how much the first constraint is off at the start, in its own unit.
-    stabilise: what holds the constraints: feedback ("baumgarte"), "projection" of each new state onto
-        them, or "none". Only feedback has a point.
-    iterations: with projection, Newton's iterations for a position at most; by default as many as it
-        takes to be within 1e-12.
-
-    Returns a Simulation. `t` has shape (steps + 1,). `q`, `v`, `c`, `cdot` and `multipliers` have a row
-    for each time; `energy` has a number for each time. A run that breaks down ends early, and `failure`
-    says when and why; else it is None.
-
-    InputError for a scene that cannot start, for a duration below one step, and unless the point of a
-    feedback is given in one of the two ways. NumericalError if the start cannot be perturbed. Source:
-    paper Eqs. 6 to 9.
-    """
-    wanted = _asked(
-        simulating.RunQuestion,
-        scene=scene,
-        method=method_named(method),
-        duration=duration,
-        h=h,
-        point=_point_if_given({**point, "h": h}, needed=stabilise == "baumgarte"),
-        stabilise=stabilise,
-        iterations=iterations,
-        perturb=perturb,
-        start=start,
-    )
-    return simulating.run_answer(wanted)
-
-
-@_spelled_out
-def verify(
-    scene: str | Scene, method: str | Method, *, h: float, **point: Unpack[Point[ArrayLike]]
-) -> list[measured_poles.Measurement]:
-    """Return the dominant pole as predicted and as measured in a simulation, for each of a row of points.
-
-    scene: the mechanism to kick. h: the step in s.
-    The points are `alpha_hat` and `beta_hat`, or `alpha` and `beta` in 1/s: numbers, or arrays of one
-    shape.
-
-    Returns a list of Measurements, dimensionless. `measured` is None where no pole can be measured;
-    `reason` says why.
-
-    InputError for a scene that cannot start, and unless the points are given in one of the two ways.
-    Source: opposite kicks and linear prediction (Prony).
-    """
-    alpha_hat, beta_hat = _plane_arrays({**point, "h": h})
-    step = real_number(h, "h")
-    check_step(step)
-    kicked = equations.compiled_mechanism(_scene(scene))
-    return measured_poles.measure_poles(kicked, method_named(method), step, alpha_hat.ravel(), beta_hat.ravel())
-
-
 def _scene(scene_or_name: str | Scene, _name: str = "scene") -> Scene:
-    return scene(scene_or_name)
+    return scene_files.scene(scene_or_name)
 
 
 def _asked(kind: Callable[..., Asked], **given: Any) -> Asked:

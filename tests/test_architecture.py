@@ -73,7 +73,7 @@ APPOINTED = {
     },
     "click": {path.relative_to(PACKAGE).as_posix() for path in (PACKAGE / "cli").glob("*.py")}
     | {"paper/command.py"}
-    | {f"runs/{command}_command.py" for command in ("simulate", "verify", "tradeoff")}
+    | {"runs/options.py", *(f"runs/{command}_command.py" for command in ("simulate", "verify", "tradeoff"))}
     | {f"{subject}/command.py" for subject in SUBJECTS},
     "mujoco": {"mujoco/reading.py"},
     "distributed": {"runs/parallel.py"},

@@ -21,9 +21,9 @@ if TYPE_CHECKING:
     from bezstab.questions.answering import Answer
     from bezstab.questions.question import Question
     from bezstab.questions.regions import MapQuestion
-    from bezstab.show.fields import Row
 
 Asked = TypeVar("Asked")
+Found = TypeVar("Found")
 OfScene = TypeVar("OfScene", "Question", "MapQuestion")
 
 
@@ -56,12 +56,12 @@ def say_each(reasons: Iterable[str | None]) -> None:
             say(f"bezstab: {reason}")
 
 
-def of_each(methods: Iterable[Method], rows_of: Callable[[Method], Iterable[Row]]) -> tuple[list[Row], int]:
-    """Return the rows of all methods, and an exit status: what cannot be found of one withholds no other's.
+def of_each(methods: Iterable[Method], rows_of: Callable[[Method], Iterable[Found]]) -> tuple[list[Found], int]:
+    """Return what is found of all methods, and an exit status: what cannot be found of one withholds no other's.
 
     Why it cannot be found is said on standard error. NumericalError where that is so of all.
     """
-    rows: list[Row] = []
+    rows: list[Found] = []
     failed: list[NumericalError] = []
     for method in methods:
         try:

@@ -12,7 +12,7 @@ from typing import Any, get_args
 import click
 from click.shell_completion import CompletionItem
 
-from bezstab.cli.output import NOTES, Files, Work
+from bezstab.cli.output import NOTES, Files
 from bezstab.compiling import COMPILED_CHOICE, compiler
 from bezstab.engines.conversions import Engine, Point
 from bezstab.engines.engine_list import ENGINES, engine_and_values, engine_named
@@ -21,7 +21,6 @@ from bezstab.methods.registry import REGISTRY, lookup
 from bezstab.rationals import rational
 from bezstab.show.file_forms import FIGURE_FORMS, TABLE_FORMS
 from bezstab.show.tables import Format
-from bezstab.stabilising import STABILISE
 from bezstab.units import LEAST_STEP, LONGEST_STEP, to_dimensionless
 
 EngineValues = tuple[Engine, tuple[Fraction, ...]]
@@ -133,7 +132,7 @@ def flag(names: str, meaning: str) -> Option:
     return partial(click.Option, names.split(), is_flag=True, help=meaning)
 
 
-def _choose_compiled(_context: click.Context, _option: click.Parameter, choice: str) -> None:
+def choose_compiled(_context: click.Context, _option: click.Parameter, choice: str) -> None:
     """Set the environment variable to the value of the option: worker processes inherit it.
 
     InputError if numba is asked for and missing.
@@ -169,12 +168,6 @@ OPTIONS = {
         "rate of --scene, else ωh = 0.01].",
     ),
     "duration": option("--time duration", SECONDS, "Duration in s."),
-    "stabilise": option(
-        "--stabilise",
-        click.Choice(list(STABILISE)),
-        "How the constraints are held. " + " ".join(f"{name}: {how}." for name, how in STABILISE.items()),
-        default="baumgarte",
-    ),
     "compiled": option(
         "--compiled",
         click.Choice(["auto", "yes", "no"]),
@@ -183,7 +176,7 @@ OPTIONS = {
         default="auto",
         envvar=COMPILED_CHOICE,
         expose_value=False,
-        callback=_choose_compiled,
+        callback=choose_compiled,
     ),
     "output": option("-o --output", click.Path(path_type=Path), "Directory for what is written.", default="."),
     "figure": option("--figure", click.Choice([*FIGURE_FORMS, "none"]), "Format of the figure.", default="png"),
@@ -254,33 +247,11 @@ GROUPS: Mapping[str, tuple[str | Option | Rule, ...]] = {
         ),
         Rule(("--engine",), "it gives the point itself", excludes=("--alpha", "--beta", "--physical")),
     ),
-    "holding": (
-        "stabilise",
-        option(
-            "--iterations",
-            click.IntRange(min=1),
-            "With projection: at most so many Newton iterations for the position in a step [as many as reach 1e-12].",
-        ),
-        Rule(
-            tuple(f"--stabilise {word}" for word in STABILISE if word != "baumgarte"),
-            "it has no feedback",
-            excludes=("--alpha", "--beta", "--physical", "--hold", "--omega"),
-        ),
-    ),
     "picture": (
         "output",
         "figure",
     ),
     "files": ("picture", "table"),
-    "shared_out": (  # runs that take long, and the table that comes of them
-        "compiled",
-        option("--workers", click.IntRange(1, 1000), "Number of processes [one for each core; 1 without joblib]."),
-        option("--scheduler", str, "Address of a Dask scheduler, tcp://host:port, in place of --workers."),
-        flag("--resume", "Continue a run with the same options that was stopped."),
-        "picture",
-        changed("table", default="csv"),
-        "form",
-    ),
 }
 """Options that go together, by a name for all of them, with their rules."""
 
@@ -313,7 +284,7 @@ class TypedPoint:
         return to_dimensionless(*self.numbers, h)
 
 
-GATHERED = {"point": TypedPoint, "files": Files, "work": Work}
+GATHERED = {"point": TypedPoint, "files": Files}
 """What a command gets as one value, whose fields are the options that it takes of these."""
 
 

@@ -79,13 +79,16 @@ def show_answers(columns: Sequence[Column[Item]], answers: Sequence[Item], sente
     click.echo(_table_or_blocks(shown, answers, sentences, table_of_one=False))
 
 
-def show_tables(parts: Sequence[tuple[Sequence[Column[Any]], Sequence[Any]]]) -> None:
+def show_tables(
+    parts: Sequence[tuple[Sequence[Column[Any]], Sequence[Any]]], *, every_column: bool | None = None
+) -> None:
     """Print answers of several kinds: a table of each that there are, below an empty line; as JSON and CSV one list.
 
-    There every row has the keys of all kinds. A command that has --all shows brief columns alone without it.
+    There every row has the keys of all kinds. A command that has --all shows brief columns alone without it, unless
+    told which.
     """
-    context = click.get_current_context()
-    every_column = context.params.get("every_column", True)
+    if every_column is None:
+        every_column = click.get_current_context().params.get("every_column", True)
     if not for_reading():
         rows = [row_of(columns, answer) for columns, answers in parts for answer in answers]
         click.echo(render(rows, [], chosen_format()))
@@ -223,15 +226,6 @@ class Files:
             show_in_window(figure())
         elif figure and self.figure != "none":
             write_file(path.with_name(f"{path.name}.{self.figure}"), partial(save, figure(), self.figure))
-
-
-@dataclass(frozen=True)
-class Work:
-    """Who computes what takes long: a number of processes, or a cluster. `resume` continues a run that was stopped."""
-
-    workers: int | None
-    scheduler: str | None
-    resume: bool
 
 
 def progress(items: Iterable[Item], label: str | None, length: int | None = None) -> Iterator[Item]:

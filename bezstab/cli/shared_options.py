@@ -6,8 +6,9 @@ from typing import Any, TypeVar, get_args
 
 import click
 
-from bezstab.cli.options import A_METHOD, METHOD, NUMBER, SECONDS
-from bezstab.show.file_forms import FIGURE_FORMS
+from bezstab.cli.options import A_METHOD, METHOD, NUMBER, SECONDS, SPEED, choose_compiled
+from bezstab.compiling import COMPILED_CHOICE
+from bezstab.show.file_forms import FIGURE_FORMS, TABLE_FORMS
 from bezstab.show.tables import Format
 
 Command = TypeVar("Command", bound=Callable[..., Any])
@@ -15,11 +16,25 @@ Command = TypeVar("Command", bound=Callable[..., Any])
 alpha = click.option("--alpha", type=NUMBER, help="α̂ as a decimal or a fraction, read exactly.")
 beta = click.option("--beta", type=NUMBER, help="β̂ as a decimal or a fraction, read exactly.")
 physical = click.option("--physical", is_flag=True, help="--alpha and --beta are α and β in 1/s; needs --h.")
+FIGURES, TABLES = [*FIGURE_FORMS, "none"], [*TABLE_FORMS, "none"]
+"""Formats of what a command writes."""
+
 h = click.option("--h", type=SECONDS, required=True, help="Step size in s.")
 methods = click.option("--method", "methods", type=METHOD, multiple=True, help=f"{A_METHOD} Repeatable.")
-figure = click.option(
-    "--figure", type=click.Choice([*FIGURE_FORMS, "none"]), default="none", help="Format of the figure."
+speed = click.option(
+    "--speed", type=SPEED, default="1", help="Multiply the speed of drivers and initial velocities by this."
 )
+compiled = click.option(
+    "--compiled",
+    type=click.Choice(["auto", "yes", "no"]),
+    default="auto",
+    envvar=COMPILED_CHOICE,
+    expose_value=False,
+    callback=choose_compiled,
+    help="Compile long runs of explicit methods with numba. auto: if it is installed and saves time.",
+)
+table = click.option("--table", type=click.Choice(TABLES), default="none", help="Format of the table that is written.")
+figure = click.option("--figure", type=click.Choice(FIGURES), default="none", help="Format of the figure.")
 output = click.option(
     "-o", "--output", type=click.Path(path_type=Path), default=".", help="Directory for what is written."
 )

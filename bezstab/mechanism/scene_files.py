@@ -7,7 +7,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from bezstab.errors import InputError, unknown_name
+from bezstab.arguments import Number, real_number
+from bezstab.errors import InputError, shown, unknown_name
 from bezstab.files import read_toml
 from bezstab.mechanism.scenes import (
     COORDINATES,
@@ -23,6 +24,7 @@ from bezstab.mechanism.scenes import (
     Revolute,
     Scene,
     Spring,
+    at_speed,
 )
 from bezstab.toml_tables import TomlTable, a_number, pair_of
 
@@ -54,6 +56,25 @@ def load_scene(name: str) -> Scene:
     if name not in shipped:
         raise unknown_name("scene", name, shipped)
     return read_scene(shipped[name])
+
+
+def scene(name: str | Scene, speed: Number = 1) -> Scene:
+    """Return the planar mechanism of that name, in SI units and rad.
+
+    name: a name of a shipped scene ("pendulum", "slider_crank"), the path of a .toml file, or a scene.
+    speed: its drivers and initial velocities become so many times as fast.
+
+    Returns a Scene. "slider_crank" is that of the paper's section 5.2.
+
+    InputError if the file cannot be read; it names the file and the key. InputError, too, if a speed is
+    given and nothing in the scene moves by itself.
+    """
+    if not isinstance(name, str | Scene):
+        raise InputError(
+            f"scene {shown(name)}: expected one name such as 'pendulum', or what bezstab.scene makes of one"
+        )
+    given = name if isinstance(name, Scene) else load_scene(name)
+    return at_speed(given, real_number(speed, "speed"))
 
 
 def read_scene(path: Path) -> Scene:

@@ -5,7 +5,7 @@ import time
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,9 +23,6 @@ from bezstab.stabilising import NOTHING, AfterStep, Stabilise, held_by
 from bezstab.stability.choices import choose
 from bezstab.stability.closed_loop import spectral_radius
 from bezstab.units import feedback_gains, to_dimensionless
-
-METHODS = ("B2", "B3", "B4", "AB2", "AB4", "ABM4", "RK4", "SIE", "SYM")
-"""The Bezier methods of the paper, and what else is in use at one to four evaluations per step."""
 
 STEPS = ("0.0001", "0.0002", "0.0004", "0.0008", "0.0016", "0.0032", "0.005", "0.008", "0.0125", "0.02")
 """In s: doubled where accuracy is the question, closer where runs begin to fail."""
@@ -172,31 +169,27 @@ class SweptRuns:
     """All runs of a sweep over methods and steps, each method's with the largest step first.
 
     `reference_error` (SI) is how well the true motion is known, `tolerance` (m, rad) the trajectory error that is good
-    enough. Costs are `against` what they are counted in.
+    enough. Costs are `against` what they are counted in. `fronts`: of each error the indices of runs, ascending in
+    cost, that no other run beats. `cheapest`: the run of least cost among those within the tolerance; None where none
+    is.
     """
 
     runs: Sequence[Run]
     reference_error: float
     tolerance: float
-    against: Cost = "evaluations"
+    against: Cost
+    fronts: Mapping[ErrorOf, Sequence[int]]
+    cheapest: Run | None
 
-    @property
-    def cheapest(self) -> Run | None:
-        """The run of least cost among those within the tolerance; None where none is."""
-        within = [run for run in self.runs if not run.failure and (run.trajectory_error or 0.0) <= self.tolerance]
-        return min(within, key=lambda run: run.cost(self.against), default=None)
 
-    def front(self, of: ErrorOf) -> list[int]:
-        """Return the Pareto front by an error: indices of runs, ascending in cost, that no other run beats."""
-        return pareto_front((run.cost(self.against), run.error(of)) for run in self.runs)
-
-    @property
-    def front_labels(self) -> list[str]:
-        """For each run on which fronts it is: T by trajectory error, c by constraint error, "T c", or nothing."""
-        fronts = {"T": self.front("trajectory"), "c": self.front("constraint")}
-        return [
-            " ".join(letter for letter, front in fronts.items() if index in front) for index in range(len(self.runs))
-        ]
+def ranked_runs(
+    runs: Sequence[Run], reference_error: float, tolerance: float, against: Cost = "evaluations"
+) -> SweptRuns:
+    """Return runs with their fronts, and the cheapest that is good enough."""
+    fronts = {of: pareto_front((run.cost(against), run.error(of)) for run in runs) for of in get_args(ErrorOf)}
+    within = [run for run in runs if not run.failure and (run.trajectory_error or 0.0) <= tolerance]
+    cheapest = min(within, key=lambda run: run.cost(against), default=None)
+    return SweptRuns(runs, reference_error, tolerance, against, fronts, cheapest)
 
 
 def measured_runs(sweep: Sweep) -> dict[str, NDArray[np.generic]]:

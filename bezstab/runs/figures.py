@@ -95,7 +95,7 @@ def work_precision_figure(swept: SweptRuns, scene: str, error: ErrorOf) -> Figur
             _draw_runs(swept, own, error, axes, label=method.name, **marked_line_at(place))
             failed = [run.cost(swept.against) for run in own if run.failure]
             axes.plot(failed, [top] * len(failed), "x", color=line_at(place)["color"], markersize=4)
-        if front := swept.front(error):
+        if front := swept.fronts[error]:
             discs = {"marker": "o", "linestyle": "none", "color": "0.8", "markersize": 10, "zorder": 1.5}
             _draw_runs(swept, [runs[number] for number in front], error, axes, label="front", **discs)
         if any(run.failure for run in runs):

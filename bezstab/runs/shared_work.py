@@ -5,9 +5,10 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from bezstab.cli.output import Work, progress, say
+from bezstab.cli.output import progress, say
 from bezstab.errors import InputError
 from bezstab.files import output_directory
+from bezstab.runs.options import Work
 from bezstab.runs.parallel import KeptResults, completed_chunks, joblib_is_installed
 from bezstab.stability.arrays import Arrays
 from bezstab.stopping import Stopped

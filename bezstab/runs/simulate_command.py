@@ -1,84 +1,125 @@
 """The command that runs a mechanism: simulate."""
 
-from typing import Any
+from collections.abc import Sequence
+from fractions import Fraction
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
-from bezstab.cli.asking import asked, show_point
-from bezstab.cli.options import NUMBER, SEQUENCE, changed, command, flag, option
-from bezstab.cli.output import Files, say, show_rows, worked_out
+from bezstab.cli import shared_options as shared
+from bezstab.cli.asking import say_if_units_were_mistaken
+from bezstab.cli.options import A_METHOD, METHOD, NUMBER, SCENE, SECONDS, SEQUENCE, TypedPoint
+from bezstab.cli.output import Files, say, show_answers, worked_out
 from bezstab.compiling import compiled_choice
+from bezstab.engines.conversions import Point
 from bezstab.errors import NumericalError
-from bezstab.methods.schemes import implicit
+from bezstab.methods.schemes import Method, implicit
+from bezstab.runs import options
+from bezstab.runs.options import USUAL_STEP
+from bezstab.stabilising import Stabilise
+
+if TYPE_CHECKING:  # so that `bezstab --help`, which lists this command, loads nothing that computes
+    from bezstab.mechanism.runner import Start
+
+USUAL_POINT: Point = (Fraction("0.5"), Fraction("0.1"))
 
 
-@command(
-    changed("scene", default="slider_crank"),
-    "speed",
-    changed("method", default="B4"),
-    changed("alpha", default="0.5"),
-    changed("beta", default="0.1"),
-    *("physical", "holding"),
-    changed("h", default="0.001"),
-    option(
-        "--steps sequence",
-        SEQUENCE,
-        "Step sizes in s, taken in turn, over and over: such as 1/60,0.00917 or 3*0.01,0.02, or a file with such a "
-        "list. α̂ and β̂ are then those at the step --h.",
-    ),
-    flag("--hold", "With --steps: α̂ and β̂ stay the same while steps vary; else α and β do."),
-    changed("duration", default="10"),
-    option("--perturb", NUMBER, "Initial error of the first constraint, in its own unit.", default="0"),
-    option(
-        "--start",
-        click.Choice(["rk4", "ramp", "euler", "steady"]),
-        "How a multistep method gets its first values: by RK4, by members of its family with fewer steps, or by "
-        "explicit Euler. An implicit method: by Gauss's method of order four, by BDF methods with fewer steps, or by "
-        "implicit Euler. steady: with the velocity that the method has in the long run, half a step back for "
-        "symplectic Euler.",
-        default="rk4",
-    ),
-    "compiled",
-    "files",
-    "form",
+@click.command()
+@click.option("--scene", type=SCENE, default="slider_crank", help="A shipped scene's name, or a .toml file.")
+@shared.speed
+@click.option("--method", type=METHOD, default="B4", help=A_METHOD)
+@shared.point
+@options.stabilise
+@options.iterations
+@click.option("--h", "given_h", type=SECONDS, help="Step size in s [0.001].")
+@click.option(
+    "--steps",
+    "sequence",
+    type=SEQUENCE,
+    help="Steps in s that are taken in turn: 1/60,0.00917 or 3*0.01,0.02, or a file. α̂ and β̂ are those at --h.",
 )
-def simulate(files: Files, **typed: Any) -> None:
+@click.option("--hold", is_flag=True, help="With --steps: α̂ and β̂ stay the same while steps vary; else α and β do.")
+@click.option("--time", "duration", type=SECONDS, default="10", help="Duration in s.")
+@click.option("--perturb", type=NUMBER, default="0", help="Initial error of the first constraint, in its own unit.")
+@click.option(
+    "--start",
+    type=click.Choice(["rk4", "ramp", "euler", "steady"]),
+    default="rk4",
+    help="First values of a multistep method: by RK4, by members of its family with fewer steps, or by Euler's method. "
+    "steady: the velocity that the method has in the long run, half a step back for symplectic Euler.",
+)
+@shared.compiled
+@shared.table
+@click.option(
+    "--figure", type=click.Choice(shared.FIGURES), default="png", help="Format of the figure: c and ċ against time."
+)
+@shared.output
+@shared.form
+@shared.every_column
+def simulate(
+    scene: str,
+    speed: Fraction,
+    method: Method,
+    alpha: Fraction | None,
+    beta: Fraction | None,
+    physical: bool,
+    stabilise: Stabilise | None,
+    iterations: int | None,
+    given_h: Fraction | None,
+    sequence: Sequence[Fraction] | None,
+    hold: bool,
+    duration: Fraction,
+    perturb: Fraction,
+    start: "Start",
+    output: Path,
+    figure: str,
+    table: str,
+    **_: object,
+) -> None:
     """Run a mechanism and see what its constraint error does.
 
-    Prints the largest |c| and |ċ|, the energy drift and the number of evaluations, and draws the first constraint
-    and its rate. --table csv also writes the whole history. Exit status 3 if the run broke down; what came before
-    is kept.
+    Without --alpha and --beta the feedback is α̂ = 0.5, β̂ = 0.1. --table csv also writes the whole history.
 
-    --steps gives a sequence of step lengths, for any one-step method. Work and energy drift are then integrated by
-    the trapezoidal rule, which is less exact.
-
-    --stabilise projection replaces the feedback. After each step it moves the positions, then the velocities, back onto
-    the constraints, by the least change in the metric of the masses. "factorizations" counts how often S = C_q M⁻¹ C_qᵀ
-    is factored: once for each evaluation, and once or more for each projection.
+    Exit status 3 if the run broke down; what came before is kept.
 
     Example: bezstab simulate --method AB4 --alpha 0.5 --beta 0.101 --time 2
     """
-
+    from bezstab.mechanism.equations import compiled_mechanism
+    from bezstab.questions.motions import scene_at_speed
+    from bezstab.runs.columns import RUN
     from bezstab.runs.figures import history_figure
-    from bezstab.runs.sentences import passages_words
-    from bezstab.runs.simulating import RunQuestion, run_answer
+    from bezstab.runs.sentences import passages_words, run_sentence
+    from bezstab.runs.simulating import run_of
     from bezstab.runs.tables import history_arrays
-    from bezstab.show.row_kinds import SIMULATIONS
 
-    if typed["stabilise"] != "baumgarte":
-        typed["point"] = None
-    question = asked(RunQuestion, **typed)
+    typed, h = TypedPoint(alpha, beta, physical), given_h or USUAL_STEP
+    held = stabilise or "baumgarte"
+    point = typed.at(h) or (USUAL_POINT if held == "baumgarte" else None)
+    files = Files(output, figure, table)
     files.check_output()
-    worked_out(lambda: question.mechanism, typed["scene"])
-    run = worked_out(lambda: run_answer(question), question.method.name)
-    files.write(
-        files.path("simulate", typed["scene"], question.method.name),
-        lambda: history_figure(run),
-        lambda: history_arrays(run),
+    mechanism = worked_out(lambda: compiled_mechanism(scene_at_speed(scene, speed)), scene)
+    run = worked_out(
+        lambda: run_of(
+            mechanism,
+            method,
+            h=h,
+            duration=duration,
+            point=point,
+            stabilise=held,
+            iterations=iterations,
+            sequence=sequence or (),
+            hold=hold,
+            perturb=perturb,
+            start=start,
+        ),
+        method.name,
     )
-    show_point(typed, question.point)
-    show_rows(SIMULATIONS, [SIMULATIONS.row(run)])
-    if compiled_choice() == "yes" and (implicit(run.method) or run.after.projecting):
+    files.write(files.path("simulate", scene, method.name), lambda: history_figure(run), lambda: history_arrays(run))
+    if not sequence:  # which may be to let errors grow
+        say_if_units_were_mistaken([method], typed, given_h)
+    show_answers(RUN, [run], [run_sentence(run)])
+    if compiled_choice() == "yes" and (implicit(method) or run.after.projecting):
         say("bezstab: this run was not compiled: only runs of explicit methods without projection are")
     if len(run.singular_times):
         say(f"bezstab: {passages_words(run.singular_times.tolist())}")

@@ -1,66 +1,113 @@
-"""A run of a mechanism that somebody asks for: with which method and steps, and with what to hold its constraints.
+"""What does a mechanism do, with a method, its steps, and what holds its constraints?
 
-scene, method, steps, feedback or projection   →   RunQuestion   →   run_answer   →   Simulation
+scene, method, steps, feedback or projection   →   run_of   →   Simulation
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 
+from bezstab.arguments import Number, exact_number, in_keywords, plane_point, point_if_given
 from bezstab.engines.conversions import Point
 from bezstab.errors import InputError
+from bezstab.mechanism.equations import Mechanism, compiled_mechanism
 from bezstab.mechanism.runner import Start
+from bezstab.mechanism.scene_files import scene as scene_named
+from bezstab.mechanism.scenes import Scene
 from bezstab.mechanism.simulation import Simulation, simulated
+from bezstab.methods.registry import method as method_named
 from bezstab.methods.schemes import Method, check_one_step
-from bezstab.questions.motions import SceneQuestion
 from bezstab.stabilising import Stabilise, after_step
 
 
-@dataclass(frozen=True, kw_only=True)
-class RunQuestion(SceneQuestion):
-    """What does a mechanism do over a `duration` (s) with a method and a feedback?
+@in_keywords()
+def simulate(
+    scene: str | Scene,
+    method: str | Method,
+    *,
+    h: Number,
+    duration: Number,
+    start: Start = "rk4",
+    perturb: Number = 0,
+    stabilise: Stabilise = "baumgarte",
+    iterations: int | None = None,
+    alpha_hat: Number | None = None,
+    beta_hat: Number | None = None,
+    alpha: Number | None = None,
+    beta: Number | None = None,
+) -> Simulation:
+    """Return a run of a mechanism with a method and a feedback, as arrays in SI units.
 
-    The feedback is at the `point` (alpha_hat, beta_hat); `stabilise` may put a projection in its place, of so many
-    `iterations` at most, or nothing. Steps are `h` (s), or the `sequence` (s), over and over: then alpha and beta stay
-    as steps vary, with `hold` alpha_hat and beta_hat do. `perturb` is the error of the first constraint at the start,
-    in its own unit; a multistep method begins by `start`. InputError for what does not go together, and for a method
-    whose states cannot be projected or whose steps cannot vary.
+    h: the step in s. duration: how long, in s.
+    The point is `alpha_hat` and `beta_hat`, or `alpha` and `beta` in 1/s.
+    start: where a multistep method has its first values from: steps of "rk4", its family's members of
+        fewer steps ("ramp"), or explicit "euler". "steady": with the velocity that the method has in the
+        long run, half a step back for symplectic Euler.
+    perturb: by how much the first constraint is off at the start, in its own unit.
+    stabilise: what holds the constraints: feedback ("baumgarte"), "projection" of each new state onto
+        them, or "none". Only feedback has a point.
+    iterations: with projection, Newton's iterations for a position at most; by default as many as it
+        takes to be within 1e-12.
+
+    Returns a Simulation. `t` has shape (steps + 1,). `q`, `v`, `c`, `cdot` and `multipliers` have a row
+    for each time; `energy` has a number for each time. A run that breaks down ends early, and `failure`
+    says when and why; else it is None.
+
+    InputError for a scene that cannot start, for a duration below one step, and unless the point of a
+    feedback is given in one of the two ways. NumericalError if the start cannot be perturbed. Source:
+    paper Eqs. 6 to 9.
     """
-
-    method: Method
-    duration: float | Fraction
-    h: float | Fraction
-    point: Point | None = None
-    stabilise: Stabilise = "baumgarte"
-    iterations: int | None = None
-    sequence: Sequence[Fraction] | None = None
-    hold: bool = False
-    perturb: float | Fraction = 0
-    start: Start = "rk4"
-
-    def __post_init__(self) -> None:
-        after_step(self.stabilise, self.iterations)  # which refuses what does not go together
-        if self.sequence:
-            check_one_step(self.method)
-        elif self.hold:
-            raise InputError("--hold needs --steps: it is about steps that vary")
-        if (self.point is None) == (self.stabilise == "baumgarte"):
-            raise InputError("--alpha and --beta are those of feedback: they go with --stabilise baumgarte")
+    find = plane_point if stabilise == "baumgarte" else point_if_given
+    return run_of(
+        compiled_mechanism(scene_named(scene)),
+        method_named(method),
+        h=exact_number(h, "h"),
+        duration=exact_number(duration, "duration"),
+        point=find(alpha_hat, beta_hat, alpha, beta, h),
+        start=start,
+        perturb=exact_number(perturb, "perturb"),
+        stabilise=stabilise,
+        iterations=iterations,
+    )
 
 
-def run_answer(question: RunQuestion) -> Simulation:
-    """Return the run; what goes wrong on the way is its `failure`. Errors as `simulated` and `load_scene`."""
-    alpha_hat, beta_hat = map(float, question.point or (0, 0))
+def run_of(
+    mechanism: Mechanism,
+    method: Method,
+    *,
+    h: Fraction,
+    duration: Fraction,
+    point: Point | None,
+    stabilise: Stabilise = "baumgarte",
+    iterations: int | None = None,
+    sequence: Sequence[Fraction] = (),
+    hold: bool = False,
+    perturb: Fraction = Fraction(0),
+    start: Start = "rk4",
+) -> Simulation:
+    """Return a run over a duration (s) with the feedback of a point (alpha_hat, beta_hat), or with what else holds it.
+
+    Steps are h (s), or a sequence (s), over and over: then alpha and beta stay as steps vary, with `hold` alpha_hat and
+    beta_hat do. InputError for what does not go together, for a method whose states cannot be projected or whose steps
+    cannot vary, and as `simulated`; what goes wrong on the way is the run's `failure`.
+    """
+    after = after_step(stabilise, iterations)
+    if sequence:
+        check_one_step(method)
+    elif hold:
+        raise InputError("--hold needs --steps: it is about steps that vary")
+    if (point is None) == (stabilise == "baumgarte") or (hold and point is None):
+        raise InputError("--alpha and --beta are those of feedback: they go with --stabilise baumgarte, as does --hold")
+    alpha_hat, beta_hat = map(float, point or (0, 0))
     return simulated(
-        question.mechanism,
-        question.method,
-        h=float(question.h),
-        duration=float(question.duration),
+        mechanism,
+        method,
+        h=float(h),
+        duration=float(duration),
         alpha_hat=alpha_hat,
         beta_hat=beta_hat,
-        perturb=float(question.perturb),
-        start=question.start,
-        after=after_step(question.stabilise, question.iterations),
-        sequence=[float(step) for step in question.sequence or ()],
-        hold=question.hold,
+        perturb=float(perturb),
+        start=start,
+        after=after,
+        sequence=[float(step) for step in sequence],
+        hold=hold,
     )

@@ -4,12 +4,13 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bezstab.mechanism.simulation import Simulation
 from bezstab.runs.verdict_maps import VerdictMap
 from bezstab.show.arrays import over_the_plane
-from bezstab.show.fields import Row
-from bezstab.show.row_kinds import FIELDS
+from bezstab.show.columns import Answer, Column, row_of
+from bezstab.show.fields import Value
 from bezstab.stability.arrays import Arrays
 
 
@@ -38,11 +39,16 @@ def history_arrays(simulation: Simulation) -> Arrays:
     }
 
 
-def untimed_arrays(rows: Sequence[Row]) -> Arrays:
-    """Return rows as arrays of shape (rows,) without processor times, which no two runs share.
+def table_arrays(columns: Sequence[Column[Answer]], answers: Sequence[Answer]) -> Arrays:
+    """Return answers as arrays of shape (answers,) by key, without processor times, which no two runs share.
 
-    What is missing is nan among numbers and an empty text among texts.
+    What is missing is nan among numbers, and an empty text among texts and where nothing is known.
     """
-    keys = [key for key in rows[0] if not key.startswith("seconds")]
-    missing = {key: "" if FIELDS[key].kind == "text" else math.nan for key in keys}
-    return {key: np.array([missing[key] if row[key] is None else row[key] for row in rows]) for key in keys}
+    rows = [row_of(columns, answer) for answer in answers]
+    values = {key: [row[key] for row in rows] for key in rows[0] if not key.startswith("seconds")}
+    return {key: _column(of_key) for key, of_key in values.items()}
+
+
+def _column(values: Sequence[Value]) -> NDArray[np.generic]:
+    missing = math.nan if any(isinstance(value, int | float) for value in values) else ""
+    return np.array([missing if value is None else value for value in values])

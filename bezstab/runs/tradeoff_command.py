@@ -2,116 +2,173 @@
 
 from collections.abc import Sequence
 from fractions import Fraction
-from typing import Any
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
+from bezstab.cli import shared_options as shared
 from bezstab.cli.asking import say_if_units_were_mistaken
-from bezstab.cli.options import POSITIVE, SECONDS, Rule, TypedPoint, changed, command, flag, option, typed_options
-from bezstab.cli.output import Files, Work, progress, show_rows, show_text, worked_out
+from bezstab.cli.options import A_METHOD, METHOD, POSITIVE, SCENE, SECONDS, TypedPoint
+from bezstab.cli.output import Files, progress, show_answers, show_text, worked_out
+from bezstab.errors import InputError
+from bezstab.methods.schemes import Method
+from bezstab.runs import options
+from bezstab.runs.options import Work
+from bezstab.stabilising import Stabilise
 
-OF_RUNS = (
-    *("--alpha", "--beta", "--physical", "--stabilise", "--iterations", "--time", "--tolerance", "--repeats"),
-    *("--against", "--compiled", "--workers", "--scheduler", "--resume"),
+if TYPE_CHECKING:  # so that `bezstab --help`, which lists this command, loads nothing that computes
+    from bezstab.runs.accuracy_costs import Cost
+
+METHODS = ("B2", "B3", "B4", "AB2", "AB4", "ABM4", "RK4", "SIE", "SYM")
+"""The Bezier methods of the paper, and what else is in use at one to four evaluations per step."""
+
+USUAL_SCENE = "slider_crank_light"
+
+
+@click.command()
+@click.option("--scene", type=SCENE, help=f"A shipped scene's name, or a .toml file [{USUAL_SCENE}].")
+@shared.speed
+@click.option("--method", "methods", type=METHOD, multiple=True, default=METHODS, help=f"{A_METHOD} Repeatable.")
+@click.option("--h", "steps", type=SECONDS, multiple=True, help="Step in s. Repeatable [ten from 0.0001 to 0.02].")
+@click.option("--time", "duration", type=SECONDS, help="Duration in s [2].")
+@shared.point
+@click.option("--omega", type=POSITIVE, help="Rate in 1/s of the motion that points are chosen for [the scene's].")
+@options.stabilise
+@options.iterations
+@click.option(
+    "--against",
+    type=click.Choice(["evaluations", "time", "projection"]),
+    help="What errors are compared with: evaluations, processor time, or projection, in factorizations [evaluations].",
 )
-"""Options that say what is simulated."""
-
-
-@command(
-    changed("scene", default="slider_crank_light"),
-    "speed",
-    changed("methods", default=("B2", "B3", "B4", "AB2", "AB4", "ABM4", "RK4", "SIE", "SYM")),
-    option("--h steps", SECONDS, "Step size in s. Repeatable [ten from 0.0001 to 0.02].", multiple=True),
-    changed("duration", default="2"),
-    *("point", "omega", "holding"),
-    flag(
-        "--predicted",
-        "Simulate nothing; print the least error that each method's feedback makes, for each speed of decay.",
-    ),
-    option(
-        "--level levels",
-        POSITIVE,
-        "With --predicted: decay with |z_p| of at most LEVEL, below 1. Repeatable [fifteen from 0.1 to 0.999].",
-        multiple=True,
-    ),
-    option("--tolerance", POSITIVE, "The error that is good enough, in m and rad.", default="1e-6"),
-    option("--repeats", click.IntRange(1, 100), "How often each run is timed.", default=3),
-    option(
-        "--against",
-        click.Choice(["evaluations", "time", "projection"]),
-        "What errors are compared with: evaluations of f, or processor time on this machine. With projection each run "
-        "is made with feedback and with projection, and errors are compared with factorizations.",
-        default="evaluations",
-    ),
-    "shared_out",
-    Rule(("--level",), "it says how fast errors must decay", needs=("--predicted",)),
-    Rule(("--against projection",), "it has runs with and without feedback", excludes=("--stabilise",)),
-    Rule(("--predicted",), "it simulates nothing", excludes=OF_RUNS),
-    Rule(("--predicted",), "it is a table", excludes=("--figure",)),
-)
-def tradeoff(predicted: bool, point: TypedPoint, work: Work, files: Files, **typed: Any) -> None:
+@click.option("--tolerance", type=POSITIVE, help="The error that is good enough, in m and rad [1e-6].")
+@click.option("--repeats", type=int, help="How often each run is timed [3].")
+@click.option("--predicted", is_flag=True, help="Simulate nothing: print the least errors, for each speed of decay.")
+@click.option("--level", "levels", type=POSITIVE, multiple=True, help="With --predicted: |z_p| at most. Repeatable.")
+@shared.compiled
+@options.shared_work
+@click.option("--table", type=click.Choice(shared.TABLES), default="csv", help="Format of the table.")
+@click.option("--figure", type=click.Choice(shared.FIGURES), help="Format of the figures [png].")
+@shared.output
+@shared.form
+@shared.every_column
+def tradeoff(
+    scene: str | None,
+    speed: Fraction,
+    methods: Sequence[Method],
+    steps: Sequence[Fraction],
+    duration: Fraction | None,
+    alpha: Fraction | None,
+    beta: Fraction | None,
+    physical: bool,
+    omega: Fraction | None,
+    stabilise: Stabilise | None,
+    iterations: int | None,
+    against: "Cost | None",
+    tolerance: Fraction | None,
+    repeats: int | None,
+    predicted: bool,
+    levels: Sequence[Fraction],
+    workers: int | None,
+    scheduler: str | None,
+    resume: bool,
+    output: Path,
+    figure: str | None,
+    table: str,
+    **_: object,
+) -> None:
     """Measure what accuracy costs, by method and step.
 
-    Each run is compared with a reference of known accuracy. Prints errors, evaluations, processor time (median and
-    range), the order observed, and which run is the cheapest within --tolerance. Writes the table, without times, and
-    two figures of errors against evaluations or time, which mark it. A run that fails is marked as diverged.
+    Each run is compared with a reference of known accuracy. Writes the table, without times, and figures of errors
+    against cost. Without --alpha and --beta each step has its own point: that of `choose --goal accurate`. --against
+    projection makes each run with feedback and with projection. What is seen: bezstab/runs/README.md.
 
-    Without --alpha and --beta each step size has its own point: that of the goal accurate, for the scene's motion or
-    for --omega. If α̂ and β̂ stay the same while h shrinks, methods with stages lose order. In the second half of a
-    run the error of the start is gone. Only the feedback's error remains, and the work that its multipliers do on it,
-    which changes the trajectory; compare "predicted".
-
-    --stabilise projection replaces feedback by projection onto the constraints after each step. --against projection
-    makes both, feedback at the advised points and, with --alpha and --beta, at that one too. It draws the errors of
-    trajectory, constraints and energy at equal cost, in factorizations of C_q M⁻¹ C_qᵀ.
-
-    --predicted simulates nothing. It prints the least error that a method's feedback makes on a motion, for each
-    |z_p|, and what that feedback does to the motion's energy. The motion is --omega, or a --scene with one --h; else it
-    turns by ωh = 0.01. Writes tradeoff_predicted.csv.
+    --predicted prints the least error that a method's feedback makes on a motion, for each |z_p|, and what that does to
+    the motion's energy. The motion is --omega, or a --scene with one --h; else it turns by ωh = 0.01.
 
     Example: bezstab tradeoff --method B4 --method AB4 --h 0.002 --h 0.004 --time 2
     """
-
     from bezstab.runs.accuracy_costs import measured_runs
+    from bezstab.runs.columns import COSTS, ranked_rows
     from bezstab.runs.figures import trade_figures
     from bezstab.runs.shared_work import results_of_chunks
-    from bezstab.runs.tables import untimed_arrays
-    from bezstab.runs.trades import TradeQuestion
-    from bezstab.show.row_kinds import SWEPT
+    from bezstab.runs.tables import table_arrays
+    from bezstab.runs.trades import basis_words, ranked, trade
 
-    levels = typed.pop("levels")
+    typed = TypedPoint(alpha, beta, physical)
     if predicted:
-        _show_fronts(files, levels, **{name: typed[name] for name in ("methods", "omega", "speed", "steps")})
+        of_runs = {
+            "--alpha": alpha,
+            "--beta": beta,
+            "--physical": physical or None,
+            "--stabilise": stabilise,
+            "--iterations": iterations,
+            "--time": duration,
+            "--tolerance": tolerance,
+            "--repeats": repeats,
+            "--against": against,
+            "--workers": workers,
+            "--scheduler": scheduler,
+            "--resume": resume or None,
+            "--figure": figure,
+        }
+        for option in (name for name, value in of_runs.items() if value is not None):
+            raise InputError(f"{option} does not go with --predicted: it simulates nothing, and prints a table")
+        _show_fronts(Files(output, "none", table), methods, steps, levels, omega, scene, speed)
         return
-    question = TradeQuestion(numbers=point.numbers, physical=point.physical, **typed)
-    say_if_units_were_mistaken(question.methods, point, None)
-    path = files.path("tradeoff", typed["scene"])
-    sweeps = worked_out(lambda: question.sweeps, typed["scene"])
-    with results_of_chunks(measured_runs, sweeps, path, f"{question.methods} {question}", work) as results:
-        swept = question.swept(results)
-        marked = zip(swept.runs, swept.front_labels, strict=True)
-        rows = [SWEPT.row(run, front=front, cheapest=run is swept.cheapest) for run, front in marked]
-        files.write(path, None, lambda: untimed_arrays(rows))
-        for name, draw in trade_figures(swept, question.moving.name).items():
+    if levels:
+        raise InputError("--level needs --predicted: it says how fast errors must decay")
+    files, named = Files(output, figure or "png", table), scene or USUAL_SCENE
+    asked = worked_out(
+        lambda: trade(
+            named,
+            methods,
+            steps,
+            duration=duration or Fraction(2),
+            speed=speed,
+            numbers=typed.numbers,
+            physical=physical,
+            omega=omega,
+            stabilise=stabilise,
+            iterations=iterations,
+            against=against or "evaluations",
+            repeats=3 if repeats is None else repeats,
+            tolerance=tolerance or Fraction("1e-6"),
+        ),
+        named,
+    )
+    say_if_units_were_mistaken(methods, typed, None)
+    path = files.path("tradeoff", named)
+    with results_of_chunks(measured_runs, asked.sweeps, path, asked.job, Work(workers, scheduler, resume)) as results:
+        swept = ranked(asked, results)
+        rows = ranked_rows(swept)
+        files.write(path, None, lambda: table_arrays(COSTS, rows))
+        for name, draw in trade_figures(swept, asked.scene).items():
             files.write(path.with_name(f"{path.name}_{name}"), draw)
-    show_rows(SWEPT, rows)
-    show_text(f"\n{question.basis}")
+    show_answers(COSTS, rows, [""] * len(rows))
+    show_text(f"\n{basis_words(asked)}")
 
 
-def _show_fronts(files: Files, levels: Sequence[Fraction], **typed: Any) -> None:
+def _show_fronts(
+    files: Files,
+    methods: Sequence[Method],
+    steps: Sequence[Fraction],
+    levels: Sequence[Fraction],
+    omega: Fraction | None,
+    scene: str | None,
+    speed: Fraction,
+) -> None:
     """Print the least error that each method forces, by speed of decay; write it as a table."""
-
-    from bezstab.runs.tables import untimed_arrays
-    from bezstab.runs.trades import FrontQuestion
+    from bezstab.runs.columns import FRONTS, Placed
+    from bezstab.runs.tables import table_arrays
+    from bezstab.runs.trades import front_motion, fronts
     from bezstab.show.result_sentences import combined_words, energy_words
-    from bezstab.show.row_kinds import FRONTS
-    from bezstab.show.rows import row_in_seconds
 
-    question = FrontQuestion(levels=levels, scene=typed_options().get("--scene"), **typed)
+    motion = front_motion(steps, omega, scene, speed)
+    h = next(iter(steps), None)
+    found = fronts(methods, levels, motion)
     files.check_output()
-    fronts = progress(question.fronts(), "fronts", len(question.methods))
-    h = None if question.h is None else float(question.h)
-    rows = [row_in_seconds(FRONTS.fields, point, h) for front in fronts for point in front]
-    files.write(files.path("tradeoff", "predicted"), None, lambda: untimed_arrays(rows))
-    show_rows(FRONTS, rows)
-    show_text(combined_words(question.motion) + energy_words(question.motion))
+    points = [Placed(point, h) for front in progress(found, "fronts", len(methods)) for point in front]
+    files.write(files.path("tradeoff", "predicted"), None, lambda: table_arrays(FRONTS, points))
+    show_answers(FRONTS, points, [""] * len(points))
+    show_text(combined_words(motion) + energy_words(motion))

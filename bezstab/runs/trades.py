@@ -1,13 +1,12 @@
 """What accuracy costs: runs of many methods and steps, compared with one reference; and the least errors, predicted.
 
-scene, methods, steps, what holds the constraints   →   TradeQuestion   →   sweeps to run   →   SweptRuns
-methods, speeds of decay, a motion                  →   FrontQuestion   →   a front of least errors for each method
+scene, methods, steps, what holds the constraints   →   trade   →   Trade: sweeps to run   →   ranked   →   SweptRuns
+methods, speeds of decay, a motion                  →   front_motion, fronts   →   a front of least errors for each
 """
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cached_property
 from itertools import chain
 
 import numpy as np
@@ -18,15 +17,15 @@ from bezstab.errors import InputError
 from bezstab.mechanism.compiled_stepping import runs_compiled
 from bezstab.mechanism.scenes import Scene
 from bezstab.methods.schemes import Method
-from bezstab.questions import motions
+from bezstab.questions.motions import ReferenceMotion, motion_of, scene_at_speed
 from bezstab.rationals import exact
 from bezstab.runs.accuracy_costs import (
     NO_FEEDBACK,
     STEPS,
     Cost,
-    ReferenceRun,
     Sweep,
     SweptRuns,
+    ranked_runs,
     reference_run,
     swept_runs,
 )
@@ -36,147 +35,154 @@ from bezstab.stability.error_fronts import RATES, FrontPoint, error_front
 MOST_SWEPT = 10**6
 """Steps of a run: the reference takes up to 32 times as many."""
 
+MOST_REPEATS = 100
 
-@dataclass(frozen=True, kw_only=True)
-class TradeQuestion(motions.SceneQuestion):
-    """What errors do methods make over a `duration` (s) at each of some `steps` (s), and what does that cost?
+Treatment = tuple[tuple[float, float] | None, AfterStep]
+"""What holds the constraints: the point of feedback, None for the advised one; what is done after each step."""
+
+
+@dataclass(frozen=True)
+class Trade:
+    """The runs to make, of each method with each treatment, and how they are compared.
+
+    `scene`: the mechanism's name. `reference_error` (SI): how well the motion is known that runs are compared with.
+    `omega` (1/s): of the motion for which points are advised; None where none is. A trajectory error of `tolerance`
+    (m, rad) is good enough; costs are counted `against` evaluations, time or factorizations. `job`: all that results
+    depend on.
+    """
+
+    scene: str
+    sweeps: Sequence[Sweep]
+    reference_error: float
+    omega: Fraction | None
+    tolerance: Fraction
+    against: Cost
+    job: str
+
+
+def trade(
+    scene: str | Scene,
+    methods: Sequence[Method],
+    steps: Sequence[Fraction] = (),
+    *,
+    duration: Fraction,
+    speed: Fraction = Fraction(1),
+    numbers: Point | None = None,
+    physical: bool = False,
+    omega: Fraction | None = None,
+    stabilise: Stabilise | None = None,
+    iterations: int | None = None,
+    against: Cost = "evaluations",
+    repeats: int = 3,
+    tolerance: Fraction = Fraction("1e-6"),
+) -> Trade:
+    """Return which runs tell what errors methods make over a duration (s) at each of some steps (s), and their cost.
 
     The feedback is at `numbers` at every step, alpha_hat and beta_hat, or alpha and beta in 1/s with `physical`.
     Without numbers each step has its own point: that of the goal accurate, for a motion of rate `omega` (1/s), else for
-    the scene's own. A projection of so many `iterations` at most may `stabilise` runs in place of feedback. Costs are
-    counted `against` evaluations or time; against projection each run is made with feedback and with projection. Each
-    is timed `repeats` times. A trajectory error of `tolerance` (m, rad) is good enough. InputError for what does not go
-    together, and for a method whose states cannot be projected.
+    the scene's own. `stabilise` puts a projection of so many `iterations` at most in place of feedback, or nothing.
+    Against projection each run is made with feedback and with projection. Each is timed `repeats` times.
+
+    InputError for what does not go together, for a method whose states cannot be projected, and as `reference_run`.
     """
-
-    methods: Sequence[Method]
-    steps: Sequence[Fraction] = ()
-    duration: Fraction
-    numbers: Point | None = None
-    physical: bool = False
-    omega: Fraction | None = None
-    stabilise: Stabilise = "baumgarte"
-    iterations: int | None = None
-    against: Cost = "evaluations"
-    repeats: int = 3
-    tolerance: Fraction = Fraction("1e-6")
-
-    def __post_init__(self) -> None:
-        if self.omega is not None and self.numbers and self.against != "projection":
-            raise InputError("--omega does not go with --alpha and --beta: points are chosen for that motion")
-        # which refuses what does not go together
-        after_step("projection" if self.against == "projection" else self.stabilise, self.iterations)
-        longest = self.step_sizes[-1] * float(max(method.step_multiple for method in self.methods))
-        most = MOST_SWEPT * self.step_sizes[0]
-        if not longest <= self.duration <= most:
-            expected = f"one step ({longest:g} s) to {MOST_SWEPT:g} ({most:g} s)"
-            raise InputError(f"--time {float(self.duration):g}: expected {expected}")
-
-    @cached_property
-    def step_sizes(self) -> tuple[float, ...]:
-        """The steps (s), the shortest first."""
-        return tuple(sorted({float(step) for step in self.steps or STEPS}))
-
-    @cached_property
-    def treatments(self) -> list[tuple[tuple[float, float] | None, AfterStep]]:
-        """What holds the constraints: points of feedback, None for the advised one; what is done after each step."""
-        point = None if self.numbers is None else (float(self.numbers[0]), float(self.numbers[1]))
-        if self.against == "projection":
-            given = [(point, NOTHING)] if point else []
-            return [(None, NOTHING), *given, (NO_FEEDBACK, after_step("projection", self.iterations))]
-        after = after_step(self.stabilise, self.iterations)
-        return [(point if self.stabilise == "baumgarte" else NO_FEEDBACK, after)]
-
-    @cached_property
-    def rate(self) -> Fraction | None:
-        """The rate (1/s) of the motion for which points are advised; None where none is. Errors as `motion_of`."""
-        if all(point is not None for point, _ in self.treatments):
-            return None
-        shortest, longest = exact(self.step_sizes[0]), exact(self.step_sizes[-1])
-        motion = motions.motion_of(self.omega, self.scene, self.speed, shortest, longest, duration=self.duration)
-        return motion.omega_h / shortest
-
-    @cached_property
-    def reference(self) -> ReferenceRun:
-        """The motion that runs are compared with."""
-        return reference_run(self.moving, self.step_sizes[0], float(self.duration))
-
-    @property
-    def compiled(self) -> bool:
-        """Whether runs are compiled: all or none, so that their times can be compared.
-
-        By default none are where one method's runs together are not. InputError as `runs_compiled`.
-        """
-        user_steps = self.repeats * sum(float(self.duration) / h for h in self.step_sizes)
-        return all(
-            runs_compiled(method, round(user_steps / float(method.step_multiple)), after=after)
-            for method in self.methods
-            for _, after in self.treatments
-        )
-
-    @cached_property
-    def sweeps(self) -> list[Sweep]:
-        """The runs to make: of each method with each treatment."""
-        rate, of_all = self.rate, (self.moving, self.step_sizes, float(self.duration))
-        reference, compiled = self.reference, self.compiled
-        return [
-            Sweep(method, *of_all, point, self.physical, self.repeats, reference, rate, compiled, after)
-            for method in dict.fromkeys(self.methods)
-            for point, after in self.treatments
-        ]
-
-    def swept(self, measured: Sequence[Mapping[str, NDArray[np.generic]]]) -> SweptRuns:
-        """Return what the runs of all sweeps have measured, as `measured_runs` returns it for each, and the fronts."""
-        runs = chain.from_iterable(swept_runs(*each) for each in zip(self.sweeps, measured, strict=True))
-        return SweptRuns(list(runs), self.reference.error, float(self.tolerance), self.against)
-
-    @property
-    def basis(self) -> str:
-        """What runs are compared with, and for which motion points are chosen, in words."""
-        said = f"The reference is known to {self.reference.error:.0e} (m, rad)."
-        if self.rate is None:
-            return said
-        return f"{said} Each point is the choice of the goal accurate for a motion with ω = {float(self.rate):.3g} 1/s."
+    if against == "projection":
+        if stabilise is not None:
+            raise InputError("--stabilise does not go with --against projection: it has runs with and without feedback")
+    elif omega is not None and numbers:
+        raise InputError("--omega does not go with --alpha and --beta: points are chosen for that motion")
+    if stabilise not in (None, "baumgarte") and (numbers or omega is not None):
+        raise InputError(f"--stabilise {stabilise} has no feedback: leave out --alpha and --beta, or --omega")
+    if not 1 <= repeats <= MOST_REPEATS:
+        raise InputError(f"--repeats {repeats}: expected 1 to {MOST_REPEATS}")
+    treatments = _treatments(numbers, stabilise or "baumgarte", iterations, against)
+    sizes = tuple(sorted({float(step) for step in steps or STEPS}))
+    _check_duration(duration, sizes, methods)
+    moving = scene_at_speed(scene, speed)
+    rate = None
+    if any(point is None for point, _ in treatments):
+        shortest, longest = exact(sizes[0]), exact(sizes[-1])
+        rate = motion_of(omega, scene, speed, shortest, longest, duration=duration).omega_h / shortest
+    reference = reference_run(moving, sizes[0], float(duration))
+    compiled = _all_compiled(methods, treatments, repeats * sum(float(duration) / h for h in sizes))
+    sweeps = [
+        Sweep(method, moving, sizes, float(duration), point, physical, repeats, reference, rate, compiled, after)
+        for method in dict.fromkeys(methods)
+        for point, after in treatments
+    ]
+    asked = (tuple(methods), sizes, duration, treatments, physical, rate, repeats, against)
+    return Trade(moving.name, sweeps, reference.error, rate, tolerance, against, f"tradeoff {asked} {moving}")
 
 
-@dataclass(frozen=True, kw_only=True)
-class FrontQuestion:
-    """What is the least error that the feedback of some methods makes on a motion, for each speed of decay?
+def ranked(asked: Trade, measured: Sequence[Mapping[str, NDArray[np.generic]]]) -> SweptRuns:
+    """Return what the runs of all sweeps have measured, as `measured_runs` returns it for each, and the fronts."""
+    runs = chain.from_iterable(swept_runs(*each) for each in zip(asked.sweeps, measured, strict=True))
+    return ranked_runs(list(runs), asked.reference_error, float(asked.tolerance), asked.against)
 
-    The motion has a rate `omega` (1/s), or is that of a `scene`, `speed` times as fast as given there: both with the
-    one of the `steps` (s); without either it is the usual one. `levels` are the values of |z_p|. InputError for what
-    does not go together, and as `motion_of`.
+
+def basis_words(asked: Trade) -> str:
+    """Return what runs are compared with, and for which motion points are chosen."""
+    said = f"The reference is known to {asked.reference_error:.0e} (m, rad)."
+    if asked.omega is None:
+        return said
+    return f"{said} Each point is the choice of the goal accurate for a motion with ω = {float(asked.omega):.3g} 1/s."
+
+
+def _treatments(numbers: Point | None, stabilise: Stabilise, iterations: int | None, against: Cost) -> list[Treatment]:
+    """Return each way in which the constraints are held; InputError as `after_step`."""
+    point = None if numbers is None else (float(numbers[0]), float(numbers[1]))
+    if against == "projection":
+        given = [(point, NOTHING)] if point else []
+        return [(None, NOTHING), *given, (NO_FEEDBACK, after_step("projection", iterations))]
+    return [(point if stabilise == "baumgarte" else NO_FEEDBACK, after_step(stabilise, iterations))]
+
+
+def _check_duration(duration: Fraction, sizes: Sequence[float], methods: Sequence[Method]) -> None:
+    """Raise InputError for a duration (s) that is no step of some method, or too many of the shortest (s)."""
+    longest = sizes[-1] * float(max(method.step_multiple for method in methods))
+    most = MOST_SWEPT * sizes[0]
+    if not longest <= duration <= most:
+        expected = f"one step ({longest:g} s) to {MOST_SWEPT:g} ({most:g} s)"
+        raise InputError(f"--time {float(duration):g}: expected {expected}")
+
+
+def _all_compiled(methods: Sequence[Method], treatments: Sequence[Treatment], steps: float) -> bool:
+    """Return whether runs are compiled: all or none, so that their times can be compared.
+
+    By default none are where one method's runs together, of so many steps, are not. InputError as `runs_compiled`.
     """
+    return all(
+        runs_compiled(method, round(steps / float(method.step_multiple)), after=after)
+        for method in methods
+        for _, after in treatments
+    )
 
-    methods: Sequence[Method]
-    levels: Sequence[Fraction] = ()
-    omega: Fraction | None = None
-    scene: str | Scene | None = None
-    speed: Fraction = Fraction(1)
-    steps: Sequence[Fraction] = ()
 
-    def __post_init__(self) -> None:
-        if len(self.steps) > 1:
-            raise InputError(f"--predicted takes one --h, but {len(self.steps)} were given")
-        if wrong := [float(level) for level in self.levels if float(level) >= 1]:
-            raise InputError(f"--level {wrong[0]:g}: expected a |z_p| below 1, where errors decay")
-        if self.h and self.scene is None and self.omega is None:
-            needed = "they say how far the motion goes in a step"
-            raise InputError(f"--predicted with --h needs --omega or --scene: {needed}")
-        _ = self.motion
+def front_motion(
+    steps: Sequence[Fraction],
+    omega: Fraction | None = None,
+    scene: str | Scene | None = None,
+    speed: Fraction = Fraction(1),
+) -> ReferenceMotion:
+    """Return the motion on which fronts are told: of a rate omega (1/s), or of a scene; both with the one of the steps.
 
-    @property
-    def h(self) -> Fraction | None:
-        """The step (s), if there is one."""
-        return next(iter(self.steps), None)
+    Without either it is the usual one. InputError for what does not go together, and as `motion_of`.
+    """
+    if len(steps) > 1:
+        raise InputError(f"--predicted takes one --h, but {len(steps)} were given")
+    if steps and scene is None and omega is None:
+        needed = "they say how far the motion goes in a step"
+        raise InputError(f"--predicted with --h needs --omega or --scene: {needed}")
+    return motion_of(omega, scene, speed, next(iter(steps), None))
 
-    @cached_property
-    def motion(self) -> motions.ReferenceMotion:
-        """The motion on which errors are told."""
-        return motions.motion_of(self.omega, self.scene, self.speed, self.h)
 
-    def fronts(self) -> Iterator[list[FrontPoint]]:
-        """Yield the front of each method: a point for each level that it can reach."""
-        rates = [float(level) for level in self.levels] or RATES
-        for method in dict.fromkeys(self.methods):
-            yield error_front(method, rates, self.motion.omega_h)
+def fronts(
+    methods: Sequence[Method], levels: Sequence[Fraction], motion: ReferenceMotion
+) -> Iterator[list[FrontPoint]]:
+    """Return the front of each method: the point of least error for each |z_p| of the levels that it can reach.
+
+    InputError for a level of one and more.
+    """
+    if wrong := [float(level) for level in levels if float(level) >= 1]:
+        raise InputError(f"--level {wrong[0]:g}: expected a |z_p| below 1, where errors decay")
+    rates = [float(level) for level in levels] or RATES
+    return (error_front(method, rates, motion.omega_h) for method in dict.fromkeys(methods))

@@ -1,103 +1,112 @@
 """The command that holds predicted poles against measured ones: verify."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
+from fractions import Fraction
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
-from bezstab.cli.asking import asked, of_each, show_point
-from bezstab.cli.options import Rule, changed, command, flag, option
-from bezstab.cli.output import Files, Work, for_reading, progress, show_rows, show_text, worked_out
+from bezstab.cli import shared_options as shared
+from bezstab.cli.asking import of_each, say_if_units_were_mistaken
+from bezstab.cli.options import A_METHOD, METHOD, SCENE, SECONDS, TypedPoint
+from bezstab.cli.output import Files, for_reading, progress, show_answers, show_tables, show_text, worked_out
 from bezstab.methods.schemes import Method
+from bezstab.runs import options
+from bezstab.runs.options import USUAL_STEP, Work
 
-if TYPE_CHECKING:
-    from bezstab.runs.verifying import VerifyQuestion
-    from bezstab.show.fields import Row
-
-WHICH_POINTS = ("--alpha", "--points", "--map")
-"""Options each of which says what is verified."""
+if TYPE_CHECKING:  # so that `bezstab --help`, which lists this command, loads nothing that computes
+    from bezstab.mechanism.scenes import Scene
+    from bezstab.runs.verdict_maps import VerdictMap
 
 
-@command(
-    changed("scene", default="slider_crank"),
-    "speed",
-    changed("methods", default=["B4"]),
-    "point",
-    option(
-        "--points",
-        click.IntRange(1, 1000),
-        "Verify so many points, spread over the region and around it, instead of one at --alpha and --beta [20].",
-    ),
-    option("--map across", click.IntRange(2, 10000), "Simulate N×N points, and draw their verdicts."),
-    flag("--floquet", "Also predict exactly, for a motion that repeats itself, by linearising its steps."),
-    changed("h", default="0.001"),
-    "shared_out",
-    Rule(WHICH_POINTS, "each says which points are verified", excludes=WHICH_POINTS),
-)
-def verify(across: int | None, work: Work, files: Files, **typed: Any) -> int:
+@click.command()
+@click.option("--scene", type=SCENE, default="slider_crank", help="A shipped scene's name, or a .toml file.")
+@shared.speed
+@click.option("--method", "methods", type=METHOD, multiple=True, default=["B4"], help=f"{A_METHOD} Repeatable.")
+@shared.point
+@click.option("--h", "given_h", type=SECONDS, help="Step size in s [0.001].")
+@click.option("--points", type=int, help="Without a point: so many, spread over the region and around it [20].")
+@click.option("--map", "across", type=int, help="Simulate N×N points, and draw their verdicts.")
+@click.option("--floquet", is_flag=True, help="Also predict exactly, for a motion that repeats itself.")
+@shared.compiled
+@options.shared_work
+@click.option("--table", type=click.Choice(shared.TABLES), default="csv", help="Format of the table of a map.")
+@click.option("--figure", type=click.Choice(shared.FIGURES), default="png", help="Format of the figure of a map.")
+@shared.output
+@shared.form
+@shared.every_column
+def verify(
+    scene: str,
+    speed: Fraction,
+    methods: Sequence[Method],
+    alpha: Fraction | None,
+    beta: Fraction | None,
+    physical: bool,
+    given_h: Fraction | None,
+    points: int | None,
+    across: int | None,
+    floquet: bool,
+    workers: int | None,
+    scheduler: str | None,
+    resume: bool,
+    output: Path,
+    figure: str,
+    table: str,
+    **_: object,
+) -> int:
     """Compare predicted poles with poles measured in a simulation.
 
-    Two runs start with opposite kicks. The dominant pole is fitted to their difference. If no pole can be measured, the
-    row says why. For a mechanism that moves there are several predictions: that of the map, for a mechanism at rest;
-    bounds for the motion; and with --floquet the exact one.
+    Two runs start with opposite kicks. The dominant pole is fitted to their difference. A mechanism that moves has
+    several predictions: that of the map, for a mechanism at rest; bounds for the motion; with --floquet the exact one.
 
-    --map runs a simulation at each of N×N points and draws the verdicts under the exact boundary. --workers or
-    --scheduler share the work. --resume continues a run that was stopped.
+    --map runs a simulation at each of N×N points and draws the verdicts under the exact boundary.
 
     Example: bezstab verify --method AB4 --points 20
     """
+    from bezstab.mechanism.equations import compiled_mechanism
+    from bezstab.questions.motions import scene_at_speed
+    from bezstab.runs.columns import MEASURED, SUMMARY, VERDICT_MAP, Measured
+    from bezstab.runs.measured_poles import measurement_summary
+    from bezstab.runs.sentences import exact_rate_words, measurement_sentence, verdict_map_sentence
+    from bezstab.runs.verifying import check_points, measurements
 
-    from bezstab.runs.verifying import VerifyQuestion
-    from bezstab.show.row_kinds import VERDICT_MAPS
-
-    question = asked(VerifyQuestion, **typed)
-    worked_out(lambda: question.mechanism, typed["scene"])
+    typed, h = TypedPoint(alpha, beta, physical), given_h or USUAL_STEP
+    point = typed.at(h)
+    check_points(point, points, across)
+    moving = scene_at_speed(scene, speed)
+    mechanism = worked_out(lambda: compiled_mechanism(moving), scene)
     if across:
-        rows, status = of_each(question.methods, lambda method: [_write_map(question, method, across, work, files)])
-        show_rows(VERDICT_MAPS, rows)
+        size, work, files = across, Work(workers, scheduler, resume), Files(output, figure, table)
+        maps, status = of_each(methods, lambda method: [_map(scene, moving, method, float(h), size, work, files)])
+        show_answers(VERDICT_MAP, maps, [verdict_map_sentence(found) for found in maps])
         return status
-    _show_measurements(question, typed)
+    say_if_units_were_mistaken(methods, typed, given_h)
+    of_methods = [
+        measurements(mechanism, method, h, point, points, floquet=floquet) for method in progress(methods, "verify")
+    ]
+    measured = [Measured(moving.name, found) for of_method in of_methods for found in of_method]
+    show_answers(MEASURED, measured, [measurement_sentence(each.found, float(h)) for each in measured])
+    if for_reading():
+        for of_method in of_methods if floquet else ():
+            show_text(f"\n{exact_rate_words(of_method[0])}")
+        if len(measured) > len(of_methods):  # of one point each there is nothing to sum up
+            show_tables([(SUMMARY, [measurement_summary(each) for each in of_methods])], every_column=True)
     return 0
 
 
-def _show_measurements(question: VerifyQuestion, typed: dict[str, Any]) -> None:
-    """Print the poles measured at one point, else at random ones, and where there are several how well they agree."""
-
-    from bezstab.runs.measured_poles import measurement_summary
-    from bezstab.runs.sentences import exact_rate_words
-    from bezstab.show.row_kinds import MEASUREMENTS, SUMMARIES
-
-    scene, floquet = question.mechanism.scene.name, question.floquet
-    measured = [question.measurements(method) for method in progress(question.methods, "verify")]
-    rows = [MEASUREMENTS.row(each, scene=scene) for of_method in measured for each in of_method]
-    show_point(typed, question.point)
-    show_rows(MEASUREMENTS, rows, () if floquet else ("right",))
-    if not for_reading():
-        return
-    for of_method in measured if floquet else ():
-        show_text(exact_rate_words(of_method[0]))
-    if len(rows) > len(measured):  # of one point each there is nothing to sum up
-        click.echo()
-        summaries = map(measurement_summary, measured)
-        show_rows(SUMMARIES, map(SUMMARIES.row, summaries), () if floquet else ("followed",))
-
-
-def _write_map(question: VerifyQuestion, method: Method, across: int, work: Work, files: Files) -> Row:
-    """Simulate across x across runs of a method, write their verdicts as table and figure, return how many agree."""
-
+def _map(name: str, scene: "Scene", method: Method, h: float, across: int, work: Work, files: Files) -> "VerdictMap":
+    """Return across x across simulated verdicts of a method at steps of h (s), once table and figure are written."""
     from bezstab.runs.figures import verdict_figure
     from bezstab.runs.shared_work import results_of_chunks
     from bezstab.runs.tables import verdict_arrays
     from bezstab.runs.verdict_maps import map_rows, simulated_verdicts, verdict_map
-    from bezstab.show.row_kinds import VERDICT_MAPS
     from bezstab.stability.regions import region
 
-    scene, h = question.mechanism.scene, float(question.h)
-    path = files.path("verify", str(question.scene), method.name)
+    path = files.path("verify", name, method.name)
     chunks = map_rows(scene, method, h, across)
     job = f"verify --map {across} --h {h} {method} {scene}"
     with results_of_chunks(simulated_verdicts, chunks, path, job, work) as results:
-        verdicts = verdict_map(chunks, results)
-        files.write(path, lambda: verdict_figure(verdicts, region(method)), lambda: verdict_arrays(verdicts))
-    return VERDICT_MAPS.row(verdicts)
+        found = verdict_map(chunks, results)
+        files.write(path, lambda: verdict_figure(found, region(method)), lambda: verdict_arrays(found))
+    return found

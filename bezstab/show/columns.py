@@ -34,7 +34,7 @@ class Column(Generic[Answer_contra]):
 
     def text(self, answer: Answer_contra) -> str:
         """Return what a table shows of an answer, on one line; a dash where there is no value."""
-        return visible(formatted(self.value(answer), self.form))
+        return visible(formatted(_finite(self.value(answer)), self.form))
 
 
 def of_part(part: Callable[[Answer], Part | None], columns: Sequence[Column[Part]]) -> list[Column[Answer]]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from fractions import Fraction
 from itertools import chain, compress
 from types import SimpleNamespace
@@ -34,7 +33,6 @@ from bezstab.show.row_kinds import (
     SWEEPS,
     SWEPT_OVER,
 )
-from bezstab.units import alpha_and_beta
 
 OF_A_MOTION = ("total_error", "velocity_error", "times_least", "times_least_velocity")
 OF_ONE_ALONE = (
@@ -50,7 +48,6 @@ if TYPE_CHECKING:  # so that a small row does not load what makes the large ones
     from bezstab.questions.answering import Answer, LargestStep
     from bezstab.questions.question import Question
     from bezstab.questions.regions import MapAnswer, RegionAnswer
-    from bezstab.stability.error_fronts import FrontPoint
 
 
 def pole_cells(z: complex) -> dict[str, Value]:
@@ -155,12 +152,6 @@ def _nowhere(answer: RegionAnswer) -> str | None:
     if answer.falls_towards is not None:
         return f"none: {falling_words(answer.falls_towards)}"
     return None
-
-
-def row_in_seconds(fields: Sequence[Field], point: FrontPoint, h: float | None) -> Row:
-    """Return the row of a point with a step (s), and with alpha and beta (1/s); None without a step."""
-    alpha, beta = alpha_and_beta(point.alpha_hat, point.beta_hat, h)
-    return cells(fields, point, {"h": h, "alpha": alpha, "beta": beta})
 
 
 def engine_row(

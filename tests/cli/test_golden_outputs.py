@@ -29,7 +29,7 @@ class Tolerance:
 
 
 TOLERANCES = (
-    Tolerance("verify", "measured_z_angle_deg|difference_z_angle_deg", 1e-6, 1e-3, "as below: 1e-5 of |z|, in degrees"),
+    Tolerance("verify", "measured_z_angle_deg", 1e-6, 1e-3, "as below: 1e-5 of |z|, in degrees"),
     Tolerance(
         "verify",
         "measured_z_.*|difference_z_.*",

@@ -81,7 +81,7 @@ def test_numbers_that_would_settle_in_seconds_are_asked_about_where_a_step_was_t
     for simulated in ("verify --scene pendulum", "simulate --time 0.02 --figure none --table none"):
         result = run(simulated, f"--method SYM --h 0.01 --alpha {number} --beta {number}")
         assert note in result.stderr.splitlines()
-        assert result.stdout.startswith(f"α̂ = {number}, β̂ = {number} (α = ")
+        assert result.stdout.startswith(f"SYM at α̂ = {number}, β̂ = {number} (α = ")
 
 
 def test_alpha_hat_and_beta_hat_are_taken_as_typed_without_a_step() -> None:

@@ -14,16 +14,15 @@ from bezstab.methods.registry import lookup
 from bezstab.methods.schemes import evaluations
 from bezstab.rationals import exact
 from bezstab.runs.accuracy_costs import (
-    METHODS,
     NO_FEEDBACK,
     Cost,
-    ErrorOf,
-    SweptRuns,
     measured_runs,
     pareto_front,
+    ranked_runs,
     reference_run,
     swept_runs,
 )
+from bezstab.runs.tradeoff_command import METHODS
 from bezstab.stabilising import after_step
 from bezstab.stability.choices import choose
 from tests.reference.undominated import Point, undominated
@@ -131,12 +130,10 @@ def test_a_run_that_fails_is_kept_and_says_so() -> None:
 def test_a_sweep_knows_its_fronts(against: Cost) -> None:
     runs = [*swept("B2", (0.004, 0.0125), SOFT), *swept("AB4", (0.004, 0.0125), SOFT)]
     assert any(run.failure for run in runs)  # AB4 at the larger step
-    whole = SweptRuns(runs, reference().error, 1e-6, against)
-    of: ErrorOf
-    for of, letter in (("trajectory", "T"), ("constraint", "c")):
-        front, points = whole.front(of), [(run.cost(against), run.error(of)) for run in runs]
+    whole = ranked_runs(runs, reference().error, 1e-6, against)
+    for of, front in whole.fronts.items():
+        points = [(run.cost(against), run.error(of)) for run in runs]
         assert {points[index] for index in front} == undominated(points)
-        assert [index for index, label in enumerate(whole.front_labels) if letter in label] == sorted(front)
 
 
 points_of_a_sweep = st.lists(st.tuples(st.floats(1, 9), st.one_of(st.none(), st.floats(1, 9))))

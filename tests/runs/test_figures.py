@@ -10,7 +10,7 @@ from bezstab.mechanism.equations import compiled_mechanism
 from bezstab.mechanism.scene_files import load_scene
 from bezstab.mechanism.simulation import simulated
 from bezstab.methods.registry import lookup
-from bezstab.runs.accuracy_costs import Cost, ErrorOf, Run, SweptRuns
+from bezstab.runs.accuracy_costs import Cost, ErrorOf, Run, ranked_runs
 from bezstab.runs.figures import history_figure, projection_figure, work_precision_figure
 from bezstab.runs.tables import history_arrays
 from tests.show.drawn import lines_of
@@ -34,7 +34,7 @@ RUNS = [
 
 @pytest.mark.parametrize(("error", "against"), [("constraint", "evaluations"), ("trajectory", "time")])
 def test_the_work_precision_figure_has_every_run_and_rings_the_front(error: ErrorOf, against: Cost) -> None:
-    (axes,) = work_precision_figure(SweptRuns(RUNS, 0.0, 6e-3, against), "made up", error).axes
+    (axes,) = work_precision_figure(ranked_runs(RUNS, 0.0, 6e-3, against), "made up", error).axes
     scale = [1 if against == "evaluations" else 1e-3, 0.1 if error == "constraint" else 1]
     lines = lines_of(axes)
     for name, places in {
@@ -60,7 +60,7 @@ def test_the_projection_figure_shows_all_three_errors_of_every_way_to_hold_the_c
         for method in ("B2", "SYM")
         for number, (stabilise, advised) in enumerate(ways)
     ]
-    figure = projection_figure(SweptRuns(runs, 0.0, 0.1, "projection"), "made up")
+    figure = projection_figure(ranked_runs(runs, 0.0, 0.1, "projection"), "made up")
     assert lines_of(figure.axes[0])["cheapest: B2, h = 0.02 s"].tolist() == [[22, 0.1]]
     for axes, share in zip(figure.axes, (1, 0.1, 2), strict=True):
         of_runs = [line for line in axes.lines if str(line.get_label()).startswith(("B2", "SYM"))]

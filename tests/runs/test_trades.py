@@ -1,36 +1,35 @@
 from dataclasses import replace
 from fractions import Fraction
+from functools import partial
 
 import pytest
 
 from bezstab.methods.registry import lookup
 from bezstab.runs.accuracy_costs import NO_FEEDBACK, measured_runs
-from bezstab.runs.trades import FrontQuestion, TradeQuestion
+from bezstab.runs.trades import front_motion, fronts, ranked, trade
 from bezstab.stabilising import NOTHING, after_step
 from bezstab.stability.closed_loop import spectral_radius
 
+ONE = Fraction(1)
 SYM = lookup("SYM")
-QUESTION = TradeQuestion(
-    scene="pendulum",
-    methods=(SYM,),
-    steps=(Fraction("0.02"), Fraction("0.01")),
-    duration=Fraction("0.1"),
-    numbers=(Fraction(1), Fraction("0.5")),
-    repeats=1,
+POINT = (Fraction(1), Fraction("0.5"))
+small = partial(
+    trade, "pendulum", (SYM,), (Fraction("0.02"), Fraction("0.01")), duration=Fraction("0.1"), numbers=POINT, repeats=1
 )
 
 
 def test_against_projection_each_method_runs_with_feedback_and_with_projection() -> None:
-    assert QUESTION.treatments == [((1, 0.5), NOTHING)]
-    (advised, given, projected) = replace(QUESTION, against="projection").treatments
+    asked = small()
+    assert [(sweep.point, sweep.after) for sweep in asked.sweeps] == [((1, 0.5), NOTHING)]
+    assert asked.omega is None  # no point is advised
+    (advised, given, projected) = ((each.point, each.after) for each in small(against="projection", omega=ONE).sweeps)
     assert (advised, given) == ((None, NOTHING), ((1, 0.5), NOTHING))
     assert projected == (NO_FEEDBACK, after_step("projection"))
-    assert QUESTION.rate is None  # no point is advised
 
 
 def test_smaller_steps_cost_more_and_err_less() -> None:
-    swept = QUESTION.swept([measured_runs(sweep) for sweep in QUESTION.sweeps])
-    larger, smaller = swept.runs
+    asked = small()
+    larger, smaller = ranked(asked, [measured_runs(sweep) for sweep in asked.sweeps]).runs
     assert (larger.h, smaller.h) == (0.02, 0.01)
     assert larger.evaluations < smaller.evaluations
     assert larger.trajectory_error
@@ -39,15 +38,16 @@ def test_smaller_steps_cost_more_and_err_less() -> None:
 
 
 def test_the_cheapest_within_the_tolerance_takes_the_largest_step_that_is_good_enough() -> None:
-    measured = [measured_runs(sweep) for sweep in QUESTION.sweeps]
-    larger, smaller = (run.trajectory_error or 0.0 for run in QUESTION.swept(measured).runs)
+    asked = small()
+    measured = [measured_runs(sweep) for sweep in asked.sweeps]
+    larger, smaller = (run.trajectory_error or 0.0 for run in ranked(asked, measured).runs)
     for tolerance, h in ((larger, 0.02), (smaller, 0.01), (smaller / 2, None)):
-        cheapest = replace(QUESTION, tolerance=Fraction(tolerance)).swept(measured).cheapest
+        cheapest = ranked(replace(asked, tolerance=Fraction(tolerance)), measured).cheapest
         assert (cheapest.h if cheapest else None) == h
 
 
 def test_a_front_has_the_speeds_that_were_asked_for() -> None:
-    (front,) = FrontQuestion(methods=(SYM,), levels=(Fraction("0.9"),)).fronts()
+    (front,) = fronts((SYM,), (Fraction("0.9"),), front_motion(()))
     found = [float(spectral_radius(SYM, point.alpha_hat, point.beta_hat)) for point in front]
     assert found[0] == pytest.approx(0.9, abs=1e-6)
 
@@ -64,5 +64,5 @@ def test_all_runs_of_a_sweep_are_compiled_or_none(monkeypatch: pytest.MonkeyPatc
     ):
         monkeypatch.setenv("BEZSTAB_COMPILED", choice)
         steps = Fraction("0.001"), Fraction(least_step)
-        question = TradeQuestion(scene="pendulum", methods=methods, steps=steps, duration=Fraction(1))
-        assert question.compiled is expected
+        asked = trade("pendulum", methods, steps, duration=ONE, numbers=POINT)
+        assert {sweep.compiled for sweep in asked.sweeps} == {expected}

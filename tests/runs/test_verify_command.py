@@ -6,7 +6,7 @@ from tests.cli.running import rows, run
 def test_what_is_thrown_apart_at_once_diverges_and_seconds_are_understood() -> None:
     at = "verify --scene pendulum --method RK4"
     (gone,) = rows(at, "--alpha 14217 --beta 16544")  # |z| = 1.7e15: nothing stays finite
-    assert (gone["measurable"], gone["measured_verdict"], gone["verdicts_agree"]) == (False, "diverges", True)
+    assert (gone["measured_z_abs"], gone["measured_verdict"], gone["verdicts_agree"]) == (None, "diverges", True)
     # alpha = 400 1/s and beta = 500 1/s: alpha_hat = 2 alpha h, beta_hat = (beta h)^2
     (in_seconds,) = rows(at, "--alpha 400 --beta 500 --h 0.001 --physical")
     assert (in_seconds["alpha_hat"], in_seconds["beta_hat"]) == (0.8, 0.25)

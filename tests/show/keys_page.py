@@ -10,6 +10,7 @@ from bezstab.chains import columns as chains
 from bezstab.drives import columns as drives
 from bezstab.mujoco import columns as mujoco
 from bezstab.probes import columns as probes
+from bezstab.runs import columns as runs
 from bezstab.show.columns import Column
 from bezstab.show.row_kinds import ROW_KINDS
 from bezstab.step_sequences import columns as step_sequences
@@ -21,7 +22,10 @@ COLUMNS: Mapping[str, Sequence[Sequence[Column[Any]]]] = {
     "drive": [drives.COLUMNS],
     "lint": [mujoco.STATES, mujoco.SUSPECTS, mujoco.REMEDIES, mujoco.ENERGIES, mujoco.SAGS, mujoco.SETTINGS],
     "probe": [probes.POLES, probes.COMPARED, probes.FOUND],
+    "simulate": [runs.RUN],
     "steps": [step_sequences.COLUMNS],
+    "tradeoff": [runs.COSTS, runs.FRONTS],
+    "verify": [runs.MEASURED, runs.VERDICT_MAP],
 }
 """The columns that each command prints."""
 

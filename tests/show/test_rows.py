@@ -17,7 +17,6 @@ from bezstab.methods.registry import lookup
 from bezstab.questions.answering import answers
 from bezstab.questions.question import Question
 from bezstab.questions.regions import region_answer
-from bezstab.runs.tables import untimed_arrays
 from bezstab.show import row_kinds
 from bezstab.show.arrays import write_arrays
 from bezstab.show.cells import LIMITS, pole_text, safe_step_text
@@ -115,13 +114,6 @@ def test_written_arrays_come_back_exactly(form: Literal["csv", "npz"]) -> None:
     for name, array in arrays.items():
         assert back.pop(name).astype(array.dtype).tolist() == array.tolist()
     assert not back
-
-
-def test_tables_of_rows_leave_out_times_and_say_what_is_missing_by_its_kind() -> None:
-    arrays = untimed_arrays([{"seconds": 1.0, "order": None, "failure": None}])
-    assert list(arrays) == ["order", "failure"]
-    assert np.isnan(arrays["order"].astype(float)).all()
-    assert arrays["failure"].tolist() == [""]
 
 
 def test_a_table_of_a_given_point_leaves_out_errors_on_a_motion_that_nobody_gave() -> None:

@@ -1,0 +1,365 @@
+"""What is printed of runs: the columns of simulate, verify and tradeoff."""
+
+from collections.abc import Sequence
+from fractions import Fraction
+from typing import NamedTuple
+
+from bezstab.mechanism.simulation import Simulation
+from bezstab.runs.accuracy_costs import Run, SweptRuns
+from bezstab.runs.measured_poles import Measurement, MeasurementSummary
+from bezstab.runs.verdict_maps import VerdictMap
+from bezstab.show.cells import modulus_words
+from bezstab.show.columns import Column, pole_columns
+from bezstab.show.fields import formatted
+from bezstab.stability.error_fronts import FrontPoint
+from bezstab.units import alpha_and_beta
+
+RUN: Sequence[Column[Simulation]] = (
+    Column("scene", "scene", lambda run: run.mechanism.scene.name, "name of the scene"),
+    Column("method", "method", lambda run: run.method.name, "integration method"),
+    Column("held by", "stabilise", lambda run: run.stabilise, "what holds the constraints"),
+    Column("α̂", "alpha_hat", lambda run: run.alpha_hat, "2αh"),
+    Column("β̂", "beta_hat", lambda run: run.beta_hat, "β²h²"),
+    Column("h (s)", "h", lambda run: run.h, "step", "s"),
+    Column("until (s)", "time", lambda run: float(run.t[-1]), "when the run ended", "s"),
+    Column("largest |c| (m, rad)", "c_max", lambda run: run.c_max, "largest constraint error", "m or rad", ".2e"),
+    Column(
+        "largest |ċ| (m/s, rad/s)",
+        "cdot_max",
+        lambda run: run.cdot_max,
+        "largest rate of the constraint error",
+        "m/s or rad/s",
+        ".2e",
+        True,
+    ),
+    Column(
+        "energy drift (J)",
+        "energy_drift",
+        lambda run: float(run.energy_drift[-1]),
+        "change of energy that is not the work of drivers and forces",
+        "J",
+        ".2e",
+        True,
+    ),
+    Column(
+        "of it work of multipliers (J)",
+        "multiplier_work",
+        lambda run: float(run.multiplier_work[-1]),
+        "part of the drift: work of the multipliers on the constraint error, which the feedback decides",
+        "J",
+        ".2e",
+        True,
+    ),
+    Column(
+        "work of drivers (J)", "driver_work", lambda run: float(run.driver_work[-1]), "work of the drivers", "J", ".3e"
+    ),
+    Column("work of forces (J)", "force_work", lambda run: float(run.force_work[-1]), "of applied forces", "J", ".3e"),
+    Column("evaluations", "run_evaluations", lambda run: run.evaluations, "evaluations of the right-hand side"),
+    Column(
+        "factorizations",
+        "factorizations",
+        lambda run: run.factorizations,
+        "factorizations of C_q M⁻¹ C_qᵀ: one for each evaluation, and those of projections",
+    ),
+    Column(
+        "least pivot",
+        "least_pivot",
+        lambda run: run.least_pivot,
+        "least relative pivot of C_q M⁻¹ C_qᵀ; small near a singular configuration",
+        form=".1e",
+    ),
+    Column("least pivot at (s)", "pivot_time", lambda run: run.pivot_time, "when that pivot was least", "s"),
+    Column(
+        "Newton's iterations", "iterations", lambda run: run.iterations, "in the whole run; null for an explicit method"
+    ),
+    Column(
+        "singular passages",
+        "singular_passages",
+        lambda run: int(run.singular_times.size),
+        "singular configurations that the run went through",
+    ),
+    Column("failure", "failure", lambda run: run.failure, "why the run ended early; null if it did not", brief=True),
+)
+
+
+class Measured(NamedTuple):
+    """A measured pole of a scene's run."""
+
+    scene: str
+    found: Measurement
+
+
+def _predicted(it: Measured) -> complex | None:
+    return it.found.predicted
+
+
+def _measured(it: Measured) -> complex | None:
+    return it.found.measured
+
+
+MEASURED: Sequence[Column[Measured]] = (
+    Column("", "scene", lambda it: it.scene, "name of the scene"),
+    Column("method", "method", lambda it: it.found.method.name, "integration method", apart=True),
+    Column("α̂", "alpha_hat", lambda it: it.found.alpha_hat, "2αh", apart=True),
+    Column("β̂", "beta_hat", lambda it: it.found.beta_hat, "β²h²", apart=True),
+    *pole_columns(_predicted, "predicted", "predicted for the mechanism at rest", brief=True),
+    Column(
+        "|z| at most",
+        "z_abs_at_most",
+        lambda it: it.found.moving.at_most,
+        "what a step multiplies an error by over the motion, at most; null where two poles nearly meet",
+        form=".6f",
+    ),
+    Column("", "moving_verdict", lambda it: it.found.moving.verdict, "what errors do on the moving mechanism"),
+    Column(
+        "|z| over the motion",
+        "floquet_z_abs",
+        lambda it: it.found.floquet_abs,
+        "modulus per step of the linearised steps over the motion that the method makes: exact where that begins anew, "
+        "else a growth over the run; null without --floquet",
+        form=".6f",
+        brief=True,
+    ),
+    *pole_columns(_measured, "measured", "measured in the simulation", brief=True),
+    Column(
+        "difference of |z|",
+        "difference_z_abs",
+        lambda it: it.found.difference_abs,
+        "modulus measured less that predicted; null where nothing was measured",
+        form="+.1e",
+        brief=True,
+    ),
+    Column("predicted verdict", "predicted_verdict", lambda it: it.found.predicted_verdict, "of the mechanism at rest"),
+    Column("measured verdict", "measured_verdict", lambda it: it.found.measured_verdict, "of the run", apart=True),
+    Column(
+        "verdicts agree",
+        "verdicts_agree",
+        lambda it: it.found.verdicts_agree,
+        "whether predicted and measured verdict agree; null where either is not settled",
+        form="NO",
+        apart=True,
+    ),
+    Column(
+        "whose verdict was right",
+        "right",
+        lambda it: it.found.right,
+        "which predictions have the measured verdict: at rest, in motion, exact (or over the run)",
+    ),
+    Column(
+        "remark",
+        "reason",
+        lambda it: it.found.reason,
+        "why nothing could be measured, or what disturbs it; empty where nothing does",
+        apart=True,
+    ),
+)
+
+SUMMARY: Sequence[Column[MeasurementSummary]] = (
+    Column("method", "", lambda found: found.method.name, ""),
+    Column("points", "", lambda found: found.points, ""),
+    Column("measured points", "", lambda found: found.measured, ""),
+    Column("median error of |z|", "", lambda found: found.median_error, "", form=".1e"),
+    Column("largest error of |z|", "", lambda found: found.largest_error, "", form=".1e"),
+    Column("verdicts called", "", lambda found: found.called, ""),
+    Column("wrong verdicts", "", lambda found: found.wrong, ""),
+)
+"""How well the measured poles of a method agree with the predicted ones: for people, who read several points."""
+
+VERDICT_MAP: Sequence[Column[VerdictMap]] = (
+    Column("scene", "scene", lambda found: found.scene.name, "name of the scene"),
+    Column("method", "method", lambda found: found.method.name, "integration method", apart=True),
+    Column("h (s)", "h", lambda found: found.h, "step", "s"),
+    Column("runs", "runs", lambda found: found.undecided.size, "number of runs", brief=True),
+    Column("steps of the run", "run_steps", lambda found: found.run, "steps of each run"),
+    Column("gave a verdict", "judged_runs", lambda found: found.judged, "runs that gave a verdict", brief=True),
+    Column("as predicted", "agreeing", lambda found: found.agreeing, "runs with the predicted verdict", brief=True),
+    Column(
+        "too close to call: | |z_p| - 1 | below",
+        "band",
+        lambda found: found.band,
+        "distance of the modulus from one below which a verdict is too close to call",
+    ),
+    Column(
+        "too close, or moved by so much",
+        "too_close",
+        lambda found: found.close_runs,
+        "runs so close to one, or closer than the motion moves the predicted pole",
+    ),
+    Column(
+        "largest | |z_p| - 1 | that disagrees",
+        "farthest",
+        lambda found: found.farthest_disagreement,
+        "largest distance of the modulus from one of a run that disagrees; null if none does",
+        form=".2e",
+    ),
+    Column(
+        "disagreeing, not too close",
+        "disagreeing",
+        lambda found: found.disagreements_beyond_band,
+        "runs not too close to call that disagree",
+        brief=True,
+    ),
+)
+
+
+class Ranked(NamedTuple):
+    """A run among all that are compared."""
+
+    run: Run
+    front: str
+    cheapest: bool
+
+
+def ranked_rows(swept: SweptRuns) -> list[Ranked]:
+    """Return each run with the fronts on which it is: T by trajectory error, c by constraint error."""
+    letters = {"T": swept.fronts["trajectory"], "c": swept.fronts["constraint"]}
+    return [
+        Ranked(run, " ".join(letter for letter, front in letters.items() if place in front), run is swept.cheapest)
+        for place, run in enumerate(swept.runs)
+    ]
+
+
+COSTS: Sequence[Column[Ranked]] = (
+    Column("method", "method", lambda it: it.run.method.name, "integration method", brief=True),
+    Column("held by", "stabilise", lambda it: it.run.stabilise, "what holds the constraints"),
+    Column("advised", "advised", lambda it: it.run.advised, "whether the point is the choice of the goal accurate"),
+    Column("h (s)", "h", lambda it: it.run.h, "step", "s", brief=True),
+    Column("α̂", "alpha_hat", lambda it: it.run.alpha_hat, "2αh", brief=True),
+    Column("β̂", "beta_hat", lambda it: it.run.beta_hat, "β²h²", brief=True),
+    Column("|z_p|", "z_abs", lambda it: it.run.z_abs, "modulus of the dominant pole", form=modulus_words),
+    Column(
+        "trajectory error (m, rad)",
+        "",
+        lambda it: "diverged" if it.run.failure else formatted(it.run.trajectory_error, ".2e"),
+        "",
+        brief=True,
+    ),
+    Column(
+        "",
+        "trajectory_error",
+        lambda it: it.run.trajectory_error,
+        "largest error of the coordinates; null if the run failed",
+        "m or rad",
+    ),
+    Column(
+        "order seen",
+        "observed_order",
+        lambda it: it.run.order,
+        "order of accuracy between this and the next larger step; null where none can be told",
+        form=".2f",
+    ),
+    Column("largest |c| (m, rad)", "c_max", lambda it: it.run.c_max, "of the run", "m or rad", ".2e", True),
+    Column(
+        "measured |c|",
+        "measured_error",
+        lambda it: it.run.measured_error,
+        "largest constraint error in the later half of the run; null if it failed",
+        "m or rad",
+        ".2e",
+    ),
+    Column(
+        "predicted |c|",
+        "predicted_error",
+        lambda it: it.run.predicted_error,
+        "the same as predicted, with nothing fitted; null where errors do not decay, or the motion cannot be followed",
+        "m or rad",
+        ".2e",
+    ),
+    Column(
+        "measured work (J)",
+        "measured_work",
+        lambda it: it.run.measured_work,
+        "work of the multipliers on constraint errors in the later half of the run, which its energy gains",
+        "J",
+        ".2e",
+    ),
+    Column(
+        "predicted work (J)",
+        "predicted_work",
+        lambda it: it.run.predicted_work,
+        "that work as predicted to leading order; null where predicted_error is",
+        "J",
+        ".2e",
+    ),
+    Column("rms c (m, rad)", "c_rms", lambda it: it.run.c_rms, "root mean square of the error", "m or rad", ".1e"),
+    Column("largest |ċ| (m/s, rad/s)", "cdot_max", lambda it: it.run.cdot_max, "of the run", "m/s or rad/s", ".2e"),
+    Column(
+        "rms ċ (m/s, rad/s)", "cdot_rms", lambda it: it.run.cdot_rms, "root mean square of ċ", "m/s or rad/s", ".1e"
+    ),
+    Column(
+        "energy drift (J)",
+        "energy_drift",
+        lambda it: it.run.energy_drift,
+        "change of energy that is not the work of drivers and forces",
+        "J",
+        ".2e",
+    ),
+    Column("evaluations", "run_evaluations", lambda it: it.run.evaluations, "of the right-hand side", brief=True),
+    Column("factorizations", "factorizations", lambda it: it.run.factorizations, "of C_q M⁻¹ C_qᵀ"),
+    Column("time (s)", "seconds", lambda it: it.run.seconds, "processor time, median of repeats", "s", ".3g", True),
+    Column("least time (s)", "seconds_min", lambda it: it.run.seconds_min, "least of the repeats", "s", ".3g"),
+    Column("largest time (s)", "seconds_max", lambda it: it.run.seconds_max, "largest of the repeats", "s", ".3g"),
+    Column(
+        "front",
+        "front",
+        lambda it: it.front,
+        "T if no run is both cheaper and nearer to the trajectory, c if none is to the constraints",
+        brief=True,
+    ),
+    Column(
+        "cheapest",
+        "cheapest",
+        lambda it: it.cheapest,
+        "whether it costs least of all runs with a trajectory error within --tolerance",
+        brief=True,
+    ),
+    Column("failure", "failure", lambda it: it.run.failure, "why the run ended early; null if it did not"),
+)
+
+
+class Placed(NamedTuple):
+    """A point of a front, and the step (s) at which it is told in 1/s, if there is one."""
+
+    point: FrontPoint
+    h: Fraction | None
+
+
+def _rates(it: Placed) -> tuple[float | None, float | None]:
+    return alpha_and_beta(it.point.alpha_hat, it.point.beta_hat, it.h)
+
+
+FRONTS: Sequence[Column[Placed]] = (
+    Column("method", "method", lambda it: it.point.method.name, "integration method", brief=True),
+    Column("", "omega_h", lambda it: it.point.omega_h, "angle by which the motion turns in a step", "rad"),
+    Column("|z_p| up to", "z_abs_below", lambda it: it.point.z_abs_below, "what |z_p| is at most", brief=True),
+    Column("", "z_abs", lambda it: it.point.z_abs, "|z_p| itself"),
+    Column("α̂", "alpha_hat", lambda it: it.point.alpha_hat, "2αh", brief=True),
+    Column("β̂", "beta_hat", lambda it: it.point.beta_hat, "β²h²", brief=True),
+    Column("α (1/s)", "alpha", lambda it: _rates(it)[0], "damping; null without --h", "1/s", brief=True),
+    Column("β (1/s)", "beta", lambda it: _rates(it)[1], "stiffness as a rate; null without --h", "1/s", brief=True),
+    Column(
+        "error",
+        "total_error",
+        lambda it: it.point.total_error,
+        "constraint error that is left in a run, as a share of the motion's amplitude",
+        form=".2e",
+        brief=True,
+    ),
+    Column(
+        "error of velocity",
+        "velocity_error",
+        lambda it: it.point.velocity_error,
+        "error forced on the velocity, as a share of its amplitude",
+        form=".2e",
+        brief=True,
+    ),
+    Column("both", "combined_error", lambda it: it.point.combined_error, "both, added up", form=".2e"),
+    Column(
+        "energy gained",
+        "energy_growth",
+        lambda it: it.point.energy_growth,
+        "growth of energy in a revolution of a motion whose rate varies by 30 %, as a share of it; null if not known",
+        form=".2e",
+        brief=True,
+    ),
+)

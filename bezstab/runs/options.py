@@ -1,0 +1,43 @@
+"""Options of commands that run mechanisms: what holds the constraints, and who computes what takes long."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, TypeVar
+
+import click
+
+from bezstab.stabilising import STABILISE
+
+Command = TypeVar("Command", bound=Callable[..., Any])
+
+USUAL_STEP = Fraction("0.001")  # s
+
+stabilise = click.option(
+    "--stabilise",
+    type=click.Choice(list(STABILISE)),
+    help="What holds the constraints: feedback, projection after each step, or nothing [baumgarte].",
+)
+iterations = click.option(
+    "--iterations", type=int, help="With projection: at most so many Newton iterations in a step [as many as needed]."
+)
+
+
+@dataclass(frozen=True)
+class Work:
+    """Who computes what takes long: a number of processes, or a cluster. `resume` continues a run that was stopped."""
+
+    workers: int | None
+    scheduler: str | None
+    resume: bool
+
+
+def shared_work(command: Command) -> Command:
+    """Add what says who computes: --workers, --scheduler and --resume."""
+    for option in (
+        click.option("--resume", is_flag=True, help="Continue a run with the same options that was stopped."),
+        click.option("--scheduler", help="Address of a Dask scheduler, tcp://host:port, in place of --workers."),
+        click.option("--workers", type=click.IntRange(1, 1000), help="Number of processes [one for each core]."),
+    ):
+        command = option(command)
+    return command
