@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Generic, SupportsFloat, TypeVar
 
 from bezstab.show.cells import modulus_words, pole_words
-from bezstab.show.fields import Form, Row, Value, formatted, visible
+from bezstab.show.fields import MISSING, Form, Row, Value, formatted, visible
 
 Answer = TypeVar("Answer")
 Answer_contra = TypeVar("Answer_contra", contravariant=True)
@@ -34,7 +34,8 @@ class Column(Generic[Answer_contra]):
 
     def text(self, answer: Answer_contra) -> str:
         """Return what a table shows of an answer, on one line; a dash where there is no value."""
-        return visible(formatted(_finite(self.value(answer)), self.form))
+        value = self.value(answer)
+        return MISSING if isinstance(value, float) and math.isnan(value) else visible(formatted(value, self.form))
 
 
 def of_part(part: Callable[[Answer], Part | None], columns: Sequence[Column[Part]]) -> list[Column[Answer]]:
