@@ -1,5 +1,6 @@
 // Runs matter.js, cannon-es or p2: bodies in a straight line, each held by a distance constraint to the one before.
 // Reads {engine, h, steps, stiffness, ...} from standard input, prints by how much each link is too long, step by step.
+// With {balls} they are balls of that diameter, stacked on a plane: how far each gap is from its diameter.
 // With {spin} the only body goes round at that rate (rad/s), and its angle is printed in place of that.
 "use strict";
 
@@ -42,6 +43,25 @@ function inCannon({ h, stiffness, relaxation, timeStep, iterations, masses, plac
   return [() => world.step(h), () => bodies.map((body) => body.position.x)];
 }
 
+function ballsInCannon({ h, iterations, masses, velocities, gravity }) {
+  const CANNON = require("cannon-es");
+  const world = new CANNON.World({ gravity: new CANNON.Vec3(0, 0, -gravity) });
+  world.solver.iterations = iterations;
+  world.solver.tolerance = 0;
+  Object.assign(world.defaultContactMaterial, { friction: 0, restitution: 0 });
+  world.addBody(new CANNON.Body({ mass: 0, shape: new CANNON.Plane() }));
+  const shape = new CANNON.Sphere(LENGTH / 2);
+  const bodies = masses.map((mass, i) => {
+    const position = new CANNON.Vec3(0, 0, LENGTH * (i + 0.5));
+    return new CANNON.Body({ mass, shape, position, linearDamping: 0, fixedRotation: true });
+  });
+  bodies.forEach((body, i) => {
+    body.velocity.z = velocities[i];
+    world.addBody(body);
+  });
+  return [() => world.step(h), () => bodies.map((body) => body.position.z + LENGTH / 2)];
+}
+
 function inP2({ h, stiffness, relaxation, iterations, masses, places, velocities, gravity = 0 }) {
   const p2 = require("p2");
   const world = new p2.World({ gravity: [gravity, 0] });
@@ -66,7 +86,7 @@ function inP2({ h, stiffness, relaxation, iterations, masses, places, velocities
 }
 
 const asked = JSON.parse(require("fs").readFileSync(0, "utf8"));
-const [step, places] = { "matter.js": inMatter, "cannon-es": inCannon, p2: inP2 }[asked.engine](asked);
+const [step, places] = { "matter.js": inMatter, "cannon-es": asked.balls ? ballsInCannon : inCannon, p2: inP2 }[asked.engine](asked);
 const errors = () => places().map((x, i, all) => x - (i ? all[i - 1] : 0) - LENGTH);
 const look = asked.spin ? places : errors;
 const seen = [look()];

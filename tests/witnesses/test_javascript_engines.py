@@ -160,3 +160,13 @@ def test_hanging_chains_in_spook_engines_sag_as_predicted(
     run = links(engine, 1800, h=1 / 60, masses=masses, places=places, velocities=[0] * bodies, **settings)
     answer = judge(f"{engine}={stiffness},4", h="1/60", bodies=bodies, mass_ratio=ratio, load="9.81")
     assert run[-1].sum() == pytest.approx(answer.sag, rel=0.01)
+
+
+@pytest.mark.parametrize(("bodies", "ratio"), [(5, 1), (10, 1), (5, 10), (10, 10)])
+def test_balls_that_stand_on_each_other_sag_as_a_chain_that_hangs(bodies: int, ratio: float) -> None:
+    """cannon-es' contacts are its constraints, with a relaxation of 3: to a hundredth. Stacks of boxes tumble there."""
+    masses = [1] * (bodies - 1) + [ratio]
+    settings = {"masses": masses, "velocities": [0] * bodies, "iterations": 10, "gravity": 9.81, "balls": True}
+    run = links("cannon-es", 3000, h=1 / 60, **settings)
+    answer = judge("cannon-es=1e7,3", h="1/60", bodies=bodies, mass_ratio=ratio, load="9.81")
+    assert -run[-1].sum() == pytest.approx(answer.sag, rel=0.01)
