@@ -46,7 +46,8 @@ def chain(
     """Judge a chain of bodies in a game engine: 0 if safe, 1 if not.
 
     Game engines solve one constraint after another; each pass over all of them is a sweep. With few sweeps a chain may
-    come apart although each constraint alone is stable. What stacks of boxes do is not known. --figure draws all chains up to --bodies, over the sweeps.
+    come apart although each constraint alone is stable. What stacks of boxes do is not known. --figure draws all chains
+    up to --bodies, over the sweeps.
 
     Example: bezstab chain --engine chipmunk --h 1/60 --bodies 10 --mass-ratio 10
     """

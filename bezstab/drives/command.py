@@ -29,6 +29,14 @@ def _late(text: str) -> Late:
 
 LATE = ParsedType("steps, or 5ms", _late)
 
+
+def _load(text: str) -> Fraction:
+    """Return a force or a torque; InputError for gravity, which is none without a mass and an arm."""
+    if text == "gravity":
+        raise InputError("gravity: give its torque in N m, 9.81 times mass times arm, or its force in N")
+    return rational(text)
+
+
 POINTS = 200
 """Along each axis of the figure."""
 
@@ -49,7 +57,7 @@ POINTS = 200
 @click.option(
     "--filter", "filter_seconds", type=NUMBER, default="0", help="Time constant in s of a filter of the velocity."
 )
-@click.option("--load", type=NUMBER, help="A steady load, N m or N: how far does the joint sag?")
+@click.option("--load", type=ParsedType("number", _load), help="A steady load, N m or N: how far does the joint sag?")
 @shared.output_options
 def drive(
     kp: Fraction | None,

@@ -182,12 +182,19 @@ def linted_model(
         feedbacks=settings,
         kept=kept,
         sags=off,
-        sentence=_sentence(loaded, robot, worst.judged(), settings, [*_kept_words(kept), *_sag_words(off)]),
+        sentence=_sentence(loaded, robot, found, worst.judged(), settings, [*_kept_words(kept), *_sag_words(off)]),
         status=1 if is_unsafe else 3 if rough else 0,
     )
 
 
-def _sentence(loaded: Loaded, robot: Robot, worst: Judged, settings: Iterable[Feedback], more: Sequence[str]) -> str:
+def _sentence(
+    loaded: Loaded,
+    robot: Robot,
+    found: "Sequence[_Found]",
+    worst: Judged,
+    settings: Iterable[Feedback],
+    more: Sequence[str],
+) -> str:
     """Return the answer in words."""
     unsafe = [each for each in settings if each.unsafe]
     match worst.kind:
@@ -198,7 +205,9 @@ def _sentence(loaded: Loaded, robot: Robot, worst: Judged, settings: Iterable[Fe
         case "not smooth":
             answer = f"is not smooth at {worst.at}: nothing is judged there"
         case "falls by itself":
-            answer = f"is safe: at {worst.at} it falls by itself ({worst.rate:.2g} 1/s); not numerical"
+            everywhere = f" at all {len(found)} states" if len(found) > 1 else ""
+            own = f"at {worst.at} it falls by itself ({worst.rate:.2g} 1/s): look at its controller"
+            answer = f"is numerically safe{everywhere}; {own}"
         case "moves on":
             answer = f"is safe: at {worst.at} errors grow for a moment, but not in a run from there"
         case "decays":

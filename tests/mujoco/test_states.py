@@ -59,6 +59,19 @@ def test_the_worst_row_of_a_log_is_named_with_its_time(tmp_path: Path) -> None:
     assert row.z_abs == pytest.approx(alone.worst.z_abs, rel=1e-9)
 
 
+def test_a_log_of_what_falls_by_itself_is_said_to_be_safe_numerically(tmp_path: Path) -> None:
+    """An inverted pendulum of length 1: 3.13 1/s where it stands, less elsewhere."""
+    path = tmp_path / "log.csv"
+    path.write_text(
+        "\n".join(["time,q", *(f"{0.1 * row:.6g},{0.05 * row**2:.6g}" for row in range(5))]), encoding="utf-8"
+    )
+    ball = '<inertial pos="0 0 1" mass="1" diaginertia="1e-9 1e-9 1e-9"/>'
+    found = lint(model_of(mjcf(f'<body><joint axis="0 1 0"/>{ball}</body>', gravity=-9.81)), at=[path])
+    assert found.status == 0
+    falls = "at log.csv row 1 (0 s) it falls by itself (3.1 1/s): look at its controller"
+    assert found.sentence.startswith(f"the model is numerically safe at all 5 states; {falls} (")
+
+
 @pytest.mark.parametrize(
     ("at", "words"),
     [
