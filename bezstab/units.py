@@ -48,12 +48,28 @@ def _check_real(**values: object) -> None:
 
 
 def to_dimensionless(alpha: Number, beta: Number, h: Any) -> tuple[Number, Number]:
-    """Return (alpha_hat, beta_hat) = (2 alpha h, beta^2 h^2), for alpha and beta in 1/s and a step of h seconds.
+    """Return (alpha_hat, beta_hat) = (2 alpha h, beta^2 h^2).
 
-    Returns dimensionless numbers or arrays, as alpha and beta are. They are exact if all three are Fractions, else
-    float64.
+    Parameters
+    ----------
+    alpha, beta : number, Fraction or array
+        Feedback in 1/s.
+    h : number or Fraction
+        Step (s).
 
-    InputError for h outside 1e-100 to 1e100 s, and if a result leaves the range of float64. Source: paper Eq. 16.
+    Returns
+    -------
+    tuple
+        Dimensionless numbers or arrays, as alpha and beta are; exact if all three are Fractions, else float64.
+
+    Raises
+    ------
+    InputError
+        h is outside 1e-100 to 1e100 s, or a result outside the range of float64.
+
+    References
+    ----------
+    The paper's Eq. 16.
     """
     _check_real(alpha=alpha, beta=beta)
     check_step(h)
@@ -70,12 +86,28 @@ def to_dimensionless(alpha: Number, beta: Number, h: Any) -> tuple[Number, Numbe
 
 
 def from_dimensionless(alpha_hat: FloatOrArray, beta_hat: FloatOrArray, h: float) -> tuple[FloatOrArray, FloatOrArray]:
-    """Return (alpha, beta) = (alpha_hat / 2h, sqrt(beta_hat) / h) in 1/s, for a step of h seconds.
+    """Return (alpha, beta) = (alpha_hat / 2h, sqrt(beta_hat) / h) in 1/s.
 
-    Returns floats or arrays, as alpha_hat and beta_hat are.
+    Parameters
+    ----------
+    alpha_hat, beta_hat : float or array
+        Dimensionless feedback; beta_hat is not negative.
+    h : float
+        Step (s).
 
-    InputError for a negative beta_hat: it is the beta^2 of no real beta. InputError, too, for h outside 1e-100 to
-    1e100 s, and if a result leaves the range of float64. Source: paper Eq. 16.
+    Returns
+    -------
+    tuple
+        Floats or arrays, as alpha_hat and beta_hat are.
+
+    Raises
+    ------
+    InputError
+        beta_hat is negative, h is outside 1e-100 to 1e100 s, or a result outside the range of float64.
+
+    References
+    ----------
+    The paper's Eq. 16.
     """
     import numpy as np
 

@@ -134,18 +134,36 @@ def chain(
 ) -> ChainAnswer:
     """Return whether a straight chain of bodies is stable in an engine that sweeps over its constraints.
 
-    engine: its name, with its values as on the command line: "chipmunk=0.0018"; without them its defaults.
-    h: the step in s.
-    bodies, mass_ratio: so many bodies, the last so many times as heavy as each other one.
-    masses: those of all bodies from the world on, in any unit, in place of the two.
-    both_ends: whether the last body is held by the world, too.
-    iterations: sweeps in a step; by default the engine's own number.
-    load: a steady acceleration along the chain in m/s^2, 9.81 for gravity: how far does it sag?
+    Parameters
+    ----------
+    engine : str
+        An engine, with its values as on the command line: "chipmunk=0.0018"; without them its defaults.
+    h : int, float, str or Fraction
+        Step size (s).
+    bodies : int
+        Number of bodies.
+    mass_ratio : int, float, str or Fraction
+        The last body is so many times as heavy as each other one.
+    masses : sequence of numbers, shape (bodies,), optional
+        Masses from the world on, in any unit, in place of `bodies` and `mass_ratio`.
+    both_ends : bool
+        Whether the world also holds the last body.
+    iterations : int, optional
+        Sweeps in a step; by default the engine's own number.
+    load : int, float, str or Fraction, optional
+        A steady acceleration along the chain (m/s^2); `sag` says how far it sags.
 
-    Returns a ChainAnswer. What is swept is linear and along the chain's own line.
+    Returns
+    -------
+    ChainAnswer
+        True if errors decay; `sentence` says it in words. The map is linear, along the chain's own line.
 
-    InputError for an engine that does not sweep, or of which it is not known how, and for numbers that are no chain.
-    NumericalError if rounding leaves open whether errors decay.
+    Raises
+    ------
+    InputError
+        The engine does not sweep, or it is not known how; or the numbers are no chain.
+    NumericalError
+        Rounding leaves open whether errors decay.
     """
     named, values = engine_and_values(engine)
     whole = links(whole_number(bodies, "bodies"), exact_number(mass_ratio, "mass_ratio"), both_ends=both_ends)

@@ -106,21 +106,44 @@ def drive(
     filter_seconds: Number = 0,
     load: Number | None = None,
 ) -> DriveAnswer:
-    """Return whether a joint's drive is safe: torque = -kp (q - target) - kd q' on an inertia, in SI units.
+    """Return whether a joint's drive is stable: torque = -kp (q - target) - kd q' on an inertia, in SI units.
 
-    ki: of an integral part, -ki times the integral of q - target; needs kp.
-    h: the step of the physics in s.
-    method: how the torque is applied: "SYM" (explicit), "imex-euler" (implicit in the velocity),
-        "stable-pd", "implicit-euler" (fully implicit); for a fresh torque any method.
-    every: the torque is computed every so many steps, and held; 1 to 100.
-    late: it is applied so many steps late, or a fraction of them; 0 to 100.
-    filter_seconds: time constant in s of a first-order filter of the measured velocity; 0 for none.
-    load: a steady torque or force on the joint (N m or N): how far it sags.
+    Parameters
+    ----------
+    kp, kd : int, float, str or Fraction
+        Stiffness (N m/rad or N/m) and damping (N m s/rad or N s/m).
+    inertia : int, float, str or Fraction
+        Inertia that the drive feels (kg m^2 or kg).
+    h : int, float, str or Fraction
+        Step of the physics (s).
+    ki : int, float, str or Fraction
+        Integral gain (N m/(rad s) or N/(m s)); needs kp.
+    method : str or Method
+        How the torque is applied: "SYM" (explicit), "imex-euler" (implicit in the velocity), "stable-pd",
+        "implicit-euler" (fully implicit); any method if the torque is computed in every step and not late.
+    every : int
+        The torque is computed every so many steps, and held in between; 1 to 100.
+    late : int, float, str or Fraction
+        The torque is applied so many steps late, or a fraction of them; 0 to 100.
+    filter_seconds : int, float, str or Fraction
+        Time constant (s) of a first-order filter of the measured velocity; 0 for none.
+    load : int, float, str or Fraction, optional
+        A steady torque (N m) or force (N); `sag` says how far the joint sags under it.
 
-    Returns a DriveAnswer. A limit of the torque is not judged.
+    Returns
+    -------
+    DriveAnswer
+        True if errors are proven to decay; `sentence` says it in words, `limits` how far each number may change
+        alone. Limits of the torque are not judged.
 
-    InputError for a number out of range, and for a method that cannot apply a torque that is held or late.
-    Source: Gil et al., J. Comput. Inf. Sci. Eng. 9, 011005, 2009.
+    Raises
+    ------
+    InputError
+        A number is out of range, or the method cannot apply a torque that is held or late.
+
+    References
+    ----------
+    Gil et al., J. Comput. Inf. Sci. Eng. 9, 011005, 2009.
     """
     step = exact_number(h, "h")
     timing = timing_of(

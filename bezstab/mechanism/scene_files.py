@@ -61,13 +61,21 @@ def load_scene(name: str) -> Scene:
 def scene(name: str | Scene, speed: Number = 1) -> Scene:
     """Return the planar mechanism of that name, in SI units and rad.
 
-    name: a name of a shipped scene ("pendulum", "slider_crank"), the path of a .toml file, or a scene.
-    speed: its drivers and initial velocities become so many times as fast.
+    Parameters
+    ----------
+    name : str or Scene
+        A shipped scene ("pendulum"), the path of a .toml file, or a scene. "slider_crank" is that of the paper.
+    speed : number
+        Factor on the speed of its drivers and initial velocities.
 
-    Returns a Scene. "slider_crank" is that of the paper's section 5.2.
+    Returns
+    -------
+    Scene
 
-    InputError if the file cannot be read; it names the file and the key. InputError, too, if a speed is
-    given and nothing in the scene moves by itself.
+    Raises
+    ------
+    InputError
+        The file cannot be read (it names the file and the key), or nothing moves whose speed could be changed.
     """
     if not isinstance(name, str | Scene):
         raise InputError(

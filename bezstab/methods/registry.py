@@ -58,12 +58,21 @@ def lookup(text: str) -> Method:
 def method(name: str | Method) -> Method:
     """Return the integration method of that name.
 
-    name: a name as `bezstab methods` lists it ("B4", "RK4"), the path of a .toml file, or a method that
-        is returned as it is. "RK4@5" is RK4 with steps of 5 h, where h is your step (s).
+    Parameters
+    ----------
+    name : str or Method
+        A name as `bezstab methods` lists it ("B4", "RK4"), the path of a .toml file, or a method. "RK4@5" is RK4 with
+        steps of 5 h.
 
-    Returns a Method. Its `source` names the book or paper.
+    Returns
+    -------
+    Method
+        Its `source` names the book or paper.
 
-    InputError if there is no such method; it suggests the nearest name.
+    Raises
+    ------
+    InputError
+        There is no such method; the nearest name is suggested.
     """
     if not isinstance(name, str | Method):
         raise InputError(f"method {shown(name)}: expected one name such as 'B4', or what bezstab.method makes of one")

@@ -96,23 +96,42 @@ def lint(
     spin: Mapping[str, Number] | None = None,
     load: Mapping[str, Sequence[Number]] | None = None,
 ) -> Linted:
-    """Return whether a MuJoCo model is safe at its timestep: what errors do at its states, and what to write.
+    """Return whether a MuJoCo model is stable at its timestep: what errors do at its states, and what to write.
 
-    model: an mjModel, which is left as it is, or the path of an MJCF or URDF file.
-    at: names of keyframes, "qpos0", paths of CSV logs, arrays (qpos, or qpos and qvel); by default qpos0
-        and all keyframes.
-    pd: (kp, kd) in SI units of a controller outside the model, by the name of a motor or a joint, or a
-        regular expression.
-    every: the controller computes its force every so many steps. late: it is applied so many steps late.
-    deep: judge constraints past solimp's width, too.
-    spin: rates of joints (rad/s or m/s) at the first of the states, from which a second is run to see
-        what is kept of the energy; so it is from states that have velocities.
+    Parameters
+    ----------
+    model : mjModel or str
+        A model, which is not changed, or the path of an MJCF or URDF file.
+    at : sequence
+        States: names of keyframes, "qpos0", paths of CSV logs, arrays of shape (nq,) or (nq + nv,). By default
+        qpos0 and all keyframes.
+    pd : mapping of str to (kp, kd), optional
+        Gains (SI units) of a controller outside the model, by the name of a motor or joint, or by a regular expression.
+    every : int
+        The controller computes its force every so many steps.
+    late : int, float, str or Fraction
+        The force is applied so many steps late.
+    deep : bool
+        Whether settings are also judged past the width of solimp.
+    spin : mapping of str to number, optional
+        Rates of joints (rad/s or m/s) at the first state. A run of one second from there, and from states with
+        velocities, shows the share of energy that is kept.
+    load : mapping of str to (x, y, z), optional
+        Forces (N) on bodies, by name; {} for gravity alone. `sags` says how far the model is off at rest.
 
-    Returns a Linted; `sentence` is the answer in words, `worst` the state that decides, `remedies` what to
-    write.
+    Returns
+    -------
+    Linted
+        `sentence` is the answer in words, `worst` the state that decides, `remedies` what to write.
 
-    InputError for what cannot be read or is not there. Source: eigenvalues of MuJoCo's own step, by centred
-    differences.
+    Raises
+    ------
+    InputError
+        The model, a state or a name cannot be read or found.
+
+    References
+    ----------
+    Eigenvalues of MuJoCo's own step, by centred differences.
     """
     with in_keywords():
         gains = [Gains(pattern, *(exact_number(value, "pd") for value in both)) for pattern, both in (pd or {}).items()]

@@ -64,11 +64,23 @@ FINE = 0.6  # points: lines of histories, so that fast oscillations are told apa
 
 
 def region(region: Region, axes: Axes | None = None, h: float | None = None, **line: Any) -> Line2D:
-    """Draw the boundary of a region |z_p| < level and return its line: all its curves, nan between them.
+    """Draw the boundary of a region |z_p| < level.
 
-    By default in colour and dashes that no other line in the axes has, labelled with the method's name, and as
-    unbounded where it is. Of an empty region only the label shows. Curves of an unbounded region run far out, and
-    islands may lie there: the axes make room for what is useful alone.
+    Parameters
+    ----------
+    region : Region
+        What `bezstab.region` returns.
+    axes : Axes, optional
+        Where to draw; by default a figure of its own.
+    h : float, optional
+        Step (s) with which the axes are alpha and beta in 1/s; by default they are alpha_hat and beta_hat.
+    **line
+        Properties of the line. By default its colour and dashes are new in the axes, its label the method's name.
+
+    Returns
+    -------
+    Line2D
+        All curves of the boundary, nan between them. Far curves and islands do not widen the axes.
     """
     check_kind(region, Region, "bezstab.region")
     label = region.method.name if region.bounded else f"{region.method.name} (unbounded)"
@@ -91,9 +103,25 @@ def spectral_radius(
     axes: Axes | None = None,
     h: float | None = None,
 ) -> AxesImage:
-    """Draw |z_p| over ranges of alpha_hat and beta_hat and return the image, of shape (points, points).
+    """Draw |z_p| over a rectangle of the plane; blank where |z_p| >= 1.
 
-    Where |z_p| >= 1 it is blank. The ranges are dimensionless whatever the axes.
+    Parameters
+    ----------
+    method : Method
+        What `bezstab.method` returns.
+    alpha_range, beta_range : (low, high)
+        Ranges of alpha_hat and beta_hat, dimensionless whatever the axes.
+    points : int
+        Points in each direction.
+    axes : Axes, optional
+        Where to draw; by default a figure of its own.
+    h : float, optional
+        Step (s) with which the axes are alpha and beta in 1/s; by default they are alpha_hat and beta_hat.
+
+    Returns
+    -------
+    AxesImage
+        Of shape (points, points).
     """
     check_kind(method, Method, "bezstab.method")
     alpha_hat, beta_hat = (np.linspace(float(low), float(high), points) for low, high in (alpha_range, beta_range))
@@ -104,9 +132,22 @@ def spectral_radius(
 def modulus_map(
     alpha_hat: FloatArray, beta_hat: FloatArray, z_abs: FloatArray, axes: Axes | None = None, h: float | None = None
 ) -> AxesImage:
-    """Draw |z_p|, computed before on an even grid, and return the image; where it is at least one it is blank.
+    """Draw |z_p| that was computed before on an even grid; blank where |z_p| >= 1.
 
-    z_abs has shape (beta_hat.size, alpha_hat.size).
+    Parameters
+    ----------
+    alpha_hat, beta_hat : array
+        Dimensionless, of shapes (n,) and (m,).
+    z_abs : array
+        |z_p|, of shape (m, n).
+    axes : Axes, optional
+        Where to draw; by default a figure of its own.
+    h : float, optional
+        Step (s) with which the axes are alpha and beta in 1/s; by default they are alpha_hat and beta_hat.
+
+    Returns
+    -------
+    AxesImage
     """
     stable = np.ma.masked_greater_equal(z_abs, 1.0)
     axes = _plane(axes, "$|z_p|$", h)
@@ -114,9 +155,22 @@ def modulus_map(
 
 
 def critical_damping(alpha_range: Range, axes: Axes | None = None, h: float | None = None, **line: Any) -> Line2D:
-    """Draw beta_hat = alpha_hat^2 / 4, where alpha = beta, over a range of alpha_hat, and return the line.
+    """Draw the line of critical damping, beta_hat = alpha_hat^2 / 4, where alpha = beta.
 
-    White with a black outline: it is made to lie on a map.
+    Parameters
+    ----------
+    alpha_range : (low, high)
+        Range of alpha_hat.
+    axes : Axes, optional
+        Where to draw; by default a figure of its own.
+    h : float, optional
+        Step (s) with which the axes are alpha and beta in 1/s; by default they are alpha_hat and beta_hat.
+    **line
+        Properties of the line; by default white with a black outline, for a map.
+
+    Returns
+    -------
+    Line2D
     """
     alpha_hat = np.linspace(float(alpha_range[0]), float(alpha_range[1]), PARABOLA)
     return _line(
@@ -133,9 +187,23 @@ def critical_damping(alpha_range: Range, axes: Axes | None = None, h: float | No
 def point(
     at: BestPoint | Choice | tuple[float, float], axes: Axes | None = None, h: float | None = None, **line: Any
 ) -> Line2D:
-    """Draw a white marker at a point (alpha_hat, beta_hat), and return the line of one point.
+    """Draw a marker at a point (alpha_hat, beta_hat).
 
-    A best point is a star, labelled with its |z_p|; a choice a circle, labelled with its goal and |z_p|.
+    Parameters
+    ----------
+    at : BestPoint, Choice or (alpha_hat, beta_hat)
+        A best point is a star with its |z_p|, a choice a circle with its goal and |z_p|.
+    axes : Axes, optional
+        Where to draw; by default a figure of its own.
+    h : float, optional
+        Step (s) with which the axes are alpha and beta in 1/s; by default they are alpha_hat and beta_hat.
+    **line
+        Properties of the marker; by default white.
+
+    Returns
+    -------
+    Line2D
+        Of one point.
     """
     usual: dict[str, Any] = {"linestyle": "none", "color": "white", "markeredgecolor": "black", "markersize": 5}
     if isinstance(at, BestPoint):
@@ -166,10 +234,24 @@ def history(
     axes: Axes | None = None,
     **line: Any,
 ) -> Line2D:
-    """Draw the error of one constraint of a run, or its time derivative, against t (s) and return the line; SI units.
+    """Draw the error of one constraint of a run, or its time derivative, against t (s); SI units.
 
-    Constraints count from 1. With None it is the largest |c| over all of them, on a logarithmic axis, with a gap where
-    all constraints hold to the last bit.
+    Parameters
+    ----------
+    simulation : Simulation
+        What `bezstab.simulate` returns.
+    constraint : int or None
+        Number of the constraint, from 1. None: the largest |c| over all, on a logarithmic axis; gaps where it is zero.
+    derivative : bool
+        Whether to draw the time derivative.
+    axes : Axes, optional
+        Where to draw; by default a figure of its own.
+    **line
+        Properties of the line.
+
+    Returns
+    -------
+    Line2D
     """
     from bezstab.mechanism.simulation import Simulation
 
@@ -186,10 +268,21 @@ def history(
 
 
 def mechanism(scene: Scene, q: FloatArray, axes: Axes | None = None) -> list[Line2D]:
-    """Draw a scene's bodies in a state q (shape (n,), SI) as lines through the points of their joints; return them.
+    """Draw the bodies of a scene as lines through the points of their joints.
 
-    A body's pivot on the ground is one of its points, on a triangle. A body with one joint that is free to move along
-    is a square on it.
+    Parameters
+    ----------
+    scene : Scene
+        What `bezstab.scene` returns.
+    q : array of shape (n,)
+        Coordinates (m, rad).
+    axes : Axes, optional
+        Where to draw; by default a figure of its own.
+
+    Returns
+    -------
+    list of Line2D
+        A triangle marks a pivot on the ground, a square a body that slides on its only joint.
     """
     from bezstab.mechanism.scenes import Scene
 

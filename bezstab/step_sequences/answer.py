@@ -79,19 +79,37 @@ def steps(
     hold: bool = False,
     engine: str | None = None,
 ) -> StepsAnswer:
-    """Return whether errors decay for every sequence of steps from h_min to h_max (s).
+    """Return whether errors decay for every sequence of steps from h_min to h_max.
 
-    method: your integration method; with an engine, by default its own.
-    alpha, beta: in 1/s, the same for all steps. With `hold` alpha_hat and beta_hat, the same for all steps. Without
-        them, the first feedback of `choose` (goals robust, then fastest, at h_max) that is proven for these steps;
-        if none is, the answer is about the first.
-    engine: an engine with its values in their place, such as "bullet=0.2"; whether it holds is then known.
+    Parameters
+    ----------
+    method : str or Method, optional
+        Integration method of one step; with an engine, by default its own.
+    h_min, h_max : int, float, str or Fraction
+        Smallest and largest step (s).
+    alpha, beta : int, float, str or Fraction, optional
+        Feedback in 1/s, the same for all steps; with `hold` alpha_hat and beta_hat. Without them the first choice (goal
+        robust, then fastest, at h_max) that is proven for these steps; if none is, the answer is about the first.
+    hold : bool
+        Whether alpha_hat and beta_hat stay constant while the step varies, instead of alpha and beta.
+    engine : str, optional
+        An engine with its values, such as "bullet=0.2", in place of alpha, beta and hold.
 
-    Returns a StepsAnswer; of an engine whose feedback changes with the size of the error, the first that is not proven.
+    Returns
+    -------
+    StepsAnswer
+        `verdict` is proven, refuted or not known; true if proven. If an engine's feedback changes with the size of
+        the error, the first of its points that is not proven.
 
-    InputError for a method of several steps, whose coefficients assume equal steps; for an engine whose values change
-    alpha and beta as well as alpha_hat and beta_hat with the step; for numbers out of range. Source: Liberzon,
-    Switching in Systems and Control, chapter 2.
+    Raises
+    ------
+    InputError
+        A method of several steps, whose coefficients assume equal steps; an engine whose values keep neither alpha and
+        beta nor alpha_hat and beta_hat constant; a number out of range.
+
+    References
+    ----------
+    Liberzon, Switching in Systems and Control, Birkhaeuser 2003, chapter 2.
     """
     named, values = (None, None) if engine is None else engine_and_values(engine)
     given = () if method is None else (method if isinstance(method, Method) else lookup(method),)
