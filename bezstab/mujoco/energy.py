@@ -4,7 +4,7 @@ Springs and gravity stay. Loops that equalities close brake by the share 1 - d o
 through, and pump or brake by their feedback (bezstab/motion).
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -16,8 +16,8 @@ from bezstab.engines.acceleration_engines import MOST_IMPEDANCE
 from bezstab.errors import InputError, NumericalError
 from bezstab.methods.registry import lookup
 from bezstab.mujoco.controllers import name_of
-from bezstab.mujoco.robots import Robot, State
-from bezstab.mujoco.solrefs import METHODS
+from bezstab.mujoco.robots import Change, Robot, State
+from bezstab.mujoco.solrefs import METHODS, TIME_CONSTANTS
 from bezstab.rationals import exact
 from bezstab.stability.choices import choose
 from bezstab.units import feedback_gains
@@ -26,9 +26,6 @@ SECONDS = 1.0
 
 FASTEST = 1.0
 """rad a step: what turns faster no feedback is chosen for."""
-
-SOLREFS = (2, 4, 8, 16, 32, 64)
-"""Time constants in steps, critically damped."""
 
 MISSED = 1e-6
 """Relative: of a rate that was asked for, or of the velocity of a constraint, that no motion has."""
@@ -39,9 +36,9 @@ BREAKS_DOWN = 1e3
 
 @dataclass(frozen=True)
 class Kept:
-    """What a setting of equalities keeps of a motion's energy in a second, 1 for all: its change by the kinetic energy.
+    """What a setting of equalities keeps of a motion's energy in a second, 1 for all; None where the run breaks down.
 
-    None where the run breaks down.
+    The change is over the largest kinetic energy on the way: what begins to fall has little at first.
     """
 
     at: str
@@ -92,11 +89,7 @@ def energy_kept(robot: Robot, states: Sequence[State]) -> Iterator[Kept]:
         yield Kept(state.name, "as it is", _run(ideal, state))
         if robot.model.neq:
             for setting, change in _settings(ideal, state):
-                yield Kept(state.name, setting, _run(_changed(ideal, change), state))
-
-
-def _changed(robot: Robot, change: Callable[[Robot], Robot]) -> Robot:
-    return change(replace(robot, model=copy(robot.model)))
+                yield Kept(state.name, setting, _run(ideal.changed(change), state))
 
 
 def _without_dissipation(robot: Robot) -> Robot:
@@ -111,7 +104,7 @@ def _without_dissipation(robot: Robot) -> Robot:
     return replace(robot, model=model, drives=())
 
 
-def _settings(robot: Robot, state: State) -> Iterator[tuple[str, Callable[[Robot], Robot]]]:
+def _settings(robot: Robot, state: State) -> Iterator[tuple[str, Change]]:
     """Yield hard equalities: with their own feedback, with the time constant that keeps most, that of `choose`, RK4.
 
     `choose` makes the least error on a motion of this rate.
@@ -120,8 +113,8 @@ def _settings(robot: Robot, state: State) -> Iterator[tuple[str, Callable[[Robot
     yield f'solimp="{hard:g} {hard:g}"', partial(_with_equalities, None)
     if list(METHODS)[robot.model.opt.integrator] != "RK4":
         yield f'integrator="RK4" solimp="{hard:g} {hard:g}"', _with_rk4
-    feedbacks = [(steps * robot.h, 1.0) for steps in SOLREFS]
-    kept = [_run(_changed(robot, partial(_with_equalities, solref)), state) for solref in feedbacks]
+    feedbacks = [(steps * robot.h, 1.0) for steps in TIME_CONSTANTS]
+    kept = [_run(robot.changed(partial(_with_equalities, solref)), state) for solref in feedbacks]
     off = [np.inf if share is None else abs(share - 1) for share in kept]
     best = feedbacks[int(np.argmin(off))]
     yield f'solref="{best[0]:.9g} 1" solimp="{hard:g} {hard:g}"', partial(_with_equalities, best)
@@ -158,9 +151,11 @@ def _run(robot: Robot, state: State) -> float | None:
     data.qfrc_applied[:] = 0
     mujoco.mj_forward(model, data)
     start, kinetic = float(data.energy.sum()), float(data.energy[1])
+    largest = kinetic
     for _ in range(round(SECONDS / robot.h)):
         mujoco.mj_step(model, data)
         if not data.energy[1] < BREAKS_DOWN * kinetic:
             return None
+        largest = max(largest, float(data.energy[1]))
     mujoco.mj_forward(model, data)
-    return 1 + (float(data.energy.sum()) - start) / kinetic
+    return 1 + (float(data.energy.sum()) - start) / largest

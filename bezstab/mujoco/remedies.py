@@ -1,7 +1,6 @@
 """What to write instead: each remedy is found, and checked as it is printed, by MuJoCo's own step."""
 
 from collections.abc import Callable, Iterator, Sequence
-from copy import copy
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
@@ -12,8 +11,8 @@ from bezstab.mujoco.blame import Shown, Suspect
 from bezstab.mujoco.controllers import name_of
 from bezstab.mujoco.elements import Element, acting
 from bezstab.mujoco.growth import growth_at, last_safe
-from bezstab.mujoco.robots import Robot, State
-from bezstab.mujoco.solrefs import METHODS
+from bezstab.mujoco.robots import Change, Robot, State
+from bezstab.mujoco.solrefs import METHODS, TIME_CONSTANTS
 from bezstab.rationals import rounded_down, rounded_up
 from bezstab.stability.arrays import FloatArray
 
@@ -26,14 +25,8 @@ QUARTERS, BISECTIONS = 6, 6
 MOST_BLAMED = 4
 """Elements for which values are looked for."""
 
-SOLREFS = (2, 4, 8, 16, 32, 64)
-"""Time constants in steps."""
-
 Unsafe = Sequence[tuple[Robot, State, FloatArray | None]]
 """States that are to become safe, and at which rates (1/s) the mechanism itself falls there, if it is known."""
-
-Change = Callable[[Robot], Robot]
-"""Of a robot whose model is its own copy."""
 
 
 @dataclass(frozen=True)
@@ -104,7 +97,7 @@ def _of_armature(unsafe: Unsafe, element: Element) -> Iterator[Remedy]:
 def _of_solref(unsafe: Unsafe, elements: Sequence[Element]) -> Iterator[Remedy]:
     """Yield the shortest time constant, critically damped, with which constraints are safe."""
     if all(element.kind in SOLREF_ARRAYS or element.geoms for element in elements):
-        for steps in SOLREFS:
+        for steps in TIME_CONSTANTS:
             first = steps * unsafe[0][0].h
             change = partial(_with_solref, elements, first)
             if found := list(_checked(unsafe, _names(elements), f'solref="{first:.9g} 1"', change)):
@@ -125,7 +118,7 @@ def _checked(unsafe: Unsafe, element: str, write: str, change: Change) -> Iterat
     """Yield a remedy if it is one: then no state is unsafe."""
     grown = []
     for robot, state, own in unsafe:
-        growth = growth_at(change(replace(robot, model=copy(robot.model))), state, own)
+        growth = growth_at(robot.changed(change), state, own)
         if growth.kind in ("unsafe", "not smooth"):
             return
         grown.append(growth.z_abs)

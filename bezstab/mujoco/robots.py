@@ -1,7 +1,8 @@
 """A model in a state: with its controllers, and held there where nothing else holds it."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping
+from copy import copy
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -39,6 +40,10 @@ class Robot:
     drives: tuple[Drive, ...] = ()
     timing: Timing = field(default_factory=Timing)
     apart: frozenset[frozenset[int]] = frozenset()
+
+    def changed(self, change: "Change") -> "Robot":
+        """Return what a change makes of the robot, whose own model stays as it is."""
+        return change(replace(self, model=copy(self.model)))
 
     @property
     def h(self) -> float:
@@ -113,3 +118,7 @@ class Robot:
         has_joint = roots >= 0
         free = model.jnt_type[np.where(has_joint, roots, 0)] == self.mujoco.mjtJoint.mjJNT_FREE
         return ~(has_joint & free)
+
+
+Change = Callable[[Robot], Robot]
+"""Of a robot whose model is its own copy."""

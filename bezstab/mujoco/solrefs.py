@@ -22,6 +22,9 @@ from bezstab.stability.drive_poles import drive_pole, drive_verdict
 METHODS = {"Euler": "SYM", "RK4": "RK4", "implicit": "SYM", "implicitfast": "SYM"}
 """What MuJoCo's integrators, in the order of its own numbers, are for constraints."""
 
+TIME_CONSTANTS = (2, 4, 8, 16, 32, 64)
+"""Those of a solref to be written that are tried: in steps, critically damped."""
+
 DEFAULT_SOLREF = (0.02, 1.0)
 """What MuJoCo takes where one number of solref is positive and the other not."""
 
