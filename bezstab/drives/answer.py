@@ -286,7 +286,7 @@ def _sentence(answer: DriveAnswer) -> str:
         cause = "" if answer.timing == FRESH else f" {CAUSES[answer.used_up or 'gains']}"
         return f"{sentence}{cause} {remedy}"
     if not changes:
-        return f"{sentence} No number alone has a limit."
+        return f"{sentence} No single number has a limit."
     nearest = f"; {NEAREST[answer.used_up]}" if answer.used_up else ""
     return f"{sentence} It stays stable with one of these alone: {changes}{nearest}."
 

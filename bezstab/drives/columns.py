@@ -10,8 +10,8 @@ from bezstab.show.columns import Column, in_seconds
 from bezstab.words import seconds_words
 
 NOT_JUDGED = (
-    "A target that comes late only delays the motion. A torque or a measurement that comes late takes stability. "
-    "Not judged: a limit of the torque, friction, and what else the drive is connected to."
+    "A delayed target does not affect stability; a delayed torque or measurement reduces it. "
+    "Not judged: limits of the torque, friction, and other bodies that the drive moves."
 )
 
 

@@ -112,7 +112,7 @@ def closed_loop(drive: Drive, h: Fraction, method: Method, timing: Timing) -> Me
     if timing == FRESH and not drive.ki:
         return method
     if method.name not in SEEN:
-        raise InputError(f"--method {method.name}: a torque that is held or late, or ki, goes with {', '.join(SEEN)}")
+        raise InputError(f"--method {method.name}: a held or late torque and --ki work only with {', '.join(SEEN)}")
     return held_method(method.name, timing, drive.ki * (timing.every * h) ** 3 / drive.inertia)
 
 

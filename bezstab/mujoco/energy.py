@@ -70,7 +70,7 @@ def spun(robot: Robot, state: State, rates: Mapping[str, float]) -> State:
     mobility = np.linalg.solve(robot.mass_at(data), rows.T)  # least energy: v = M^-1 rows' lambda
     velocities = mobility @ np.linalg.lstsq(rows @ mobility, values, rcond=1e-10)[0]
     if np.abs(rows @ velocities - values).max() > MISSED * np.abs(values).max():
-        raise InputError(f"--spin {', '.join(rates)}: the loops do not let it move so at {state.name}")
+        raise InputError(f"--spin {', '.join(rates)}: the loops do not allow this velocity at {state.name}")
     words = ", ".join(f"{name} at {rate:g}" for name, rate in rates.items())
     return replace(state, name=f"{state.name}, {words}", velocities=velocities)
 

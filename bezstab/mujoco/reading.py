@@ -43,8 +43,8 @@ def mujoco_module() -> types.ModuleType:
     version = tuple(int(part) for part in mujoco.__version__.split(".")[:2])
     if version < LEAST_VERSION:
         raise InputError(
-            f"lint needs mujoco 3.7 or later, found {mujoco.__version__}: before, connect and weld lacked the term of "
-            "turning normals"
+            f"lint needs mujoco 3.7 or later, found {mujoco.__version__}: earlier versions leave out the rotation of "
+            "normals in connect and weld"
         )
     module: types.ModuleType = mujoco
     return module
@@ -129,7 +129,7 @@ def _checked(loaded: Loaded) -> Loaded:
     if not 0 < model.opt.timestep < float("inf"):
         raise InputError(f"timestep = {model.opt.timestep:g}: expected a positive number")
     if _memory_is_full(mujoco, model):
-        raise InputError('too little memory for all that touches and is held: give it more, <size memory="1G"/>')
+        raise InputError('too little memory for contacts and constraints: raise it, <size memory="1G"/>')
     model.opt.solver = mujoco.mjtSolver.mjSOL_NEWTON
     model.opt.iterations, model.opt.ls_iterations, model.opt.tolerance = 100, 50, 1e-12
     model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET | mujoco.mjtDisableBit.mjDSBL_SENSOR

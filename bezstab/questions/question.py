@@ -107,7 +107,7 @@ class Question:
         """Raise InputError unless a point is given in one way, with the step that this way needs."""
         in_other_words = self.values is not None
         if self.h_max is not None:
-            raise InputError("--h-max goes with --goal")
+            raise InputError("--h-max works only with --goal")
         if in_other_words and self.h is None:
             raise InputError("--physical and --engine need --h: the step in s")
         if self.as_typed and self.values is None:

@@ -39,7 +39,7 @@ USUAL_POINT: Point = (Fraction("0.5"), Fraction("0.1"))
     type=SEQUENCE,
     help="Steps in s that are taken in turn: 1/60,0.00917 or 3*0.01,0.02, or a file. α̂ and β̂ are those at --h.",
 )
-@click.option("--hold", is_flag=True, help="With --steps: α̂ and β̂ stay the same while steps vary; else α and β do.")
+@click.option("--hold", is_flag=True, help="With --steps: keep α̂ and β̂ constant while the step varies, not α and β.")
 @click.option("--time", "duration", type=SECONDS, default="10", help="Duration in s.")
 @click.option("--perturb", type=NUMBER, default="0", help="Initial error of the first constraint, in its own unit.")
 @click.option(

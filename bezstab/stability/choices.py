@@ -153,9 +153,8 @@ def choose(
             wanted = fast.worst**0.5
             found = settling(wanted)
         if found is None:
-            what = "setting of the engine" if along else "feedback"
-            words = f"settles so fast, to |z_p| <= {wanted:.6g}, if α and β are off by a share of {spread:g}"
-            raise InputError(f"{method.name}: no {what} {words}")
+            what = "no setting of the engine reaches" if along else "no α, β reach"
+            raise InputError(f"{method.name}: {what} |z_p| <= {wanted:.6g} with a spread of {100 * spread:g} %")
         point = found
     elif goal == "gentle":
         assert curve

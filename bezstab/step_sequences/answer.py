@@ -138,7 +138,7 @@ def answers(
     if alpha is None and beta is None:
         return [proven_choice(method, asked) for method in methods]
     if alpha is None or beta is None:
-        raise InputError("--alpha and --beta go together: without both, `choose` is asked")
+        raise InputError("give both --alpha and --beta, or neither: bezstab then finds them")
     point = (alpha, beta) if asked.hold else to_dimensionless(alpha, beta, asked.h_max)
     return [judge_steps(method, point, asked) for method in methods]
 
@@ -159,7 +159,7 @@ def engine_points(engine: Engine, values: tuple[Fraction, ...], asked: Steps) ->
     ]
     if not all(math.isclose(*each, rel_tol=SAME_GAINS) for each in zip(*gains, strict=True)):
         raise InputError(
-            f"--engine: {engine.name} makes of these values neither the same α and β nor the same α̂ and β̂ at steps of "
+            f"--engine: with these values {engine.name} keeps neither α, β nor α̂, β̂ constant between the steps "
             f"{float(asked.h_min):g} and {float(asked.h_max):g} s"
         )
     return points, asked
@@ -192,7 +192,7 @@ def proven_choice(method: Method, asked: Steps) -> StepsAnswer:
             return answer
         tried.append(answer)
     first = tried[0]
-    return replace(first, sentence=f"{first.sentence} Nor is another feedback of `choose` proven for these steps.")
+    return replace(first, sentence=f"{first.sentence} No other choice is proven for these steps.")
 
 
 def _sentence(answer: StepsAnswer) -> str:

@@ -18,7 +18,7 @@ from bezstab.methods.schemes import Method
 @click.option("--engine", type=ENGINE_VALUES, help="An engine with its values, such as bullet=0.2, in their place.")
 @click.option("--h-min", type=SECONDS, required=True, help="The shortest step in s.")
 @click.option("--h-max", type=SECONDS, required=True, help="The longest step in s.")
-@click.option("--hold", is_flag=True, help="α̂ and β̂ stay the same while steps vary, as in engines with an ERP.")
+@click.option("--hold", is_flag=True, help="Keep α̂ and β̂ constant while the step varies, as engines with an ERP do.")
 @shared.form
 @shared.every_column
 def steps(

@@ -84,7 +84,7 @@ def test_states_that_move_are_run_and_others_are_not() -> None:
     ("spin", "words"),
     [
         ({"crak": 1}, "spin crak: no hinge and no slide; there are: crank, coupler, rocker"),
-        ({"crank": 20, "rocker": 3}, "the loops do not let it move so at qpos0"),
+        ({"crank": 20, "rocker": 3}, "the loops do not allow this velocity at qpos0"),
     ],
 )
 def test_a_rate_that_cannot_be_is_one_line(spin: dict[str, int], words: str) -> None:

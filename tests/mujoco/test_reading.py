@@ -60,7 +60,7 @@ def test_memory_is_enlarged_before_a_model_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "marbles.xml"
     path.write_text(LITTLE, encoding="utf-8")
     assert loaded_model(path).model.narena > 60 * 1024
-    with pytest.raises(InputError, match="give it more"):
+    with pytest.raises(InputError, match="raise it, <size"):
         loaded_model(model_of(LITTLE))
 
 

@@ -20,7 +20,7 @@ H = Fraction(1, 240)
     [
         ({"methods": SYM}, "a point is needed: --alpha with --beta, or --engine"),
         ({"methods": SYM, "point": POINT, "h": Fraction(0)}, "h = 0 s: expected"),
-        ({"methods": SYM, "point": POINT, "h": H, "h_max": 2 * H}, "--h-max goes with --goal"),
+        ({"methods": SYM, "point": POINT, "h": H, "h_max": 2 * H}, "--h-max works only with --goal"),
     ],
 )
 def test_what_only_python_can_ask_is_refused_as_well(asked: dict[str, Any], message: str) -> None:

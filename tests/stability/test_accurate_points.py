@@ -44,7 +44,7 @@ def test_it_decays_as_asked_within_the_spread_and_no_sampled_point_forces_less(n
 @pytest.mark.slow
 def test_where_nothing_decays_so_fast_it_is_half_as_fast_as_robust() -> None:
     method = lookup("AB8")
-    with pytest.raises(InputError, match="no feedback settles so fast"):
+    with pytest.raises(InputError, match="no α, β reach"):
         choose(
             method,
             "accurate",

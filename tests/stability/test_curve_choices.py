@@ -58,5 +58,5 @@ def test_of_a_curve_the_accurate_point_decays_as_asked_or_is_refused() -> None:
     accurate = choose(lookup("SYM"), "accurate", h=Fraction(1), settle=settling(0.9), along=one_step)
     assert accurate.alpha_hat == 1
     assert accurate.worst <= 0.9
-    with pytest.raises(InputError, match=r"no setting of the engine settles so fast, to \|z_p\| <= 0.3"):
+    with pytest.raises(InputError, match=r"no setting of the engine reaches \|z_p\| <= 0.3"):
         choose(lookup("SYM"), "accurate", h=Fraction(1), settle=settling(0.3), along=one_step)

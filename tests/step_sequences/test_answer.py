@@ -64,7 +64,7 @@ def test_feedback_that_changes_with_the_error_is_proven_at_each_of_its_points() 
 
 def test_an_engine_that_does_neither_is_refused() -> None:
     for values in ("chipmunk=0.0018", "box2d=60,2"):
-        with pytest.raises(InputError, match="makes of these values neither"):
+        with pytest.raises(InputError, match="keeps neither α, β nor"):
             steps(engine=values, h_min=0.002, h_max=0.004)
 
 
@@ -76,14 +76,14 @@ def test_feedback_is_found_that_is_proven_where_there_is_some() -> None:
     assert (float(found.alpha_hat), float(found.beta_hat)) == pytest.approx((1, 1))
     none = proven_choice(lookup("generalized-alpha"), asked)
     assert (none.goal, none.verdict) == ("robust", "refuted")
-    assert none.sentence.endswith("Nor is another feedback of `choose` proven for these steps.")
+    assert none.sentence.endswith("No other choice is proven for these steps.")
 
 
 def test_what_is_refused() -> None:
     for arguments, message in (
         ({"h_min": 2, "h_max": 1}, "h_min 2, h_max 1: expected the longest step"),
         ({"h_min": 0, "h_max": 1}, "h_min = 0"),
-        ({"h_min": 1, "h_max": 1, "alpha": 1}, "alpha and beta go together"),
+        ({"h_min": 1, "h_max": 1, "alpha": 1}, "give both alpha and beta, or neither"),
         ({"h_min": 1, "h_max": 1, "engine": "bullet=0.2", "hold": True}, "engine takes the place"),
         ({"h_min": 1, "h_max": 1, "method": "B4"}, "assume that these are of equal length"),
         ({"h_min": 1, "h_max": 1, "method": "B4", "alpha": 1, "beta": 1}, "assume that these are of equal length"),
