@@ -127,6 +127,8 @@ def ways_words(answers: Sequence[DriveAnswer]) -> str:
     """Return in which ways of applying a torque a drive is safe."""
     verdicts = []
     for verdict, safe in (("safe", True), ("not safe", False)):
-        if names := [f"{each.applied} ({each.method.name})" for each in answers if each.safe == safe]:
+        judged = [each for each in answers if each.safe == safe]
+        names = [f"{each.applied} ({each.method.name})" if each.applied else each.method.name for each in judged]
+        if names:
             verdicts.append(f"{verdict} {'is' if len(names) == 1 else 'are'} {', '.join(names)}")
     return f"Of the ways to apply the torque, of which --method names yours, {'; '.join(verdicts)}."

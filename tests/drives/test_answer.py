@@ -7,6 +7,7 @@ from math import atan, inf, log, pi
 import pytest
 
 from bezstab.drives.answer import DriveAnswer, drive, gains_for, judge_drive, rates
+from bezstab.drives.columns import ways_words
 from bezstab.drives.held_torque import verdict
 from bezstab.engines.drives import Drive, Timing
 from bezstab.errors import InputError
@@ -192,3 +193,8 @@ def test_what_is_to_be_changed_is_stable_as_it_is_printed(kp: int, kd: int, iner
     assert drive(kp, lowered, inertia, h=h)
     assert drive(kp, kd, raised, h=h)
     assert drive(kp, kd, own + armature, h=h)
+
+
+def test_the_ways_to_apply_a_torque_are_named_and_other_methods_by_their_names() -> None:
+    answers = [drive(100, 0, 1, h="0.01", method=method) for method in ("RK4", "implicit-euler", "AB2")]
+    assert "safe are RK4, fully implicit (implicit-euler); not safe is AB2." in ways_words(answers)
