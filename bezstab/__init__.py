@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from bezstab.api import feedback_cost as feedback_cost
     from bezstab.api import largest_step as largest_step
     from bezstab.api import poles as poles
-    from bezstab.api import region as region
     from bezstab.api import spectral_radius as spectral_radius
     from bezstab.api import verdict as verdict
     from bezstab.chains.answer import chain as chain
@@ -27,6 +26,7 @@ if TYPE_CHECKING:
     from bezstab.mujoco.linting import lint as lint
     from bezstab.probes.answer import probe as probe
     from bezstab.probes.answer import probe_step as probe_step
+    from bezstab.regions.answer import region as region
     from bezstab.runs.simulating import simulate as simulate
     from bezstab.runs.verifying import verify as verify
     from bezstab.show import plot as plot
@@ -46,7 +46,6 @@ HOMES = {
             "feedback_cost",
             "largest_step",
             "poles",
-            "region",
             "spectral_radius",
             "verdict",
         ),
@@ -60,6 +59,7 @@ HOMES = {
     "plot": "bezstab.show.plot",
     "probe": "bezstab.probes.answer",
     "probe_step": "bezstab.probes.answer",
+    "region": "bezstab.regions.answer",
     "scene": "bezstab.mechanism.scene_files",
     "simulate": "bezstab.runs.simulating",
     "steps": "bezstab.step_sequences.answer",

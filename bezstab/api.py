@@ -23,7 +23,7 @@ from bezstab.methods.registry import method as method_named
 from bezstab.methods.schemes import Method
 from bezstab.methods.schur import Verdict
 from bezstab.questions import answering, question
-from bezstab.stability import arrays, best_points, closed_loop, feedback_costs, regions
+from bezstab.stability import arrays, best_points, closed_loop, feedback_costs
 from bezstab.stability.arrays import ComplexArray, FloatArray
 
 Given = TypeVar("Given")
@@ -130,22 +130,6 @@ def verdict(method: str | Method, **point: Unpack[PointAtStep[Number]]) -> Verdi
     Schur-Cohn test (I. Schur, J. reine angew. Math. 147, 1917) on the polynomial of paper Eq. 17.
     """
     return closed_loop.verdict(method_named(method), *_plane_point(point))
-
-
-@in_keywords()
-def region(method: str | Method, level: float = 1.0) -> regions.Region:
-    """Return the exact region of the plane of alpha_hat and beta_hat in which |z_p| < level.
-
-    level: above 0, at most 0.9999999, or 1. At 1 the region is where the method is stable.
-
-    Returns a Region, dimensionless. `boundary` is a list of closed curves, arrays of shape (points, 2)
-    with the columns alpha_hat and beta_hat. `area` and `extent` are its size. `contains(alpha_hat,
-    beta_hat)` tells which points lie inside. `bezstab.plot.region` draws it.
-
-    InputError for another level. NumericalError if an edge cannot be found. Source: boundary locus of
-    paper Eq. 17.
-    """
-    return regions.region(method_named(method), real_number(level, "level"))
 
 
 def best_point(method: str | Method) -> best_points.BestPoint | None:

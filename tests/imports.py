@@ -16,6 +16,7 @@ ROOMS = (
     "questions",
     "show",
     "cli",
+    "regions",
     "runs",
     "chains",
     "drives",

@@ -8,7 +8,7 @@ other; only appointed files see a library.
       |
     subjects               a folder for each: chains, drives, step_sequences, probes, mujoco
       |
-    runs       api         runs of mechanisms, and whether predictions hold; what people type in Python
+    regions, runs, api     regions and methods; runs of mechanisms, and whether predictions hold; the rest in Python
       |         |
     cli         |          what they type on the command line
       |         |
@@ -67,12 +67,13 @@ APPOINTED = {
         *("mechanism/equations.py", "mechanism/generated_code.py", "mechanism/start.py", "mechanism/observation.py"),
     },
     "matplotlib": {
-        *("show/style.py", "show/plot.py", "show/map_figures.py", "runs/figures.py"),
+        *("show/style.py", "show/plot.py", "regions/figure.py", "runs/figures.py"),
         *("show/window.py", "paper/figures.py"),
         *(f"{subject}/figure.py" for subject in SUBJECTS),
     },
     "click": {path.relative_to(PACKAGE).as_posix() for path in (PACKAGE / "cli").glob("*.py")}
     | {"paper/command.py"}
+    | {"regions/region_command.py", "regions/methods_command.py"}
     | {"runs/options.py", *(f"runs/{command}_command.py" for command in ("simulate", "verify", "tradeoff"))}
     | {f"{subject}/command.py" for subject in SUBJECTS},
     "mujoco": {"mujoco/reading.py"},

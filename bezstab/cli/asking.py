@@ -20,11 +20,9 @@ from bezstab.words import point_words
 if TYPE_CHECKING:
     from bezstab.questions.answering import Answer
     from bezstab.questions.question import Question
-    from bezstab.questions.regions import MapQuestion
 
 Asked = TypeVar("Asked")
 Found = TypeVar("Found")
-OfScene = TypeVar("OfScene", "Question", "MapQuestion")
 
 
 def asked(kind: Callable[..., Asked], **typed: Any) -> Asked:
@@ -42,7 +40,7 @@ def asked(kind: Callable[..., Asked], **typed: Any) -> Asked:
     return kind(**typed)
 
 
-def asked_of_scene(kind: type[OfScene], **typed: Any) -> OfScene:
+def asked_of_scene(kind: type[Question], **typed: Any) -> Question:
     """Return the same, once it is known how its scene moves: a note says so if that is too far in a step."""
     question = asked(kind, **typed)
     say_each(worked_out(lambda: question.warnings, typed["scene"]))

@@ -19,8 +19,8 @@ from bezstab.stopping import end_if_told
 COMMANDS: Mapping[str, Mapping[str, str]] = {
     "Maps": {
         "poles": "bezstab.cli.poles_command",
-        "region": "bezstab.cli.region_command",
-        "methods": "bezstab.cli.methods_command",
+        "region": "bezstab.regions.region_command",
+        "methods": "bezstab.regions.methods_command",
     },
     "Choose": {
         "choose": "bezstab.cli.choose_command",

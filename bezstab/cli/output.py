@@ -66,17 +66,22 @@ def show_rows(kind: RowKind, found: Iterable[Row], without: Collection[str] = ()
     click.echo(answer)
 
 
-def show_answers(columns: Sequence[Column[Item]], answers: Sequence[Item], sentences: Sequence[str]) -> None:
+def show_answers(
+    columns: Sequence[Column[Item]], answers: Sequence[Item], sentences: Sequence[str], *, in_blocks: bool = False
+) -> None:
     """Print answers on standard output: every column as JSON and CSV, else the brief ones, or with --all every one.
 
     As text each answer is its sentence, with a line for each column below; several are a table, if that is not wider
-    than the terminal.
+    than the terminal, unless they are to be `in_blocks`. A command without --all shows every one.
     """
     if not for_reading():
         click.echo(render([row_of(columns, answer) for answer in answers], [], chosen_format()))
         return
-    shown = _shown(columns, answers, click.get_current_context().params["every_column"])
-    click.echo(_table_or_blocks(shown, answers, sentences, table_of_one=False))
+    shown = _shown(columns, answers, click.get_current_context().params.get("every_column", True))
+    if in_blocks and chosen_format() == "text":
+        click.echo(_blocks(shown, answers, sentences))
+    else:
+        click.echo(_table_or_blocks(shown, answers, sentences, table_of_one=False))
 
 
 def show_tables(
@@ -113,6 +118,11 @@ def _table_or_blocks(
         as_table = _table_of(columns, answers)
         if chosen_format() == "markdown" or fits(as_table, text_width()):
             return as_table
+    return _blocks(columns, answers, sentences)
+
+
+def _blocks(columns: Sequence[Column[Item]], answers: Sequence[Item], sentences: Sequence[str]) -> str:
+    """Return of each answer a line for each column, below its sentence."""
     return "\n\n".join(
         lines_below(sentence, [(each.heading, each.text(answer)) for each in columns], text_width())
         for sentence, answer in zip(sentences, answers, strict=True)
@@ -127,14 +137,14 @@ def _table_of(columns: Sequence[Column[Item]], answers: Sequence[Item]) -> str:
     return table([[row[place] for place in known] for row in (headings, *cells)], chosen_format())
 
 
-def show_groups(groups: Sequence[tuple[str, Sequence[Row]]], kind: RowKind, without: Collection[str] = ()) -> None:
-    """Print a table of groups of rows for reading, each group below its heading."""
-    every_row = [row for _, rows in groups for row in rows]
-    head, *lines = render(every_row, kind.columns(every_row, without), "text").splitlines()
+def show_groups(columns: Sequence[Column[Item]], groups: Sequence[tuple[str, Sequence[Item]]]) -> None:
+    """Print one table of several groups for reading, each group below its heading."""
+    shown = [each for each in columns if each.heading]
+    head, *lines = _table_of(shown, [answer for _, answers in groups for answer in answers]).splitlines()
     click.echo(head)
-    for heading, rows in groups:
+    for heading, answers in groups:
         click.echo(f"\n{heading}")
-        for _ in rows:
+        for _ in answers:
             click.echo(lines.pop(0))
 
 

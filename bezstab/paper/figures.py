@@ -16,11 +16,11 @@ from bezstab.mechanism.start import initial_state
 from bezstab.methods.registry import lookup
 from bezstab.paper.experiments import START_NAMES, STEP, UNSTABILIZED, compared_runs, kicked_runs, unstabilized_runs
 from bezstab.paper.printed import COMPARED, FASTER_LEVEL, TABLE_5
-from bezstab.questions.regions import MapAnswer, MapQuestion
-from bezstab.rationals import exact
+from bezstab.regions.answer import MapConditions, map_answer
+from bezstab.regions.figure import comparison_figure, map_figure
 from bezstab.show import plot
-from bezstab.show.map_figures import comparison_figure, map_figure
 from bezstab.show.style import DASHES, column_figure, line_at, styled, with_legend
+from bezstab.stability.regions import region
 
 COLLAPSE = (0.02, 0.05, 0.1), 2000.0
 """Steps of Fig. 5 (s), and how long it follows a run (s): until most blow up."""
@@ -37,15 +37,12 @@ Runs = Mapping[tuple[Start, str, float], Simulation]
 
 def faster_region_figure(name: str) -> Figure:
     """Return a panel of Fig. 1: one method's map of |z_p|, its region S and the faster region H."""
-    question = MapQuestion(methods=(lookup(name),), levels=(exact(FASTER_LEVEL[name]),))
-    answer = MapAnswer(question, lookup(name))
-    return map_figure(answer, np.array(list(answer.dominant_poles())))
+    return map_figure(map_answer(lookup(name), MapConditions(levels=(FASTER_LEVEL[name],)), drawn=True))
 
 
 def compared_regions_figure(*names: str, h: float | None = None) -> Figure:
     """Return Fig. 2 or, in 2 alpha and beta^2 for a step of h (s), Fig. 3: the boundaries of several methods."""
-    methods = tuple(map(lookup, names))
-    return comparison_figure(MapQuestion(methods=methods, h=None if h is None else exact(h), compare=True))
+    return comparison_figure([region(lookup(name)) for name in names], MapConditions(h=h))
 
 
 def mechanism_figure() -> Figure:

@@ -3,30 +3,14 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from io import TextIOWrapper
-from typing import TYPE_CHECKING, Any, BinaryIO
+from typing import Any, BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
 
-from bezstab.stability.arrays import Arrays, ComplexArray, FloatArray
-from bezstab.stability.regions import Region
-from bezstab.units import feedback_gains
-
-if TYPE_CHECKING:  # so that an array of the plane does not load what runs mechanisms
-    from bezstab.questions.regions import MapAnswer
-
-
-def map_arrays(answer: MapAnswer, z: ComplexArray) -> Arrays:
-    """Return the dominant poles over the axes of an answer as arrays of shape (points,), alpha_hat running fastest.
-
-    z has shape (beta_hat.size, alpha_hat.size). Dimensionless; the angle of z in degrees; with a step also 2 alpha and
-    beta^2 in 1/s and 1/s^2; with the errors that feedback forces where they are asked about.
-    """
-    arrays = over_the_plane(*answer.axes, z_abs=np.abs(z), z_angle_deg=np.angle(z, deg=True))
-    arrays |= _gains(arrays["alpha_hat"], arrays["beta_hat"], answer.question.seconds)
-    return {**arrays, "combined_error": answer.errors(z).ravel()} if answer.question.motion else arrays
+from bezstab.stability.arrays import FloatArray
 
 
 def over_the_plane(alpha_hat: FloatArray, beta_hat: FloatArray, **values: NDArray[Any]) -> dict[str, NDArray[Any]]:
@@ -34,35 +18,6 @@ def over_the_plane(alpha_hat: FloatArray, beta_hat: FloatArray, **values: NDArra
     alpha_grid, beta_grid = np.meshgrid(alpha_hat, beta_hat)
     grids = {"alpha_hat": alpha_grid, "beta_hat": beta_grid, **values}
     return {key: grid.ravel() for key, grid in grids.items()}
-
-
-def boundary_arrays(regions: Sequence[Region], h: float | None) -> Arrays:
-    """Return all boundary curves as arrays of shape (points,): method, number of the closed curve, the point.
-
-    Dimensionless; with h (s) also 2 alpha and beta^2 in 1/s and 1/s^2.
-    """
-    points = [
-        (region.method.name, number, *point)
-        for region in regions
-        for number, curve in enumerate(region.boundary)
-        for point in curve
-    ]
-    methods, numbers, *place = zip(*points, strict=True) if points else [()] * 4
-    alpha_hat, beta_hat = np.array(place, float)
-    return {
-        "method": np.array(methods, np.str_),
-        "curve": np.array(numbers, np.int64),
-        "alpha_hat": alpha_hat,
-        "beta_hat": beta_hat,
-        **_gains(alpha_hat, beta_hat, h),
-    }
-
-
-def _gains(alpha_hat: FloatArray, beta_hat: FloatArray, h: float | None) -> dict[str, FloatArray]:
-    if h is None:
-        return {}
-    two_alpha, beta_squared = feedback_gains(alpha_hat, beta_hat, h)
-    return {"two_alpha": two_alpha, "beta_squared": beta_squared}
 
 
 def write_arrays(arrays: Mapping[str, NDArray[np.generic]], form: str, file: BinaryIO) -> None:

@@ -13,7 +13,6 @@ if TYPE_CHECKING:
 
     from bezstab.questions.answering import Answer
     from bezstab.questions.motions import ReferenceMotion
-    from bezstab.stability.best_points import BestPoint, FarLimit
 
 COSTLY = 10.0
 """Times the least error: from here on a sentence says what the feedback costs."""
@@ -133,33 +132,3 @@ def energy_words(motion: ReferenceMotion) -> str:
         f"sides. Here it is {motion.words}. A negative growth is a loss. In n revolutions it takes the "
         "motion off its course by 1.6 n² times as much of its amplitude."
     )
-
-
-def best_point_words(best: BestPoint) -> str | None:
-    """Return that every pole is zero at the best point, and where else (dimensionless, as text); None if one is not."""
-    if best.z_abs:
-        return None
-    points = " and ".join(f"({alpha_hat:.6f}, {beta_hat:.6f})" for alpha_hat, beta_hat in best.elsewhere)
-    return "deadbeat: every pole is 0" + (f"; also at {points}" if points else "")
-
-
-def falling_words(limit: FarLimit) -> str:
-    """Return what |z_p| falls towards without a least value, and along which way of alpha_hat and beta_hat.
-
-    The way is "β̂ grows at α̂ = 2", or "α̂ and β̂ grow, α̂² = 3 β̂".
-    """
-    (p, q), ratio = limit.direction, limit.ratio
-    falls = f"|z_p| falls towards {limit.z_abs:.6g} as"
-    if p == 0 or q == 0:
-        grows, stays = ("α̂", "β̂") if q == 0 else ("β̂", "α̂")
-        return f"{falls} {grows} grows" + (
-            "" if ratio is None else f" at {stays} = {1 / ratio if q == 0 else ratio:.6g}"
-        )
-    times = "" if ratio is None or f"{ratio:.6g}" == "1" else f"{ratio:.6g} "
-    equal = "like" if ratio is None else "="
-    grow = "α̂ and β̂ grow" if p > 0 and q > 0 else "β̂ grows and α̂ falls" if q > 0 else "α̂ grows and β̂ falls"
-    return f"{falls} {grow}, {_power('α̂', q)} {equal} {times}{_power('β̂', p)}"
-
-
-def _power(name: str, exponent: int) -> str:
-    return name if exponent == 1 else f"{name}^{exponent}"

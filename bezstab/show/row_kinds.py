@@ -15,7 +15,6 @@ from bezstab.show.cells import (
     any_speed,
     area_text,
     constant_text,
-    method_and_alias_text,
     modulus_words,
     order_text,
     pole_text,
@@ -25,10 +24,7 @@ from bezstab.show.cells import (
 )
 from bezstab.show.fields import MISSING, Field, RowKind, integer, number, text, truth
 from bezstab.show.sentences import (
-    method_sentence,
-    region_sentence,
     step_sentence,
-    whole_method_sentence,
 )
 from bezstab.words import times_words
 
@@ -365,60 +361,6 @@ SCENE_RUN = (
     ),
     text("run_failure", "Why the run of the scene ended early", null="if it did not", path="failure").hidden,
 )
-# what `region --accuracy` adds: the two points that its figure marks
-ACCURACY = (
-    OMEGA_H,
-    number(
-        "accurate_alpha_hat",
-        "Where the goal accurate chooses to be, in alpha_hat",
-        "accurate α̂",
-        null=NO_CHOICE,
-        path="chosen.alpha_hat",
-    ),
-    number(
-        "accurate_beta_hat",
-        "Where the goal accurate chooses to be, in beta_hat",
-        "accurate β̂",
-        null=NO_CHOICE,
-        path="chosen.beta_hat",
-    ),
-    number(
-        "accurate_z_abs",
-        "Modulus of the dominant pole where the goal accurate chooses to be",
-        "|z_p| there",
-        ".6f",
-        null=NO_CHOICE,
-        path="chosen.pole.abs",
-    ),
-    number(
-        "accurate_error",
-        "What combined_error is where the goal accurate chooses to be",
-        "error forced there",
-        ".2e",
-        null=NO_CHOICE,
-    ),
-    number(
-        "best_error",
-        "What combined_error is at best_alpha_hat, best_beta_hat",
-        "error forced at the least |z_p|",
-        ".2e",
-        null=NO_BEST,
-    ),
-    number(
-        "accurate_growth",
-        "Growth of energy in a revolution, as a share of it, where the goal accurate chooses to be",
-        "energy gained there",
-        ".2e",
-        null="without --motion, or where that point is not known",
-    ),
-    number(
-        "best_growth",
-        "The same where |z_p| is least",
-        "energy gained at the least |z_p|",
-        ".2e",
-        null="without --motion, or where there is no such point",
-    ),
-)
 APPLIED = text(
     "applied",
     "What the engine does to its values before it uses them",
@@ -462,17 +404,6 @@ SWEPT_OVER = (
     STABLE_ITERATIONS,
 )
 """What an engine that sweeps adds: the first to all, the others to --chain and --scene."""
-# what `region --scene` adds
-MOVING_REGION = (
-    number("speed", "Factor on the scene's own speed at which it moves", "speed", null=LEVEL_ROW),
-    KAPPA,
-    number(
-        "area_moving",
-        "Area of the region of the moving mechanism in alpha_hat and beta_hat",
-        "area moving",
-        null=LEVEL_ROW,
-    ),
-)
 ENGINE_H_LIMIT = number(
     "engine_h_limit",
     "Largest step up to which the engine's values are stable as it reads them at each step",
@@ -510,150 +441,6 @@ POLES = RowKind(
         *SWEPT_OVER,
     ),
     sentence=IN_WORDS,
-)
-# printed by `region`, and by `methods NAME` below what else is known of the method
-REGIONS = RowKind(
-    "the region of a method",
-    fields=(
-        METHOD.of("region.method"),
-        Z_ABS_BELOW,
-        AREA,
-        AREA_ERROR.hidden,
-        end("alpha_hat_min", "Smallest alpha_hat of the region", "α̂ from", path="region.extent.0.0"),
-        ALPHA_HAT_MAX,
-        end("beta_hat_min", "Smallest beta_hat of the region", "β̂ from", path="region.extent.1.0"),
-        BETA_HAT_MAX,
-        text(
-            "approached",
-            "Those of the four limits that no edge attains: the region comes near them far out",
-            "approached",
-            null="where edges attain all that there are",
-        ),
-        text(
-            "islands",
-            "Where else |z_p| is as small: a point of each island, alpha_hat beta_hat",
-            null="where nothing is",
-        ),
-        number(
-            "critical_damping_limit",
-            "Largest beta h on alpha = beta up to which all are stable",
-            "βh to (α = β)",
-            otherwise=lambda _: "unlimited",
-            null="if all",
-        ),
-        text(
-            "critical_damping_limit_exact",
-            "The same as a rational number",
-            "exactly",
-            null="if all are stable, or where it is not known to be rational",
-        ),
-        BEST_Z_ABS,
-        number(
-            "best_alpha_hat",
-            "Where that modulus is smallest, in alpha_hat",
-            "best α̂",
-            ".8f",
-            null=NO_BEST,
-            path="inside.alpha_hat",
-        ),
-        number(
-            "best_beta_hat",
-            "Where that modulus is smallest, in beta_hat",
-            "best β̂",
-            ".8f",
-            null=NO_BEST,
-            path="inside.beta_hat",
-        ),
-        text(
-            "best_where",
-            "That all poles are zero where the modulus is smallest, and where else, in words",
-            "poles there",
-            null="where they are not zero",
-        ),
-        text("best_reason", "Why there is no best point", null="where there is one"),
-        truth("bounded", "Whether the region is bounded", path="region.bounded"),
-        text(
-            "stable_for_all",
-            "Whether all alpha_hat, beta_hat > 0 are stable",
-            "all α, β stable",
-        ),
-        number(
-            "unconditional_damping_ratio",
-            "Damping ratio alpha / beta above which every step is stable",
-            "every h stable from α/β",
-            otherwise=lambda _: "none",
-            null="if none is",
-        ),
-    ),
-    added=(
-        *ACCURACY,
-        *MOVING_REGION,
-    ),
-    sentence=region_sentence,
-)
-# printed by `methods`
-LISTED_METHODS = RowKind(
-    "a method in the list",
-    fields=(
-        replace(METHOD, text=method_and_alias_text),
-        STEPS,
-        integer(
-            "evaluations",
-            "Evaluations of the right-hand side in a step, of an implicit method in an iteration",
-            "evaluations",
-        ),
-        ORDER,
-        integer("order_position_forces", "Order of accuracy where forces depend on positions alone"),
-        integer("order_velocity_forces", "Order of accuracy where forces depend on velocities alone"),
-        ERROR_CONSTANT,
-        text("error_constant_exact", "The error constant as a rational", null="where the coefficients are irrational"),
-        SOURCE.hidden,
-        truth(
-            "implicit",
-            "Whether a step solves equations",
-            "implicit",
-            text=lambda row: "yes" if row["implicit"] else "",
-        ),
-        integer("digits", "Digits to which rationals stand for irrational coefficients", null="where none do"),
-        text("other_names", "What else it is called", null="where nothing else is known"),
-        GROUP.hidden,
-    ),
-    sentence=method_sentence,
-)
-# printed by `methods NAME`: every field in a line of its own, below its key
-NAMED_METHODS = RowKind(
-    "a method that was named",
-    fields=tuple(
-        replace(
-            field,
-            heading=field.key.replace("_", " "),
-            form=".10g" if field.kind == "number" else "",
-            text=None,
-        )
-        for field in (
-            *LISTED_METHODS.fields[:-1],
-            text("recursion", "The method's recursion"),
-            text("mapping", "The method's mapping from s to z"),
-            text("characteristic_polynomial", "Polynomial in z whose roots are the poles"),
-            text(
-                "steady_error",
-                "What the method forces on a constraint that moves as e^(i omega t), as a share of that motion: "
-                "the first term in theta = i omega h where alpha_hat and beta_hat are held",
-            ),
-            text("steady_velocity_error", "The same of the velocity, as a share of that of the motion"),
-            text(
-                "stage_torque",
-                "D, where a step multiplies the rate of a uniform rotation by 1 + D: the first term in theta = omega h",
-            ),
-            text(
-                "multiplier_law",
-                "The constraint error c that a motion forces, on which the multipliers do the work -lambda dc/dt",
-            ),
-            ORDER_LEFT,
-            *REGIONS.fields[1:],
-        )
-    ),
-    sentence=whole_method_sentence,
 )
 # printed by `choose`
 CHOICES = RowKind(
@@ -819,11 +606,6 @@ ENGINES_LISTED = RowKind(
 )
 ROW_KINDS: Mapping[str, Sequence[RowKind]] = {
     "poles": (POLES,),
-    "region": (REGIONS,),
-    "methods": (
-        LISTED_METHODS,
-        NAMED_METHODS,
-    ),
     "choose": (CHOICES, STEPS_OF_CHOICES),
     "check": (
         CHECKED,

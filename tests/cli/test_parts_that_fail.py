@@ -7,7 +7,8 @@ from typing import Any
 import pytest
 
 from bezstab.errors import NumericalError
-from bezstab.questions import answering, regions
+from bezstab.questions import answering
+from bezstab.regions import answer as regions
 from bezstab.stability import best_points, choices, feedback_costs
 from bezstab.stability.regions import region
 from tests.cli.running import rows, run
@@ -56,7 +57,9 @@ def test_without_a_best_point_region_still_prints_the_area(monkeypatch: pytest.M
 
 def test_a_method_without_a_region_withholds_no_other(monkeypatch: pytest.MonkeyPatch) -> None:
     of_any = region
-    monkeypatch.setattr(regions, "region", lambda method, *level: (of_any if method.name == "B4" else failing)(method))
+    monkeypatch.setattr(
+        regions, "region_of", lambda method, *level: (of_any if method.name == "B4" else failing)(method)
+    )
     result = run("region --method AB4 --method B4", FILES)
     assert (result.exit_code, result.stderr) == (3, f"bezstab: {REASON}\n")
     assert "0.8096847184" in result.stdout

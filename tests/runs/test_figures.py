@@ -1,6 +1,6 @@
 """Figures of runs that are made up: each error and each front is drawn where it is."""
 
-from dataclasses import fields
+from dataclasses import fields, replace
 from typing import Any
 
 import numpy as np
@@ -11,8 +11,10 @@ from bezstab.mechanism.scene_files import load_scene
 from bezstab.mechanism.simulation import simulated
 from bezstab.methods.registry import lookup
 from bezstab.runs.accuracy_costs import Cost, ErrorOf, Run, ranked_runs
-from bezstab.runs.figures import history_figure, projection_figure, work_precision_figure
+from bezstab.runs.figures import history_figure, projection_figure, verdict_figure, work_precision_figure
 from bezstab.runs.tables import history_arrays
+from bezstab.runs.verdict_maps import map_rows, simulated_verdicts, verdict_map
+from bezstab.stability.regions import region
 from tests.show.drawn import lines_of
 
 
@@ -82,3 +84,21 @@ def test_the_history_figure_and_the_table_show_the_run() -> None:
         assert table[name].tolist() == run.q[:, place].tolist()
         assert table[f"d/dt {name}"].tolist() == run.v[:, place].tolist()
     assert table["cdot_1"].tolist() == run.cdot[:, 0].tolist()
+
+
+def test_the_verdict_figure_shows_cells_boundary_and_disagreement() -> None:
+    method = lookup("SYM")
+    rows = map_rows(load_scene("pendulum"), method, 1e-3, 6)
+    cells = verdict_map(rows, [simulated_verdicts(each) for each in rows])
+    wrong = cells.diverges.copy()
+    wrong[2, 3] ^= True
+    undecided = np.zeros_like(wrong)
+    undecided[0, 5] = True
+    (axes,) = verdict_figure(replace(cells, diverges=wrong, undecided=undecided), region(method)).axes
+    shown = np.ma.masked_array(axes.images[0].get_array())
+    assert (np.ma.getmaskarray(shown) == undecided).all()
+    assert (np.asarray(shown)[~undecided] == wrong[~undecided]).all()
+    lines = lines_of(axes)
+    assert lines["disagree"].tolist() == [[cells.alpha_hat[3], cells.beta_hat[2]]]
+    assert lines["$|z_p| = 1$"][:-1] == pytest.approx(region(method).boundary[0])
+    assert axes.get_title().splitlines()[-2:] == ["35 of 36 runs gave a verdict,", "34 of them agree"]

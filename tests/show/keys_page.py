@@ -10,6 +10,7 @@ from bezstab.chains import columns as chains
 from bezstab.drives import columns as drives
 from bezstab.mujoco import columns as mujoco
 from bezstab.probes import columns as probes
+from bezstab.regions import columns as regions
 from bezstab.runs import columns as runs
 from bezstab.show.columns import Column
 from bezstab.show.row_kinds import ROW_KINDS
@@ -21,7 +22,9 @@ COLUMNS: Mapping[str, Sequence[Sequence[Column[Any]]]] = {
     "chain": [chains.COLUMNS],
     "drive": [drives.COLUMNS],
     "lint": [mujoco.STATES, mujoco.SUSPECTS, mujoco.REMEDIES, mujoco.ENERGIES, mujoco.SAGS, mujoco.SETTINGS],
+    "methods": [regions.LISTED, regions.WHOLE],
     "probe": [probes.POLES, probes.COMPARED, probes.FOUND],
+    "region": [regions.MAP, regions.ON_A_MOTION, regions.MOVING],
     "simulate": [runs.RUN],
     "steps": [step_sequences.COLUMNS],
     "tradeoff": [runs.COSTS, runs.FRONTS],

@@ -16,13 +16,12 @@ import pytest
 from bezstab.methods.registry import lookup
 from bezstab.questions.answering import answers
 from bezstab.questions.question import Question
-from bezstab.questions.regions import region_answer
 from bezstab.show import row_kinds
 from bezstab.show.arrays import write_arrays
-from bezstab.show.cells import LIMITS, pole_text, safe_step_text
+from bezstab.show.cells import pole_text
 from bezstab.show.fields import Field, cells, formatted
-from bezstab.show.row_kinds import FIELDS, POLES, REGIONS, ROW_KINDS, Z_ABS
-from bezstab.show.rows import left_out, pole_rows, region_row
+from bezstab.show.row_kinds import FIELDS, POLES, ROW_KINDS, Z_ABS
+from bezstab.show.rows import left_out, pole_rows
 from bezstab.show.tables import render
 from tests.show.keys_page import PAGE, page
 
@@ -84,17 +83,6 @@ def test_json_and_csv_keep_every_digit_and_text_rounds() -> None:
     infinite = [{**ROWS[0], **cells((Z_ABS,), SimpleNamespace(pole=complex(math.inf)))}]
     assert json.loads(render(infinite, COLUMNS, "json")) == [{**ROWS[0], "z_abs": None}]
     assert " -  " in render(infinite, COLUMNS, "text")
-
-
-@pytest.mark.slow
-def test_limits_are_rounded_to_the_safe_side_or_said_in_words() -> None:
-    assert safe_step_text({"safe": True, "h_limit": 0.0123456}) == "0.01234"
-    row = region_row(region_answer(lookup("bdf3")))
-    assert [row[key] for key in ("bounded", "area", *LIMITS)] == [False, None, 0, None, 0, None]
-    of_regions = {field.key: field for field in REGIONS.fields}
-    words = [of_regions[key].cell(row) for key in ("area", *LIMITS, "critical_damping_limit")]
-    assert words == ["unbounded", "0", "unbounded", "0", "unbounded", "unlimited"]
-    assert row["unconditional_damping_ratio"] == pytest.approx(0.06919293)
 
 
 @pytest.mark.parametrize("form", ["csv", "npz"])

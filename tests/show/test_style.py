@@ -8,10 +8,11 @@ import matplotlib as mpl
 import pytest
 
 from bezstab.methods.registry import lookup
-from bezstab.questions.regions import MapQuestion
+from bezstab.regions.answer import MapConditions
+from bezstab.regions.figure import comparison_figure
 from bezstab.show.file_forms import FIGURE_FORMS
-from bezstab.show.map_figures import comparison_figure
 from bezstab.show.style import line_at, marked_line_at, new_axes, save, styled, title_lines, with_legend
+from bezstab.stability.regions import region
 
 
 def test_lines_in_a_figure_differ_in_colour_or_dashes_and_neighbours_in_marker_too() -> None:
@@ -34,7 +35,7 @@ def test_equal_figures_are_equal_bytes_whatever_the_users_settings(form: str) ->
     outputs = []
     for settings in ({}, {"font.size": 20, "lines.linewidth": 9, "savefig.dpi": 10, "svg.hashsalt": "x"}):
         with mpl.rc_context(settings):  # type: ignore[arg-type,unused-ignore]
-            save(comparison_figure(MapQuestion(methods=(lookup("B4"),))), form, file := io.BytesIO())
+            save(comparison_figure([region(lookup("B4"))], MapConditions()), form, file := io.BytesIO())
         outputs.append(file.getvalue())
     assert outputs[0] == outputs[1]
     assert form != "svg" or b">B4</text>" in outputs[0]  # text stays text
@@ -43,10 +44,10 @@ def test_equal_figures_are_equal_bytes_whatever_the_users_settings(form: str) ->
 @pytest.mark.slow
 def test_two_processes_draw_the_same_bytes() -> None:
     code = (
-        "import sys; from bezstab.show.map_figures import comparison_figure; from bezstab.show.style import save;"
+        "import sys; from bezstab.regions.figure import comparison_figure; from bezstab.show.style import save;"
         "from bezstab.methods.registry import lookup;"
-        "from bezstab.questions.regions import MapQuestion;"
-        "save(comparison_figure(MapQuestion(methods=(lookup('B4'),))), 'svg', sys.stdout.buffer)"
+        "from bezstab.regions.answer import MapConditions; from bezstab.stability.regions import region;"
+        "save(comparison_figure([region(lookup('B4'))], MapConditions()), 'svg', sys.stdout.buffer)"
     )
     first, second = (
         subprocess.run([sys.executable, "-c", code], capture_output=True, check=True, env={"PYTHONHASHSEED": seed})

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bezstab.methods.registry import lookup
-from bezstab.show.result_sentences import best_point_words, falling_words
+from bezstab.regions.sentences import best_point_words, falling_words
 from bezstab.stability.best_points import FarLimit, best_point
 from bezstab.words import change_words, decay_words, growth_words, point_words, seconds_words, times_words
 

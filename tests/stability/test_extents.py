@@ -7,8 +7,9 @@ import pytest
 
 from bezstab.methods.recipes import recipe
 from bezstab.methods.schemes import Method
-from bezstab.questions.regions import region_answer
-from bezstab.show.rows import region_row
+from bezstab.regions.answer import region_answer
+from bezstab.regions.columns import REGION
+from bezstab.show.columns import row_of
 from bezstab.stability.regions import region
 from tests.methods.kinds import sampled
 from tests.reference.one_evaluation_schemes import one_evaluation_schemes, polygon_extent
@@ -41,6 +42,6 @@ def test_beta_hat_may_come_near_its_limit_as_alpha_hat_grows() -> None:
     found = region(Method("two evaluations", recipe(equations), ""))
     assert np.array(found.extent) == pytest.approx(np.array([(0, np.inf), (0, 4)]), rel=1e-8)
     assert found.approached == ((False, False), (False, True))
-    row = region_row(region_answer(found.method))
+    row = row_of(REGION, region_answer(found.method))
     assert row["approached"] == "beta_hat_max"
     assert row["beta_hat_max"] == pytest.approx(4)

@@ -1,22 +1,19 @@
 """A window on the plane: what it says of the point under the mouse, and that it opens."""
 
-from fractions import Fraction
-
 import pytest
 from matplotlib import pyplot
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from bezstab.methods.registry import lookup
-from bezstab.questions.regions import MapAnswer, MapQuestion
-from bezstab.show.map_figures import comparison_figure, map_figure
+from bezstab.regions.answer import MapConditions, map_answer
+from bezstab.regions.figure import comparison_figure, map_figure
+from bezstab.stability.regions import region
 from tests.cli.running import run
 
 
 def test_the_point_under_the_mouse_has_its_gains_its_pole_and_its_proven_verdict() -> None:
     """B1, explicit Euler, has the poles 1/2 +- i/2 at (1, 1/2); on its edge alpha_hat = beta_hat no float64 decides."""
-    method, h = lookup("B1"), Fraction("0.01")
-    answer = MapAnswer(MapQuestion(methods=(method,), h=h, points=2), method)
-    (axes, _) = map_figure(answer, answer.dominant_poles()).axes
+    (axes, _) = map_figure(map_answer(lookup("B1"), MapConditions(h=0.01, points=2), drawn=True)).axes
     words = "α̂ = {}, β̂ = {} (α = {} 1/s, β = {} 1/s at h = 0.01 s)\nB1: |z_p| = {}, {} (proven)"
     two_alpha, beta_squared = 1 / 0.01, 0.5 / 0.01**2
     assert axes.format_coord(two_alpha, beta_squared) == words.format(1, 0.5, 50, 70.7107, "0.707107", "converges")
@@ -24,7 +21,7 @@ def test_the_point_under_the_mouse_has_its_gains_its_pole_and_its_proven_verdict
 
 
 def test_compared_methods_are_told_one_below_the_other() -> None:
-    figure = comparison_figure(MapQuestion(methods=(lookup("B1"), lookup("SYM"))))
+    figure = comparison_figure([region(lookup(name)) for name in ("B1", "SYM")], MapConditions())
     first, *others = figure.axes[0].format_coord(1.0, 2.0).splitlines()
     assert first == "α̂ = 1, β̂ = 2"
     assert others == ["B1: |z_p| = 1.414214, diverges (proven)", "SYM: |z_p| = 1.000000, marginal (proven)"]

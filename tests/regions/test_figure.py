@@ -8,27 +8,25 @@ import numpy as np
 import pytest
 from matplotlib.collections import QuadMesh
 
-from bezstab.mechanism.scene_files import load_scene
 from bezstab.methods.registry import lookup
-from bezstab.questions.regions import MapAnswer, MapQuestion
-from bezstab.runs.figures import verdict_figure
-from bezstab.runs.verdict_maps import map_rows, simulated_verdicts, verdict_map
-from bezstab.show.map_figures import comparison_figure, map_figure
+from bezstab.regions.answer import map_answer, map_conditions
+from bezstab.regions.figure import comparison_figure, map_figure
 from bezstab.stability.regions import region
 from tests.show.drawn import lines_of
 
 
 @pytest.mark.parametrize("h", [None, Fraction("0.001")])
 @pytest.mark.parametrize("accuracy", [False, True])
-def test_a_map_draws_what_it_is_given(accuracy: bool, h: Fraction | None, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_map_draws_what_it_is_given(accuracy: bool, h: Fraction | None) -> None:
     """On even axes, and on logarithmic ones where errors are asked about."""
-    monkeypatch.setattr(MapQuestion, "marks", {"a rule": (0.1, 0.2), "far out": (3, 3)})
     method, scale = lookup("B4"), np.array([1, 1] if h is None else [1e3, 1e6])
     levels = () if accuracy else (Fraction("0.75"), Fraction("0.9"))
-    answer = MapAnswer(MapQuestion(methods=(method,), h=h, accuracy=accuracy, levels=levels, points=41), method)
-    z = np.array(list(answer.dominant_poles()))
-    alpha_hat, beta_hat = answer.axes
-    axes = map_figure(answer, z).axes[0]
+    asked = map_conditions(h=h, accuracy=accuracy, levels=levels, points=41)
+    marks = {"a rule": (0.1, 0.2), "far out": (3.0, 3.0)}
+    answer = map_answer(method, replace(asked, marks=marks), drawn=True)
+    assert answer.drawing
+    z, alpha_hat, beta_hat = answer.drawing.z, answer.drawing.alpha_hat, answer.drawing.beta_hat
+    axes = map_figure(answer).axes[0]
     (image,) = axes.images or [each for each in axes.collections if isinstance(each, QuadMesh)]
     values = np.ma.masked_array(image.get_array())
     assert (np.ma.getmaskarray(values) == (np.abs(z) >= 1)).all()
@@ -36,7 +34,7 @@ def test_a_map_draws_what_it_is_given(accuracy: bool, h: Fraction | None, monkey
     low, high = np.transpose([axes.get_xlim(), axes.get_ylim()])
     assert [low, high] == pytest.approx(np.transpose([alpha_hat, beta_hat])[[0, -1]] * scale)
     lines = lines_of(axes)
-    best, chosen = answer.stable.best, answer.chosen
+    best, chosen = answer.regions[0].best, answer.chosen
     assert best
     assert chosen
     for label, point in {
@@ -50,39 +48,21 @@ def test_a_map_draws_what_it_is_given(accuracy: bool, h: Fraction | None, monkey
     assert parabola[:, 1] == pytest.approx(parabola[:, 0] ** 2 / 4)  # beta^2 = (2 alpha)^2/4 in either unit
     assert ("1/s" in axes.get_xlabel()) == (h is not None)
     if not accuracy:  # nodes are at the centres of pixels
-        for drawn in (answer.stable.region, *answer.faster):
+        for drawn in (answer.regions[0].region, *answer.drawing.faster):
             assert lines[f"$|z_p| = {drawn.level:g}$"][:-1] == pytest.approx(drawn.boundary[0] * scale)
         left, right, *_ = axes.images[0].get_extent()
         step = (alpha_hat[1] - alpha_hat[0]) * scale[0]
         assert (left + step / 2, right - step / 2) == pytest.approx((alpha_hat[0] * scale[0], alpha_hat[-1] * scale[0]))
 
 
-def test_the_verdict_figure_shows_cells_boundary_and_disagreement() -> None:
-    method = lookup("SYM")
-    rows = map_rows(load_scene("pendulum"), method, 1e-3, 6)
-    cells = verdict_map(rows, [simulated_verdicts(each) for each in rows])
-    wrong = cells.diverges.copy()
-    wrong[2, 3] ^= True
-    undecided = np.zeros_like(wrong)
-    undecided[0, 5] = True
-    (axes,) = verdict_figure(replace(cells, diverges=wrong, undecided=undecided), region(method)).axes
-    shown = np.ma.masked_array(axes.images[0].get_array())
-    assert (np.ma.getmaskarray(shown) == undecided).all()
-    assert (np.asarray(shown)[~undecided] == wrong[~undecided]).all()
-    lines = lines_of(axes)
-    assert lines["disagree"].tolist() == [[cells.alpha_hat[3], cells.beta_hat[2]]]
-    assert lines["$|z_p| = 1$"][:-1] == pytest.approx(region(method).boundary[0])
-    assert axes.get_title().splitlines()[-2:] == ["35 of 36 runs gave a verdict,", "34 of them agree"]
-
-
 def test_a_comparison_draws_each_boundary_in_a_given_window_or_in_alpha_and_beta() -> None:
     methods = lookup("B4"), lookup("RK4@5")
     ends: dict[str, Any] = {"alpha_range": (Fraction(0), Fraction(1)), "beta_range": (Fraction(0), Fraction("0.5"))}
-    axes = comparison_figure(MapQuestion(methods=methods, h=Fraction("0.001"), **ends)).axes[0]
+    axes = comparison_figure(list(map(region, methods)), map_conditions(h=Fraction("0.001"), **ends)).axes[0]
     for line, method in zip(axes.lines[:2], methods, strict=True):
         assert np.array(line.get_xydata())[:-1] == pytest.approx(region(method).boundary[0] * [1e3, 1e6])
     assert (*axes.get_xlim(), *axes.get_ylim()) == pytest.approx((0, 1e3, 0, 0.5e6))
-    (axes,) = comparison_figure(MapQuestion(methods=methods[:1], h=Fraction("0.001"), alpha_beta=True)).axes
+    (axes,) = comparison_figure([region(methods[0])], map_conditions(h=Fraction("0.001"), alpha_beta=True)).axes
     for ticks, labels, power, scale in (
         (axes.get_xticks(), axes.get_xticklabels(), 1, 2),  # at 2 alpha
         (axes.get_yticks(), axes.get_yticklabels(), 2, 1),  # at beta^2
@@ -96,7 +76,7 @@ def test_arrows_along_the_edges_are_where_an_unbounded_region_goes_on(h: Fractio
     """Beside the two unbounded ones the bounded region has none."""
     methods = tuple(map(lookup, ("RK4", "hht", "newmark")))
     regions = [region(method) for method in methods]
-    axes = comparison_figure(MapQuestion(methods=methods, h=h)).axes[0]
+    axes = comparison_figure(regions, map_conditions(h=h)).axes[0]
     low, high = np.transpose([axes.get_xlim(), axes.get_ylim()])
     scale = np.array([1 / float(h or 1), 1 / float(h or 1) ** 2])
     arrows = axes.lines[len(regions) :]

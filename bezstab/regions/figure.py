@@ -1,9 +1,7 @@
 """Figures of maps: |z_p| over the plane, the error that is forced there."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -15,6 +13,7 @@ from matplotlib.patheffects import AbstractPathEffect, withStroke
 from matplotlib.ticker import MaxNLocator
 
 from bezstab.methods.schemes import Method
+from bezstab.regions.answer import Drawing, MapAnswer, MapConditions
 from bezstab.show import plot
 from bezstab.show.style import (
     ABOVE_THE_AXES,
@@ -29,7 +28,7 @@ from bezstab.show.style import (
     with_legend,
 )
 from bezstab.show.window import under_the_mouse
-from bezstab.stability.arrays import ComplexArray, FloatArray
+from bezstab.stability.arrays import FloatArray
 from bezstab.stability.regions import Region
 
 EDGE_LINES = 0.015  # of the axes' sides: so far apart are the arrows of regions that go on beyond the same edge
@@ -64,44 +63,45 @@ PARTS = 300
 """Of each chord of a boundary, which is straight on other axes alone: the last is thinner than a line."""
 
 
-if TYPE_CHECKING:  # so that a picture of the plane does not load what runs mechanisms
-    from bezstab.questions.regions import MapAnswer, MapQuestion
-
-
-def map_figure(answer: MapAnswer, z: ComplexArray) -> Figure:
+def map_figure(answer: MapAnswer) -> Figure:
     """Return the |z_p| map with exact boundary, faster regions, best point and critical damping (paper Fig. 1).
 
-    z are the dominant poles over the axes of the answer, of shape (beta_hat.size, alpha_hat.size). With a step the axes
-    are 2 alpha (1/s) and beta^2 (1/s^2), marked in alpha and beta if that is asked for; else alpha_hat and beta_hat.
-    The label of an unbounded region says so, and arrows along the edges of the axes point to where it goes on. Of a
-    scene that moves its own boundaries are drawn as well, by times its own speed. Where a motion is asked about it is
-    `_motion_map_figure`.
+    With a step the axes are 2 alpha (1/s) and beta^2 (1/s^2), marked in alpha and beta if that is asked for; else
+    alpha_hat and beta_hat. The label of an unbounded region says so, and arrows along the edges of the axes point to
+    where it goes on. Of a scene that moves its own boundaries are drawn as well, by times its own speed. Where a motion
+    is asked about it is `_motion_map_figure`.
     """
-    question, region, turned = answer.question, answer.stable.region, answer.question.turned
-    h = question.seconds
-    if question.motion:
-        return _motion_map_figure(answer, z, float(question.motion.omega_h))
+    asked, region, drawing = answer.conditions, answer.regions[0].region, _drawn(answer)
+    if asked.motion:
+        return _motion_map_figure(answer, float(asked.motion.omega_h))
+    h, moving = asked.h, answer.moving
     with styled():
         name = region.method.name
-        title = title_lines(name, f"at rest and on the {question.scene_name}") if turned else name
+        title = title_lines(name, f"at rest and on the {asked.scene_name}") if moving else name
         figure, axes = _plane(title, [answer.method], h)
-        figure.colorbar(plot.modulus_map(*answer.axes, np.abs(z), axes, h), label="$|z_p|$")
-        at_rest = " at rest" if turned else ""
+        image = plot.modulus_map(drawing.alpha_hat, drawing.beta_hat, np.abs(drawing.z), axes, h)
+        figure.colorbar(image, label="$|z_p|$")
+        at_rest = " at rest" if moving else ""
         unbounded = "" if region.bounded else " (unbounded)"
         plot.region(region, axes, h, color="black", linestyle="-", label=f"$|z_p| = 1${at_rest}{unbounded}")
-        for number, inner in enumerate(answer.faster, start=1):
+        for number, inner in enumerate(drawing.faster, start=1):
             label = rf"$|z_p| = {inner.level:g}${at_rest}"
             plot.region(inner, axes, h, color="white", linestyle=DASHES[number % 4], label=label)
-        if turned:
-            x, y = plane_coordinates(answer.moving.alpha_hat, answer.moving.beta_hat, h)
-        for number, (speed, kappa_h) in enumerate(turned.items(), start=1):
-            label = "its own speed" if speed == 1 else f"{speed:g} times its own speed"
-            _level_line(axes, x, y, answer.moving.turn_limits, kappa_h, label, DASHES[number % 4])
+        if moving and h:
+            x, y = plane_coordinates(moving.alpha_hat, moving.beta_hat, h)
+            for number, (speed, kappa) in enumerate(asked.kappas.items(), start=1):
+                label = "its own speed" if speed == 1 else f"{speed:g} times its own speed"
+                _level_line(axes, x, y, moving.turn_limits, kappa * h, label, DASHES[number % 4])
         _draw_points(answer, axes)
         _draw_open_edges(region, axes, h, color="white", markeredgecolor="black")
-        if question.alpha_beta:
+        if asked.alpha_beta:
             mark_in_alpha_and_beta(axes)
         return with_legend(figure, facecolor="0.75")
+
+
+def _drawn(answer: MapAnswer) -> Drawing:
+    assert answer.drawing, "asked for with drawn=True"
+    return answer.drawing
 
 
 def _plane(title: str, methods: Sequence[Method], h: float | None) -> tuple[Figure, Axes]:
@@ -113,14 +113,14 @@ def _plane(title: str, methods: Sequence[Method], h: float | None) -> tuple[Figu
 
 def _draw_points(answer: MapAnswer, axes: Axes) -> None:
     """Draw critical damping and the points that lie in the map, and end the axes where it ends."""
-    question, (alpha_hat, beta_hat) = answer.question, answer.axes
-    h = question.seconds
+    asked, alpha_hat, beta_hat = answer.conditions, _drawn(answer).alpha_hat, _drawn(answer).beta_hat
+    h = asked.h
     plot.critical_damping((alpha_hat[0], alpha_hat[-1]), axes, h)
     x, y = plane_coordinates(alpha_hat, beta_hat, h)
     axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]), facecolor="0.93")
 
-    drawn = [plot.point(found, axes, h, **WHOLE) for found in (answer.stable.best, answer.chosen) if found]
-    for shape, (label, point) in zip(MARK_SHAPES, question.marks.items(), strict=False):
+    drawn = [plot.point(found, axes, h, **WHOLE) for found in (answer.regions[0].best, answer.chosen) if found]
+    for shape, (label, point) in zip(MARK_SHAPES, asked.marks.items(), strict=False):
         drawn.append(plot.point(point, axes, h, marker=shape, label=label, **WHOLE))
     for marker in drawn:
         if not axes.viewLim.contains(*np.asarray(marker.get_xydata())[0]):
@@ -164,31 +164,33 @@ def from_decay_scale(values: FloatArray) -> FloatArray:
     return np.exp(-np.exp(-np.asarray(values)))
 
 
-def _motion_map_figure(answer: MapAnswer, z: ComplexArray, omega_h: float) -> Figure:
+def _motion_map_figure(answer: MapAnswer, omega_h: float) -> Figure:
     """Return contours of what the feedback does on a motion over the map of |z_p|, on logarithmic axes.
 
     They are of the forced error, a share of the motion, or of the growth of its energy. Marked are both best points;
     dashed are further levels of |z_p|.
     """
-    region, h, z_abs = answer.stable.region, answer.question.seconds, np.abs(z)
+    region, h, drawing = answer.regions[0].region, answer.conditions.h, _drawn(answer)
+    z_abs, energy = np.abs(drawing.z), answer.conditions.energy
     with styled():
-        what = "growth of energy" if answer.question.energy else "forced errors"
+        what = "growth of energy" if energy else "forced errors"
         title = rf"{region.method.name}, {what} at $\omega h$ = {omega_h:.3g}"
         figure, axes = _plane(title, [answer.method], h)
         axes.set(xscale="log", yscale="log")
         axes.grid(visible=False)
-        x, y = plane_coordinates(*answer.axes, h)
+        x, y = plane_coordinates(drawing.alpha_hat, drawing.beta_hat, h)
         norm = FuncNorm((decay_scale, from_decay_scale), vmin=FASTEST_DRAWN, vmax=SLOWEST_DRAWN)
         # as an image in files of lines, too: a mesh of so many cells has no place there
         stable = np.ma.masked_greater_equal(z_abs, 1.0)
         mesh = axes.pcolormesh(x, y, stable, cmap="cividis", norm=norm, shading="nearest", rasterized=True)
         bar = figure.colorbar(mesh, label="$|z_p|$", extend="both", format="{x:g}", ticks=TICKS)
         bar.ax.minorticks_off()
-        draw = _energy_contours if answer.question.energy else _error_contours
-        contours = draw(axes, x, y, answer, z)
+        share = drawing.growth if energy else drawing.errors
+        assert share is not None
+        contours = (_energy_contours if energy else _error_contours)(axes, x, y, share)
         boundary = plot.region(region, axes, h, color="black", linestyle="-", label="$|z_p| = 1$")
         boundary.set_data(np.transpose(Path(boundary.get_xydata()).interpolated(PARTS).vertices))
-        for number, level in enumerate(answer.drawn_levels, start=1):
+        for number, level in enumerate(drawing.levels, start=1):
             _level_line(axes, x, y, z_abs, level, f"$|z_p| = {level:.4g}$", DASHES[number % 4])
         _draw_points(answer, axes)
         for lines, form in contours:
@@ -198,22 +200,17 @@ def _motion_map_figure(answer: MapAnswer, z: ComplexArray, omega_h: float) -> Fi
         return with_legend(figure, facecolor="0.75")
 
 
-def _error_contours(
-    axes: Axes, x: FloatArray, y: FloatArray, answer: MapAnswer, z: ComplexArray
-) -> list[tuple[QuadContourSet, str]]:
+def _error_contours(axes: Axes, x: FloatArray, y: FloatArray, errors: FloatArray) -> list[tuple[QuadContourSet, str]]:
     """Draw powers of ten of the forced error; return the lines, and how their labels are written."""
-    powers, errors = MaxNLocator(MOST_CONTOURS, integer=True), np.log10(answer.errors(z))
-    contours = axes.contour(x, y, errors, locator=powers, colors="white", linewidths=0.7, linestyles="-")
+    powers = MaxNLocator(MOST_CONTOURS, integer=True)
+    contours = axes.contour(x, y, np.log10(errors), locator=powers, colors="white", linewidths=0.7, linestyles="-")
     contours.set_path_effects(HALO)
     axes.plot([], [], color="white", linewidth=0.7, path_effects=HALO, label="forced error / motion")  # a key
     return [(contours, "$10^{%d}$")]
 
 
-def _energy_contours(
-    axes: Axes, x: FloatArray, y: FloatArray, answer: MapAnswer, z: ComplexArray
-) -> list[tuple[QuadContourSet, str]]:
+def _energy_contours(axes: Axes, x: FloatArray, y: FloatArray, growth: FloatArray) -> list[tuple[QuadContourSet, str]]:
     """Draw powers of ten of the growth of energy in a revolution, dashed where it falls, and where it is nought."""
-    growth = answer.energy_growth(z)
     drawn = []
     for sign, dashes, what in ((1, "-", "gains"), (-1, DASHES[1], "loses")):
         with np.errstate(invalid="ignore", divide="ignore"):
@@ -233,23 +230,23 @@ def _energy_contours(
     return drawn
 
 
-def comparison_figure(question: MapQuestion) -> Figure:
+def comparison_figure(regions: Sequence[Region], asked: MapConditions) -> Figure:
     """Return the boundaries of several methods in one plane (paper Fig. 2; with a step, at equal h, Fig. 3).
 
     Without a window all of every bounded region shows, and of an unbounded one its useful part: its label says that it
     is unbounded, and arrows along the edges of the axes point to where it goes on. Axes are as for `map_figure`.
     """
-    regions, h = [answer.region for answer in question.compared], question.seconds
+    h = asked.h
     with styled():
-        figure, axes = _plane(rf"$|z_p| = {regions[0].level:g}$", question.methods, h)
+        figure, axes = _plane(rf"$|z_p| = {regions[0].level:g}$", [region.method for region in regions], h)
         for place, region in enumerate(regions):
             plot.region(region, axes, h, **line_at(place))  # of those that coincide all show between dashes
-        if question.alpha_range:
-            axes.set_xlim(*plane_coordinates(np.array(question.alpha_range, float), np.zeros(2), h)[0])
-        if question.beta_range:
-            axes.set_ylim(*plane_coordinates(np.zeros(2), np.array(question.beta_range, float), h)[1])
+        if asked.alpha_range:
+            axes.set_xlim(*plane_coordinates(np.array(asked.alpha_range), np.zeros(2), h)[0])
+        if asked.beta_range:
+            axes.set_ylim(*plane_coordinates(np.zeros(2), np.array(asked.beta_range), h)[1])
         for place, region in enumerate(regions):
             _draw_open_edges(region, axes, h, inset=EDGE_LINES * (place + 1), **line_at(place))
-        if question.alpha_beta:
+        if asked.alpha_beta:
             mark_in_alpha_and_beta(axes)
         return with_legend(figure)

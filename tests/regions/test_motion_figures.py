@@ -10,8 +10,8 @@ from matplotlib.contour import QuadContourSet
 
 from bezstab.methods.registry import lookup
 from bezstab.motion.modulated_circle import motion_energy
-from bezstab.questions.regions import MapAnswer, MapQuestion
-from bezstab.show.map_figures import map_figure
+from bezstab.regions.answer import map_answer, map_conditions
+from bezstab.regions.figure import map_figure
 from bezstab.stability.closed_loop import spectral_radius
 from bezstab.stability.forced_errors import combined_error
 from tests.show.drawn import lines_of
@@ -25,9 +25,8 @@ def drawn_map(name: str) -> Axes:
         "alpha_range": (Fraction("2e-3"), Fraction(6)),
         "beta_range": (Fraction("1e-6"), Fraction(9)),
     }
-    question = MapQuestion(methods=(lookup(name),), accuracy=True, levels=(Fraction("0.99"),), points=61, **window)
-    answer = MapAnswer(question, lookup(name))
-    return map_figure(answer, np.array(list(answer.dominant_poles()))).axes[0]
+    asked = map_conditions(accuracy=True, levels=(Fraction("0.99"),), points=61, **window)
+    return map_figure(map_answer(lookup(name), asked, drawn=True)).axes[0]
 
 
 def test_each_contour_is_where_the_error_is_its_power_of_ten() -> None:
@@ -58,9 +57,7 @@ def test_the_boundary_is_exact_down_to_the_last_decade(name: str) -> None:
 
 def test_energy_is_kept_on_the_line_that_says_so_and_symplectic_euler_brakes_inside_it() -> None:
     """To first order in h the line is beta^2 = omega^2 - 4 alpha^2: b = (omega h)^2 - a^2."""
-    question = MapQuestion(methods=(lookup("SYM"),), energy=True, points=121)
-    answer = MapAnswer(question, lookup("SYM"))
-    axes = map_figure(answer, np.array(list(answer.dominant_poles()))).axes[0]
+    axes = map_figure(map_answer(lookup("SYM"), map_conditions(energy=True, points=121), drawn=True)).axes[0]
     (kept,) = (each for each in axes.collections if isinstance(each, QuadContourSet) and list(each.levels) == [0.0])
     (path,) = kept.get_paths()
     alpha_hat, beta_hat = np.asarray(path.vertices).T

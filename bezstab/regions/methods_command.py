@@ -4,17 +4,18 @@ from collections.abc import Sequence
 
 import click
 
-from bezstab.cli.options import METHOD, command, flag
-from bezstab.cli.output import chosen_format, show_groups, show_rows, show_text
+from bezstab.cli import shared_options as shared
+from bezstab.cli.options import METHOD
+from bezstab.cli.output import chosen_format, show_answers, show_groups, show_text
 from bezstab.methods.registry import GROUPS, lookup
 from bezstab.methods.schemes import Method
-from bezstab.show.row_kinds import LISTED_METHODS, NAMED_METHODS
-from bezstab.show.rows import method_row, whole_row
 
 
-@command(flag("--latex", "Formulas as LaTeX."), "form")
+@click.command()
 @click.argument("methods", metavar="[NAME]...", type=METHOD, nargs=-1)
-def methods(methods: Sequence[Method], latex: bool) -> None:
+@click.option("--latex", is_flag=True, help="Formulas as LaTeX.")
+@shared.form
+def methods(methods: Sequence[Method], latex: bool, **_: object) -> None:
     """List the methods, or show all about those you name.
 
     Prints the number of steps, the evaluations of f in a step (of an implicit method in an iteration), the order of
@@ -30,23 +31,20 @@ def methods(methods: Sequence[Method], latex: bool) -> None:
 
     Example: bezstab methods B4
     """
-
-    from bezstab.questions.regions import region_answer
+    from bezstab.regions.columns import LISTED, WHOLE
+    from bezstab.regions.methods import method_answer, whole_method
+    from bezstab.regions.sentences import whole_method_sentence
 
     if methods:
-        rows = [whole_row(region_answer(method), latex=latex) for method in methods]
-        show_rows(NAMED_METHODS, rows, in_blocks=True)
+        found = [whole_method(method, latex=latex) for method in methods]
+        show_answers(WHOLE, found, list(map(whole_method_sentence, found)), in_blocks=True)
         show_text("\nSteady errors are shares of a motion of ω rad/s, to leading order in θ = iωh.")
         return
-    listed = [
-        (group, [{**method_row(lookup(name)), "method": name, "group": group.heading} for name in group.methods])
-        for group in GROUPS
-    ]
+    listed = [(group, [method_answer(lookup(name), name, group.heading) for name in group.methods]) for group in GROUPS]
     if chosen_format() == "text":
         show_groups(
-            [("\n".join(filter(None, (group.heading, group.note))), rows) for group, rows in listed],
-            LISTED_METHODS,
-            ("source",),
+            LISTED, [("\n".join(filter(None, (group.heading, group.note))), answers) for group, answers in listed]
         )
     else:
-        show_rows(LISTED_METHODS, (row for _, rows in listed for row in rows))
+        answers = [answer for _, of_group in listed for answer in of_group]
+        show_answers(LISTED, answers, [""] * len(answers))

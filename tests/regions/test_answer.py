@@ -5,7 +5,9 @@ import pytest
 
 from bezstab.engines.engine_list import ENGINES
 from bezstab.methods.registry import lookup
-from bezstab.questions.regions import MapAnswer, MapQuestion, moving_regions, region_answer
+from bezstab.regions.answer import MapAnswer, map_answer, map_conditions, moving_regions, region_answer
+from bezstab.regions.columns import LIMITS, REGION
+from bezstab.show.columns import row_of
 from bezstab.stability.closed_loop import spectral_radius
 from bezstab.stability.forced_errors import combined_error
 from bezstab.stability.regions import region
@@ -13,8 +15,7 @@ from bezstab.stability.turning import moving_pole
 
 
 def answer_about(name: str, **asked: Any) -> MapAnswer:
-    method = lookup(name)
-    return MapAnswer(MapQuestion(points=2, methods=(method,), **asked), method)
+    return map_answer(lookup(name), map_conditions(points=2, **asked), drawn=True)
 
 
 def test_the_best_point_is_inside_only_where_z_is_that_small() -> None:
@@ -24,7 +25,9 @@ def test_the_best_point_is_inside_only_where_z_is_that_small() -> None:
     assert stable.best.z_abs > 0.5
     assert stable.inside == stable.best
     assert faster.inside is None
-    (level,) = answer_about("B4").drawn_levels
+    drawing = answer_about("B4").drawing
+    assert drawing
+    (level,) = drawing.levels
     assert stable.best.z_abs < level < 1
 
 
@@ -46,10 +49,10 @@ def test_the_region_of_a_moving_mechanism_shrinks_with_its_speed_from_that_at_re
 @pytest.mark.parametrize("name", ["B4", "gauss4", "verlet-kdk"])
 def test_the_window_holds_the_best_point(name: str) -> None:
     answer = answer_about(name)
-    (_, alpha_hat_max), (_, beta_hat_max) = answer.window
-    if best := answer.stable.best:
-        assert best.alpha_hat <= alpha_hat_max
-        assert best.beta_hat <= beta_hat_max
+    assert answer.drawing
+    if best := answer.regions[0].best:
+        assert best.alpha_hat <= answer.drawing.alpha_hat[-1]
+        assert best.beta_hat <= answer.drawing.beta_hat[-1]
 
 
 def test_symplectic_euler_has_its_triangle_to_tell() -> None:
@@ -60,16 +63,28 @@ def test_symplectic_euler_has_its_triangle_to_tell() -> None:
 
 def test_the_most_accurate_point_forces_less_than_the_fastest() -> None:
     forced = answer_about("RK4", accuracy=True)
-    best = forced.stable.best
+    best = forced.regions[0].best
     assert best
+    assert forced.drawing
     assert forced.accurate_error
     assert forced.best_error
     assert forced.accurate_error < forced.best_error
     fastest = best.alpha_hat, best.beta_hat
     assert forced.best_error == float(combined_error(lookup("RK4"), *fastest, Fraction(1, 100)))
-    assert all(low > 0 for low, _ in forced.window)
+    assert min(forced.drawing.alpha_hat[0], forced.drawing.beta_hat[0]) > 0
 
 
 def test_the_marks_of_an_engine_are_stable_points_with_its_own_method() -> None:
-    for point in MapQuestion(points=2, engine=ENGINES["box2d"], h=Fraction(1, 60)).marks.values():
+    for point in map_conditions(engine=ENGINES["box2d"], h=Fraction(1, 60)).marks.values():
         assert spectral_radius(lookup("SYM"), *point) < 1
+
+
+@pytest.mark.slow
+def test_limits_that_a_region_does_not_have_are_said_in_words() -> None:
+    answer = region_answer(lookup("bdf3"))
+    row = row_of(REGION, answer)
+    assert [row[key] for key in ("area", *LIMITS)] == [None, 0, None, 0, None]
+    words = {each.heading: each.text(answer) for each in REGION}
+    shown = [words[heading] for heading in ("area", "α̂ from", "α̂ to", "β̂ from", "β̂ to", "βh to (α = β)")]
+    assert shown == ["unbounded", "0", "unbounded", "0", "unbounded", "unlimited"]
+    assert row["unconditional_damping_ratio"] == pytest.approx(0.06919293)

@@ -1,0 +1,420 @@
+"""Regions: how large they are, where errors shrink fastest, and the part of the plane that shows them.
+
+levels, a window, an engine, a scene or a motion   →   map_conditions   →   MapConditions
+a method, MapConditions                            →   map_answer       →   MapAnswer, with its Drawing if asked for
+"""
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
+from fractions import Fraction
+from itertools import chain
+
+import numpy as np
+
+from bezstab.arguments import Number, in_keywords, real_number
+from bezstab.engines.conversions import Engine
+from bezstab.errors import InputError, NumericalError
+from bezstab.mechanism.scene_files import load_scene
+from bezstab.methods.registry import method as method_named
+from bezstab.methods.schemes import Method
+from bezstab.motion.modulated_circle import motion_energy
+from bezstab.questions.motions import ReferenceMotion, check_speed, motion_of, turn_too_far, turning_of
+from bezstab.stability.accurate_points import default_rate
+from bezstab.stability.arrays import ComplexArray, Extent, FloatArray
+from bezstab.stability.best_points import BestPoint, FarLimit, best_point_or_reason, falls_towards
+from bezstab.stability.choices import Choice, choose
+from bezstab.stability.closed_loop import QUALITY, pole_map
+from bezstab.stability.damping_limits import (
+    critical_damping_limit,
+    exact_critical_damping_limit,
+    unconditional_damping_ratio,
+)
+from bezstab.stability.forced_errors import combined_error
+from bezstab.stability.quadrant_proofs import stable_for_all
+from bezstab.stability.regions import Region, check_level, window
+from bezstab.stability.regions import region as region_of
+from bezstab.stability.turning import turn_limits
+
+MOST_DRAWN = 1e100
+"""The largest end of a window: its square is drawn as well."""
+
+BEYOND = 1.25
+"""A window reaches up to this multiple of a point that would lie outside it."""
+
+SLOWER = 10
+"""A map of errors begins where the feedback is this many times slower than the motion, ..."""
+
+DECADES = 100
+"""... and this many times weaker, at least, than where the map ends."""
+
+MOST_POINTS = 4000
+"""Along an axis of a map."""
+
+CELLS = 300
+"""Along each axis of a map of moving mechanisms: what is narrower is not seen."""
+
+
+@dataclass(frozen=True)
+class RegionAnswer:
+    """The region |z_p| < level of a method, and its best point.
+
+    `best` is the best point of the method, whatever the level; None if there is none: then |z_p| may fall towards a
+    limit far out. If it could not be found, `trouble` says why. `inside` is the same if it lies in the region, which it
+    does not where |z_p| is nowhere that small. The last four are about the stable region, whatever the level: whether
+    every alpha_hat, beta_hat > 0 is stable; the alpha / beta above which every step is stable, None if there is none;
+    the largest beta h on alpha = beta up to which all are stable, None if all are, and the same as a rational number,
+    if it is known to be one.
+    """
+
+    region: Region
+    best: BestPoint | None
+    inside: BestPoint | None
+    trouble: str | None
+    falls_towards: FarLimit | None
+    stable_for_all: str
+    unconditional_damping_ratio: float | None
+    critical_damping_limit: float | None
+    critical_damping_limit_exact: Fraction | None
+
+
+def region_answer(method: Method, level: float = 1.0) -> RegionAnswer:
+    """Return the answer about the region |z_p| < level; errors as `region`."""
+    best, trouble = best_point_or_reason(method)
+    return RegionAnswer(
+        region=region_of(method, level),
+        best=best,
+        inside=best if best and best.z_abs < level else None,
+        trouble=trouble,
+        falls_towards=None if best or trouble else falls_towards(method),
+        stable_for_all=stable_for_all(method),
+        unconditional_damping_ratio=unconditional_damping_ratio(method),
+        critical_damping_limit=critical_damping_limit(method),
+        critical_damping_limit_exact=exact_critical_damping_limit(method),
+    )
+
+
+@in_keywords()
+def region(method: str | Method, level: Number = 1) -> Region:
+    """Return the exact region of the plane of alpha_hat and beta_hat in which |z_p| < level.
+
+    level: above 0, at most 0.9999999, or 1. At 1 the region is where the method is stable.
+
+    Returns a Region, dimensionless. `boundary` is a list of closed curves, arrays of shape (points, 2)
+    with the columns alpha_hat and beta_hat. `area` and `extent` are its size. `contains(alpha_hat,
+    beta_hat)` tells which points lie inside. `bezstab.plot.region` draws it.
+
+    InputError for another level. NumericalError if an edge cannot be found. Source: boundary locus of
+    paper Eq. 17.
+    """
+    return region_of(method_named(method), real_number(level, "level"))
+
+
+Range = tuple[float, float]
+
+
+@dataclass(frozen=True, kw_only=True)
+class MapConditions:
+    """What maps of all methods share; made by `map_conditions`.
+
+    `levels` are further values of |z_p|, at most 1, whose regions are asked about. The windows `alpha_range` and
+    `beta_range` are in alpha_hat and beta_hat; without them a window holds the region. Axes have so many `points`. With
+    a step `h` (s) there may be `marks`, points (alpha_hat, beta_hat) by label, and a scene, called `scene_name`, whose
+    constraints turn at most at rates `kappas` (1/s), by times its own speed. `motion`: that on which errors are told,
+    or with `energy` what the feedback does to its energy; None if neither is asked about. With `alpha_beta` axes are
+    marked in alpha and beta (1/s). `warnings` are to be known before the answers.
+    """
+
+    levels: tuple[float, ...] = ()
+    alpha_range: Range | None = None
+    beta_range: Range | None = None
+    points: int = QUALITY["balanced"]
+    h: float | None = None
+    marks: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    scene_name: str = ""
+    kappas: Mapping[float, float] = field(default_factory=dict)
+    motion: ReferenceMotion | None = None
+    energy: bool = False
+    alpha_beta: bool = False
+    warnings: tuple[str, ...] = ()
+
+
+def map_conditions(
+    *,
+    levels: tuple[Fraction, ...] = (),
+    alpha_range: tuple[Fraction, Fraction] | None = None,
+    beta_range: tuple[Fraction, Fraction] | None = None,
+    points: int = QUALITY["balanced"],
+    h: Fraction | None = None,
+    engine: Engine | None = None,
+    scene: str | None = None,
+    speeds: tuple[Fraction, ...] = (),
+    accuracy: bool = False,
+    energy: bool = False,
+    omega: Fraction | None = None,
+    compare: bool = False,
+    alpha_beta: bool = False,
+) -> MapConditions:
+    """Return what is asked of all methods; with `compare` that boundaries alone are drawn, at one level.
+
+    InputError for what does not go together, for numbers out of range, and as `motion_of` and `turning_of`.
+    """
+    asked = {"--scene": scene, "--engine": engine, "--accuracy": accuracy or None, "--motion": energy or None}
+    given = [name for name, value in asked.items() if value is not None]
+    of_motion = "--accuracy" if accuracy else "--motion" if energy else ""
+    if compare and given:
+        raise InputError(f"{given[0]} does not go with --compare: it draws boundaries alone")
+    if compare and len(levels) > 1:
+        raise InputError(f"--compare takes one --level, but {len(levels)} were given")
+    if accuracy and energy:
+        raise InputError("--motion does not go with --accuracy: it draws another map")
+    if of_motion and alpha_beta:
+        raise InputError(f"--alpha-beta does not go with {of_motion}: its axes are α̂ and β̂")
+    if omega is not None and not of_motion:
+        raise InputError("--omega needs --accuracy or --motion: it is the motion that is asked about")
+    if of_motion and len(speeds) > 1:
+        raise InputError(f"{of_motion} takes one --speed, but {len(speeds)} were given")
+    if h is None and (alpha_beta or engine):
+        option = "--alpha-beta" if alpha_beta else "--engine"
+        raise InputError(f"{option} needs --h: what it shows depends on the step in s")
+    if not 2 <= points <= MOST_POINTS:
+        raise InputError(f"--grid {points}: expected 2 to {MOST_POINTS} points along each axis")
+    for level in levels:
+        check_level(float(level))
+    ranges = [
+        _range(option, ends, of_motion)
+        for option, ends in (("--alpha-range", alpha_range), ("--beta-range", beta_range))
+    ]
+    speeds = speeds or (Fraction(1),)
+    for speed in speeds:
+        check_speed(scene, speed)
+    turnings = {} if of_motion else {speed: turning_of(scene, speed, h) for speed in speeds}
+    marks = engine.marked(h) if engine and h else {}
+    return MapConditions(
+        levels=tuple(map(float, levels)),
+        alpha_range=ranges[0],
+        beta_range=ranges[1],
+        points=points,
+        h=None if h is None else float(h),
+        marks={label: (float(alpha_hat), float(beta_hat)) for label, (alpha_hat, beta_hat) in marks.items()},
+        scene_name=load_scene(scene).name if scene else "",
+        kappas={float(speed): turning.kappa for speed, turning in turnings.items() if turning},
+        motion=motion_of(omega, scene, speeds[0], h) if of_motion else None,
+        energy=energy,
+        alpha_beta=alpha_beta,
+        warnings=tuple(turn_too_far(turnings, scene, h)),
+    )
+
+
+def _range(option: str, ends: tuple[Fraction, Fraction] | None, of_motion: str) -> Range | None:
+    """Return a window along one axis; InputError for ends that no axis has."""
+    if ends is None:
+        return None
+    low, high = ends
+    typed = f"{option} {float(low):g} {float(high):g}"
+    if not float(low) < float(high):
+        raise InputError(f"{typed}: the first value must be smaller than the second")
+    if max(abs(low), abs(high)) > MOST_DRAWN:
+        raise InputError(f"{typed}: expected at most {MOST_DRAWN:g}")
+    if of_motion and low <= 0:
+        raise InputError(f"{typed}: the axes of {of_motion} are logarithmic, and begin above 0")
+    return float(low), float(high)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class MovingRegions:
+    """Up to how many rad a step constraints may turn while errors surely decay, in cells that show the region.
+
+    alpha_hat and beta_hat are their centres, `turn_limits` has the shape (beta_hat.size, alpha_hat.size), `cell` is the
+    area of each; dimensionless. As a mechanism turns by kappa h, its errors decay where that is below `turn_limits`.
+    """
+
+    alpha_hat: FloatArray
+    beta_hat: FloatArray
+    turn_limits: FloatArray
+    cell: float
+
+    def area(self, turned: float) -> float:
+        """Return the area in which errors surely decay, to a few thousandths."""
+        return self.cell * int((self.turn_limits > turned).sum())
+
+
+def moving_regions(method: Method) -> MovingRegions:
+    """Return the regions of mechanisms that move; NumericalError as `region`, and if a pole leaves float64's range."""
+    (left, right), (low, high) = window(region_of(method))
+    width, height = (right - left) / CELLS, (high - low) / CELLS
+    centres = (np.arange(CELLS) + 0.5).astype(np.float64)
+    alpha_hat, beta_hat = left + width * centres, low + height * centres
+    limits = turn_limits(method, alpha_hat, beta_hat[:, np.newaxis])
+    return MovingRegions(alpha_hat, beta_hat, limits, width * height)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Drawing:
+    """What the figure of a map and its table show beside the answer.
+
+    Points on both axes, equally spaced, or by equal factors on a motion; the dominant poles `z` over them, of shape
+    (beta_hat.size, alpha_hat.size); on a motion the `errors` that are forced and, where asked about, the `growth` of
+    its energy in a revolution, shares of it of that shape, nan where |z| is not below 1. `levels` of |z_p| are drawn;
+    of a method at rest `faster` has their regions.
+    """
+
+    alpha_hat: FloatArray
+    beta_hat: FloatArray
+    z: ComplexArray
+    errors: FloatArray | None
+    growth: FloatArray | None
+    levels: tuple[float, ...]
+    faster: tuple[Region, ...]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class MapAnswer:
+    """One method's answer: its stable region and those of the levels below 1.
+
+    `moving`: the regions of a scene as it moves, for every speed. On a motion `chosen` is the choice of the goal
+    accurate, None if there is none, and `reason` says why; without a motion, what a figure marks beside the fastest
+    point. Errors and growths of energy on a motion are shares of it, at the point of least |z_p| and at `chosen`.
+    """
+
+    method: Method
+    conditions: MapConditions
+    regions: tuple[RegionAnswer, ...]
+    moving: MovingRegions | None
+    chosen: Choice | None
+    reason: str | None
+    best_error: float | None
+    accurate_error: float | None
+    best_growth: float | None
+    accurate_growth: float | None
+    drawing: Drawing | None
+
+
+def map_answer(
+    method: Method,
+    asked: MapConditions,
+    *,
+    drawn: bool = False,
+    bar: Callable[[Iterable[ComplexArray]], Iterable[ComplexArray]] = iter,
+) -> MapAnswer:
+    """Return what there is to know of one method, and if it is to be drawn its Drawing; `bar` shows the progress.
+
+    Errors as `region` and `pole_map`.
+    """
+    below = [level for level in asked.levels if level < 1]
+    regions = tuple(region_answer(method, level) for level in (1.0, *below))
+    stable, motion = regions[0], asked.motion
+    chosen, reason = _chosen(method, stable, motion, drawn)
+    points = (stable.best, chosen)
+    best_error, accurate_error = (_at(point, method, motion, _error) for point in points)
+    best_growth, accurate_growth = (_at(point, method, motion if asked.energy else None, _growth) for point in points)
+    return MapAnswer(
+        method=method,
+        conditions=asked,
+        regions=regions,
+        moving=moving_regions(method) if asked.kappas else None,
+        chosen=chosen,
+        reason=reason,
+        best_error=best_error,
+        accurate_error=accurate_error,
+        best_growth=best_growth,
+        accurate_growth=accurate_growth,
+        drawing=_drawing(method, asked, stable, chosen, bar) if drawn else None,
+    )
+
+
+def _chosen(
+    method: Method, stable: RegionAnswer, motion: ReferenceMotion | None, drawn: bool
+) -> tuple[Choice | None, str | None]:
+    """Return the point beside the fastest, or why there is no most accurate one on a motion."""
+    if motion is None:
+        return choose(method, "robust", margins=False) if drawn and stable.best else None, None
+    try:
+        return choose(method, "accurate", margins=False, omega_h=motion.omega_h), None
+    except (InputError, NumericalError) as error:
+        return None, f"no most accurate point: {error}"
+
+
+def _error(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray, motion: ReferenceMotion) -> FloatArray:
+    """Return the error that is forced on a motion, as a share of it."""
+    return combined_error(method, alpha_hat, beta_hat, motion.omega_h)
+
+
+def _growth(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray, motion: ReferenceMotion) -> FloatArray:
+    """Return the growth of energy in a revolution, a share of it, of a motion whose rate varies by MODULATION."""
+    return 2 * np.pi * motion_energy(method, alpha_hat, beta_hat, float(motion.omega_h)).growth()
+
+
+def _at(
+    point: BestPoint | Choice | None,
+    method: Method,
+    motion: ReferenceMotion | None,
+    share: Callable[[Method, FloatArray, FloatArray, ReferenceMotion], FloatArray],
+) -> float | None:
+    """Return a share of a motion at a point; None without either."""
+    if point is None or motion is None:
+        return None
+    return float(share(method, np.array(point.alpha_hat), np.array(point.beta_hat), motion))
+
+
+def _drawing(
+    method: Method,
+    asked: MapConditions,
+    stable: RegionAnswer,
+    chosen: Choice | None,
+    bar: Callable[[Iterable[ComplexArray]], Iterable[ComplexArray]],
+) -> Drawing:
+    motion = asked.motion
+    shown = _window(stable, chosen, motion)
+    spaced = np.geomspace if motion else np.linspace
+    ends = (asked.alpha_range or shown[0], asked.beta_range or shown[1])
+    alpha_hat, beta_hat = (spaced(low, high, asked.points) for low, high in ends)
+    z = np.array(list(bar(chain.from_iterable(pole_map(method, alpha_hat, beta_hat)))))
+    levels = _levels(method, asked, stable.best)
+
+    def share(of: Callable[[Method, FloatArray, FloatArray, ReferenceMotion], FloatArray]) -> FloatArray | None:
+        if motion is None:
+            return None
+        return np.where(np.abs(z) < 1, of(method, alpha_hat, beta_hat[:, np.newaxis], motion), np.nan)
+
+    return Drawing(
+        alpha_hat=alpha_hat,
+        beta_hat=beta_hat,
+        z=z,
+        errors=share(_error),
+        growth=share(_growth) if asked.energy else None,
+        levels=levels,
+        faster=() if motion else tuple(region_of(method, level) for level in levels),
+    )
+
+
+def _levels(method: Method, asked: MapConditions, best: BestPoint | None) -> tuple[float, ...]:
+    """Return the levels of |z_p| to draw: those given, else one that suits the motion or the least |z_p|."""
+    if given := tuple(level for level in asked.levels if level < 1 or not asked.motion):
+        return given
+    if asked.motion:
+        return (default_rate(method, asked.motion.omega_h),)
+    return () if best is None else (round(best.z_abs + (1 - best.z_abs) / 4, 2),)
+
+
+def _window(stable: RegionAnswer, chosen: Choice | None, motion: ReferenceMotion | None) -> Extent:
+    """Return ranges of alpha_hat and beta_hat that show the region, and for an unbounded one the best point.
+
+    With a motion they hold both points, and begin above zero: where the feedback is much slower than the motion.
+    """
+    shown = window(stable.region)
+    if motion is None:
+        return shown if stable.region.bounded else _holding(shown, stable.best)
+    (_, alpha_hat_max), (_, beta_hat_max) = _holding(_holding(shown, stable.best), chosen)
+    slow = float(motion.omega_h) / SLOWER  # alpha h and beta h
+    return (
+        (min(2 * slow, alpha_hat_max / DECADES), alpha_hat_max),
+        (min(slow**2, beta_hat_max / DECADES), beta_hat_max),
+    )
+
+
+def _holding(shown: Extent, point: BestPoint | Choice | None) -> Extent:
+    """Return ranges that hold a point as well, with some room beyond it."""
+    if point is None:
+        return shown
+    (left, right), (low, high) = shown
+    return (left, max(right, BEYOND * point.alpha_hat)), (low, max(high, BEYOND * point.beta_hat))

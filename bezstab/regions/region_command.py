@@ -1,0 +1,159 @@
+"""The command that draws where a method is stable: region."""
+
+from collections.abc import Sequence
+from fractions import Fraction
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from bezstab.cli import shared_options as shared
+from bezstab.cli.asking import of_each, say_each
+from bezstab.cli.command_group import NUMERICAL_TROUBLE
+from bezstab.cli.options import A_METHOD, ENGINE, METHOD, NUMBER, POSITIVE, SCENE, SECONDS, SPEED
+from bezstab.cli.output import Files, progress, show_answers, show_text, worked_out
+from bezstab.engines.conversions import Engine
+from bezstab.methods.schemes import Method
+
+if TYPE_CHECKING:  # so that `bezstab --help`, which lists this command, loads nothing that computes
+    from bezstab.regions.answer import MapAnswer, MapConditions, RegionAnswer
+
+Window = tuple[Fraction, Fraction]
+
+
+@click.command()
+@click.option("--method", "methods", type=METHOD, multiple=True, help=f"{A_METHOD} Repeatable [B4].")
+@click.option("--level", "levels", type=POSITIVE, multiple=True, help="Also where |z_p| < LEVEL, below 1. Repeatable.")
+@click.option("--compare", is_flag=True, help="Draw the boundaries of all methods in one figure, at --level [1].")
+@click.option("--accuracy", is_flag=True, help="Draw the error that the feedback makes on a motion, with |z_p|.")
+@click.option("--motion", "energy", is_flag=True, help="Draw what the feedback does to the energy of a motion.")
+@click.option(
+    "--omega", type=POSITIVE, help="With these: rate of the motion, 1/s; needs --h [the scene's, or ωh = 0.01]."
+)
+@click.option("--h", type=SECONDS, help="Step size in s; the axes are then 2α (1/s) and β² (1/s²).")
+@click.option("--alpha-beta", is_flag=True, help="Write α and β (1/s) at the axes of the figure; needs --h.")
+@click.option("--engine", type=ENGINE, help="Mark this engine's default values and rules of thumb; needs --h.")
+@click.option("--scene", type=SCENE, help="Also the region of this mechanism as it moves; needs --h.")
+@click.option("--speed", "speeds", type=SPEED, multiple=True, help="With --scene: times its own speed. Repeatable [1].")
+@click.option("--alpha-range", type=NUMBER, nargs=2, help="α̂ is drawn from the first value to the second.")
+@click.option("--beta-range", type=NUMBER, nargs=2, help="β̂ is drawn from the first value to the second.")
+@click.option(
+    "--quality",
+    type=click.Choice(["balanced", "fast", "fine"]),
+    default="balanced",
+    help="Points along each axis of the map: fast 50, balanced 200, fine 1000.",
+)
+@click.option("--grid", type=int, help="Points along each axis, in place of --quality.")
+@shared.table
+@click.option(
+    "--figure",
+    type=click.Choice(["window", *shared.FIGURES]),
+    default="png",
+    help="Format of the figure; or a window that says under the mouse what the point means.",
+)
+@shared.output
+@shared.form
+@shared.every_column
+def region(
+    methods: tuple[Method, ...],
+    levels: tuple[Fraction, ...],
+    compare: bool,
+    accuracy: bool,
+    energy: bool,
+    omega: Fraction | None,
+    h: Fraction | None,
+    alpha_beta: bool,
+    engine: Engine | None,
+    scene: str | None,
+    speeds: tuple[Fraction, ...],
+    alpha_range: Window | None,
+    beta_range: Window | None,
+    quality: str,
+    grid: int | None,
+    table: str,
+    figure: str,
+    output: Path,
+    **_: object,
+) -> int:
+    """Draw where each method is stable, and |z_p| there.
+
+    Prints how far the exact region reaches, its area, the smallest |z_p| and where that is. Writes region_METHOD.png;
+    with --table csv also α̂, β̂, |z_p| and ∠z_p, or with --compare the boundary curves. What maps of a scene, of
+    --accuracy and of --motion show: bezstab/stability/README.md.
+
+    Example: bezstab region --method B4
+    """
+    from bezstab.methods.registry import lookup
+    from bezstab.questions.question import methods_for
+    from bezstab.regions.answer import map_conditions, region_answer
+    from bezstab.regions.columns import REGION, map_columns, map_rows
+    from bezstab.regions.sentences import region_sentence
+    from bezstab.show.result_sentences import combined_words, energy_words
+    from bezstab.stability.best_points import best_point_or_reason
+    from bezstab.stability.closed_loop import QUALITY
+
+    methods = methods_for(methods or (() if engine else (lookup("B4"),)), engine)
+    asked = worked_out(
+        lambda: map_conditions(
+            levels=levels,
+            alpha_range=alpha_range,
+            beta_range=beta_range,
+            points=QUALITY[quality] if grid is None else grid,
+            h=h,
+            engine=engine,
+            scene=scene,
+            speeds=speeds,
+            accuracy=accuracy,
+            energy=energy,
+            omega=omega,
+            compare=compare,
+            alpha_beta=alpha_beta,
+        ),
+        scene,
+    )
+    say_each(asked.warnings)
+    files, status = Files(output, figure, table), 0
+    files.check_output()
+    if compare:
+        regions = [region_answer(method, *asked.levels) for method in methods]
+        _write_boundaries(regions, asked, files)
+        show_answers(REGION, regions, list(map(region_sentence, regions)))
+    else:
+        kind = "accuracy" if accuracy else "motion" if energy else scene
+        answers, status = of_each(methods, lambda method: [_map(method, asked, files, kind)])
+        rows = [row for answer in answers for row in map_rows(answer)]
+        show_answers(map_columns(answers[0]), rows, [region_sentence(row.region) for row in rows])
+    if asked.motion:
+        show_text((energy_words if energy else combined_words)(asked.motion))
+    known = not any(best_point_or_reason(method)[1] for method in methods)
+    return status if known else NUMERICAL_TROUBLE
+
+
+def _map(method: Method, asked: "MapConditions", files: Files, kind: str | None) -> "MapAnswer":
+    """Return the map of one method, once it is written if it is to be, into files named by its kind."""
+    from bezstab.regions.answer import map_answer
+    from bezstab.regions.figure import map_figure
+    from bezstab.regions.tables import map_arrays
+
+    bar = partial(progress, label=method.name, length=asked.points)
+    answer = map_answer(method, asked, drawn=files.wanted, bar=bar)
+    if asked.motion:
+        say_each([answer.reason])
+    if drawing := answer.drawing:
+        path = files.path("region", method.name, kind)
+        files.write(path, lambda: map_figure(answer), lambda: map_arrays(drawing, asked.h))
+    return answer
+
+
+def _write_boundaries(regions: "Sequence[RegionAnswer]", asked: "MapConditions", files: Files) -> None:
+    """Write the boundaries of all methods into one table and one figure."""
+    from bezstab.regions.figure import comparison_figure
+    from bezstab.regions.tables import boundary_arrays
+
+    compared = [answer.region for answer in regions]
+    files.write(
+        files.path("compare", *(region.method.name for region in compared)),
+        lambda: comparison_figure(compared, asked),
+        lambda: boundary_arrays(compared, asked.h),
+    )
