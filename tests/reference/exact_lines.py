@@ -2,8 +2,7 @@
 
 On the line P's coefficients are polynomials in the other parameter. A root of P reaches the circle |z| = level only
 where P(level), P(-level) or Schur's determinant is zero; it comes from infinity where the leading coefficient is. These
-zeros are isolated, and between two neighbours one point is proven. Seconds a line: float64 (tests/reference/extents) is
-asked first.
+zeros are isolated, and between two neighbours one point is proven.
 """
 
 from collections.abc import Sequence

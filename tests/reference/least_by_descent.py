@@ -1,7 +1,4 @@
-"""The infimum of |z_p| over alpha_hat, beta_hat >= 0 by dense sampling and local descent, in boxes of several sizes.
-
-So whether a best point is one: no point that is found, however far out, is proven to have a lower |z_p|.
-"""
+"""The least |z_p| over alpha_hat, beta_hat >= 0 by dense sampling and local descent, in a box of any size."""
 
 import random
 from collections.abc import Callable
@@ -11,9 +8,7 @@ import numpy as np
 
 from bezstab.methods.schemes import Method, RungeKutta, implicit
 from bezstab.stability.arrays import FloatArray
-from bezstab.stability.best_points import BestPoint
 from tests.reference.companion_poles import polynomial_at, radius
-from tests.reference.proven_verdicts import proven_stable
 
 Modulus = Callable[[FloatArray, FloatArray], FloatArray]
 
@@ -23,31 +18,6 @@ STARTS = 24  # of the samples' local minima, the lowest
 TRIALS = 24  # random steps of every start in a round
 ROUNDS = 160
 WIDEST, NARROWER, WIDER = 0.5, 0.85, 1.5  # of a parameter: the first steps, and the factor after failure and success
-
-FURTHEST = 1e9  # of both parameters, where a lower |z_p| is looked for
-LOWER = 1e-6  # relative: a value so much lower is no rounding
-AS_GOOD_AS_DEADBEAT = 1e-3  # of |z_p|: below it float64's multiple poles tell nothing
-FARTHER = np.array([(1, 100), (10, 100), (10, 1)])  # times a point: |z_p| leaves zero on the way there, or falls on
-FALLEN = 0.1  # of |z_p|: by FURTHEST it has come so near to what it is said to fall towards
-
-
-def contradictions(method: Method, best: BestPoint | None, limit: float | None) -> list[str]:
-    """Return in words what is wrong with a best point, or with what |z_p| falls towards (None: not told)."""
-    claimed = best.z_abs if best else 1.0 if limit is None else limit
-    modulus, found = modulus_of(method), []
-    least, *point = least_within(modulus, FURTHEST)
-    below = claimed * (1 - LOWER)
-    if below > max(AS_GOOD_AS_DEADBEAT, least) and proven_stable(method, below, *map(np.array, point)):
-        found.append(f"|z_p| is {least:.9g} at ({point[0]:.9g}, {point[1]:.9g})")
-    if best and best.z_abs < AS_GOOD_AS_DEADBEAT:
-        at = np.array([best.alpha_hat, best.beta_hat])
-        moved = at * FARTHER
-        farther = modulus(*moved[(moved != at).any(axis=1)].T)  # not along an axis on which the point lies
-        if farther.min(initial=1.0) < AS_GOOD_AS_DEADBEAT:
-            found.append(f"|z_p| is {farther.min():.3g} farther out: it is zero in the limit alone")
-    if best is None and limit is not None and least > limit + FALLEN:
-        found.append(f"|z_p| nowhere falls below {least:.6g}")
-    return found
 
 
 def modulus_of(method: Method) -> Modulus:

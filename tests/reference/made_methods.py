@@ -18,13 +18,6 @@ def runge_kutta(name: str, rows: str, weights: str) -> Method:
     return Method(name, RungeKutta(tableau, b), "")
 
 
-CLOSE_BRANCHES = runge_kutta("close", "6/47;0 94/735;0 0 49/136;0 0 0 17/63;0 0 0 0 63/100", "0 0 0 0 0 1")
-"""A branch point with |z*| = 0.930: two branches of that level pass by each other within less than a thousandth rad."""
-
-FAR_INTERVAL = runge_kutta("far", "23/24;0 7/30;0 0 5/9;0 0 0 7/8;0 0 0 0 1/27", "-1 -3/5 1/11 1/13 7122/3575 11/25")
-"""A real zero of R at -122.2, around which S_r is an interval of 4e-8."""
-
-
 def composed(steps: int) -> Method:
     """Return implicit Euler steps composed: z = (1 - mu / n)^-n."""
     row = f"1/{steps} " * steps

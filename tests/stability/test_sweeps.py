@@ -14,7 +14,7 @@ from bezstab.errors import NumericalError
 from bezstab.methods.schur import recursion_verdict
 from bezstab.stability.arrays import FloatArray
 from bezstab.stability.sweeps import Growth, chain, fewest_sweeps, inverse_effective_masses, swept_growth
-from tests.reference.swept_chains import columns, hard_step, position_step, soft_step
+from tests.reference.swept_chains import columns, hard_step, inverse_masses, position_step, soft_step
 
 
 @pytest.mark.parametrize(
@@ -42,7 +42,9 @@ def test_matrices_are_what_loops_over_links_do(
     bodies: int, ratio: float, sweeps: int, share: float, kept: float, relaxation: float
 ) -> None:
     step = hard_velocity_step(share, sweeps, kept=kept, relaxation=relaxation)
-    of_loops = spectral_radius(columns(hard_step(bodies, ratio, sweeps, share, kept, relaxation), bodies))
+    of_loops = spectral_radius(
+        columns(hard_step(inverse_masses(bodies, ratio), sweeps, share, kept, relaxation), bodies)
+    )
     # eigvals of the loops' matrix loses digits where it has many eigenvalues at 0, not those of the largest
     assert swept_growth(chain(bodies, ratio), step).factor == pytest.approx(of_loops, abs=1e-4)
 
@@ -50,10 +52,10 @@ def test_matrices_are_what_loops_over_links_do(
 @pytest.mark.parametrize("bodies", [2, 6])
 def test_soft_sweeps_and_moves_of_positions_are_what_loops_do(bodies: int) -> None:
     soft = SweptStep(1.0, (Pass("velocity", 1, 0.28, 0.38), Move(), Pass("velocity", 2)))
-    of_loops = spectral_radius(columns(soft_step(bodies, 3, 0.28, 1 / 1.38, relaxing=2), bodies))
+    of_loops = spectral_radius(columns(soft_step(inverse_masses(bodies, 3), 0.28, 1 / 1.38, relaxing=2), bodies))
     assert swept_growth(chain(bodies, 3), soft).factor == pytest.approx(of_loops, abs=1e-9)
     jolt = SweptStep(1.0, (Pass("velocity", 4), Move(), Pass("position", 2, 1.0, relaxation=0.2)))
-    of_loops = spectral_radius(columns(position_step(bodies, 3, 4, 0.2, 2), bodies))
+    of_loops = spectral_radius(columns(position_step(inverse_masses(bodies, 3), 4, 0.2, 2), bodies))
     assert swept_growth(chain(bodies, 3), jolt).factor == pytest.approx(of_loops, abs=1e-9)
 
 
@@ -63,7 +65,7 @@ def test_soft_sweeps_and_moves_of_positions_are_what_loops_do(bodies: int) -> No
 def test_verdicts_are_those_of_exact_arithmetic(ratio: int, sweeps: int, share: str) -> None:
     """The step's matrix in fractions, its characteristic polynomial, and Schur's test: a proof of each verdict."""
     bodies = 3
-    exact = columns(hard_step(bodies, Fraction(ratio), sweeps, Fraction(share)), bodies, Fraction(1))
+    exact = columns(hard_step(inverse_masses(bodies, Fraction(ratio)), sweeps, Fraction(share)), bodies, Fraction(1))
     matrix = sympy.Matrix([[sympy.Rational(x.numerator, x.denominator) for x in map(Fraction, row)] for row in exact])
     coefficients = [Fraction(int(c.p), int(c.q)) for c in matrix.charpoly().all_coeffs()[::-1]]
     growth = swept_growth(chain(bodies, ratio), hard_velocity_step(Fraction(share), sweeps, kept=1.0))
@@ -134,7 +136,7 @@ def test_what_rounding_leaves_open_is_refused() -> None:
 @pytest.mark.slow
 def test_the_stated_accuracy_holds_against_fifty_digits(bodies: int, ratio: int, sweeps: int, kept: int) -> None:
     with mpmath.workdps(50):
-        step = hard_step(bodies, mpmath.mpf(ratio), sweeps, mpmath.mpf(0.1), kept)
+        step = hard_step(inverse_masses(bodies, mpmath.mpf(ratio)), sweeps, mpmath.mpf(0.1), kept)
         eigenvalues, _ = mpmath.eig(mpmath.matrix(columns(step, bodies, mpmath.mpf(1))))
         largest = max(abs(value) for value in eigenvalues)
     growth = swept_growth(chain(bodies, ratio), hard_velocity_step(0.1, sweeps, kept=kept))
