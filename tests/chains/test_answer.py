@@ -120,7 +120,7 @@ def test_a_chain_without_kept_impulses_sags_as_loops_over_its_links_do() -> None
         state = step(state[:bodies] + fallen + state[2 * bodies :])
     answer = chain("bullet=0.2", h=Fraction(1, 60), bodies=bodies, iterations=sweeps, load=9.81)
     assert answer.sag == pytest.approx(state[bodies - 1], rel=1e-6)
-    assert answer.sag > 0.01
+    assert state[bodies - 1] > 0.01
 
 
 def test_a_chain_that_comes_apart_has_no_place_to_rest() -> None:

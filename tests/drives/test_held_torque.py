@@ -5,7 +5,6 @@ from math import floor, pi, sin
 
 import numpy as np
 import pytest
-import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -17,14 +16,12 @@ from bezstab.drives.held_torque import (
     drive_map,
     held_method,
     law_bounds,
-    spectral_radius,
     verdict,
 )
 from bezstab.drives.limits import Limits, limits
 from bezstab.engines.drives import DRIVE_METHODS, Drive, Timing
 from bezstab.methods.derivation import closed_loop_at
 from bezstab.methods.registry import lookup
-from bezstab.stability.arrays import FloatArray
 
 ONE = Fraction(1)
 POSITIVE = st.fractions(Fraction(1, 100), 4, max_denominator=1000)
@@ -45,11 +42,6 @@ def converges(way: str, a: Fraction, b: Fraction, timing: Timing) -> bool:
 def said(way: str, a: Fraction, b: Fraction, timing: Timing) -> str:
     """Return the verdict of a drive of inertia 1 with steps of 1 s: its gains are the point."""
     return verdict(Drive(kp=b, kd=a, inertia=ONE), ONE, lookup(way), timing)
-
-
-def radius(way: str, a: Fraction | float, b: Fraction | float | FloatArray, timing: Timing) -> FloatArray:
-    loop = closed_loop(Drive(kp=ONE, kd=ONE, inertia=ONE), ONE, lookup(way), timing)
-    return spectral_radius(loop, a, b)
 
 
 def limits_of(way: str, a: Fraction, b: Fraction, timing: Timing) -> Limits:
@@ -93,14 +85,6 @@ def test_without_stiffness_the_velocity_is_judged(way: str, timing: Timing, limi
         assert said(way, factor * Fraction(limit), zero, timing) == expected
     stretch = limits_of(way, Fraction(limit) / 2, zero, timing).kd
     assert stretch == pytest.approx((0, float(limit)), rel=1e-6)
-
-
-def test_without_stiffness_each_step_multiplies_the_velocity() -> None:
-    a, zero = Fraction("0.2"), Fraction(0)
-    assert radius("SYM", a, zero, Timing()) == pytest.approx(0.8, rel=1e-15)
-    assert radius("SYM", a, zero, Timing(every=4)) == pytest.approx(0.2**0.25, rel=1e-15)
-    both = radius("SYM", float(a), np.array([0.0, 0.04]), Timing())
-    assert both == pytest.approx([0.8, 0.8**0.5])  # with stiffness a pair, of which the product is 1 - a
 
 
 def test_where_no_closed_form_is_known_there_is_no_law() -> None:
@@ -176,20 +160,6 @@ def test_a_simulated_drive_grows_as_the_pole_says(way: str, timing: Timing, ki: 
     pole = dominant_pole(drive, ONE, lookup(way), timing)
     # two maxima of an oscillation, 2600 steps apart
     assert grown(way, drive, timing, 3000) == pytest.approx(abs(pole), abs=1e-3)
-
-
-def test_a_pid_drive_of_slow_physics_explodes_by_its_characteristic_polynomial() -> None:
-    """Fresh and explicit: (z - 1)^3 + (a + b + c)(z - 1)^2 + ..., the sum of the error with its own new share."""
-    a, b, ki = Fraction("0.3"), Fraction("0.2"), Fraction("0.05")
-    found = closed_loop(Drive(b, a, ONE, ki), ONE, lookup("SYM"), Timing())
-    z = sp.Symbol("z")
-    # x1 = x + v1, v1 = v - a v - b x - ki s1, s1 = s + x
-    step = sp.Matrix([[1 - b - ki, 1 - a, -ki], [-b - ki, 1 - a, -ki], [1, 0, 1]])
-    expected = sp.Poly((sp.eye(3) * z - step.applyfunc(sp.nsimplify)).det(), z).monic()
-    ours = sp.Poly([sp.Rational(c.numerator, c.denominator) for c in closed_loop_at(found, a, b)][::-1], z).monic()
-    assert sp.rem(ours, expected).is_zero
-    assert verdict(Drive(b, a, ONE, ki), ONE, lookup("SYM"), Timing()) == "converges"
-    assert verdict(Drive(b, a, ONE, 2 * ki), ONE, lookup("SYM"), Timing()) == "diverges"
 
 
 def test_limits_lie_where_the_verdict_turns() -> None:

@@ -150,27 +150,6 @@ def test_a_name_is_that_of_one_engine_or_answered_with_several() -> None:
             engine_named(name)
 
 
-@settings(max_examples=20, deadline=None)
-@given(st.floats(0.1, 1e4), st.floats(0.1, 100), st.floats(1e-4, 0.05))
-def test_a_spring_and_damper_as_erp_and_cfm_is_implicit_euler(kp: float, kd: float, h: float) -> None:
-    # ODE's manual: ERP = h kp / (h kp + kd) and CFM = 1 / (h kp + kd) are an implicit spring and damper
-    values = tuple(map(Fraction, (h * kp / (h * kp + kd), 1 / (h * kp + kd), 1.0)))
-    a, b = map(float, ENGINES["ode"].read(Fraction(h), *values))
-    implicit = poles(lookup("implicit-euler"), kd * h, kp * h * h)
-    ours = poles(lookup("SYM"), a, b)
-    assert (ours.sum().real, ours.prod().real) == pytest.approx((implicit.sum().real, implicit.prod().real), rel=1e-9)
-
-
-@pytest.mark.parametrize(("name", "last"), [("bullet", "2"), ("pbd", "4/3"), ("brax-positional", "4/3"), ("jolt", "2")])
-def test_what_has_a_limit_turns_there(name: str, last: str) -> None:
-    engine, h = ENGINES[name], Fraction(1, 60)
-    inside, outside = (
-        float(spectral_radius(lookup("SYM"), *map(float, engine.read(h, Fraction(last) * factor))))
-        for factor in (Fraction("0.99"), Fraction("1.01"))
-    )
-    assert inside < 1 < outside
-
-
 def test_an_engine_says_where_its_formula_is_from_and_what_it_leaves_out() -> None:
     for engine in ENGINES.values():
         assert engine.source

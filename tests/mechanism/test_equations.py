@@ -70,14 +70,6 @@ def slopes(function: Callable[[FloatArray], float], q: FloatArray) -> FloatArray
     return np.array([(function(q + d * unit) - function(q - d * unit)) / (2 * d) for unit in np.eye(len(q))])
 
 
-def test_a_spring_pulls_by_its_extension_and_a_damper_by_its_rate() -> None:
-    """By hand, from (0, 1) to the bob at (3, 5): L = 5, dL/dt = (3, 4)/5 . (1, 2) = 2.2: 2 (5 - 1) + 3 * 2.2 = 14.6."""
-    spring = {"bodies": ["ground", "bob"], "points": [[0, 1], [0, 0]], "stiffness": 2, "free_length": 1, "damping": 3}
-    mechanism = compiled_mechanism(parse_scene(pendulum(spring=[spring])))
-    forces = forces_at(mechanism, np.array([3.0, 5.0]), np.array([1.0, 2.0]))
-    assert forces == pytest.approx([-14.6 * 3 / 5, -14.6 * 4 / 5], rel=1e-14)
-
-
 @pytest.mark.parametrize("free_length", [0.0, 0.4, 5.0])  # pulling, pulling and pushing
 def test_a_spring_follows_the_slope_of_its_energy_and_a_damper_takes_the_square_of_its_rate(free_length: float) -> None:
     mechanism, random = arm_and_plate(stiffness=7.0, free_length=free_length, damping=1.5), np.random.default_rng(1)

@@ -13,15 +13,15 @@ from bezstab.mechanism.observation import observe
 from bezstab.mechanism.runner import simulate
 from bezstab.mechanism.scene_files import load_scene
 from bezstab.mechanism.simulation import Simulation, simulated
-from bezstab.mechanism.start import constraint_jacobian, initial_state
+from bezstab.mechanism.start import initial_state
 from bezstab.methods.registry import lookup
 from bezstab.methods.schemes import Method, evaluations, implicit
 from bezstab.stabilising import AfterStep, after_step
 from tests.mechanism.test_runner import measured_order
 from tests.mechanism.test_second_order_memory import LEAPFROG
 from tests.mechanism.test_stepping import KINDS, step_for
+from tests.reference.literal_equation_9 import literal_equation_9
 from tests.reference.one_coordinate_motion import shown_order
-from tests.reference.plain_projection import saddle_solution
 
 H = 1e-3  # s
 PROJECTED, ONCE, TWICE = (after_step("projection", iterations) for iterations in (None, 1, 2))
@@ -85,9 +85,9 @@ def test_corrections_are_the_least_ones_in_the_metric_of_the_masses(name: str) -
     q, v = np.split(state + np.repeat([1e-3, 1.0], n) * generator.standard_normal(2 * n), 2)
     found = state_function(mechanism, "corrections", math)([t, 0.0, 0.0, *q.tolist(), *v.tolist()])
     seen = observe(mechanism, np.array([t]), q[np.newaxis], v[np.newaxis], 0.0, 0.0)
-    jacobian = constraint_jacobian(mechanism, t, q)
+    saddle = literal_equation_9(mechanism, 0.0, 0.0)(t, q, v).matrix
     for correction, error in ((np.array(found[:n]), seen.c[0]), (np.array(found[n : 2 * n]), seen.cdot[0])):
-        expected = saddle_solution(mechanism, jacobian, error)
+        expected = np.linalg.solve(saddle, np.concatenate([np.zeros(n), -error]))[:n]
         assert correction == pytest.approx(expected, rel=1e-9, abs=1e-11 * abs(expected).max())
 
 

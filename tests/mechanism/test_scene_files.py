@@ -65,17 +65,17 @@ def test_a_mere_damper_needs_no_free_length() -> None:
 
 
 PENDULUM = (shipped_scenes()["pendulum"]).read_bytes()
-HOSTILE: dict[str, bytes] = {
-    "a number of 5000 digits": b"name = " + b"1" * 5000,
-    "a hexadecimal number of 5000 digits": b"gravity = 0x" + b"f" * 5000,
-    "a mass beyond float64": PENDULUM.replace(b"mass = 1.0", b"mass = 1" + b"0" * 400),
-    "deep nesting": b"body = " + b"[" * 20000 + b"]" * 20000,
-    "deep nesting of tables": b"[" + b".".join([b"a"] * 20000) + b"]",
-    "undecodable bytes": PENDULUM + bytes(range(128, 256)),
-    "a duplicate key": PENDULUM + PENDULUM,
-    "a line break in a key": b'"a\\nb" = 1\n' + PENDULUM,
-    "a line break in a name": PENDULUM.replace(b'"bob"', b'"b\\u2028ob"'),
-}
+HOSTILE = (
+    b"name = " + b"1" * 5000,
+    b"gravity = 0x" + b"f" * 5000,
+    PENDULUM.replace(b"mass = 1.0", b"mass = 1" + b"0" * 400),
+    b"body = " + b"[" * 20000 + b"]" * 20000,
+    b"[" + b".".join([b"a"] * 20000) + b"]",
+    PENDULUM + bytes(range(128, 256)),
+    PENDULUM + PENDULUM,
+    b'"a\\nb" = 1\n' + PENDULUM,
+    PENDULUM.replace(b'"bob"', b'"b\\u2028ob"'),
+)
 
 
 def refusal(path: Path) -> str:
@@ -86,11 +86,11 @@ def refusal(path: Path) -> str:
     return message
 
 
-@pytest.mark.parametrize("content", HOSTILE.values(), ids=HOSTILE.keys())
 @pytest.mark.slow
-def test_a_hostile_file_is_refused_in_one_line_that_names_it(content: bytes, tmp_path: Path) -> None:
-    (path := tmp_path / "scene.toml").write_bytes(content)
-    assert str(path) in refusal(path)
+def test_a_hostile_file_is_refused_in_one_line_that_names_it(tmp_path: Path) -> None:
+    for content in HOSTILE:
+        (path := tmp_path / "scene.toml").write_bytes(content)
+        assert str(path) in refusal(path)
 
 
 @pytest.mark.parametrize("name", ["a\nb.toml", "a\0b.toml", "x" * 300 + ".toml", "missing.toml", "."])

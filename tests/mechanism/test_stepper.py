@@ -20,7 +20,6 @@ from tests.mechanism.test_varying_runs import ONE_STEP
 
 Array = NDArray[Any]
 SCHEMES = ("B4", "RK4", "SYM", "ABM3", "verlet-half", "trapezoid", "bdf3", "hht", "radau5")
-TINY = 1e-30  # of a change along the imaginary axis: any that is small enough will do
 
 
 @pytest.mark.parametrize(
@@ -69,21 +68,3 @@ def test_of_any_linear_function_the_changes_are_those_of_the_exact_step_matrix(n
     assert np.pad(shown, (0, longest - len(shown))) == pytest.approx(
         np.pad(expected, (0, longest - len(expected))), abs=1e-12
     )
-
-
-@pytest.mark.parametrize("name", ["B4", "RK4", "sdirk2"])
-def test_a_step_answers_changes_of_the_gains(name: str) -> None:
-    """By a complex step of beta^2, against a difference."""
-    mechanism, h = compiled_mechanism(load_scene("slider_crank")), 1e-3
-    program, accelerations = program_of(lookup(name).scheme.second_order), lane_function(mechanism, "accelerations")
-    start = np.random.default_rng(1).standard_normal((len(program.powers), mechanism.size, 1))
-    start[program.powers > 0] *= h
-    gains, by, ends = np.array([[30.0], [1e3]]), 1e-3, []
-    for change in (by, -by, TINY * 1j):
-        kind = type(change)
-        stepper = Stepper(program, start.astype(kind), h, accelerations)
-        ends.append(stepper.step(0.0, h, gains + np.array([[0.0], [change]])))
-    up, down, imaginary = ends
-    slope = imaginary.imag / TINY
-    assert np.abs(slope).max() > 0
-    assert slope == pytest.approx((up - down) / (2 * by), rel=1e-6, abs=1e-6 * np.abs(slope).max())

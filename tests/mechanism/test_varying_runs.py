@@ -1,4 +1,3 @@
-from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
@@ -6,19 +5,17 @@ import numpy as np
 import pytest
 
 from bezstab.compiling import COMPILED_CHOICE
-from bezstab.mechanism.equations import Mechanism, compiled_mechanism
+from bezstab.mechanism.equations import compiled_mechanism
 from bezstab.mechanism.observation import observe
 from bezstab.mechanism.scene_files import load_scene
 from bezstab.mechanism.scenes import at_speed
 from bezstab.mechanism.simulation import Simulation, simulated
 from bezstab.methods.registry import lookup
 from bezstab.methods.step_matrices import step_matrix
-from bezstab.stability.arrays import FloatArray
 from bezstab.units import feedback_gains
 from tests.mechanism.test_stepping import assert_alike
 
 MECHANISM = compiled_mechanism(load_scene("slider_crank"))
-DRIVEN = compiled_mechanism(load_scene("driven_slider_crank"))
 AT_REST = compiled_mechanism(at_speed(load_scene("driven_slider_crank"), 1e-9))
 H = 1 / 60
 ALPHA_HAT, BETA_HAT = 4 * H, (100 * H) ** 2  # alpha = 2, beta = 100 for a step of H
@@ -29,16 +26,10 @@ ONE_STEP = (
 )
 
 
-def run_with(
-    sequence: list[float],
-    duration: float,
-    method: str = "SYM",
-    hold: bool = False,
-    mechanism: Mechanism = MECHANISM,
-) -> Simulation:
-    """Return the run that starts a thousandth of a millimetre off; without a sequence its steps are constant."""
+def run_with(sequence: list[float], duration: float, method: str = "SYM", hold: bool = False) -> Simulation:
+    """Return the run that starts a thousandth of a millimetre off."""
     return simulated(
-        mechanism,
+        MECHANISM,
         lookup(method),
         sequence=sequence,
         h=H,
@@ -51,71 +42,33 @@ def run_with(
 
 
 @pytest.mark.parametrize("name", ONE_STEP)
-@pytest.mark.slow
-def test_equal_steps_are_the_run_of_constant_steps(name: str) -> None:
-    constant, run = (run_with(sequence, 0.2, name, hold=True, mechanism=DRIVEN) for sequence in ([], [H]))
-    assert run.t == pytest.approx(constant.t, abs=1e-12)  # sums of steps, against multiples
-    # the driver sees the rounding of those times, and what grows of it in twelve steps
-    assert run.q == pytest.approx(constant.q, abs=1e-9)
-    assert run.multipliers == pytest.approx(constant.multipliers, rel=1e-6)
-    assert run.failure is constant.failure is None
-    assert run.evaluations == constant.evaluations
-    assert run.iterations == constant.iterations
-
-
-@dataclass(frozen=True)
-class Round:
-    """Steps that are taken in turn, in units of the one for which alpha_hat and beta_hat are given."""
-
-    method: str
-    alpha_hat: Fraction
-    beta_hat: Fraction
-    steps: tuple[Fraction, ...]
-    hold: bool
-
-    def product(self) -> FloatArray:
-        """Return what a round does to the error, its derivatives with it, by the exact step matrices."""
-        one_step = step_matrix(lookup(self.method), self.alpha_hat, self.beta_hat, self.hold)
-        product = np.eye(one_step.size)
-        for step in self.steps:
-            product = np.array(one_step.at(step), dtype=np.float64) @ product
-        return product
-
-    def errors(self, rounds: int) -> FloatArray:
-        """Return the first constraint's error before and after each round, of a mechanism all but at rest."""
-        method, h = lookup(self.method), 0.01
-        run = simulated(
-            AT_REST,
-            method,
-            sequence=[float(step) * h for step in self.steps],
-            h=h,
-            duration=float(sum(self.steps) * method.step_multiple) * h * rounds,
-            alpha_hat=float(self.alpha_hat),
-            beta_hat=float(self.beta_hat),
-            hold=self.hold,
-            perturb=1e-7,
-        )
-        return run.c[:: len(self.steps), 0]
-
-
-@pytest.mark.parametrize("name", ONE_STEP)
 @pytest.mark.parametrize("hold", [False, True])
 def test_errors_follow_the_product_of_the_step_matrices(name: str, hold: bool) -> None:
-    steps = (Fraction(1), Fraction(5, 8), Fraction(3, 10))
-    taken = Round(name, Fraction(1, 5), Fraction(9, 10), steps, hold)
-    errors = taken.errors(rounds=6)
+    """Of a mechanism all but at rest: its first constraint's error before and after rounds, by exact matrices."""
+    alpha_hat, beta_hat, h = Fraction(1, 5), Fraction(9, 10), 0.01
+    lengths = Fraction(1), Fraction(5, 8), Fraction(3, 10)
+    method = lookup(name)
+    run = simulated(
+        AT_REST,
+        method,
+        sequence=[float(length) * h for length in lengths],
+        h=h,
+        duration=float(sum(lengths) * method.step_multiple) * h * 6,
+        alpha_hat=float(alpha_hat),
+        beta_hat=float(beta_hat),
+        hold=hold,
+        perturb=1e-7,
+    )
+    errors = run.c[:: len(lengths), 0]
     assert len(errors) == 7
+    one_step = step_matrix(method, alpha_hat, beta_hat, hold)
+    product = np.eye(one_step.size)
+    for length in lengths:
+        product = np.array(one_step.at(length), dtype=np.float64) @ product
     # Cayley and Hamilton: a matrix is a root of its own characteristic polynomial, so errors satisfy that recursion
-    left_over = np.convolve(errors, np.poly(taken.product()), mode="valid")
+    left_over = np.convolve(errors, np.poly(product), mode="valid")
     # rounding of coordinates near 1 m is 1e-16 m, of the first error 1e-9, and adds up over 18 steps
     assert abs(left_over).max() < 1e-7 * abs(errors).max()
-
-
-def test_steps_that_are_each_stable_grow_in_turn() -> None:
-    # theory: 1e-6 grows to about 30 in 60 steps, until the linear range is left
-    steps = [H, 9.17e-3]
-    assert abs(run_with(steps, 0.5).c).max() > 1e-2
-    assert all(abs(run_with([step], 0.5).c).max() < 1e-4 for step in steps)
 
 
 def test_the_times_are_sums_of_the_steps() -> None:

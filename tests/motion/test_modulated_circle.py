@@ -120,18 +120,6 @@ def test_the_multipliers_work_of_methods_of_order_two(name: str) -> None:
     assert float(found.multiplier) == pytest.approx(2 * power, rel=0.01)  # of omega^2 / 2, per radian at 1 rad/s
 
 
-@pytest.mark.parametrize("name", ["SYM", "verlet-half"])
-def test_the_multipliers_work_of_symplectic_euler(name: str) -> None:
-    """h kappa_1^2 Omega^2 (alpha^2 + (beta^2 - Omega^2) / 4) / D: it brakes where beta^2 < Omega^2 - 4 alpha^2."""
-    h, kappa = 0.0005, 2 * OMEGA
-    for alpha, beta in [(ALPHA, BETA), (0.1, 0.5)]:
-        resonance = (beta**2 - OMEGA**2) ** 2 + 4 * alpha**2 * OMEGA**2
-        power = 0.5 * h * kappa**2 * OMEGA**2 * (2 * alpha**2 + (beta**2 - OMEGA**2) / 2) / resonance
-        found = motion_energy(lookup(name), 2 * alpha * h, beta**2 * h**2, OMEGA * h)
-        assert float(found.multiplier) == pytest.approx(2 * power, rel=0.02)
-        assert (power > 0) == (beta**2 > OMEGA**2 - 4 * alpha**2)
-
-
 @pytest.mark.parametrize("name", ["AB2", "bdf2", "trapezoid", "B4", "AB3", "bdf3", "am3"])
 def test_the_ripple_of_multistep_methods_follows_their_law(name: str) -> None:
     """c'' + 2 alpha c' + beta^2 c = -2 C h^p (G' + alpha G) with G = C_q q^(p+1); the rate is 1 + small sin(t)."""
@@ -141,21 +129,6 @@ def test_the_ripple_of_multistep_methods_follows_their_law(name: str) -> None:
     expected = -2 * float(constant) * h**order * (1j * OMEGA + ALPHA) * g / resonance
     found = motion_energy(lookup(name), 2 * ALPHA * h, BETA**2 * h**2, OMEGA * h).ripple
     assert complex(found) == pytest.approx(-1j * expected, rel=0.03)  # the next term is of theta
-
-
-@pytest.mark.parametrize("name", ["SYM", "verlet-half"])
-def test_the_ripple_of_symplectic_euler_follows_its_law(name: str) -> None:
-    """c'' + 2 alpha c' + beta^2 c = -alpha h kappa + h/2 kappa', kappa = 2 sin(t)."""
-    h, resonance = 0.0005, BETA**2 - OMEGA**2 + 2j * ALPHA * OMEGA
-    expected = (-ALPHA * h * 2 + h / 2 * 1j * OMEGA * 2) / resonance
-    found = motion_energy(lookup(name), 2 * ALPHA * h, BETA**2 * h**2, OMEGA * h).ripple
-    assert complex(found) == pytest.approx(-1j * expected, rel=0.01)
-
-
-def test_truncation_of_a_method_without_stages_does_not_depend_on_the_feedback() -> None:
-    found = motion_energy(lookup("AB2"), [0.01, 0.2, 0.6], [0.001, 0.05, 0.2], 0.01)
-    truncation = found.modulation - found.multiplier
-    assert truncation == pytest.approx(truncation.mean(), rel=2e-3)  # but for terms of the next order
 
 
 def test_what_cannot_be_asked() -> None:

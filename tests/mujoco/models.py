@@ -1,7 +1,5 @@
 """Models as MJCF: random ones by their seeds, and those of which a closed form is known."""
 
-from typing import Any
-
 import numpy as np
 
 WEIGHTLESS = 'contype="0" conaffinity="0"'
@@ -79,8 +77,3 @@ def random_model(rng: np.random.Generator) -> str:
 
 def _size(rng: np.random.Generator, low: float, high: float) -> str:
     return f"{10 ** rng.uniform(low, high):.6g}"
-
-
-def loaded(mujoco: Any, text: str) -> Any:
-    """Return the mjModel of a text."""
-    return mujoco.MjModel.from_xml_string(text)

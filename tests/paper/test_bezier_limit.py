@@ -1,12 +1,9 @@
 """What bezstab/paper/README.md says of the limit of the Bézier methods."""
 
 from fractions import Fraction
-from math import factorial
 
-import mpmath as mp
 import numpy as np
 import pytest
-from numpy.polynomial.polynomial import polyval
 from numpy.typing import NDArray
 
 from bezstab.methods.orders import accuracy
@@ -22,13 +19,6 @@ def mu(z: NDArray[np.complex128] | float) -> NDArray[np.complex128]:
     return np.asarray((z - 1) ** 2 / (z * np.expm1((z - 1) / z)))
 
 
-def test_the_weights_tend_to_those_of_the_mapping() -> None:
-    weights = [float(mp.quad(lambda x, j=j: mp.exp(x) * (-x) ** j / factorial(j), [0, 1])) for j in range(30)]
-    z = 1.5 * CIRCLE  # where sigma = sum of w_j z^-j converges, and rho = z - 1
-    assert (z - 1) / polyval(1 / z, weights) == pytest.approx(mu(z), rel=1e-12)
-    assert accuracy(lookup("B12")) == (2, Fraction(1, 4) + Fraction(1, 6 * 11))
-
-
 def test_the_numbers_of_its_region() -> None:
     x, y = mu(CIRCLE).real, mu(CIRCLE).imag
     # by pairs of complex mu = x + iy, whose area is the integral of 2 y² dx, and by pairs of real ones
@@ -37,6 +27,7 @@ def test_the_numbers_of_its_region() -> None:
     assert max(2 * LENGTH, -2 * x.min()) == pytest.approx(1.252141, abs=5e-7)
     assert np.abs(mu(CIRCLE)).max() ** 2 == pytest.approx(0.741419, abs=5e-7)
     assert mu(0.687350).real == pytest.approx(mu(-0.687350).real, abs=1e-5)
+    assert accuracy(lookup("B12")) == (2, Fraction(1, 4) + Fraction(1, 6 * 11))
 
 
 @pytest.mark.slow

@@ -1,12 +1,10 @@
 """Answers about steps that vary: given feedback, an engine's values, and feedback that is proven."""
 
-import importlib
 from fractions import Fraction
 from math import inf
 
 import pytest
 
-import bezstab
 from bezstab.engines.engine_list import engine_and_values
 from bezstab.errors import InputError
 from bezstab.methods.registry import lookup
@@ -14,11 +12,6 @@ from bezstab.step_sequences.answer import answers, engine_points, proven_choice,
 from bezstab.step_sequences.varying_steps import Steps, VaryingSteps
 
 H_MIN, H_MAX = Fraction(1, 240), Fraction(1, 60)
-
-
-def test_the_name_in_python_is_the_function_also_once_the_command_is_loaded() -> None:
-    importlib.import_module("bezstab.step_sequences.command")
-    assert bezstab.steps is steps
 
 
 def test_feedback_in_1_s_is_that_of_the_longest_step() -> None:
@@ -90,13 +83,6 @@ def test_what_is_refused() -> None:
     ):
         with pytest.raises(InputError, match=message):
             steps(**{"method": "SYM", **arguments})  # type: ignore[arg-type]
-
-
-def test_what_is_not_known_claims_nothing() -> None:
-    """A single step may not be proven either, as where positivity stays undecided."""
-    assert (
-        why_words(VaryingSteps("not known")) == "Neither a proof for all sequences nor a sequence that grows was found"
-    )
 
 
 @pytest.mark.parametrize(

@@ -49,45 +49,26 @@ def test_sympy_confirms_a_growing_sequence(ratio: str, share: str) -> None:
     assert found.growth == pytest.approx(float(radius), rel=1e-9)  # float64, of a product of few steps
 
 
-def test_alternating_steps_that_are_each_stable() -> None:
-    # theory: alpha = 2, beta = 100, steps of 1/60 s and 9.17 ms, while each alone decays up to 0.0196 s
-    h, other = Fraction(1, 60), Fraction("0.00917")
-    for step in (h, other):
-        alone = varying_steps(lookup("SYM"), 4 * step, (100 * step) ** 2, Steps(step, step))
-        assert alone.verdict == "proven"
-    both = varying_steps(lookup("SYM"), 4 * h, (100 * h) ** 2, Steps(other, h))
-    assert both.verdict == "refuted"
-    assert both.sequence
-    assert set(both.sequence) == {h, other}
+BETWEEN = [  # shares of the longest stable step, steps from next to nothing
+    ("1/10", TINY, False, "0.21", "0.345"),
+    ("3/20", TINY, False, "0.33", "0.515"),
+    ("1/5", TINY, False, "0.44", "0.625"),
+    ("3/10", TINY, False, "0.665", "0.78"),
+    ("1/2", TINY, False, "0.968", "0.980"),
+    # held, it is weak feedback that grows: what is proven lies above what is refuted
+    ("2/5", Fraction(1, 4), True, "0.67", "0.33"),
+    ("7/10", Fraction(1, 10), True, "0.53", "0.30"),
+]
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("ratio", "proven", "refuted"),
-    # shares of the longest stable step, steps from next to nothing
-    [
-        ("1/10", "0.21", "0.345"),
-        ("3/20", "0.33", "0.515"),
-        ("1/5", "0.44", "0.625"),
-        ("3/10", "0.665", "0.78"),
-        ("1/2", "0.968", "0.980"),
-    ],
-)
-def test_between_the_best_form_and_the_first_sequence_it_is_not_known(ratio: str, proven: str, refuted: str) -> None:
+@pytest.mark.parametrize(("ratio", "shortest", "hold", "proven", "refuted"), BETWEEN)
+def test_between_the_best_form_and_the_first_sequence_it_is_not_known(
+    ratio: str, shortest: Fraction, hold: bool, proven: str, refuted: str
+) -> None:
     between = str((Fraction(proven) + Fraction(refuted)) / 2)
     for share, verdict in ((proven, "proven"), (between, "not known"), (refuted, "refuted")):
-        assert symplectic(ratio, share, TINY)[0].verdict == verdict
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("ratio", "shortest", "refuted", "proven"),
-    # held, it is weak feedback that grows: what is proven lies above what is refuted
-    [("2/5", "1/4", "0.33", "0.67"), ("7/10", "1/10", "0.30", "0.53")],
-)
-def test_so_it_is_where_alpha_hat_and_beta_hat_are_held(ratio: str, shortest: str, refuted: str, proven: str) -> None:
-    for share, verdict in ((refuted, "refuted"), ("0.45", "not known"), (proven, "proven")):
-        assert symplectic(ratio, share, Fraction(shortest), hold=True)[0].verdict == verdict
+        assert symplectic(ratio, share, shortest, hold)[0].verdict == verdict
 
 
 @pytest.mark.parametrize("ratio", ["7/10", "1", "3/2", "2"])
