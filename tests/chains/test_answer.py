@@ -10,6 +10,7 @@ import pytest
 from bezstab.chains.answer import SPREAD, Links, chain, judge_chain, links
 from bezstab.engines.engine_list import ENGINES, engine_and_values
 from bezstab.errors import InputError
+from bezstab.stability.arrays import FloatArray
 from tests.reference.engine_steps import STEPS
 from tests.reference.swept_chains import columns, hard_step
 
@@ -71,7 +72,8 @@ def test_a_chain_between_two_walls_is_what_loops_over_its_links_do(masses: tuple
     chained = Links(tuple(map(Fraction, masses)), both_ends=True)
     answer = judge_chain(engine, (Fraction("0.9") ** 60,), H, chained, sweeps)
     inverse = [*(1 / mass for mass in masses), 0.0]  # the second wall is a body that nothing moves
-    matrix, wall = np.array(columns(hard_step(inverse, sweeps, 0.1), count + 1)).T, [count, 2 * count + 1]
+    matrix: FloatArray = np.array(columns(hard_step(inverse, sweeps, 0.1), count + 1)).T
+    wall = [count, 2 * count + 1]
     values, vectors = np.linalg.eig(np.delete(np.delete(matrix, wall, axis=0), wall, axis=1))
     moduli = np.abs(values)
     moduli[np.argmin(np.abs(values - 1))] = 0

@@ -5,7 +5,6 @@ Source: Chipmunk's bias_coef(errorBias, dt) = 1 - errorBias^dt, and bias = -bias
 Chains: pin joints between the centres of bodies in a straight line, which no motion along that line turns.
 """
 
-from fractions import Fraction
 from itertools import pairwise
 from typing import Any
 
@@ -13,11 +12,9 @@ import numpy as np
 import pytest
 
 from bezstab.chains.answer import chain as judge
-from bezstab.engines.engine_list import ENGINES
 from bezstab.engines.sweeping import hard_velocity_step
 from bezstab.methods.registry import lookup
 from bezstab.stability.closed_loop import spectral_radius
-from bezstab.stability.rest_offsets import offset_at_rest
 from bezstab.stability.sweeps import Growth, chain, swept_growth
 from tests.witnesses.growths import growth
 
@@ -128,33 +125,7 @@ def test_a_kicked_chain_grows_as_predicted(bodies: int, ratio: float, sweeps: in
     assert growth(errors, WINDOW) == pytest.approx(predicted(bodies, ratio, sweeps, share).factor, abs=2e-3)
 
 
-@pytest.mark.parametrize(
-    ("bodies", "ratio", "sweeps", "decays"),
-    [
-        (5, 10, 10, True),
-        (10, 1, 10, True),
-        (10, 10, 10, False),
-        (10, 10, 20, True),
-        (10, 100, 10, False),
-        (10, 100, 120, True),
-        (20, 1, 10, False),
-        (20, 1, 30, True),
-    ],
-)
-def test_hanging_chains_come_apart_where_predicted(bodies: int, ratio: float, sweeps: int, decays: bool) -> None:
-    """Chipmunk's own share of a tenth, half a minute under gravity: links hold to a tenth of their length, or not."""
-    assert predicted(bodies, ratio, sweeps, 0.1).decays is decays
-    space, chained = hung_chain(bodies, ratio, sweeps, 0.1)
-    space.gravity = (0, -981)
-    worst = 0.0
-    for step in range(1800):
-        space.step(H)
-        if step >= 1500:
-            worst = max(worst, worst_link(chained))
-    assert (worst < LINK / 10) is decays
-
-
-@pytest.mark.parametrize(("bodies", "ratio", "sweeps"), [(5, 1, 10), (10, 1, 10)])
+@pytest.mark.parametrize(("bodies", "ratio", "sweeps"), [(1, 1, 10), (5, 1, 10), (10, 1, 10)])
 def test_hanging_chains_do_not_sag_where_impulses_are_kept(bodies: int, ratio: float, sweeps: int) -> None:
     """As predicted, to a thousandth of a link for each."""
     space, chained = hung_chain(bodies, ratio, sweeps, 0.1)
@@ -164,18 +135,3 @@ def test_hanging_chains_do_not_sag_where_impulses_are_kept(bodies: int, ratio: f
     answer = judge("chipmunk", h="1/60", bodies=bodies, mass_ratio=ratio, iterations=sweeps, load=981)
     assert answer.sag == 0
     assert -chained[-1].position.y - LINK * bodies == pytest.approx(0, abs=LINK * bodies / 1000)
-
-
-@pytest.mark.parametrize("error_bias", [0.5**60, 0.9**60])
-def test_one_joint_does_not_sag(error_bias: float) -> None:
-    """Its bodies fall after they have moved: what gravity adds to a velocity is taken back before it moves anything."""
-    space = pymunk.Space()
-    space.gravity = (9.81, 0)
-    body = pymunk.Body(2, 3)
-    held = pymunk.PivotJoint(space.static_body, body, (0, 0), (0, 0))
-    held.error_bias = error_bias
-    space.add(body, held)
-    for _ in range(600):
-        space.step(H)
-    assert body.position.x == pytest.approx(0, abs=1e-9)
-    assert offset_at_rest(ENGINES["chipmunk"], (Fraction(error_bias),), Fraction(1, 60), Fraction("9.81")) == 0
