@@ -281,6 +281,8 @@ def _with_infinite(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray, 
     with np.errstate(all="ignore"):
         if not (in_mu := mu_table(method)).size:
             infinite = _in_plane(method, alpha_hat, beta_hat)[-1] == 0
+        elif not in_mu[-1, 1:].any():  # an explicit step has a solution, though its coefficient, scaled, underflows
+            infinite = np.zeros(lost.size, bool)
         else:
             first, real, other = feedback_roots(method, alpha_hat, beta_hat)
             infinite = _in_mu(in_mu, first)[-1] == 0
