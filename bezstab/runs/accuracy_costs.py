@@ -18,7 +18,7 @@ from bezstab.mechanism.runner import Trajectory, simulate
 from bezstab.mechanism.scenes import Scene
 from bezstab.methods.schemes import Method, steps
 from bezstab.rationals import exact
-from bezstab.runs.forced_runs import predicted_errors, settled_error, settled_work
+from bezstab.runs.forced_runs import COMPARED, Forced, predicted_errors, settled_error, settled_work
 from bezstab.stabilising import NOTHING, AfterStep, Stabilise, held_by
 from bezstab.stability.choices import choose
 from bezstab.stability.closed_loop import spectral_radius
@@ -107,7 +107,8 @@ class Run:
     measured_error is the largest |c| in the later half, where the start has died away, None of a run that failed;
     predicted_error what the feedback forces there (forced_runs.py), None where errors do not decay, or the motion
     cannot be followed for longer than the run. measured_work and predicted_work (J) are what the multipliers do there
-    on those errors: what the energy gains by the feedback, but for the torque of stages. Processor time in s: the
+    on those errors: what the energy gains by the feedback, but for the torque of stages. measured_trajectory and
+    predicted_trajectory: the largest error of the coordinates there (forced_runs.py). Processor time in s: the
     median of the repeats, the least and the largest. `stabilise` is what holds the constraints, `advised` whether the
     point is the choice of the goal accurate; z_abs is None where there is no feedback. `factorizations` counts those of
     S = C_q M^-1 C_q^T, one for each evaluation, and those of projections.
@@ -124,6 +125,8 @@ class Run:
     predicted_error: float | None
     measured_work: float | None
     predicted_work: float | None
+    measured_trajectory: float | None
+    predicted_trajectory: float | None
     c_rms: float
     cdot_max: float
     cdot_rms: float
@@ -230,8 +233,9 @@ def _measured_run(sweep: Sweep, h: float, larger: Run | None = None) -> Run:
     *_, energy_drift = energy_balance(seen, h * float(method.step_multiple))
     z_abs = float(spectral_radius(method, *point)) if sweep.stabilise == "baumgarte" else None
     whole = not run.failure
-    forced = _predicted(sweep, h, point) if z_abs is not None and z_abs < 1 else (None, None)
-    trajectory_error = float(np.abs(run.q - sweep.reference.along.at(run.t)[0]).max()) if whole else None
+    forced = _predicted(sweep, h, point) if z_abs is not None and z_abs < 1 else None
+    off = np.abs(run.q - sweep.reference.along.at(run.t)[0]).max(axis=1)
+    trajectory_error = float(off.max()) if whole else None
     return Run(
         method=method,
         h=h,
@@ -241,9 +245,11 @@ def _measured_run(sweep: Sweep, h: float, larger: Run | None = None) -> Run:
         trajectory_error=trajectory_error,
         c_max=seen.c_max,
         measured_error=settled_error(seen, run.t) if whole else None,
-        predicted_error=forced[0],
+        predicted_error=forced and forced.error,
         measured_work=settled_work(seen, run.t) if whole else None,
-        predicted_work=forced[1],
+        predicted_work=forced and forced.work,
+        measured_trajectory=float(off[run.t >= COMPARED * run.t[-1]].max()) if whole else None,
+        predicted_trajectory=forced and forced.trajectory,
         c_rms=float(np.sqrt((seen.c**2).mean())),
         cdot_max=seen.cdot_max,
         cdot_rms=float(np.sqrt((seen.cdot**2).mean())),
@@ -267,12 +273,12 @@ def _observed_order(larger: Run | None, h: float, error: float | None, reference
     return float(np.log(larger.trajectory_error / error) / np.log(larger.h / h))
 
 
-def _predicted(sweep: Sweep, h: float, point: tuple[float, float]) -> tuple[float, float] | tuple[None, None]:
-    """Return the largest |c| (SI) and the work (J) of the later half of a run; None where they are not known."""
+def _predicted(sweep: Sweep, h: float, point: tuple[float, float]) -> Forced | None:
+    """Return what is predicted of the later half of a run; None where it is not known."""
     try:
         (forced,) = predicted_errors(compiled_mechanism(sweep.scene), sweep.method, h, [point], sweep.duration)
     except (InputError, NumericalError):  # the motion is followed for longer than the run
-        return None, None
+        return None
     return forced
 
 

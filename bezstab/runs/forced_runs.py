@@ -13,6 +13,7 @@ out beyond the stretch that is compared.
 """
 
 from collections.abc import Iterator, Sequence
+from typing import NamedTuple
 
 import numpy as np
 
@@ -20,6 +21,7 @@ from bezstab.mechanism.constraint_normals import along_normals, turned_across
 from bezstab.mechanism.equations import Mechanism
 from bezstab.mechanism.motions import Motion, motion
 from bezstab.mechanism.observation import Observation, multiplier_work, observe
+from bezstab.mechanism.start import constraint_jacobian
 from bezstab.methods.schemes import Method
 from bezstab.methods.steady_errors import leading_error, turning_error
 from bezstab.stability.arrays import FloatArray
@@ -46,14 +48,22 @@ def settled_work(seen: Observation, t: FloatArray) -> float:
     return float(work[-1] - work[np.searchsorted(t, COMPARED * t[-1])])
 
 
+class Forced(NamedTuple):
+    """What a point forces in the later half of a run: the largest constraint error and trajectory error (SI), and work.
+
+    The work (J) of the motion's own multipliers on the error, -lambda dc/dt, is what the energy gains by the feedback.
+    The trajectory's is known of a mechanism without a freedom of its own, C_q^-1 c; else None.
+    """
+
+    error: float
+    work: float
+    trajectory: float | None
+
+
 def predicted_errors(
     mechanism: Mechanism, method: Method, h: float, points: Sequence[tuple[float, float]], duration: float
-) -> list[tuple[float, float]]:
-    """Return the largest constraint error (SI) that each point forces in the later half of a run over `duration` (s).
-
-    And the work (J) of the motion's own multipliers on it in that time, -lambda dc/dt, which the energy gains by the
-    feedback. InputError and NumericalError as `motion`.
-    """
+) -> list[Forced]:
+    """Return what each point forces in a run over `duration` (s); InputError and NumericalError as `motion`."""
     along = motion(mechanism, FOLLOWED * duration)
     times = along.t[:-1]
     later_half = (times >= COMPARED * duration) & (times <= duration)
@@ -61,11 +71,20 @@ def predicted_errors(
     errors = _errors_along(mechanism, method, h, points, along)
     multipliers = observe(mechanism, times, along.q[:-1], along.v[:-1], 0.0, 0.0).multipliers
     later = np.linspace(COMPARED * duration, duration, len(times))
+    driven = mechanism.size == len(mechanism.constraints)
+    jacobians = [constraint_jacobian(mechanism, t, q) for t, q in zip(times, along.q, strict=False)] if driven else []
     found = []
     for error in errors:
         power = -(multipliers * np.gradient(error, along.t[1], axis=0)).sum(axis=1)
         mean = np.interp(later, times, power, period=along.duration if along.closed else None).mean()
-        found.append((float(np.abs(error[compared]).max()), float(mean * (1 - COMPARED) * duration)))
+        off = np.linalg.solve(jacobians, error[:, :, np.newaxis])[compared] if driven else None
+        found.append(
+            Forced(
+                error=float(np.abs(error[compared]).max()),
+                work=float(mean * (1 - COMPARED) * duration),
+                trajectory=None if off is None else float(np.abs(off).max()),
+            )
+        )
     return found
 
 

@@ -46,10 +46,10 @@ def errors(name: str, scene: str, h: float, shares: Sequence[float], duration: f
     """Yield the predicted and the measured error (m, rad) at shares of the robust alpha and beta."""
     mechanism, method = compiled_mechanism(load_scene(scene)), lookup(name)
     points = [robust_point(name, share) for share in shares]
-    for point, (predicted, _) in zip(points, predicted_errors(mechanism, method, h, points, duration), strict=True):
+    for point, forced in zip(points, predicted_errors(mechanism, method, h, points, duration), strict=True):
         run = simulated(mechanism, method, h=h, duration=duration, alpha_hat=point[0], beta_hat=point[1])
         assert run.failure is None
-        yield predicted, settled_error(run, run.t)
+        yield forced.error, settled_error(run, run.t)
 
 
 @pytest.mark.parametrize(
@@ -62,6 +62,23 @@ def test_measured_over_predicted_is_one_whatever_the_gains(name: str, scene: str
     shares = SHARES if scene != "andrews" else (0.2, 0.5, 1.0)  # whose implicit steps take long
     for predicted, measured in errors(name, scene, h, shares, duration):
         assert measured / predicted == pytest.approx(1, abs=allowed)
+
+
+@pytest.mark.parametrize("name", ["B4", "heun", "SYM", "SIE", "RK4", "AB4", "ABM4"])
+def test_the_trajectory_of_a_driven_mechanism_is_off_as_its_constraints_say(name: str) -> None:
+    h, duration, _ = SCENES["driven_four_bar"]
+    mechanism, (alpha_hat, beta_hat) = compiled_mechanism(load_scene("driven_four_bar")), robust_point(name, 0.5)
+    (forced,) = predicted_errors(mechanism, lookup(name), h, [(alpha_hat, beta_hat)], duration)
+    run = simulated(mechanism, lookup(name), h=h, duration=duration, alpha_hat=alpha_hat, beta_hat=beta_hat)
+    exactly, _, _ = motion(mechanism, duration).at(run.t)
+    later = run.t >= duration / 2
+    assert np.abs(run.q - exactly)[later].max() == pytest.approx(forced.trajectory, rel=0.03)
+
+
+def test_the_trajectory_of_a_free_mechanism_is_not_predicted() -> None:
+    mechanism = compiled_mechanism(load_scene("slider_crank_light"))
+    (forced,) = predicted_errors(mechanism, lookup("B4"), 0.002, [robust_point("B4")], 0.5)
+    assert forced.trajectory is None
 
 
 @pytest.mark.slow
