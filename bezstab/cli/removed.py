@@ -5,7 +5,7 @@ from collections.abc import Mapping
 WENT: Mapping[str, str] = {
     "explore": "see `region --figure window`",
     "verify --accuracy": "see `methods NAME` and `choose` with --omega: what they predict is held by a test",
-    "verify --witness": "a test runs MuJoCo, and it diverges where the map says: tests/runs/test_mujoco_witness.py",
+    "verify --witness": "a test runs MuJoCo, and it diverges where the map says: tests/runs/test_mujoco_maps.py",
     "probe --time": "name the column of times t or time",
     "probe --jointly": "each column has its own pole",
     "check --pd": "see `bezstab drive`",

@@ -40,7 +40,7 @@ RUN_UNDERNEATH = {
 """What others that are asked for run underneath, by their names."""
 
 WITNESSES = {
-    "mujoco": "tests/runs/test_mujoco_witness.py::test_mujoco_settles_and_diverges_where_the_map_says",
+    "mujoco": "tests/runs/test_mujoco_maps.py::test_an_equality_is_the_point_of_its_solref",
     "bullet": "tests/witnesses/test_pybullet.py::test_bullets_pole_is_that_of_its_erp",
     "chipmunk": "tests/witnesses/test_pymunk.py::test_chipmunks_pole_is_that_of_its_error_bias",
     "box2d-v2": "tests/witnesses/test_box2d.py::test_errors_of_a_chain_shrink_as_predicted",

@@ -1,7 +1,6 @@
 """probe: logs as files and on standard input, and the words that it answers with."""
 
 import json
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -16,11 +15,6 @@ from bezstab.stability.arrays import FloatArray
 from bezstab.stability.closed_loop import poles
 from tests.cli.running import rows, run
 from tests.reference.sampled_responses import of_poles
-
-
-@pytest.fixture(autouse=True)
-def _in_an_empty_directory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
 
 
 def write(name: str, **columns: NDArray[np.floating[Any]]) -> None:

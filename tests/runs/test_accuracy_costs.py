@@ -15,10 +15,8 @@ from bezstab.methods.schemes import evaluations
 from bezstab.rationals import exact
 from bezstab.runs.accuracy_costs import (
     NO_FEEDBACK,
-    Cost,
     measured_runs,
     pareto_front,
-    ranked_runs,
     reference_run,
     swept_runs,
 )
@@ -27,7 +25,7 @@ from bezstab.stabilising import after_step
 from bezstab.stability.choices import choose
 from tests.reference.undominated import Point, undominated
 from tests.runs.samples import of_campaign
-from tests.runs.small_sweeps import DURATION, OMEGA, SOFT, cost_for, reference, small_sweep, swept
+from tests.runs.small_sweeps import DURATION, OMEGA, SOFT, cost_for, small_sweep, swept
 
 QUICK = ("B4", "ABM4", "RK4", "SYM")
 """One of each kind."""
@@ -124,16 +122,6 @@ def test_a_run_that_fails_is_kept_and_says_so() -> None:
     assert ended.failure is None
     assert ended.order is None  # there is nothing to compare with
     assert (failed.alpha_hat, failed.beta_hat) == (1.25, 0.390625)  # 2 * 50 * 0.0125, (50 * 0.0125)^2, rounded once
-
-
-@pytest.mark.parametrize("against", ["evaluations", "time"])
-def test_a_sweep_knows_its_fronts(against: Cost) -> None:
-    runs = [*swept("B2", (0.004, 0.0125), SOFT), *swept("AB4", (0.004, 0.0125), SOFT)]
-    assert any(run.failure for run in runs)  # AB4 at the larger step
-    whole = ranked_runs(runs, reference().error, 1e-6, against)
-    for of, front in whole.fronts.items():
-        points = [(run.cost(against), run.error(of)) for run in runs]
-        assert {points[index] for index in front} == undominated(points)
 
 
 points_of_a_sweep = st.lists(st.tuples(st.floats(1, 9), st.one_of(st.none(), st.floats(1, 9))))

@@ -122,11 +122,3 @@ def test_a_free_motion_drifts_in_proportion_to_the_step_unless_velocities_and_po
     )
     order = np.log2(coarse / fine)
     assert order > 1.85 if satisfies_d1(name) else order == pytest.approx(1, abs=0.15)
-
-
-@pytest.mark.slow
-def test_at_one_point_of_the_plane_rk4_keeps_order_two_of_four() -> None:
-    coarse, fine = (list(errors("RK4", "driven_four_bar", h, SHARES, 0.5)) for h in (0.004, 0.002))
-    orders = np.log2(np.divide(coarse, fine))
-    assert orders[:, 1] == pytest.approx(orders[:, 0], abs=0.02)
-    assert orders[-1] == pytest.approx(2, abs=0.02)

@@ -114,16 +114,6 @@ def test_feedback_that_throws_the_mechanism_apart_diverges_unless_it_breaks_down
     assert [one.measured_verdict for one in found] == ["too close to call"] * 2
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    "scene",
-    ["slider_crank_300rpm", "four_bar"],
-)
-def test_no_verdict_is_wrong_where_the_mechanism_moves_fast(scene: str) -> None:
-    for name in ("B4", "RK4", "SYM", "ABM4"):
-        assert not contradictions(measurements(scene, name, 8))
-
-
 @pytest.mark.parametrize(
     ("name", "point", "z_abs", "verdict"),
     [
