@@ -11,16 +11,16 @@ TYPE_CHECKING = False  # as type checkers know it; to import typing would take l
 
 if TYPE_CHECKING:
     from bezstab.api import best_point as best_point
-    from bezstab.api import check as check
-    from bezstab.api import choose as choose
     from bezstab.api import dominant_pole as dominant_pole
     from bezstab.api import feedback_cost as feedback_cost
-    from bezstab.api import largest_step as largest_step
     from bezstab.api import poles as poles
     from bezstab.api import spectral_radius as spectral_radius
     from bezstab.api import verdict as verdict
     from bezstab.chains.answer import chain as chain
     from bezstab.drives.answer import drive as drive
+    from bezstab.feedback.checking import check as check
+    from bezstab.feedback.checking import largest_step as largest_step
+    from bezstab.feedback.choosing import choose as choose
     from bezstab.mechanism.scene_files import scene as scene
     from bezstab.methods.registry import method as method
     from bezstab.mujoco.linting import lint as lint
@@ -40,11 +40,8 @@ HOMES = {
     **dict.fromkeys(
         (
             "best_point",
-            "check",
-            "choose",
             "dominant_pole",
             "feedback_cost",
-            "largest_step",
             "poles",
             "spectral_radius",
             "verdict",
@@ -52,6 +49,9 @@ HOMES = {
         "bezstab.api",
     ),
     "chain": "bezstab.chains.answer",
+    "largest_step": "bezstab.feedback.checking",
+    "choose": "bezstab.feedback.choosing",
+    "check": "bezstab.feedback.checking",
     "drive": "bezstab.drives.answer",
     "from_dimensionless": "bezstab.units",
     "lint": "bezstab.mujoco.linting",

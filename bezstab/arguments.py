@@ -42,6 +42,11 @@ def exact_number(value: Number, name: str) -> Fraction:
         raise InputError(f"{name}: {error}") from None
 
 
+def exact_or_none(value: Number | None, name: str) -> Fraction | None:
+    """Return the same of a number that may be missing."""
+    return None if value is None else exact_number(value, name)
+
+
 def whole_number(value: int, name: str) -> int:
     """Return a whole number; InputError for what is none."""
     if isinstance(value, bool) or not isinstance(value, int):

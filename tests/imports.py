@@ -18,6 +18,7 @@ ROOMS = (
     "cli",
     "regions",
     "runs",
+    "feedback",
     "chains",
     "drives",
     "step_sequences",

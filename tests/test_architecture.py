@@ -71,11 +71,10 @@ APPOINTED = {
         *("show/window.py", "paper/figures.py"),
         *(f"{subject}/figure.py" for subject in SUBJECTS),
     },
-    "click": {path.relative_to(PACKAGE).as_posix() for path in (PACKAGE / "cli").glob("*.py")}
-    | {"paper/command.py"}
-    | {"regions/region_command.py", "regions/methods_command.py"}
-    | {"runs/options.py", *(f"runs/{command}_command.py" for command in ("simulate", "verify", "tradeoff"))}
-    | {f"{subject}/command.py" for subject in SUBJECTS},
+    "click": {
+        path.relative_to(PACKAGE).as_posix()
+        for path in (*(PACKAGE / "cli").glob("*.py"), *PACKAGE.glob("*/*command.py"), PACKAGE / "runs" / "options.py")
+    },
     "mujoco": {"mujoco/reading.py"},
     "distributed": {"runs/parallel.py"},
     "joblib": {"runs/parallel.py"},

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence, Sized
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
 from bezstab.cli.command_group import NUMERICAL_TROUBLE
 from bezstab.cli.options import TypedPoint, typed_options
-from bezstab.cli.output import for_reading, say, show_text, worked_out
+from bezstab.cli.output import say, show_text
 from bezstab.engines.conversions import Engine, Point
 from bezstab.engines.engine_list import WITNESSES
 from bezstab.errors import NumericalError
@@ -17,34 +17,7 @@ from bezstab.methods.schemes import Method
 from bezstab.rationals import typed_number
 from bezstab.words import point_words
 
-if TYPE_CHECKING:
-    from bezstab.questions.answering import Answer
-    from bezstab.questions.question import Question
-
-Asked = TypeVar("Asked")
 Found = TypeVar("Found")
-
-
-def asked(kind: Callable[..., Asked], **typed: Any) -> Asked:
-    """Return the question that was typed; `kind` is its class in `bezstab.questions`. Options have its fields' names.
-
-    Without --method an engine has its own method. Errors as the class raises them.
-    """
-    if isinstance(typed.get("engine"), tuple):
-        typed["engine"], typed["values"] = typed["engine"]
-    if typed.get("engine") and "--method" not in typed_options():
-        typed["methods"] = ()
-    point = typed.get("point")
-    if point:
-        typed["point"] = point.at(typed["h"])
-    return kind(**typed)
-
-
-def asked_of_scene(kind: type[Question], **typed: Any) -> Question:
-    """Return the same, once it is known how its scene moves: a note says so if that is too far in a step."""
-    question = asked(kind, **typed)
-    say_each(worked_out(lambda: question.warnings, typed["scene"]))
-    return question
 
 
 def say_each(reasons: Iterable[str | None]) -> None:
@@ -92,25 +65,6 @@ def show_sentences(sentences: Iterable[str | None]) -> None:
         show_text(f"\n{sentence}")
 
 
-def show_below(question: Question, found: Sequence[Answer], *, motion: bool = True) -> None:
-    """Print below the answers on which motion errors are told; say on standard error why they are not known.
-
-    For people to read, it is also said what an engine did to its values, and what the conversion leaves out.
-    """
-
-    from bezstab.show.result_sentences import motion_words
-
-    say_each(answer.cost_or_reason[1] for answer in found)
-    if not for_reading():
-        return
-    if motion and (question.goal or not question.motion.assumed):
-        show_text(f"\n{motion_words(question.motion)}")
-    if question.engine:
-        for note in () if question.goal else question.given.notes or ():
-            say(f"{question.engine.name}: {note} (--as-typed leaves that out)")
-        say_what_is_left_out(question.engine, many=question.swept is not None)
-
-
 def say_what_is_left_out(engine: Engine, *, many: bool = False) -> None:
     """Say on standard error what the conversion of an engine's values leaves out, for one constraint or for many.
 
@@ -131,7 +85,7 @@ def say_if_units_were_mistaken(methods: Sequence[Method], point: TypedPoint, h: 
     Without methods, of that of most engines.
     """
 
-    from bezstab.questions.question import meant_in_seconds
+    from bezstab.questions.meant import meant_in_seconds
 
     if point.numbers is None or point.physical:
         return

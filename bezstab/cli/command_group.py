@@ -18,13 +18,13 @@ from bezstab.stopping import end_if_told
 
 COMMANDS: Mapping[str, Mapping[str, str]] = {
     "Maps": {
-        "poles": "bezstab.cli.poles_command",
+        "poles": "bezstab.feedback.poles_command",
         "region": "bezstab.regions.region_command",
         "methods": "bezstab.regions.methods_command",
     },
     "Choose": {
-        "choose": "bezstab.cli.choose_command",
-        "check": "bezstab.cli.check_command",
+        "choose": "bezstab.feedback.choose_command",
+        "check": "bezstab.feedback.check_command",
         "steps": "bezstab.step_sequences.command",
         "drive": "bezstab.drives.command",
         "lint": "bezstab.mujoco.command",

@@ -6,23 +6,46 @@ from typing import Any, TypeVar, get_args
 
 import click
 
-from bezstab.cli.options import A_METHOD, METHOD, NUMBER, SECONDS, SPEED, choose_compiled
+from bezstab.cli.options import (
+    A_METHOD,
+    ENGINE_VALUES,
+    METHOD,
+    NUMBER,
+    POSITIVE,
+    SCENE,
+    SECONDS,
+    SPEED,
+    choose_compiled,
+)
 from bezstab.compiling import COMPILED_CHOICE
 from bezstab.show.file_forms import FIGURE_FORMS, TABLE_FORMS
 from bezstab.show.tables import Format
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
-alpha = click.option("--alpha", type=NUMBER, help="α̂ as a decimal or a fraction, read exactly.")
-beta = click.option("--beta", type=NUMBER, help="β̂ as a decimal or a fraction, read exactly.")
+alpha = click.option("--alpha", type=NUMBER, help="α̂, or with --physical α in 1/s; a decimal or a fraction.")
+beta = click.option("--beta", type=NUMBER, help="β̂, or with --physical β in 1/s; a decimal or a fraction.")
 physical = click.option("--physical", is_flag=True, help="--alpha and --beta are α and β in 1/s; needs --h.")
 FIGURES, TABLES = [*FIGURE_FORMS, "none"], [*TABLE_FORMS, "none"]
 """Formats of what a command writes."""
 
 h = click.option("--h", type=SECONDS, required=True, help="Step size in s.")
 methods = click.option("--method", "methods", type=METHOD, multiple=True, help=f"{A_METHOD} Repeatable.")
-speed = click.option(
-    "--speed", type=SPEED, default="1", help="Multiply the speed of drivers and initial velocities by this."
+engine_values = click.option(
+    "--engine",
+    type=ENGINE_VALUES,
+    help="An engine's own values, such as mujoco=0.02,1 [its defaults], in place of --alpha and --beta; needs --h.",
+)
+as_typed = click.option(
+    "--as-typed", is_flag=True, help="With --engine: without what it does to values, such as clamps."
+)
+omega = click.option(
+    "--omega", type=POSITIVE, help="Rate of the motion in 1/s; needs --h [that of --scene, or ωh = 0.01]."
+)
+scene = click.option("--scene", type=SCENE, help="A shipped scene's name, or a .toml file: the mechanism that moves.")
+speed = click.option("--speed", type=SPEED, default="1", help="With --scene: it moves so many times as fast.")
+time = click.option(
+    "--time", "duration", type=SECONDS, help="With --scene: run it so many s [10 s, at most 10,000 steps]."
 )
 compiled = click.option(
     "--compiled",

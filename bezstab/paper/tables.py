@@ -12,9 +12,8 @@ from bezstab.methods.formulas import characteristic_text, mapping_text, recursio
 from bezstab.methods.registry import lookup
 from bezstab.paper.experiments import KICK, KICKS, STEP, TABLE_4, compared_runs, kicked_runs, largest, pole
 from bezstab.paper.printed import FASTER_LEVEL, TABLE_5, TABLE_6
-from bezstab.show.cells import pole_text
+from bezstab.show.cells import pole_words
 from bezstab.show.fields import Row, column, formatted
-from bezstab.show.rows import pole_cells
 from bezstab.show.tables import render
 
 ROUNDED = 1e-13  # m: below, c_1 is rounding amplified by beta^2 h^2 / |1 - z|, and differs between machines
@@ -91,7 +90,7 @@ def cases_table() -> str:
                 "described as": described,
                 "α̂": f"{alpha_hat:g}",
                 "β̂": f"{beta_hat:g}",
-                "dominant pole": pole_text(pole_cells(z)),
+                "dominant pole": pole_words(complex(z)),
                 "|z_p|": f"{abs(z):.4f}",
                 "∠z_p (deg)": f"{np.degrees(np.angle(z)):.2f}",
                 "seen: |z|": f"{rate:.4f}",
@@ -120,7 +119,7 @@ def poles_table() -> str:
                 "α̂": alpha_hat,
                 "β̂": beta_hat,
                 "method": name,
-                "dominant pole": pole_text(pole_cells(z)),
+                "dominant pole": pole_words(complex(z)),
                 "|z_p|": f"{abs(z):.4f}",
                 "∠z_p (deg)": f"{numbers[-1]:.3f}",
                 "as printed (*: not ours)": " ".join(

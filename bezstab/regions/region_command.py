@@ -85,7 +85,7 @@ def region(
     Example: bezstab region --method B4
     """
     from bezstab.methods.registry import lookup
-    from bezstab.questions.question import methods_for
+    from bezstab.questions.methods import methods_for
     from bezstab.regions.answer import map_conditions, region_answer
     from bezstab.regions.columns import REGION, map_columns, map_rows
     from bezstab.regions.sentences import region_sentence

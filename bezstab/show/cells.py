@@ -2,7 +2,6 @@
 
 import math
 
-from bezstab.rationals import rounded_down
 from bezstab.show.fields import MISSING, Row, formatted
 
 MOST_FIXED = 1e6  # a modulus from here on is shown with an exponent
@@ -22,11 +21,6 @@ NAMES_ROOM = 22
 """Letters of the longest name in the list of methods."""
 
 
-def pole_text(row: Row) -> str:
-    """Return a complex pole, from z_real and z_imag, as `pole_words`; a dash where there is none."""
-    return MISSING if row["z_real"] is None else pole_words(complex(row["z_real"], row["z_imag"]))
-
-
 def pole_words(pole: complex) -> str:
     """Return a pole and its conjugate, or a real one: 0.762694 ± 0.142074i."""
     form = ".6f" if max(abs(pole.real), pole.imag) < MOST_FIXED else ".6e"
@@ -36,12 +30,7 @@ def pole_words(pole: complex) -> str:
 
 def modulus_words(modulus: float) -> str:
     """Return |z|: six decimals, or an exponent where it is huge."""
-    return formatted(modulus, ".6e" if modulus >= MOST_FIXED else ".6f")
-
-
-def any_or_missing(row: Row) -> str:
-    """Return what is said of a factor that has no limit: any; of a point that is not stable none was looked for."""
-    return "any" if row["verdict"] == "converges" and not row.get("margins_reason") else MISSING
+    return formatted(modulus, ".6e" if abs(modulus) >= MOST_FIXED else ".6f")
 
 
 def unbounded(row: Row) -> str:
@@ -57,26 +46,6 @@ def area_text(row: Row) -> str:
     decimals = max(0, -math.floor(math.log10(error)))
     size, exponent = f"{error:.0e}".split("e")
     return f"{area:.{decimals}f} ± {size}e{int(exponent)}"
-
-
-def any_speed(row: Row) -> str:
-    """Return what is said of a mechanism's speed where it has no limit: any, where it does not turn."""
-    return "any" if row["moving_verdict"] == "converges" else MISSING
-
-
-def step_limit(row: Row) -> float | None:
-    """Return the largest stable step (s): of an engine's values where those were given, else of alpha and beta."""
-    limit: float | None = row["engine_h_limit" if "engine_h_limit" in row else "h_limit"]
-    return limit
-
-
-def step_text(row: Row) -> str:
-    """Return the largest stable step; a stable point without one is stable at any."""
-    limit = step_limit(row)
-    known = row["verdict"] == "converges" and row["margins_reason"] is None
-    if limit is None and row["h"] is not None and known:
-        return "unlimited"
-    return formatted(limit, ".4g")
 
 
 def method_and_alias_text(row: Row) -> str:
@@ -96,13 +65,3 @@ def order_text(row: Row) -> str:
 def constant_text(row: Row) -> str:
     """Return the error constant as a rational, or as a decimal where it is none."""
     return row.get("error_constant_exact") or formatted(row["error_constant"], ".10g")
-
-
-def safe_step_text(row: Row) -> str:
-    """Return the largest safe step (s) to four digits, rounded down so that it is safe; unlimited, or none."""
-    limit = row["h_limit"]
-    if not row["safe"]:
-        return "none"
-    if limit is None:
-        return "unlimited"
-    return rounded_down(limit, 4)

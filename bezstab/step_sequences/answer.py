@@ -17,7 +17,7 @@ from bezstab.errors import InputError
 from bezstab.goals import Goal
 from bezstab.methods.registry import lookup
 from bezstab.methods.schemes import Method, check_one_step
-from bezstab.questions.question import methods_for
+from bezstab.questions.methods import methods_for
 from bezstab.stability.choices import choose
 from bezstab.step_sequences.growing_runs import growing_run
 from bezstab.step_sequences.varying_steps import Steps, VaryingSteps, Verdict, varying_steps

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from bezstab.errors import NumericalError
-from bezstab.questions import answering
+from bezstab.feedback import checking
 from bezstab.regions import answer as regions
 from bezstab.stability import best_points, choices, feedback_costs
 from bezstab.stability.regions import region
@@ -31,7 +31,7 @@ def _forget_what_failed() -> Iterator[None]:
 def test_without_an_alternative_check_still_answers(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(choices, "region", failing)
     for alpha, status, said in (("1/2", 0, "α̂ = 0.5, β̂ = 0.1: safe."), ("5", 1, "α̂ = 5, β̂ = 0.1: not safe.")):
-        result = run(f"check --method B4 --alpha {alpha} --beta 1/10")
+        result = run(f"check --method B4 --alpha {alpha} --beta 1/10 --instead")
         assert (result.exit_code, result.stdout.startswith(said)) == (status, True)
         assert f"nothing instead: {REASON}" in result.stderr
 
@@ -69,7 +69,7 @@ def test_a_defect_does_not_end_as_unsafe(monkeypatch: pytest.MonkeyPatch) -> Non
     def broken(*_: Any) -> Any:
         return Fraction(1, 0)
 
-    monkeypatch.setattr(answering, "describe_point", broken)
+    monkeypatch.setattr(checking, "describe_point", broken)
     result = run("check", POINT)
     assert result.exit_code == 70
     assert "defect" in result.stderr

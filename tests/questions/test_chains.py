@@ -1,6 +1,5 @@
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import partial
 from itertools import pairwise
 from typing import ClassVar, cast
 
@@ -8,13 +7,11 @@ import pytest
 import sympy as sp
 
 from bezstab.engines.engine_list import ENGINES
-from bezstab.errors import InputError
+from bezstab.feedback.checking import check
 from bezstab.mechanism import equations
 from bezstab.mechanism.scene_files import parse_scene
 from bezstab.mechanism.scenes import Between, Body, Distance, Joint, Scene
-from bezstab.questions.answering import answers
 from bezstab.questions.chains import SweptConstraints, constraints_of
-from bezstab.questions.question import Question, usual_goal
 from bezstab.stability.sweeps import chain, swept_growth
 
 CHIPMUNK = ENGINES["chipmunk"]
@@ -56,48 +53,9 @@ def test_a_joint_is_known_by_its_constraints_alone(monkeypatch: pytest.MonkeyPat
         "2 of joint 1 (slider, ground and block)",
         "joint 2 (distance, block and bob)",
     )
-    (answer,) = answers(Question(engine=CHIPMUNK, values=DEFAULT, h=Fraction(1, 60), scene=scene))
+    answer = check(engine="chipmunk", h="1/60", scene=scene)
     assert answer.swept
     assert answer.swept_over == "slides at its start, with its 3 constraints"
-
-
-def test_the_engines_own_sweeps_are_taken_unless_others_are_asked_about() -> None:
-    (answer,) = answers(Question(engine=ENGINES["ode"], values=(Fraction("0.2"),), h=Fraction(1, 60), chain=2))
-    assert answer.swept
-    assert answer.swept.iterations == 20
-    assert answer.swept.alone == pytest.approx(0.8, abs=1e-9)
-
-
-@pytest.mark.parametrize("name", [name for name, each in ENGINES.items() if each.sweeping and each.parameters])
-def test_a_line_to_paste_is_stable_in_a_chain_of_ten_also_if_it_were_a_tenth_stronger(name: str) -> None:
-    """Whether the chain is asked about or not, and from `choose` as from what `check` gives instead."""
-    engine, h = ENGINES[name], Fraction(1, 60)
-    (chosen,) = answers(Question(engine=engine, goal=usual_goal(engine), h=h))
-    assert chosen.safe
-    assert chosen.swept_over == "a chain of 10 equal bodies"
-    assert engine.sweeping
-    stronger = chosen.alpha_hat, chosen.beta_hat * 1.1
-    try:
-        values = tuple(map(Fraction, engine.values((Fraction(stronger[0]), Fraction(stronger[1])), h)))
-    except InputError:  # it has no words for so strong a feedback
-        values = tuple(map(Fraction, engine.values(chosen.point, h)))
-    step = engine.sweeping.step(engine.sweeping.iterations, h, *values)
-    pairs = range(10) if engine.sweeping.together else None
-    assert swept_growth(chain(10), step, pairs).decays
-    given = next(answers(Question(engine=engine, values=tuple(map(Fraction, engine.values(chosen.point, h))), h=h)))
-    assert given.swept_over == "one constraint alone"
-    assert given.instead.setting == chosen.setting
-    (asked,) = answers(Question(engine=engine, goal=usual_goal(engine), h=h, chain=10))
-    assert asked.setting == chosen.setting
-
-
-def test_chipmunk_would_get_a_line_that_lets_ten_bodies_grow_if_one_alone_were_asked_about() -> None:
-    (chosen,) = answers(Question(engine=CHIPMUNK, goal="robust", h=Fraction(1, 60)))
-    assert chosen.alone is not None
-    assert chosen.question.swept
-    alone = tuple(map(Fraction, CHIPMUNK.values(chosen.alone.point, Fraction(1, 60))))
-    assert chosen.question.swept.growth(alone).factor > 1.05
-    assert chosen.sweeps_to_spare == 10
 
 
 def links(bodies: int, ratio: float) -> Scene:
@@ -122,8 +80,7 @@ def links(bodies: int, ratio: float) -> Scene:
 
 def test_a_chain_written_as_a_scene_is_the_chain() -> None:
     assert constraints_of(links(5, 7.0), Fraction(1)).inverse_masses == pytest.approx(chain(5, 7.0), abs=1e-12)
-    asked = partial(Question, engine=CHIPMUNK, values=DEFAULT, h=Fraction(1, 60))
-    (by_scene,) = answers(asked(scene=links(10, 10.0)))
+    by_scene = check(engine="chipmunk", h="1/60", scene=links(10, 10.0))
     assert by_scene.swept
     assert by_scene.swept.growth.factor == pytest.approx(1.00494, abs=1e-5)  # pymunk's, run
     assert by_scene.swept.stable_iterations == 12
@@ -153,6 +110,6 @@ def test_pins_are_swept_at_once_or_in_rows_as_the_engine_does() -> None:
 
 
 def test_one_constraint_of_a_scene_is_one_alone() -> None:
-    (answer,) = answers(Question(engine=CHIPMUNK, values=DEFAULT, h=Fraction(1, 240), scene="pendulum"))
+    answer = check(engine="chipmunk", h="1/240", scene="pendulum")
     assert answer.swept is None
     assert answer.swept_over == "one constraint alone"

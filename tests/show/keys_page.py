@@ -8,6 +8,7 @@ from typing import Any
 
 from bezstab.chains import columns as chains
 from bezstab.drives import columns as drives
+from bezstab.feedback import columns as feedback
 from bezstab.mujoco import columns as mujoco
 from bezstab.probes import columns as probes
 from bezstab.regions import columns as regions
@@ -20,6 +21,9 @@ PAGE = Path(__file__).parents[2] / "bezstab" / "show" / "keys.csv"
 
 COLUMNS: Mapping[str, Sequence[Sequence[Column[Any]]]] = {
     "chain": [chains.COLUMNS],
+    "check": [feedback.CHECKED, feedback.STEPS],
+    "choose": [feedback.CHOSEN, feedback.STEPS],
+    "poles": [feedback.POLES],
     "drive": [drives.COLUMNS],
     "lint": [mujoco.STATES, mujoco.SUSPECTS, mujoco.REMEDIES, mujoco.ENERGIES, mujoco.SAGS, mujoco.SETTINGS],
     "methods": [regions.LISTED, regions.WHOLE],

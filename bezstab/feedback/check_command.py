@@ -1,0 +1,122 @@
+"""The command that tells whether a choice is safe: check."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+import click
+
+from bezstab.cli import shared_options as shared
+from bezstab.cli.asking import say_each, say_if_units_were_mistaken, say_what_is_left_out, show_sentences
+from bezstab.cli.options import SECONDS, EngineValues, TypedPoint
+from bezstab.cli.output import for_reading, say, show_answers, show_text, worked_out
+
+if TYPE_CHECKING:
+    from bezstab.feedback.checking import CheckAnswer
+    from bezstab.feedback.choosing import ChooseAnswer
+    from bezstab.methods.schemes import Method
+
+
+@click.command()
+@shared.point
+@shared.engine_values
+@shared.as_typed
+@shared.methods
+@click.option("--h", type=SECONDS, help="Step in s, for --physical, --engine, --scene and --omega.")
+@shared.omega
+@shared.scene
+@shared.speed
+@shared.time
+@click.option("--instead", is_flag=True, help="Also print what `choose` gives, which an unsafe choice gets anyway.")
+@shared.every_column
+@shared.form
+def check(
+    methods: tuple[Method, ...],
+    alpha: Fraction | None,
+    beta: Fraction | None,
+    physical: bool,
+    h: Fraction | None,
+    engine: EngineValues | None,
+    as_typed: bool,
+    omega: Fraction | None,
+    scene: str | None,
+    speed: Fraction,
+    duration: Fraction | None,
+    instead: bool,
+    every_column: bool,
+    form: str,
+) -> bool:
+    """Tell whether a choice is safe: exit status 0 if so, 1 if not.
+
+    Safe means that errors are proven to shrink with every method named. With --scene the mechanism is also run: its
+    constraints must hold, and its energy may grow by a tenth of the largest kinetic energy.
+
+    With α and β in 1/s (--physical) but no --h: the step up to which every step is safe.
+
+    bezstab/feedback/README.md says what the answers mean. Steps that vary: `bezstab steps`. A joint's drive: `bezstab
+    drive`. Chains in engines that sweep: `bezstab chain`.
+
+    Example: bezstab check --method RK2 --h 0.002 --alpha 50 --beta 50 --physical
+    """
+
+    from bezstab.feedback.checking import Given, asked_to_check, checks, made_points, step_answer
+    from bezstab.feedback.columns import CHECKED, STEPS, spare_words
+    from bezstab.feedback.sentences import costs_words, energy_sentence, motion_words
+    from bezstab.questions.methods import methods_for
+    from bezstab.questions.motions import check_speed
+
+    typed = TypedPoint(alpha, beta, physical)
+    numbers = typed.numbers
+    if physical and numbers and h is None and not (engine or scene or omega):
+        check_speed(None, speed)
+        found = [step_answer(method, *numbers) for method in methods_for(methods, None)]
+        show_answers(STEPS, found, [answer.sentence for answer in found])
+        return all(found)
+    named, values = engine or (None, None)
+    given = Given(point=typed.at(h), values=values, as_typed=as_typed)
+    methods, given, asked = worked_out(
+        lambda: asked_to_check(
+            methods, given, h=h, engine=named, omega=omega, scene=scene, speed=speed, duration=duration
+        ),
+        scene,
+    )
+    say_each(asked.warnings)
+    answers = checks(methods, given, asked, instead=instead, instead_of_unsafe=True)
+    say_if_units_were_mistaken(methods, typed, h)
+    better = [each.instead for each in answers if each.instead is not None]
+    if for_reading():
+        _show_point(answers)
+        show_answers(CHECKED, answers, [answer.sentence for answer in answers])
+        if len(answers) > 1:  # a single one has said so
+            said = ((each, energy_sentence(each)) for each in answers)
+            show_sentences(f"{each.method.name}, {each.goal}: {sentence}" for each, sentence in said if sentence)
+        show_sentences(map(costs_words, answers))
+        if better:
+            show_text("\nWhat `choose` gives instead:\n")
+            show_answers(CHECKED, better, [answer.sentence for answer in better])
+            show_sentences(map(spare_words, better))
+        if every_column and not asked.motion.assumed:
+            show_sentences([motion_words(asked.motion)])
+    else:
+        both: list[CheckAnswer | ChooseAnswer] = [*answers, *better]
+        show_answers(CHECKED, both, [])
+    for answer in answers:
+        if answer.instead_reason:
+            say(f"bezstab: nothing instead: {answer.instead_reason}")
+    say_each(answer.cost_reason for answer in answers)
+    if named and for_reading():
+        for note in made_points(given, asked).notes or ():
+            say(f"{named.name}: {note} (--as-typed leaves that out)")
+        say_what_is_left_out(named, many=asked.swept is not None)
+    return all(answers)
+
+
+def _show_point(answers: Sequence[CheckAnswer]) -> None:
+    """Print which point was judged, above a table: the sentence of a single answer says it."""
+    from bezstab.words import point_words
+
+    if len(answers) > 1:
+        first = answers[0]
+        show_text(f"{point_words(first.alpha_hat, first.beta_hat, first.conditions.h)}\n")

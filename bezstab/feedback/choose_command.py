@@ -1,0 +1,111 @@
+"""The command that recommends α and β: choose."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+import click
+
+from bezstab.cli import shared_options as shared
+from bezstab.cli.asking import say_each, say_what_is_left_out, show_sentences
+from bezstab.cli.options import ENGINE, SECONDS, SHARE
+from bezstab.cli.output import for_reading, progress, show_answers, worked_out
+from bezstab.goals import GOALS, Goal
+
+if TYPE_CHECKING:
+    from bezstab.engines.conversions import Engine
+    from bezstab.methods.schemes import Method
+
+
+@click.command()
+@click.option(
+    "--goal", type=click.Choice(list(GOALS)), help="What the point is for [accurate; robust in most engines]."
+)
+@click.option("--settle", type=SECONDS, help="Errors are to fall to a thousandth in so many s: accurate and gentle.")
+@click.option("--spread", type=SHARE, default="0.1", help="The share by which α and β may be wrong.")
+@click.option("--keep", "equal", type=click.Choice(["alpha=beta"]), help="Only points with α = β.")
+@click.option("--engine", type=ENGINE, help="Only what this engine can express, with the line to paste.")
+@shared.methods
+@click.option("--h", type=SECONDS, help="Step in s. Not needed with --omega where α and β are multiples of ω.")
+@click.option("--h-max", type=SECONDS, help="Largest step in s that can occur; for accurate and robust [--h].")
+@shared.omega
+@shared.scene
+@shared.speed
+@shared.time
+@shared.every_column
+@shared.form
+def choose(
+    goal: Goal | None,
+    settle: Fraction | None,
+    spread: float,
+    equal: str | None,
+    engine: Engine | None,
+    methods: tuple[Method, ...],
+    h: Fraction | None,
+    h_max: Fraction | None,
+    omega: Fraction | None,
+    scene: str | None,
+    speed: Fraction,
+    duration: Fraction | None,
+    every_column: bool,
+    form: str,
+) -> bool:
+    """Recommend α and β for an integrator and its step size.
+
+    The answer is proven stable. With --scene it must also be safe as that mechanism moves: exit status 1 if it is not.
+
+    \b
+    accurate  the least error on the motion
+    robust    the fastest decay with smaller steps, and α, β off by --spread
+    fastest   the least |z_p|
+    critical  the fastest without oscillation
+    gentle    the mildest α = β that settles in time
+
+    Most Runge-Kutta methods need --omega or --scene for accurate: α and β are multiples of that rate. Others assume
+    ωh = 0.01 without it. bezstab/feedback/README.md explains the goals and the numbers.
+
+    Example: bezstab choose --method SYM --h 0.001 --omega 10
+    """
+
+    from bezstab.feedback.checking import step_answer_of
+    from bezstab.feedback.choosing import Wish, asked_to_choose, choices, usual_goal
+    from bezstab.feedback.columns import CHOSEN, STEPS, spare_words, trade_words
+    from bezstab.feedback.sentences import motion_words
+
+    wish = Wish(goal or usual_goal(engine, methods), settle, equal is not None)
+    methods, asked = worked_out(
+        lambda: asked_to_choose(
+            methods,
+            wish,
+            h=h,
+            h_max=h_max,
+            engine=engine,
+            omega=omega,
+            scene=scene,
+            speed=speed,
+            duration=duration,
+            spread=spread,
+        ),
+        scene,
+    )
+    if asked.h is None:
+        raise click.MissingParameter(param_hint="'--h'", param_type="option")
+    say_each(asked.warnings)
+    chosen = list(progress(choices(methods, wish, asked, trades=for_reading()), wish.goal, len(methods)))
+    if h is None:
+        at_any_step = [step_answer_of(answer) for answer in chosen]
+        show_answers(STEPS, at_any_step, [answer.sentence for answer in at_any_step])
+        return all(chosen)
+    show_answers(CHOSEN, chosen, [answer.sentence for answer in chosen])
+    if for_reading() and not asked.swept:
+        for answer in chosen:
+            name = f"{answer.method.name}: " if len(chosen) > 1 else ""
+            show_sentences(["\n".join(f"{name}{line}" for line in trade_words(answer))])
+    if every_column:
+        show_sentences([motion_words(asked.motion)])
+    show_sentences(map(spare_words, chosen))
+    say_each(answer.cost_reason for answer in chosen)
+    if engine and for_reading():
+        say_what_is_left_out(engine, many=asked.swept is not None)
+    return all(chosen)

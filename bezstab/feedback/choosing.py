@@ -1,0 +1,421 @@
+"""Which alpha and beta to take: the point that a goal asks for, judged, and what faster or slower decay would change.
+
+methods, Wish (a goal), Conditions   →   choices   →   ChooseAnswer, by method
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from fractions import Fraction
+
+from bezstab.arguments import Number, exact_number, exact_or_none, in_keywords, real_number
+from bezstab.engines.conversions import READ_BACK, Curve, Engine
+from bezstab.engines.engine_list import engine_named
+from bezstab.errors import InputError, NumericalError
+from bezstab.feedback.conditions import Conditions, at_step, conditions, for_choosing
+from bezstab.feedback.judgement import Judgement, Role, judge
+from bezstab.feedback.sentences import judgement_sentence
+from bezstab.goals import SETTLING, UP_TO_LONGEST, Goal
+from bezstab.mechanism.scene_files import scene as scene_named
+from bezstab.mechanism.scenes import Scene
+from bezstab.methods.registry import method as method_named
+from bezstab.methods.schemes import Method
+from bezstab.questions.methods import methods_for
+from bezstab.rationals import typed_number
+from bezstab.stability.choices import USUAL_SPREAD, Choice, describe_point
+from bezstab.stability.choices import choose as choose_point
+from bezstab.stability.closed_loop import Modulus
+from bezstab.stability.feedback_costs import FeedbackCost, feedback_cost, follows_motion
+from bezstab.stability.forced_errors import OMEGA_H
+from bezstab.stability.turning import LAW_HOLDS, moving_modulus
+from bezstab.units import from_dimensionless
+
+SHORTER = (2, 4)
+"""A step may be so many times as short for a choice that is not safe: a mechanism then turns less in a step."""
+
+SLOWER = 2
+"""Slower decay takes this many times as long to settle."""
+
+
+@dataclass(frozen=True)
+class Wish:
+    """What a choice is for: a goal, the time (s) in which errors are to settle, and whether alpha = beta."""
+
+    goal: Goal
+    settle: Fraction | None = None
+    equal: bool = False
+
+
+@dataclass(frozen=True)
+class Alternative:
+    """Another choice: the goal and the time to settle (s) that give it, its |z_p|, and its errors.
+
+    These are the errors of constraint and velocity over those of the choice that it is an alternative to.
+    """
+
+    goal: Goal
+    settle: Fraction | None
+    z_abs: float
+    times_the_errors: tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Trades:
+    """What a choice that decays faster costs, and what one that decays slower gains; None where there is none."""
+
+    faster: Alternative | None
+    slower: Alternative | None
+
+
+@dataclass(frozen=True)
+class Spare:
+    """From how many `sweeps` a choice is stable in an engine that sweeps, even if it were stronger by the spread.
+
+    alone: what the same goal would set for one constraint alone, and from how many sweeps that is stable here, None if
+    from none that is tried. None where it is the same.
+    """
+
+    sweeps: int
+    alone: tuple[str, int | None] | None
+
+
+@dataclass(frozen=True, kw_only=True, repr=False)
+class ChooseAnswer(Judgement):
+    """The point that a goal asks for, judged.
+
+    safe_with: the option with which a choice is safe that is not. trades: None unless asked for, and where errors are
+    not known. spare: None where nothing is swept over. sentence: the answer in words.
+    """
+
+    safe_with: str | None
+    trades: Trades | None
+    spare: Spare | None
+    sentence: str
+
+    def __repr__(self) -> str:
+        return f"{self.sentence} [{self.method.name}, {self.goal}, |z_p| = {abs(self.pole):.6g}]"
+
+
+def usual_goal(engine: Engine | None, methods: tuple[Method, ...] = ()) -> Goal:
+    """Return the goal for a question that names none: robust in an engine, else accurate.
+
+    In an engine bodies collide, and the feedback that forces least lets what a collision leaves die slowly; but where
+    that feedback follows the motion, strong feedback forces far too much. On an engine's curve alpha and beta depend on
+    each other, so that no gentle feedback can be found there. InputError as `methods_for`.
+    """
+    if engine and engine.curve:
+        return "robust"
+    return "robust" if engine and not all(map(follows_motion, methods_for(methods, engine))) else "accurate"
+
+
+@in_keywords()
+def choose(
+    method: str | Method | None = None,
+    *,
+    goal: Goal | None = None,
+    h: Number | None = None,
+    h_max: Number | None = None,
+    omega: Number | None = None,
+    omega_h: Number | None = None,
+    settle: Number | None = None,
+    spread: float = USUAL_SPREAD,
+    equal: bool = False,
+    engine: str | None = None,
+    scene: str | Scene | None = None,
+    speed: Number = 1,
+    duration: Number | None = None,
+    margins: bool = True,
+    cost: bool = True,
+    trades: bool = False,
+) -> ChooseAnswer:
+    """Return the alpha and beta to use: the point that a goal asks for, proven stable, with its margins.
+
+    Parameters
+    ----------
+    method: your integration method; without one, the engine's own.
+    goal: what the point is for.
+        "accurate", the usual one: the least error that the feedback makes on a motion, among the points that settle
+        within `settle` (s), or else while the motion turns by 14 rad. The motion turns by `omega` (1/s), or by
+        `omega_h` rad a step. Where alpha and beta are multiples of omega, whatever the step, as with most Runge-Kutta
+        methods, one of them or a scene is needed; `omega` alone will do. With others omega_h is 0.01 unless given.
+        "robust": the fastest decay in the worst case: alpha and beta off by the share `spread`, and smaller steps. The
+        usual goal with an engine whose alpha and beta depend on each other.
+        "fastest": the least |z_p|.
+        "critical": the fastest with alpha = beta whose dominant pole is double, real and positive.
+        "gentle": the mildest alpha = beta whose error falls a thousandfold within `settle` (s).
+    h, h_max: the step and the largest step in s. With both, accurate and robust allow for steps up to h_max; the answer
+        is for use at h, and omega_h is that of h_max.
+    spread: the share by which alpha and beta may be off.
+    equal: only points with alpha = beta.
+    engine: a name, such as "mujoco": only what that engine can express is searched; `setting` is the line to paste.
+    scene, speed, duration: a mechanism that moves so many times as fast as given there, and how long (s) it is run.
+    margins, cost, trades: what else is wanted: how far h, alpha and beta may grow; the errors on the motion; what
+        faster and slower decay would change.
+
+    Returns
+    -------
+    ChooseAnswer: `alpha_hat` and `beta_hat` dimensionless, `alpha` and `beta` in 1/s, `pole`, `margins`, `safe`, and
+    all else that a Judgement has.
+
+    Raises
+    ------
+    InputError: nothing stable meets the goal, the engine cannot express it, or an argument is out of range.
+    NumericalError: the point that is found is not stable.
+
+    References
+    ----------
+    The poles of paper Eq. 17; the goals are this package's.
+    """
+    named = None if engine is None else engine_named(engine)
+    given = () if method is None else (method_named(method),)
+    wish = Wish(goal or usual_goal(named, given), exact_or_none(settle, "settle"), equal)
+    methods, asked = asked_to_choose(
+        given,
+        wish,
+        h=exact_or_none(h, "h"),
+        h_max=exact_or_none(h_max, "h_max"),
+        engine=named,
+        omega=exact_or_none(omega, "omega"),
+        omega_h=exact_or_none(omega_h, "omega_h"),
+        scene=None if scene is None else scene_named(scene),
+        speed=exact_number(speed, "speed"),
+        duration=exact_or_none(duration, "duration"),
+        spread=real_number(spread, "spread"),
+    )
+    return choose_answer(methods[0], wish, asked, margins=margins, cost=cost, trades=trades)
+
+
+def asked_to_choose(
+    methods: tuple[Method, ...],
+    wish: Wish,
+    *,
+    h: Fraction | None = None,
+    h_max: Fraction | None = None,
+    engine: Engine | None = None,
+    omega: Fraction | None = None,
+    omega_h: Fraction | None = None,
+    scene: str | Scene | None = None,
+    speed: Fraction = Fraction(1),
+    duration: Fraction | None = None,
+    spread: float = USUAL_SPREAD,
+) -> tuple[tuple[Method, ...], Conditions]:
+    """Return the methods and the conditions of a choice; InputError for what does not go together.
+
+    Without a step, it is what makes OMEGA_H of the rate omega, where every method follows the motion.
+    """
+    _check_wish(wish, h, h_max, engine)
+    if h is None and omega and methods and all(map(follows_motion, methods)):
+        h = OMEGA_H / omega
+    methods = methods_for(methods, engine)
+    asked = conditions(
+        h=h,
+        h_max=h_max,
+        engine=engine,
+        omega=omega,
+        omega_h=omega_h,
+        scene=scene,
+        speed=speed,
+        duration=duration,
+        spread=spread,
+    )
+    if wish.goal == "accurate" and wish.settle is None:
+        for method in methods:
+            check_motion(method, asked, equal=wish.equal)
+    return methods, for_choosing(asked)
+
+
+def _check_wish(wish: Wish, h: Fraction | None, h_max: Fraction | None, engine: Engine | None) -> None:
+    """Raise InputError for arguments that do not go with the goal."""
+    goal, settle = wish.goal, wish.settle
+    if settle is None:
+        if goal == "gentle":
+            raise InputError("--goal gentle needs --settle: the time in s in which c falls a thousandfold")
+    elif goal not in SETTLING:
+        raise InputError(f"--settle works only with --goal gentle or accurate, not {goal}")
+    elif settle <= 0:
+        raise InputError(f"--settle {float(settle):g} s: expected a positive time")
+    if h is None:
+        if any(each is not None for each in (h_max, settle, engine)):
+            raise InputError("--h-max, --settle and --engine need --h: the step in s")
+        return
+    if h_max is not None and (goal not in UP_TO_LONGEST or h_max < h):
+        raise InputError(f"--h-max {float(h_max):g}: only for --goal accurate or robust, and at least --h {float(h):g}")
+    if engine and engine.level != "acceleration" and h_max:
+        raise InputError(
+            f"choose cannot combine {engine.name} with --h-max; run `bezstab check --engine {engine.name}=... --h STEP`"
+        )
+
+
+def check_motion(method: Method, asked: Conditions, *, equal: bool = False) -> None:
+    """Raise InputError if the most accurate feedback of a method follows a motion whose rate is not known."""
+    if not asked.motion.assumed or not follows_motion(method):
+        return
+    chosen = choose_point(method, "accurate", spread=asked.spread, equal=equal, margins=False)
+    alpha, beta = from_dimensionless(chosen.alpha_hat, chosen.beta_hat, float(OMEGA_H))
+    raise InputError(
+        f"{method.name}: α = {alpha:.2g} ω, β = {beta:.2g} ω, ω the rate of your motion in rad/s: give --omega "
+        "or --scene; --goal robust needs neither"
+    )
+
+
+def choices(
+    methods: tuple[Method, ...], wish: Wish, asked: Conditions, *, trades: bool = False
+) -> Iterator[ChooseAnswer]:
+    """Yield the answer for each method; errors as `choose_answer`."""
+    for method in methods:
+        yield choose_answer(method, wish, asked, trades=trades)
+
+
+def choose_answer(
+    method: Method,
+    wish: Wish,
+    asked: Conditions,
+    role: Role = "chosen",
+    *,
+    margins: bool = True,
+    cost: bool = True,
+    trades: bool = False,
+) -> ChooseAnswer:
+    """Return the point that a goal asks for, judged; errors as `choose`."""
+    chosen = _chosen(method, wish, asked, margins=margins)
+    if role == "chosen":
+        _check_expressed(asked, chosen)
+    judged = judge(asked, chosen, role, margins=margins, cost=cost)
+    safe_with = _safe_with(judged, wish) if role == "chosen" and not judged.safe else None
+    return ChooseAnswer(
+        **vars(judged),
+        safe_with=safe_with,
+        trades=_trades(judged, wish) if trades and judged.cost and judged.cost.total_error is not None else None,
+        spare=_spare(judged, wish),
+        sentence=judgement_sentence(judged, safe_with),
+    )
+
+
+def _check_expressed(asked: Conditions, chosen: Choice) -> None:
+    """Raise InputError if the engine has no values for a point: it says what to ask instead."""
+    if asked.engine is None or asked.h is None:
+        return
+    try:
+        asked.engine.setting(chosen.point, asked.h)
+    except InputError as error:
+        words = f"{asked.engine.name}={asked.engine.words()}"
+        raise InputError(f"{error}: ask `check --engine {words}` about values of yours") from None
+
+
+def _chosen(method: Method, wish: Wish, asked: Conditions, *, margins: bool) -> Choice:
+    """Return the choice of a goal; if an engine sweeps over constraints, at most the strongest that they allow."""
+    found = _chosen_alone(method, wish, asked, margins=margins)
+    swept = asked.swept
+    if swept is None or not (swept.engine.parameters and _curve(wish, asked)):
+        return found
+    strongest = swept.strongest(asked.spread)
+    if strongest is None:
+        raise InputError(f"{swept.engine.name}: no feedback is stable in {swept.constraints.words}")
+    if found.beta_hat <= strongest[1] * (1 + READ_BACK):  # as is all of the curve but its end, which is not tried
+        return found
+    return describe_point(method, wish.goal, *strongest, asked.spread, margins)
+
+
+def _chosen_alone(method: Method, wish: Wish, asked: Conditions, *, margins: bool) -> Choice:
+    """Return the choice of a goal for one constraint; if its goal is one of UP_TO_LONGEST, for all steps to h_max."""
+    modulus: Modulus | None = None
+    if asked.turning and asked.h:
+        turned = asked.turning.kappa * float(asked.h_max or asked.h)
+        modulus = moving_modulus(method, turned) if turned <= LAW_HOLDS else None
+    return choose_point(
+        method,
+        wish.goal,
+        h=asked.h,
+        h_max=asked.h_max if wish.goal in UP_TO_LONGEST else None,
+        settle=wish.settle,
+        spread=asked.spread,
+        equal=wish.equal,
+        modulus=modulus,
+        along=_curve(wish, asked),
+        omega_h=asked.motion.omega_h_max,
+        margins=margins,
+    )
+
+
+def _curve(wish: Wish, asked: Conditions) -> Curve | None:
+    """Return the curve of points that the engine can express; None if the goal does not search along it."""
+    return asked.engine.curve if asked.engine and wish.goal != "critical" and not wish.equal else None
+
+
+def _safe_with(judged: Judgement, wish: Wish) -> str | None:
+    """Return the option with which a choice is safe that is not: --goal robust, else a shorter step; None if neither.
+
+    None, too, past a singular configuration: no run decides there.
+    """
+    asked = judged.conditions
+    if judged.run and not judged.run.decides:
+        return None
+    if judged.goal != "robust" and _is_safe(judged.method, replace(wish, goal="robust", settle=None), asked):
+        return "--goal robust"
+    if asked.scene is None or asked.h is None or asked.h_max or asked.engine:
+        return None
+    for share in SHORTER:
+        if _is_safe(judged.method, wish, at_step(asked, asked.h / share)):
+            return f"--h {typed_number(asked.h / share)}"
+    return None
+
+
+def _is_safe(method: Method, wish: Wish, asked: Conditions) -> bool:
+    """Return whether another choice is safe; it is not if it cannot be found."""
+    try:
+        return judge(asked, _chosen(method, wish, asked, margins=False), "chosen", margins=False, cost=False).safe
+    except (InputError, NumericalError):
+        return False
+
+
+def _trades(judged: Judgement, wish: Wish) -> Trades:
+    """Return what a choice that decays faster would cost, and one that decays slower gain."""
+    z_abs, faster = abs(judged.pole), None
+    for goal in ("robust", "fastest"):
+        other = _alternative(judged, Wish(goal, None, wish.equal))
+        if other and other.z_abs < z_abs:
+            faster = other
+            break
+    settle = _slower_settle(judged)
+    slower = None if settle is None else _alternative(judged, Wish("accurate", settle, wish.equal))
+    return Trades(faster, slower)
+
+
+def _slower_settle(judged: Judgement) -> Fraction | None:
+    """Return SLOWER times the time (s, to two digits) in which a choice settles at worst; None if it does not."""
+    steps, h = judged.settle_steps_at_worst, judged.conditions.h
+    if steps is None or h is None:
+        return None
+    return Fraction(f"{float(SLOWER * steps * h * judged.method.step_multiple):.2g}")
+
+
+def _alternative(judged: Judgement, wish: Wish) -> Alternative | None:
+    """Return another choice; None if there is none, or it or its errors cannot be found: no answer needs it."""
+    asked, here = judged.conditions, judged.cost
+    try:
+        other = _chosen(judged.method, wish, asked, margins=False)
+        there = feedback_cost(judged.method, *other.point, asked.motion.omega_h, least=False)
+    except (InputError, NumericalError):
+        return None
+    times = None if here is None else _times(here, there)
+    return None if times is None else Alternative(wish.goal, wish.settle, abs(other.pole), times)
+
+
+def _times(here: FeedbackCost, there: FeedbackCost) -> tuple[float, float] | None:
+    """Return the errors of constraint and velocity there over those here; None if not known."""
+    if here.total_error and here.velocity_error and there.total_error and there.velocity_error:
+        return there.total_error / here.total_error, there.velocity_error / here.velocity_error
+    return None
+
+
+def _spare(judged: Judgement, wish: Wish) -> Spare | None:
+    """Return what a choice leaves to spare in an engine that sweeps; None if nothing, or there is nothing to set."""
+    asked, swept = judged.conditions, judged.conditions.swept
+    if swept is None or asked.h is None or not (swept.engine.curve and swept.engine.parameters):
+        return None
+    enough = swept.sweeps_to_spare(judged.point, asked.spread)
+    if enough is None or enough > swept.iterations:
+        return None
+    alone = _chosen_alone(judged.method, wish, asked, margins=False).point
+    if alone == judged.point:
+        return Spare(enough, None)
+    return Spare(enough, (swept.engine.setting(alone, asked.h), swept.sweeps_to_spare(alone, asked.spread)))

@@ -1,0 +1,408 @@
+"""What is printed of a judged point: its columns; and the sentences below it."""
+
+import cmath
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+
+from bezstab.feedback.checking import CheckAnswer, StepAnswer
+from bezstab.feedback.choosing import Alternative, ChooseAnswer
+from bezstab.feedback.judgement import Judgement
+from bezstab.feedback.poles import PoleAnswer
+from bezstab.feedback.sentences import errors_words
+from bezstab.methods.schemes import implicit
+from bezstab.methods.steady_errors import velocity_lag
+from bezstab.questions.chains import SweptAnswer
+from bezstab.questions.scene_runs import SceneRun
+from bezstab.rationals import rounded_down, typed_number
+from bezstab.show.cells import modulus_words
+from bezstab.show.columns import POLE, Column, of_part
+from bezstab.stability.feedback_costs import FeedbackCost
+from bezstab.stability.margins import Margins
+from bezstab.stability.turning import MovingPole
+from bezstab.words import counted, times_words
+
+GAIN = 0.95
+"""Of an error: what is not below is called no gain."""
+
+UNLIMITED, ANY = "unlimited", "any"
+
+
+def _up_to(form: str, without: str) -> Callable[[float], str]:
+    """Return the form of a number that is infinite where there is no limit."""
+    return lambda number: without if math.isinf(number) else format(number, form)
+
+
+def _angle(z: complex) -> float:
+    return math.degrees(cmath.phase(z))
+
+
+POINT: Sequence[Column[Judgement]] = (
+    Column("", "role", lambda answer: answer.role, "whether the point is given, chosen, or to be taken instead"),
+    Column("method", "method", lambda answer: answer.method.name, "integration method", apart=True),
+    Column("goal", "goal", lambda answer: answer.goal, "what the point is chosen for, or that it is given", apart=True),
+    Column("α̂", "alpha_hat", lambda answer: answer.alpha_hat, "damping of the feedback, 2αh"),
+    Column("β̂", "beta_hat", lambda answer: answer.beta_hat, "stiffness of the feedback, β²h²"),
+    Column("α (1/s)", "alpha", lambda answer: answer.alpha, "damping of the feedback", "1/s", brief=True),
+    Column("β (1/s)", "beta", lambda answer: answer.beta, "its stiffness as a rate; null if β̂ < 0", "1/s", brief=True),
+    Column("h (s)", "h", lambda answer: answer.conditions.seconds, "step", "s"),
+)
+
+DECAY: Sequence[Column[Judgement]] = (
+    Column("verdict", "verdict", lambda answer: answer.verdict, "what errors do at rest, proven on the typed numbers"),
+    Column(
+        "safe",
+        "safe",
+        lambda answer: answer.safe,
+        "whether every error shrinks, proven; with a scene, whether its run goes well, too",
+        apart=True,
+    ),
+    Column("|z_p|", "z_abs", lambda answer: abs(answer.pole), "a step multiplies errors by it", form=modulus_words),
+    Column(
+        "∠z (deg)", "z_angle_deg", lambda answer: _angle(answer.pole), "in a step errors turn by it", "degrees", ".3f"
+    ),
+    Column("worst |z_p|", "worst", lambda answer: answer.worst, "the same with α and β off by the spread", form=".4f"),
+    Column(
+        "steps to 1/1000", "settle_steps", lambda answer: answer.settle_steps, "steps until an error is a thousandth"
+    ),
+    Column("a tenth in (s)", "tenth_seconds", lambda answer: answer.tenth_seconds, "time to a tenth", "s", ".3g"),
+    Column(
+        "settles in (s)",
+        "settle_seconds",
+        lambda answer: answer.settle_seconds,
+        "time until an error is a thousandth; null where it does not fall",
+        "s",
+        ".3g",
+        brief=True,
+    ),
+)
+
+ENDS: Sequence[Column[Judgement]] = (
+    Column(
+        "largest stable h (s)",
+        "h_limit",
+        lambda answer: answer.h_limit,
+        "largest stable step, of an engine's values as they are; null where there is none, or any is",
+        "s",
+        _up_to(".4g", UNLIMITED),
+        brief=True,
+    ),
+    Column("", "margins_reason", lambda answer: answer.margins_reason, "why these factors are not known"),
+)
+
+MARGINS: Sequence[Column[Margins]] = (
+    Column(
+        "stable for h times",
+        "h_factor",
+        lambda margins: margins.h,
+        "factor on h up to which α and β are stable; null where any is",
+        form=_up_to(".4g", ANY),
+    ),
+    Column(
+        "min α factor",
+        "alpha_factor_min",
+        lambda margins: margins.alpha[0],
+        "factor on α alone from which it is stable",
+        form=".3g",
+    ),
+    Column(
+        "max α factor",
+        "alpha_factor_max",
+        lambda margins: margins.alpha[1],
+        "factor on α alone up to which it is stable; null where any is",
+        form=_up_to(".3g", ANY),
+        brief=True,
+    ),
+    Column(
+        "min β factor",
+        "beta_factor_min",
+        lambda margins: margins.beta[0],
+        "factor on β alone from which it is stable",
+        form=".3g",
+    ),
+    Column(
+        "max β factor",
+        "beta_factor_max",
+        lambda margins: margins.beta[1],
+        "factor on β alone up to which it is stable; null where any is",
+        form=_up_to(".3g", ANY),
+        brief=True,
+    ),
+)
+
+MOTION: Sequence[Column[Judgement]] = (
+    Column(
+        "ωh (rad)",
+        "omega_h",
+        lambda answer: float(answer.conditions.motion.omega_h),
+        "angle by which the motion turns in a step on which errors are told",
+        "rad",
+    ),
+    Column(
+        "energy gained a second",
+        "energy_rate",
+        lambda answer: None if answer.energy_rate is None else answer.energy_rate[0],
+        "share of its energy that a motion of rate ω gains in a second; in an engine a body that spins about a pin",
+        "1/s",
+        ".2e",
+    ),
+)
+
+COST: Sequence[Column[FeedbackCost]] = (
+    Column(
+        "error",
+        "total_error",
+        lambda cost: cost.total_error,
+        "constraint error in a run, as a share of the motion's amplitude",
+        form=".2e",
+    ),
+    Column(
+        "error of velocity",
+        "velocity_error",
+        lambda cost: cost.velocity_error,
+        "the same of its velocity, as a share of that one's amplitude",
+        form=".2e",
+    ),
+    Column(
+        "order left",
+        "order_left",
+        lambda cost: cost.order_left,
+        "order in h that errors keep where α̂ and β̂ are held",
+    ),
+    Column(
+        "error / least",
+        "times_least",
+        lambda cost: cost.times_least,
+        "constraint error over that of the goal accurate; null where the motion's rate is not given",
+        form=times_words,
+        brief=True,
+    ),
+    Column(
+        "velocity error / least",
+        "times_least_velocity",
+        lambda cost: cost.times_least_velocity,
+        "the same of the velocity",
+        form=times_words,
+    ),
+)
+
+MOVING: Sequence[Column[MovingPole]] = (
+    Column(
+        "κ (1/s)",
+        "kappa",
+        lambda moving: moving.kappa,
+        "how fast the directions of the scene's constraints turn, at most",
+        "1/s",
+        ".4g",
+    ),
+    Column(
+        "|z| at most",
+        "z_abs_at_most",
+        lambda moving: moving.at_most,
+        "what a step multiplies an error by over the motion, at most; null without a bound",
+        form=_up_to(".6f", "no bound"),
+    ),
+    Column("moving verdict", "moving_verdict", lambda moving: moving.verdict, "what they do"),
+    Column(
+        "safe to speed",
+        "safe_speed",
+        lambda moving: moving.safe_speed,
+        "factor on the scene's speed up to which errors shrink; null where nothing turns",
+        form=_up_to(".3g", ANY),
+    ),
+)
+
+RUN: Sequence[Column[SceneRun]] = (
+    Column("run (s)", "run_seconds", lambda run: run.duration, "how long it was run", "s"),
+    Column("|c| in the run", "run_c_max", lambda run: run.c_max, "largest |c|", "m or rad", ".1e"),
+    Column(
+        "energy gained",
+        "run_gained",
+        lambda run: run.gained,
+        "energy that no driver or force gave, as a share of the largest kinetic energy",
+        form=".2e",
+    ),
+    Column(
+        "breaks down (s)",
+        "run_breakdown",
+        lambda run: run.breakdown,
+        "when the run breaks down if its energy goes on growing",
+        "s",
+        ".3g",
+    ),
+    Column("", "run_failure", lambda run: run.failure, "why the run ended early"),
+)
+
+SWEPT: Sequence[Column[SweptAnswer]] = (
+    Column("sweeps", "swept_iterations", lambda swept: swept.iterations, "sweeps in a step"),
+    Column(
+        "|z| swept",
+        "swept_z_abs",
+        lambda swept: swept.growth.factor,
+        "a step multiplies the errors of these constraints by it",
+        form=".4f",
+    ),
+    Column(
+        "stable from sweeps",
+        "stable_iterations",
+        lambda swept: swept.stable_iterations,
+        "from how many sweeps they are stable; null where none that was tried is",
+        brief=True,
+    ),
+)
+
+
+def _margins(answer: Judgement) -> Margins | None:
+    return answer.margins
+
+
+def _cost(answer: Judgement) -> FeedbackCost | None:
+    return answer.cost
+
+
+def _moving(answer: Judgement) -> MovingPole | None:
+    return answer.moving
+
+
+def _run(answer: Judgement) -> SceneRun | None:
+    return answer.run
+
+
+def _swept(answer: Judgement) -> SweptAnswer | None:
+    return answer.swept
+
+
+JUDGED: Sequence[Column[Judgement]] = (
+    *POINT,
+    *DECAY,
+    *ENDS,
+    Column(
+        "searched",
+        "searched",
+        lambda answer: answer.searched,
+        "largest αh and βh that were searched; null where all were",
+        form="αh, βh to {:g}".format,
+    ),
+    *of_part(_margins, MARGINS),
+    *MOTION,
+    *of_part(_cost, COST),
+    *of_part(_moving, MOVING),
+    *of_part(_run, RUN),
+    Column(
+        "holds for",
+        "swept",
+        lambda answer: answer.swept_over,
+        "for which constraints `safe` holds in an engine that sweeps",
+        brief=True,
+    ),
+    *of_part(_swept, SWEPT),
+    Column("to paste", "setting", lambda answer: answer.setting, "what to write in the engine's words", brief=True),
+)
+
+
+CHECKED: Sequence[Column[CheckAnswer | ChooseAnswer]] = (
+    *JUDGED,
+    Column("", "applied", lambda answer: answer.applied, "what the engine does to its values before it uses them"),
+    Column("", "sentence", lambda answer: answer.sentence, "the answer in words"),
+)
+
+CHOSEN: Sequence[Column[ChooseAnswer]] = (
+    *JUDGED,
+    Column("", "safe_with", lambda answer: answer.safe_with, "the option with which an unsafe choice is safe"),
+    Column("", "sentence", lambda answer: answer.sentence, "the answer in words"),
+)
+
+
+def _judged(answer: PoleAnswer) -> Judgement:
+    return answer.judged
+
+
+def _z(answer: PoleAnswer) -> complex:
+    return answer.z
+
+
+WITH_A_POLE = {
+    *("method", "alpha_hat", "beta_hat", "verdict", "safe"),
+    *("omega_h", "total_error", "velocity_error", "order_left", "times_least", "times_least_velocity"),
+    *("kappa", "z_abs_at_most", "moving_verdict", "safe_speed", "swept"),
+}
+"""Keys of a judged point that are printed with its poles, ..."""
+
+SHOWN_WITH_A_POLE = {"verdict", "z_abs_at_most", "moving_verdict"}
+"""... and those that are printed without --all."""
+
+POLES: Sequence[Column[PoleAnswer]] = (
+    *of_part(
+        _judged,
+        [replace(each, brief=each.key in SHOWN_WITH_A_POLE) for each in JUDGED if each.key in WITH_A_POLE],
+    ),
+    *of_part(_z, [replace(each, brief=True) for each in POLE]),
+    Column("", "sentence", lambda answer: answer.sentence, "the answer in words"),
+)
+
+STEPS: Sequence[Column[StepAnswer]] = (
+    Column("method", "method", lambda answer: answer.method.name, "integration method", apart=True),
+    Column("α (1/s)", "alpha", lambda answer: answer.alpha, "damping of the feedback", "1/s", brief=True),
+    Column("β (1/s)", "beta", lambda answer: answer.beta, "its stiffness as a rate", "1/s", brief=True),
+    Column("safe", "safe", lambda answer: answer.safe, "whether small steps are stable", apart=True),
+    Column(
+        "largest stable h (s)",
+        "h_limit",
+        lambda answer: answer.h_limit,
+        "step up to which every step is stable, 0 where small ones are not; null where any is",
+        "s",
+        lambda limit: UNLIMITED if math.isinf(limit) else rounded_down(limit, 4) if limit else "none",
+        brief=True,
+    ),
+    Column("", "sentence", lambda answer: answer.sentence, "the answer in words"),
+)
+
+
+def trade_words(answer: ChooseAnswer) -> Iterator[str]:
+    """Yield how long a disturbance of a choice lasts, and what faster or slower decay would change, where known."""
+    if answer.trades is None:
+        return
+    if answer.goal == "accurate":
+        yield (
+            "Errors of the start and of disturbances decay as slowly. If a run is short or often disturbed, give a "
+            "shorter --settle."
+        )
+        if velocity_lag(answer.method) < 0 and not implicit(answer.method):
+            yield (
+                "Start with velocities half a step back, v − ½hq̈ (simulate --start steady): begun on the motion the "
+                "method moves as if they were half a step ahead."
+            )
+    faster, slower = answer.trades.faster, answer.trades.slower
+    if faster is None:
+        yield "No other goal decays faster."
+    else:
+        moduli = f"|z_p| {faster.z_abs:.4f} instead of {abs(answer.pole):.4f}"
+        yield f"Faster decay: --goal {faster.goal} gives {moduli}, {errors_words(faster.times_the_errors)}."
+    if slower is not None:
+        yield _slower_words(answer, slower)
+
+
+def _slower_words(answer: ChooseAnswer, slower: Alternative) -> str:
+    assert slower.settle
+    if min(slower.times_the_errors) >= GAIN:
+        return "Slower decay would not be more accurate."
+    goal = "" if answer.goal == "accurate" else "--goal accurate "
+    gives = errors_words(slower.times_the_errors)
+    return f"Slower decay: {goal}--settle {typed_number(slower.settle)} gives {gives}."
+
+
+def spare_words(answer: ChooseAnswer) -> str | None:
+    """Return what a choice leaves to spare in an engine that sweeps, and what one constraint alone would get.
+
+    The latter where it is another; None where no spare is known, as without sweeps.
+    """
+    spare, swept = answer.spare, answer.swept
+    if spare is None or swept is None:
+        return None
+    spread, sweeps = 100 * answer.conditions.spread, counted(swept.iterations, "sweep")
+    words = f"This leaves {spread:g} % to spare at {sweeps} over {swept.constraints.words}."
+    if spare.alone is None:
+        return words
+    setting, needed = spare.alone
+    takes = "more sweeps than were tried" if needed is None else counted(needed, "sweep")
+    return f"{words} A single constraint would get {setting}; here that needs {takes} for the same margin."

@@ -1,0 +1,137 @@
+"""Your simulation, as far as an answer depends on it: its step, its engine, how it moves, how exact its feedback is.
+
+h, engine, scene, omega, ...   →   conditions()   →   Conditions
+"""
+
+from dataclasses import dataclass, replace
+from fractions import Fraction
+
+from bezstab.engines.conversions import Engine
+from bezstab.errors import InputError
+from bezstab.mechanism.constraint_normals import TurningNormals
+from bezstab.mechanism.equations import Mechanism, compiled_mechanism
+from bezstab.mechanism.scenes import Scene
+from bezstab.questions.chains import USUAL_CHAIN, SweptConstraints, constraints_of, constraints_of_chain
+from bezstab.questions.motions import (
+    ReferenceMotion,
+    check_speed,
+    motion_of,
+    scene_at_speed,
+    turn_too_far,
+    turning_of,
+)
+from bezstab.stability.choices import USUAL_SPREAD
+from bezstab.units import check_step
+
+
+@dataclass(frozen=True, kw_only=True)
+class Conditions:
+    """What answers depend on beside the feedback; made by `conditions`.
+
+    h: the step; h_max: the longest that may occur (s). omega: the rate of the motion (1/s), if it was given. motion:
+    the motion on which errors are told. scene, speed: the mechanism as it was given; mechanism: the same, that runs;
+    turning: how the normals of its constraints turn. duration: how long (s) it is to run, None for as long as is usual.
+    swept: the constraints over which the engine sweeps; None for one alone, and if it is not known how it sweeps.
+    spread: the share by which alpha and beta may be off. warnings: what is to be known before any answer.
+    """
+
+    h: Fraction | None
+    h_max: Fraction | None
+    engine: Engine | None
+    omega: Fraction | None
+    motion: ReferenceMotion
+    scene: str | Scene | None
+    speed: Fraction
+    mechanism: Mechanism | None
+    turning: TurningNormals | None
+    duration: float | None
+    swept: SweptConstraints | None
+    spread: float
+    warnings: tuple[str, ...]
+
+    @property
+    def seconds(self) -> float | None:
+        """The step in float64."""
+        return None if self.h is None else float(self.h)
+
+
+def conditions(
+    *,
+    h: Fraction | None = None,
+    h_max: Fraction | None = None,
+    engine: Engine | None = None,
+    omega: Fraction | None = None,
+    omega_h: Fraction | None = None,
+    scene: str | Scene | None = None,
+    speed: Fraction = Fraction(1),
+    duration: Fraction | None = None,
+    spread: float = USUAL_SPREAD,
+) -> Conditions:
+    """Return the conditions of a question, the scene loaded and its motion followed.
+
+    h, h_max and duration in s, omega in 1/s, omega_h in rad a step. InputError for what does not go together, for
+    numbers out of range, and as `motion_of` and `turning_of`.
+    """
+    for name, step in (("h", h), ("h_max", h_max)):
+        if step is not None:
+            check_step(step, name)
+    check_speed(scene, speed)
+    _check_duration(duration, scene, h)
+    swept = _swept(engine, h, scene, speed)
+    turning = turning_of(scene, speed, h)
+    try:
+        motion = motion_of(omega, scene, speed, h, h_max, omega_h=omega_h)
+    except InputError:
+        at_rest = swept is not None and turning is not None and turning.kappa == 0
+        if omega is not None or not at_rest:
+            raise
+        motion = motion_of(None, None, Fraction(1), h, h_max)  # the sweeps are what is asked about
+    return Conditions(
+        h=h,
+        h_max=h_max,
+        engine=engine,
+        omega=omega,
+        motion=motion,
+        scene=scene,
+        speed=speed,
+        mechanism=None if scene is None else compiled_mechanism(scene_at_speed(scene, speed)),
+        turning=turning,
+        duration=None if duration is None else float(duration),
+        swept=swept,
+        spread=spread,
+        warnings=tuple(turn_too_far({speed: turning}, scene, h)),
+    )
+
+
+def for_choosing(asked: Conditions) -> Conditions:
+    """Return the same with USUAL_CHAIN to sweep over, where the engine sweeps and nobody says over what."""
+    engine, h = asked.engine, asked.h
+    if engine is None or engine.sweeping is None or h is None or asked.scene is not None:
+        return asked
+    chain = SweptConstraints(engine, h, constraints_of_chain(USUAL_CHAIN), engine.sweeping.iterations)
+    return replace(asked, swept=chain)
+
+
+def at_step(asked: Conditions, h: Fraction) -> Conditions:
+    """Return the same with another step (s)."""
+    return replace(asked, h=h, motion=motion_of(asked.omega, asked.scene, asked.speed, h))
+
+
+def _swept(
+    engine: Engine | None, h: Fraction | None, scene: str | Scene | None, speed: Fraction
+) -> SweptConstraints | None:
+    """Return the constraints of a scene over which an engine sweeps; None where there is only one."""
+    if engine is None or engine.sweeping is None or h is None or scene is None:
+        return None
+    found = constraints_of(scene, speed)
+    return SweptConstraints(engine, h, found, engine.sweeping.iterations) if found.count > 1 else None
+
+
+def _check_duration(duration: Fraction | None, scene: str | Scene | None, h: Fraction | None) -> None:
+    """Raise InputError for a time without a scene to run, or less than a step."""
+    if duration is None:
+        return
+    if scene is None:
+        raise InputError("--time needs --scene: it is how long that is run")
+    if h and duration < h:
+        raise InputError(f"--time {float(duration):g} s: expected at least one step of {float(h):g} s")

@@ -1,0 +1,87 @@
+"""The command that prints poles at a point: poles."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+import click
+
+from bezstab.cli import shared_options as shared
+from bezstab.cli.asking import say_each, say_if_units_were_mistaken, say_what_is_left_out, show_sentences
+from bezstab.cli.options import A_METHOD, METHOD, SECONDS, EngineValues, TypedPoint, typed_options
+from bezstab.cli.output import for_reading, say, show_answers, show_text, worked_out
+
+if TYPE_CHECKING:
+    from bezstab.methods.schemes import Method
+
+USUAL_METHODS = ("B2", "B3", "B4", "AB2", "AB3", "AB4", "RK4@5", "SIE")
+"""Without --method: the Bezier methods and their usual alternatives."""
+
+
+@click.command()
+@shared.point
+@shared.engine_values
+@shared.as_typed
+@click.option("--method", "methods", type=METHOD, multiple=True, default=USUAL_METHODS, help=f"{A_METHOD} Repeatable.")
+@click.option("--h", type=SECONDS, help="Step in s, for --physical, --engine, --scene and --omega.")
+@shared.omega
+@shared.scene
+@shared.speed
+@click.option("--all-poles", is_flag=True, help="Print every pole, not only the dominant one.")
+@shared.every_column
+@shared.form
+def poles(
+    methods: tuple[Method, ...],
+    alpha: Fraction | None,
+    beta: Fraction | None,
+    physical: bool,
+    h: Fraction | None,
+    engine: EngineValues | None,
+    as_typed: bool,
+    omega: Fraction | None,
+    scene: str | None,
+    speed: Fraction,
+    all_poles: bool,
+    every_column: bool,
+    form: str,
+) -> None:
+    """Print each method's dominant pole at one point, and the verdict.
+
+    converges: every |z| < 1, so errors shrink. marginal: errors stay bounded but do not shrink. diverges: errors
+    grow. The verdict is proven in exact arithmetic on the numbers as typed (Schur-Cohn test).
+
+    Example: bezstab poles --alpha 0.5 --beta 0.1
+    """
+
+    from bezstab.feedback.checking import Given, asked_to_check
+    from bezstab.feedback.columns import POLES
+    from bezstab.feedback.poles import poles_at
+    from bezstab.feedback.sentences import motion_words
+    from bezstab.words import point_words
+
+    named, values = engine or (None, None)
+    typed = TypedPoint(alpha, beta, physical)
+    if "--h" in typed_options() and not (physical or engine or scene or omega):
+        raise click.UsageError("--h needs one of --physical, --engine, --scene, --omega: α̂ and β̂ have no unit")
+    given = Given(point=typed.at(h), values=values, as_typed=as_typed)
+    if named and "--method" not in typed_options():
+        methods = ()
+    methods, given, asked = worked_out(
+        lambda: asked_to_check(methods, given, h=h, engine=named, omega=omega, scene=scene, speed=speed), scene
+    )
+    say_each(asked.warnings)
+    found = poles_at(methods, given, asked, every=all_poles)
+    say_if_units_were_mistaken(methods, typed, h)
+    if for_reading() and len(found) > 1:
+        judged = found[0].judged
+        show_text(f"{point_words(judged.alpha_hat, judged.beta_hat, h)}\n")
+    show_answers(POLES, found, [each.sentence for each in found])
+    if every_column and not asked.motion.assumed:
+        show_sentences([motion_words(asked.motion)])
+    say_each(each.judged.cost_reason for each in found)
+    if named and for_reading():
+        for note in (found[0].judged.applied or "").split("; ") if found else ():
+            if note and note != "as typed":
+                say(f"{named.name}: {note} (--as-typed leaves that out)")
+        say_what_is_left_out(named, many=asked.swept is not None)

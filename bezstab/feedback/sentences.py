@@ -1,0 +1,251 @@
+"""What is said of a judged point in words: the verdict, how fast errors fall, what may grow, what it costs."""
+
+import math
+from collections.abc import Callable
+from fractions import Fraction
+
+from bezstab.feedback.judgement import Judgement
+from bezstab.methods.rotation_torque import stage_torque
+from bezstab.motion.modulated_circle import steps_to_breakdown
+from bezstab.questions.chains import SweptAnswer
+from bezstab.questions.motions import ReferenceMotion
+from bezstab.questions.scene_runs import MOST_GAINED
+from bezstab.rationals import rounded_down
+from bezstab.stability.choices import steps_to_settle
+from bezstab.stability.turning import MovingPole
+from bezstab.units import from_dimensionless
+from bezstab.words import change_words, counted, decay_words, growth_words, point_words, seconds_words, times_words
+
+KEPT = 5e-5
+"""Of the largest kinetic energy in a run, or of a motion's in a second: less is no change that anybody sees."""
+
+MOVED = 0.01
+"""Of the energy, in a second: what a motion may gain or lose without a word."""
+
+HARD = 0.999
+"""Of an impedance: above it the energy of a closed four-bar is that of hard constraints, to some hundredths."""
+
+COSTLY = 10.0
+"""Times the least error: from here on a sentence says what the feedback costs."""
+
+
+def judgement_sentence(judged: Judgement, safe_with: str | None = None) -> str:
+    """Return what was judged, whether it is safe, how fast an error falls, and how far each number alone may grow.
+
+    With a scene also what happens over the motion; of an engine that solves its constraints one after another, for how
+    many that is. `safe_with` is the option with which a choice is safe that is not.
+    """
+    swept, h = judged.swept, judged.conditions.h
+    safe = "safe" if judged.safe else "not safe"
+    if judged.swept_over:
+        safe += f" {'in' if swept else 'for'} {judged.swept_over}"
+    said = _swept(judged, swept) if swept else _errors(judged)
+    if judged.safe and not judged.swept_over:  # more of one constraint alone means nothing for a chain of them
+        said += _growth(judged)
+    if safe_with:
+        said.append(f"with {safe_with} it is safe")
+    motion = judged.conditions.motion
+    if judged.goal == "accurate" and motion.assumed:
+        said.append(f"without --omega {_assumed(motion.omega_h, judged.conditions.seconds)} is assumed")
+    place = point_words(judged.alpha_hat, judged.beta_hat, h)
+    return " ".join([f"{place}: {safe}.", *map(_sentence, said)])
+
+
+def _sentence(said: str) -> str:
+    return f"{said[0].upper()}{said[1:]}."
+
+
+def _assumed(omega_h: Fraction, h: float | None) -> str:
+    """Return the motion that a choice was made for, though nobody gave its rate."""
+    turn = f"ωh = {float(omega_h):g}"
+    return f"a motion with {turn}" if h is None else f"a motion of {float(omega_h) / h:.3g} rad/s ({turn})"
+
+
+def _change(judged: Judgement, z_abs: float, verdict: str, bound: str = "") -> str:
+    """Return how long an error takes to fall to a thousandth, or what a step does to one that does not fall."""
+    steps = judged.settle_steps if z_abs == abs(judged.pole) else steps_to_settle(z_abs)
+    if verdict != "converges" or steps is None:
+        return change_words(z_abs, verdict, bound=bound)
+    h = judged.conditions.seconds
+    return decay_words(steps, None if h is None else h * float(judged.method.step_multiple), bound=bound)
+
+
+def _errors(judged: Judgement) -> list[str]:
+    """Return what becomes of an error at rest, and over the motion of a scene."""
+    at_rest = _change(judged, abs(judged.pole), judged.verdict)
+    if judged.moving:
+        return [f"at rest {at_rest}", _in_motion(judged, judged.moving), *_as_it_ran(judged)]
+    return [at_rest, *_on_a_motion(judged)]
+
+
+def _in_motion(judged: Judgement, moving: MovingPole) -> str:
+    """Return what becomes of an error as the mechanism moves, at most or at least, or why that is not settled."""
+    if moving.verdict == "converges":
+        return f"in motion {_change(judged, moving.at_most, 'converges', 'at most ')}"
+    if moving.verdict == "diverges":
+        return f"in motion {_change(judged, moving.at_least, 'diverges', 'at least ')}"
+    if moving.at_most < 1:
+        return "in motion it is not settled: the constraints turn too far in a step, or faster than the feedback works"
+    how = "two poles nearly meet there"
+    if math.isfinite(moving.at_most):
+        how = f"a step may multiply the error by {moving.at_most:.3g}"
+    return f"in motion this may diverge: {how}"
+
+
+def _on_a_motion(judged: Judgement) -> list[str]:
+    """Return what a second does to the energy of a motion whose rate was given; nothing if that is a hundredth.
+
+    Of a choice that does not weigh it, it is said anyway.
+    """
+    unweighed = judged.role == "chosen" and judged.goal != "accurate"
+    if judged.energy_rate is None or not (abs(judged.energy_rate[0]) >= MOVED or unweighed):
+        return []
+    rate, by_rotation = judged.energy_rate
+    omega, h = float(judged.conditions.omega or 0), judged.conditions.seconds or 0.0
+    what = "gains" if rate > 0 else "loses"
+    motion = f"a body that spins about a pin at {omega:.3g} rad/s" if judged.spins else f"a motion of {omega:.3g} rad/s"
+    if judged.spins and judged.impedance:
+        motion += f", with an impedance d of {judged.impedance:g},"
+    if abs(rate) < KEPT:
+        return [f"{motion} keeps its energy"]
+    said = f"{motion} {what} {100 * abs(rate):.2g} % of its energy a second"
+    # stages' torque grows as the cube of the rate
+    if not judged.spins and by_rotation > MOVED and stage_torque(judged.method).power == 2:
+        end = h * steps_to_breakdown(judged.method, judged.alpha_hat, judged.beta_hat, omega * h)
+        said += f" and breaks down after about {seconds_words(end)}" if end < math.inf else ""
+        said += ": take heun or RK4, or gentler feedback"
+    return [said]
+
+
+def energy_sentence(judged: Judgement) -> str | None:
+    """Return what a second does to the energy of a motion of rate omega; None where that is little, or not known."""
+    return "".join(map(_sentence, _on_a_motion(judged))) or None
+
+
+def _as_it_ran(judged: Judgement) -> list[str]:
+    """Return what a run of the scene showed, and what helps if it is not safe; nothing if it was not run."""
+    run = judged.run
+    if run is None:
+        return []
+    if run.failure:
+        return [f"a run breaks down {run.failure}"]
+    said = [f"in a run of {seconds_words(run.duration)}: |c| at most {run.c_max:.1e}, {_energy_text(run.gained)}"]
+    if not run.decides:
+        return [*said, "it passes a singular configuration, and decides nothing"]
+    if run.grown:
+        said.append("there the constraint error grows")
+    if run.gained > MOST_GAINED and run.culprit == "multipliers":
+        said.append("the feedback pumps the motion: take --goal accurate, or a shorter step")
+    elif run.gained > MOST_GAINED:
+        end = f", and breaks down after about {seconds_words(run.breakdown)}" if run.breakdown else ""
+        said.append(f"the method speeds the motion up{end}: take heun or RK4, or gentler feedback")
+    elif run.gained < -MOST_GAINED:
+        said.append(
+            "the method takes that, whatever the feedback" if run.culprit == "method" else "the feedback brakes"
+        )
+    if judged.impedance and judged.impedance < HARD:
+        said.append(f"the run is of hard constraints: an impedance d of {judged.impedance:g} brakes besides")
+    if run.sound and judged.moving and judged.moving.verdict != "converges":
+        said.append("the prediction settles nothing, but the run went through")
+    return said
+
+
+def _energy_text(gained: float) -> str:
+    """Return what became of the energy of a run, from the share that it gained."""
+    if abs(gained) < KEPT:
+        return "energy kept"
+    return f"energy {100 * gained:+.2g} %" if gained < 1 else f"energy grown by {times_words(gained)} times its largest"
+
+
+def _swept(judged: Judgement, swept: SweptAnswer) -> list[str]:
+    """Return what becomes of an error of many constraints in an engine that sweeps, and how many sweeps are enough.
+
+    What else was asked, of a scene that moves, is said of constraints that are solved exactly.
+    """
+    z_abs, stable = swept.growth.factor, swept.stable_iterations
+    change = _change(judged, z_abs, "converges" if z_abs < 1 else "diverges")
+    enough = "no number of sweeps that was tried is stable"
+    if stable is not None:
+        enough = f"stable from {counted(stable, 'sweep')}"
+    alone = f"{change}; of one constraint alone, each step multiplies it by {swept.alone:.2f}"
+    said = [alone, enough, *_on_a_motion(judged)]
+    if judged.moving:
+        said.append(f"that is at rest. Solved exactly: {_in_motion(judged, judged.moving)}")
+    return said
+
+
+def _growth(judged: Judgement) -> list[str]:
+    """Return how far the step, α and β may grow: each alone, at rest; nothing if not asked."""
+    margins = judged.margins
+    if judged.margins_reason:
+        return [f"how far the step, α and β may grow is not known: {judged.margins_reason}"]
+    if margins is None:
+        return []
+    limits = {
+        "the step": _to(margins.h, growth_words),
+        "α": _to(margins.alpha[1], growth_words),
+        "β": _to(margins.beta[1], growth_words),
+    }
+    if judged.conditions.h is not None:
+        limits["the step"] = _to(judged.h_limit, lambda limit: f"to {seconds_words(limit)}")
+    each = "at rest each" if judged.moving else "each"
+    if set(limits.values()) == {growth_words(None)}:
+        return [f"{each} alone may grow without limit"]
+    return [f"{each} alone may grow: {', '.join(f'{name} {limit}' for name, limit in limits.items())}"]
+
+
+def _to(limit: float | None, text: Callable[[float], str]) -> str:
+    """Return how far something may grow."""
+    return growth_words(None) if limit is None or math.isinf(limit) else text(limit)
+
+
+def costs_words(judged: Judgement) -> str | None:
+    """Return that a feedback costs accuracy, and how much; None where that is little, or not known.
+
+    The better point is given in 1/s where there is a step, and not at all where an engine has words of its own.
+    """
+    cost, asked = judged.cost, judged.conditions
+    if cost is None or cost.least_at is None or not (cost.times_least and cost.times_least_velocity):
+        return None
+    times = cost.times_least, cost.times_least_velocity
+    if max(times) < COSTLY:
+        return None
+    assert cost.total_error is not None
+    amplitude = asked.motion.amplitude
+    in_units = "" if amplitude is None else f" ({cost.total_error * amplitude:.1e} m or rad)"
+    least = "the least"
+    if asked.engine is None and asked.seconds is None:
+        least = "α̂ = {:.3g}, β̂ = {:.3g}".format(*cost.least_at)
+    elif asked.engine is None and asked.seconds is not None:
+        least = "α = {:.3g} 1/s, β = {:.3g} 1/s".format(*from_dimensionless(*cost.least_at, asked.seconds))
+    return (
+        f"This feedback costs accuracy: {judged.method.name} keeps order {cost.order_left} of {cost.order}. Compared "
+        f"with {least}: {errors_words(times)}. They are {cost.total_error:.1e} of the motion's amplitude{in_units} "
+        f"and {cost.velocity_error:.1e} of its velocity's."
+    )
+
+
+def errors_words(times: tuple[float, float]) -> str:
+    """Return by how many times the errors of constraint and velocity are larger or smaller."""
+    of_constraint, of_velocity = map(_ratio_words, times)
+    return f"constraint error {of_constraint}, velocity error {of_velocity}"
+
+
+def _ratio_words(times: float) -> str:
+    """Return how one error compares with another that it is so many times as large as."""
+    words = times_words(max(times, 1 / times))
+    return "unchanged" if words == "1" else f"{words} times {'larger' if times > 1 else 'smaller'}"
+
+
+def motion_words(motion: ReferenceMotion) -> str:
+    """Return what errors are shares of, and what is called the least."""
+    shares = f"Errors are relative to the amplitude of a motion, here {motion.words}."
+    return f"{shares} The smallest possible errors are those of --goal accurate."
+
+
+def step_sentence(alpha: float, beta: float, h_limit: float) -> str:
+    """Return up to which step (s) alpha and beta (1/s) are safe, rounded down: infinite if all are, zero if none is."""
+    judged = f"α = {alpha:.6g} 1/s, β = {beta:.6g} 1/s"
+    if not h_limit:
+        return f"{judged}: not safe at small steps."
+    return f"{judged}: safe {'at any h' if math.isinf(h_limit) else f'up to h = {rounded_down(h_limit, 4)} s'}."

@@ -1,0 +1,249 @@
+"""A point that is given is judged whole: each part agrees with the function that finds it."""
+
+from dataclasses import fields, is_dataclass, replace
+from fractions import Fraction
+from math import sqrt
+from typing import Any
+
+import numpy as np
+import pytest
+
+from bezstab.engines.conversions import Point
+from bezstab.engines.engine_list import ENGINES
+from bezstab.errors import InputError
+from bezstab.feedback import checking, columns
+from bezstab.feedback.checking import CheckAnswer, Given, asked_to_check, check, checks, largest_step
+from bezstab.feedback.choosing import ChooseAnswer
+from bezstab.feedback.judgement import Judgement
+from bezstab.feedback.poles import PoleAnswer
+from bezstab.methods.registry import lookup
+from bezstab.motion.spinning_bodies import spin_change
+from bezstab.questions.energy import engine_energy_rate
+from bezstab.questions.meant import meant_in_seconds
+from bezstab.rationals import rational
+from bezstab.stability.choices import choose, describe_point
+from bezstab.stability.feedback_costs import feedback_cost
+from tests.reference.engine_steps import STEPS, matrix
+
+SYM, RK4 = lookup("SYM"), lookup("RK4")
+ONE = Fraction(1)
+POINT = (ONE, Fraction(1, 2))
+AT: dict[str, Any] = {"alpha_hat": ONE, "beta_hat": Fraction(1, 2)}
+
+
+def test_an_answer_is_complete_when_made() -> None:
+    """Nothing of it is computed when it is touched: no property, nothing cached, nothing lazy."""
+    for kind in (Judgement, CheckAnswer, ChooseAnswer, PoleAnswer):
+        assert is_dataclass(kind)
+        own = {name for base in kind.__mro__[:-1] for name in vars(base) if not name.startswith("_")}
+        assert own <= {field.name for field in fields(kind)}, kind
+
+
+def test_an_answer_has_what_a_description_of_its_point_has() -> None:
+    answer, described = check(SYM, **AT), describe_point(SYM, "as given", *POINT)
+    for name in ("verdict", "pole", "worst", "margins", "settle_steps"):
+        assert getattr(answer, name) == getattr(described, name)
+    assert (answer.role, answer.point, answer.safe) == ("given", POINT, True)
+    assert answer.cost == feedback_cost(SYM, *POINT, least=False)
+    assert (answer.moving, answer.setting, answer.instead) == (None, None, None)
+
+
+def test_what_is_not_asked_for_is_not_looked_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(*_: object, **__: object) -> None:
+        raise AssertionError("looked for")
+
+    monkeypatch.setattr("bezstab.feedback.choosing.choose_point", refuse)
+    assert check(SYM, **AT).instead is None
+    monkeypatch.setattr("bezstab.feedback.judgement.feedback_cost", refuse)
+    monkeypatch.setattr("bezstab.stability.choices.stability_margins", refuse)
+    answer = check(SYM, **AT, margins=False, cost=False)
+    assert (answer.margins, answer.cost, answer.safe) == (None, None, True)
+
+
+def test_an_answer_begins_with_its_sentence_and_is_true_where_it_is_safe() -> None:
+    """RK2 at α̂ = β̂ = 1 has |z| = 1/2: 2^-10 is below a thousandth; β alone may grow by √(1 + √3)."""
+    place = "α̂ = 1, β̂ = 1 (α = 50 1/s, β = 100 1/s at h = 0.01 s)"
+    assert f"{sqrt(1 + sqrt(3)):.3g}" == "1.65"
+    safe = check("RK2", alpha_hat=1, beta_hat=1, h="1/100")
+    assert repr(safe).startswith(
+        f"{place}: safe. An error falls to a thousandth in 0.1 s (10 steps). "
+        "Each alone may grow: the step to 20 ms, α 2.5 times, β 1.65 times."
+    )
+    assert safe.settle_seconds == pytest.approx(0.1)
+    assert safe.tenth_seconds == pytest.approx(0.04)
+    assert check("RK2", alpha_hat=1, beta_hat=1).sentence == (
+        "α̂ = 1, β̂ = 1: safe. An error falls to a thousandth in 10 steps. "
+        "Each alone may grow: the step 2 times, α 2.5 times, β 1.65 times."
+    )
+    unsafe = check("RK2", alpha_hat=5, beta_hat=5, h="1/100")
+    assert repr(unsafe).startswith("α̂ = 5, β̂ = 5 (α = 250 1/s, β = 223.607 1/s at h = 0.01 s): not safe. Each step")
+    assert bool(safe)
+    assert not bool(unsafe)
+
+
+def test_of_one_constraint_alone_nothing_is_said_to_grow_without_limit() -> None:
+    """A chain of them has other limits."""
+    answer = check(engine="brax-positional=0.5", h="1/100")
+    assert ": safe for one constraint alone. An error falls to a thousandth in 0.2 s (20 steps)." in answer.sentence
+    assert "grow" not in answer.sentence
+
+
+def test_instead_is_what_choose_gives() -> None:
+    instead, chosen = check(SYM, **AT, instead=True).instead, choose(SYM)
+    assert instead is not None
+    assert (instead.role, instead.goal) == ("instead", "accurate")
+    assert (instead.alpha_hat, instead.beta_hat) == (chosen.alpha_hat, chosen.beta_hat)
+    wanting = check(RK4, **AT, h="0.05", instead=True)
+    assert wanting.instead is None
+    assert "RK4: α = 0.56 ω, β = 0.83 ω, ω the rate of your motion in rad/s" in str(wanting.instead_reason)
+
+
+def test_safe_is_what_is_safe_as_a_scene_moves() -> None:
+    assert check(SYM, alpha_hat="0.02", beta_hat="0.5", h="0.01").safe
+    moving = check(SYM, alpha_hat="1.9", beta_hat="0.1", h="0.01", scene="driven_four_bar")
+    assert moving.moving
+    assert moving.safe == (moving.moving.verdict == "converges")
+
+
+def all_points(engine: str, values: str, h: str, **asked: Any) -> list[CheckAnswer]:
+    """Return the answers for every point that an engine makes of its values."""
+    given = Given(values=tuple(map(rational, values.split(","))))
+    return checks(*asked_to_check((), given, h=Fraction(h), engine=ENGINES[engine], **asked), instead=True)
+
+
+def test_an_engine_answers_for_every_point_that_it_takes() -> None:
+    small, large = all_points("mujoco", "-135000,-920", "0.002")  # what solimp makes of large errors is another point
+    assert (small.verdict, large.verdict) == ("converges", "diverges")
+    assert small.setting is None
+    assert small.instead is not None
+    assert "solref" in str(small.instead.setting)
+
+
+def test_a_given_point_is_compared_with_the_least_error_where_the_motion_is_known() -> None:
+    """alpha = beta = 20 1/s, which is 270 times the least on a motion that nobody asked about."""
+    at: dict[str, Any] = {"alpha_hat": "0.4", "beta_hat": "0.04", "h": "0.01"}
+    told = check(RK4, **at).cost
+    assert told
+    assert (told.times_least, told.times_least_velocity, told.least_at) == (None, None, None)
+    rates: list[dict[str, Any]] = [{"omega": 10}, {"omega_h": "0.1"}]
+    for known in rates:
+        compared = check(RK4, **at, **known).cost
+        assert compared
+        assert compared.times_least == pytest.approx(4.9, rel=0.01)
+
+
+def test_the_largest_step_of_alpha_and_beta_ends_where_they_do() -> None:
+    h = Fraction(largest_step(SYM, alpha=60, beta=55))
+    assert 4 * 60 * h + 55**2 * h**2 == pytest.approx(4)  # 2 alpha_hat + beta_hat = 4
+    assert largest_step(SYM, alpha=0, beta=1) == 0
+    assert not checking.step_answer(SYM, Fraction(0), ONE).safe
+    rounded = next(column for column in columns.STEPS if column.key == "h_limit")
+    assert rounded.text(replace(checking.step_answer(SYM, ONE, ONE), h_limit=0.0123456)) == "0.01234"  # it is safe
+
+
+@pytest.mark.parametrize(
+    ("asked", "message"),
+    [
+        ({}, "a point is given as alpha_hat= and beta_hat="),
+        ({**AT, "h": 0}, "h = 0 s: expected"),
+        ({**AT, "alpha": 1}, "a point is given as"),
+        ({**AT, "engine": "mujoco=0.02,1", "h": 1}, "engine takes the place of alpha, beta"),
+    ],
+)
+def test_what_only_python_can_ask_is_refused_as_well(asked: dict[str, Any], message: str) -> None:
+    with pytest.raises(InputError, match=message):
+        check(SYM, **asked)
+
+
+def test_what_a_motion_gains_is_said_where_its_rate_is_given() -> None:
+    """RK2 at (2, 1) makes a rotation break down after 1 / (2 g h omega^2), g = 1/4: 2 s; runs did after 2.08 s."""
+    pumped = check("RK2", alpha=100, beta=100, h="1/100", omega=10)
+    assert pumped.energy_rate is not None
+    assert 1 / pumped.energy_rate[1] == pytest.approx(2.0, rel=0.02)
+    assert "breaks down after about 2.0" in pumped.sentence
+    assert check("RK2", alpha=100, beta=100, h="1/100").energy_rate is None
+    assert "gains" not in check("heun", alpha=20, beta=20, h="1/1000", omega=10).sentence
+
+
+@pytest.mark.parametrize(("name", "safe"), [("RK2", False), ("heun", True)])
+def test_a_scene_that_the_feedback_pumps_is_not_safe(name: str, safe: bool) -> None:
+    answer = check(name, alpha=100, beta=100, h="0.01", scene="pendulum")
+    assert answer.verdict == "converges"
+    assert answer.safe is safe
+    assert "in a run of 10 s: |c| at most" in answer.sentence.lower()
+    assert ("breaks down after about 27.8 s" in answer.sentence) is not safe
+
+
+@pytest.mark.parametrize(
+    ("engine", "sign"), [("chipmunk", -1), ("box2d-v2", -1), ("pbd=1", -1), ("mujoco=-720,-60", 1)]
+)
+def test_an_engine_says_what_its_step_does_to_a_spinning_body(engine: str, sign: int) -> None:
+    answer = check(engine=engine, h="1/60", omega=6)
+    assert answer.energy_rate is not None
+    assert np.sign(answer.energy_rate[0]) == sign
+    assert f"{'gains' if sign > 0 else 'loses'}" in answer.sentence
+    if engine == "box2d-v2":  # minus h omega^2
+        assert answer.energy_rate[0] == pytest.approx(-0.6, rel=1e-3)
+
+
+def test_mujocos_impedance_counts_at_each_of_its_points() -> None:
+    """(0.2, 0.2) pumps at d = 0.95 and brakes at 0.8: neutral at 0.87."""
+    soft, past = all_points("mujoco", "-720,-12,0.8,0.95", "1/60", omega=Fraction(6))
+    assert (soft.impedance, past.impedance) == (0.8, 0.95)
+    assert soft.energy_rate is not None
+    assert past.energy_rate is not None
+    assert soft.energy_rate[0] < 0 < past.energy_rate[0]
+    assert check(engine="mujoco", h="1/60", omega=6).impedance == 0.9
+    assert check(engine="chipmunk", h="1/60", omega=6).impedance is None
+
+
+def test_a_run_says_that_it_has_no_soft_impedance() -> None:
+    words = "The run is of hard constraints: an impedance d of 0.95 brakes besides."
+    soft, hard = (
+        check(engine=f"mujoco=-720,-12,{d},{d}", h="1/100", scene="pendulum").sentence for d in ("0.95", "0.9999")
+    )
+    assert (words in soft, words in hard) == (True, False)
+
+
+@pytest.mark.parametrize(
+    ("name", "point"), [("bullet", (1, 0.2)), ("jolt-spring", (1, 0.5)), ("xpbd", (0, 4)), ("brax-spring", (0.3, 0.1))]
+)
+def test_a_row_says_what_the_engines_own_step_does_to_a_motion(name: str, point: tuple[float, float]) -> None:
+    """The shares that a step takes back, of velocity and error, are read from the step that the engine's source has."""
+    engine, h, omega = ENGINES[name], Fraction(1, 60), Fraction(6)
+    exact_point: Point = (rational(str(point[0])), rational(str(point[1])))
+    (of_place, _), (taken, kept) = matrix(STEPS[name], float(h), *map(float, engine.values(exact_point, h)))
+    a, b = (1 - of_place, 0.0) if engine.energy_class == "projected" else (1 - kept, -taken * float(h))
+    assert engine.energy_class
+    expected = 2 * spin_change(engine.energy_class, a, b, float(omega * h)) / float(h)
+    assert engine_energy_rate(engine, exact_point, h, omega) == pytest.approx(expected, rel=1e-6)
+
+
+def test_an_engine_with_another_integrator_is_judged_by_that_integrator() -> None:
+    """The classes of engines are those of their own steps."""
+    answer = check("RK2", engine="mujoco=-10000,-200", h="1/100", omega=10)
+    assert not answer.spins
+    assert "a motion of 10 rad/s gains" in answer.sentence.lower()
+
+
+@pytest.mark.parametrize(
+    ("alpha", "beta", "meant"),
+    [("50", "50.5", True), ("1.5", "0.9", False), ("4", "3", False)],  # 4, 3: unstable, but no numbers of 1/s
+)
+def test_large_numbers_that_are_not_stable_are_meant_in_one_over_seconds(alpha: str, beta: str, meant: bool) -> None:
+    point = Fraction(alpha), Fraction(beta)
+    assert meant_in_seconds([SYM], point, None) == meant
+    assert not meant_in_seconds([lookup("implicit-euler")], point, None)  # stable as typed
+
+
+@pytest.mark.parametrize(
+    ("alpha", "beta", "h", "meant"),
+    [
+        ("5", "5", "1/100", True),  # a thousandth in 1.4 s
+        ("1", "1", "1/100", True),  # stable as typed, and in 6.9 s
+        ("1/2", "1/10", "1/100", False),  # in 700 s: a feedback that nobody has
+        ("5", "5", "1", False),  # unstable in 1/s, too
+    ],
+)
+def test_with_a_step_what_would_settle_is_asked_about(alpha: str, beta: str, h: str, meant: bool) -> None:
+    assert meant_in_seconds([RK4], (Fraction(alpha), Fraction(beta)), Fraction(h)) == meant
