@@ -1,7 +1,5 @@
 """What a cell of a table shows where it takes more than a format: texts made of a row."""
 
-import math
-
 from bezstab.show.fields import MISSING, Row, formatted
 
 MOST_FIXED = 1e6  # a modulus from here on is shown with an exponent
@@ -36,32 +34,3 @@ def modulus_words(modulus: float) -> str:
 def unbounded(row: Row) -> str:
     """Return what is said of a region's area or of an end that it does not have: unbounded, unless it is empty."""
     return MISSING if row.get("bounded", True) else "unbounded"
-
-
-def area_text(row: Row) -> str:
-    """Return an area to the digits that it has: 0.8096847 ± 2e-8."""
-    area, error = row["area"], row["area_error"]
-    if not area:
-        return "0"
-    decimals = max(0, -math.floor(math.log10(error)))
-    size, exponent = f"{error:.0e}".split("e")
-    return f"{area:.{decimals}f} ± {size}e{int(exponent)}"
-
-
-def method_and_alias_text(row: Row) -> str:
-    """Return a method's name, and in parentheses the shortest that it is called elsewhere, if there is room for it."""
-    names = row["other_names"].split(", ") if row["other_names"] else [""]
-    with_alias = f"{row['method']} ({min(names, key=len)})"
-    return with_alias if any(names) and len(with_alias) <= NAMES_ROOM else str(row["method"])
-
-
-def order_text(row: Row) -> str:
-    """Return the order of accuracy, with that for forces of position alone in parentheses if it is another."""
-    order = row["order"]
-    without_velocity = row.get("order_position_forces", order)
-    return str(order) if order == without_velocity else f"{order} ({without_velocity})"
-
-
-def constant_text(row: Row) -> str:
-    """Return the error constant as a rational, or as a decimal where it is none."""
-    return row.get("error_constant_exact") or formatted(row["error_constant"], ".10g")
