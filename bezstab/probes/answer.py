@@ -125,21 +125,41 @@ def probe(
 ) -> Probe:
     """Return the dominant pole in samples of a decaying error, and which integrator could have made them.
 
-    c: samples of one constraint error in any unit, shape (samples,), or (samples, responses) of one
-        system.
-    minus: another run of that shape, to subtract. differenced: c is such a difference already.
-    methods: which integrators to compare; of less than two, the ten most used too.
-    With a point, `alpha_hat` and `beta_hat`, or `alpha` and `beta` in 1/s with `h` in s, the pole of
-    each method there is compared. Without a point the one is found at which each of `methods` has that
-    pole.
-    every: steps of h from one sample to the next.
-    turning: how fast the directions of the constraints turn, in 1/s; needs h.
+    Parameters
+    ----------
+    c : array_like, shape (samples,) or (samples, responses)
+        Samples of one constraint error, in any unit, or of several errors of one system.
+    minus : array_like of that shape, optional
+        Another run, to subtract.
+    differenced : bool
+        Whether c is such a difference already.
+    methods : sequence of str or Method, optional
+        Integrators to compare; with fewer than two also the ten most used.
+    every : int
+        Steps of h from one sample to the next.
+    turning : number, optional
+        Rate (1/s) at which the normals of the constraints turn; needs h.
+    alpha_hat, beta_hat : number, optional
+        The feedback, dimensionless.
+    alpha, beta : number, optional
+        The same in 1/s, in their place. Without a point, the one is found at which each method has the pole.
+    h : number, optional
+        Step (s).
 
-    Returns a Probe. `pole` is the pole a sample, dimensionless; `reason` says why there is no answer.
-    `likenesses` has the methods, the nearest first, and `fitting` the names of those that have the
-    pole. `points` has the points, where none was given.
+    Returns
+    -------
+    Probe
+        `pole` per sample, dimensionless, or `reason`, why there is none. `likenesses` has the methods, the nearest first,
+        `fitting` the names of those that have the pole, `points` the points that were found.
 
-    InputError unless point, shapes and h fit together. Source: linear prediction (Prony).
+    Raises
+    ------
+    InputError
+        Point, shapes and h do not fit together.
+
+    References
+    ----------
+    Linear prediction (Prony).
     """
     if methods is not None and (isinstance(methods, str | Method) or not isinstance(methods, Iterable)):
         raise InputError(f"methods = {shown(methods)}: expected a list of methods")
@@ -170,17 +190,32 @@ def probe_step(
     beta: Number | None = None,
     h: Number | None = None,
 ) -> Probe:
-    """Return what `probe` does, for a simulator of your own: a function that takes a state to the next.
+    """Return what `probe` does, for a function that takes the state of your simulator to the next.
 
-    step: a function of an array, the state, that returns the next one. It is called six times `steps`
-        times.
-    state: where to start, an array.
-    constraint: a function of a state that returns the constraint error, in any unit.
-    kick: an array of the shape of the state. It is added to the state and subtracted from it, whole and
-        in parts.
-    The other keywords are those of `probe`.
+    Parameters
+    ----------
+    step : callable
+        Takes the state, an array, and returns the next one. It is called six times `steps` times.
+    state : array_like
+        The first state.
+    constraint : callable
+        Takes a state and returns the constraint error, in any unit.
+    kick : array_like, shape of the state
+        Added to the state and subtracted from it, whole and in parts.
+    steps : int
+        Length of each run.
+    methods, turning, alpha_hat, beta_hat, alpha, beta, h
+        As for `probe`.
 
-    Returns a Probe, as `probe` does; poles are dimensionless. Errors as there; InputError, too, for shapes that differ.
+    Returns
+    -------
+    Probe
+        As of `probe`.
+
+    Raises
+    ------
+    InputError
+        As of `probe`, and if shapes differ.
     """
     responses = kicked_responses(step, state, constraint, kick, steps)
     return probe(

@@ -37,24 +37,46 @@ def simulate(
 ) -> Simulation:
     """Return a run of a mechanism with a method and a feedback, as arrays in SI units.
 
-    h: the step in s. duration: how long, in s.
-    The point is `alpha_hat` and `beta_hat`, or `alpha` and `beta` in 1/s.
-    start: where a multistep method has its first values from: steps of "rk4", its family's members of
-        fewer steps ("ramp"), or explicit "euler". "steady": with the velocity that the method has in the
-        long run, half a step back for symplectic Euler.
-    perturb: by how much the first constraint is off at the start, in its own unit.
-    stabilise: what holds the constraints: feedback ("baumgarte"), "projection" of each new state onto
-        them, or "none". Only feedback has a point.
-    iterations: with projection, Newton's iterations for a position at most; by default as many as it
-        takes to be within 1e-12.
+    Parameters
+    ----------
+    scene : str or Scene
+        The mechanism: a shipped scene, the path of a .toml file, or what `bezstab.scene` returns.
+    method : str or Method
+        The integration method.
+    h : number
+        Step (s).
+    duration : number
+        Length of the run (s), at least one step.
+    start : {"rk4", "ramp", "euler", "steady"}
+        How a multistep method gets its first values: by RK4, by members of its family with fewer steps, or by explicit
+        Euler. "steady" begins with the velocity that the method has in the long run: for symplectic Euler half a step back.
+    perturb : number
+        Initial error of the first constraint, in its own unit.
+    stabilise : {"baumgarte", "projection", "none"}
+        What holds the constraints: feedback, projection of each new state onto them, or nothing. Only feedback has a point.
+    iterations : int, optional
+        With projection: at most so many Newton iterations for a position; by default as many as reach 1e-12.
+    alpha_hat, beta_hat : number, optional
+        The feedback, dimensionless.
+    alpha, beta : number, optional
+        The same in 1/s, in their place.
 
-    Returns a Simulation. `t` has shape (steps + 1,). `q`, `v`, `c`, `cdot` and `multipliers` have a row
-    for each time; `energy` has a number for each time. A run that breaks down ends early, and `failure`
-    says when and why; else it is None.
+    Returns
+    -------
+    Simulation
+        `t` has shape (steps + 1,), as `energy` has; `q`, `v`, `c`, `cdot` and `multipliers` have a row for each time. A run
+        that breaks down ends early, and `failure` says when and why; else it is None.
 
-    InputError for a scene that cannot start, for a duration below one step, and unless the point of a
-    feedback is given in one of the two ways. NumericalError if the start cannot be perturbed. Source:
-    paper Eqs. 6 to 9.
+    Raises
+    ------
+    InputError
+        The scene cannot start, the duration is below one step, or the feedback is not given in one of the two ways.
+    NumericalError
+        The start cannot be perturbed.
+
+    References
+    ----------
+    The paper's Eqs. 6 to 9.
     """
     find = plane_point if stabilise == "baumgarte" else point_if_given
     return run_of(

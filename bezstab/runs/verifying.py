@@ -36,17 +36,34 @@ def verify(
     alpha: ArrayLike | None = None,
     beta: ArrayLike | None = None,
 ) -> list[Measurement]:
-    """Return the dominant pole as predicted and as measured in a simulation, for each of a row of points.
+    """Return the dominant pole as predicted and as measured in a simulation, for each of some points.
 
-    scene: the mechanism to kick. h: the step in s.
-    The points are `alpha_hat` and `beta_hat`, or `alpha` and `beta` in 1/s: numbers, or arrays of one
-    shape.
+    Parameters
+    ----------
+    scene : str or Scene
+        The mechanism that is kicked.
+    method : str or Method
+        The integration method.
+    h : number
+        Step (s).
+    alpha_hat, beta_hat : array_like, optional
+        The points, dimensionless, of one shape.
+    alpha, beta : array_like, optional
+        The same in 1/s, in their place.
 
-    Returns a list of Measurements, dimensionless. `measured` is None where no pole can be measured;
-    `reason` says why.
+    Returns
+    -------
+    list of Measurement
+        Dimensionless. `measured` is None if no pole can be measured; `reason` says why.
 
-    InputError for a scene that cannot start, and unless the points are given in one of the two ways.
-    Source: opposite kicks and linear prediction (Prony).
+    Raises
+    ------
+    InputError
+        The scene cannot start, or the points are not given in one of the two ways.
+
+    References
+    ----------
+    Opposite kicks and linear prediction (Prony).
     """
     first, second = plane_arrays(*plane_point(alpha_hat, beta_hat, alpha, beta, h, real_array))
     step = real_number(h, "h")
