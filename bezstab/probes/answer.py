@@ -149,8 +149,8 @@ def probe(
     Returns
     -------
     Probe
-        `pole` per sample, dimensionless, or `reason`, why there is none. `likenesses` has the methods, the nearest first,
-        `fitting` the names of those that have the pole, `points` the points that were found.
+        `pole` per sample, dimensionless, or `reason`, why there is none. `likenesses` has the methods, the nearest
+        first, `fitting` the names of those that have the pole, `points` the points that were found.
 
     Raises
     ------

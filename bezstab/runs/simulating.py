@@ -49,11 +49,12 @@ def simulate(
         Length of the run (s), at least one step.
     start : {"rk4", "ramp", "euler", "steady"}
         How a multistep method gets its first values: by RK4, by members of its family with fewer steps, or by explicit
-        Euler. "steady" begins with the velocity that the method has in the long run: for symplectic Euler half a step back.
+        Euler. "steady" begins with the method's own velocity in the long run: for symplectic Euler half a step back.
     perturb : number
         Initial error of the first constraint, in its own unit.
     stabilise : {"baumgarte", "projection", "none"}
-        What holds the constraints: feedback, projection of each new state onto them, or nothing. Only feedback has a point.
+        What holds the constraints: feedback, projection of each new state onto them, or nothing. Only feedback has a
+        point.
     iterations : int, optional
         With projection: at most so many Newton iterations for a position; by default as many as reach 1e-12.
     alpha_hat, beta_hat : number, optional
@@ -64,8 +65,8 @@ def simulate(
     Returns
     -------
     Simulation
-        `t` has shape (steps + 1,), as `energy` has; `q`, `v`, `c`, `cdot` and `multipliers` have a row for each time. A run
-        that breaks down ends early, and `failure` says when and why; else it is None.
+        `t` has shape (steps + 1,), as `energy` has; `q`, `v`, `c`, `cdot` and `multipliers` have a row for each time. A
+        run that breaks down ends early, and `failure` says when and why; else it is None.
 
     Raises
     ------
