@@ -31,7 +31,7 @@ def boundary_curves(lines: Lines, right: float, top: float) -> tuple[FloatArray,
     lines.look(np.linspace(0, right, DRAWN + 1)[1:].tolist())
     lines.area(0.0, right, top)  # which lays lines to corners
     scale = np.array([right, top])
-    strips = lines.region()
+    strips = [strip for strip in lines.region() if strip.places[0] <= right]
     edges: list[FloatArray] = []
     for strip in strips:
         points = np.column_stack([strip.places, strip.ends])

@@ -51,7 +51,7 @@ TOUCHING = 100 * CLOSE
 """Of a place along a line: parts that overlap by less only touch, in a corner, as do points no further off."""
 THIN = 1e-6
 """Of its place: an island narrower than that is not mentioned, and a region that narrow far out goes on for ever."""
-FAR = 1e5
+FAR = 1e4
 """alpha_hat or beta_hat that nobody uses."""
 MOST_LINES = 6_000
 

@@ -67,12 +67,14 @@ NEARLY_REAL = 1e-2
 """|Im| over |s| of an eigenvalue that is taken for a real place: m that meet part by eps^(1/m). One place too many does
 no harm, as verdicts tell what is beside it."""
 
-NEGLIGIBLE = 1e-11
-"""Of its place: a stretch, or a gap, so short is rounding of one place that two expressions share. Of a path's own
-size: a place so near to s = 0 is rounding of zero."""
+ZERO = 1e-11
+"""Of a path's size: a place so near to s = 0 is rounding of zero."""
 
 END_ACCURACY = 1e-10
 """Of an end: within it the verdict must turn, or the end is bisected."""
+
+SHORT = 4 * END_ACCURACY
+"""Of its place: whether there is a stretch, or a gap, so short, rounding decides; none is told."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,7 +114,7 @@ class Paths:
             sizes = [least, largest] if (largest > FAR_APART * least).any() else [least]
             of_pairs = [self._of_pairs(size) for size in sizes]
             found = np.concatenate([_roots(self.coefficients[0]), _roots(self.coefficients[-1]), *of_pairs]).T
-        nearly_zero = NEGLIGIBLE * least[:, np.newaxis]
+        nearly_zero = ZERO * least[:, np.newaxis]
         real = np.isfinite(found) & (np.abs(found.imag) <= NEARLY_REAL * np.abs(found)) & (found.real > nearly_zero)
         return np.sort(np.where(real, found.real, inf), axis=1)
 
@@ -243,10 +245,10 @@ def _in_s(plane: FloatArray, alpha_hat: FloatArray, beta_hat: FloatArray, powers
 
 
 def _joined(path: NDArray[np.intp], low: FloatArray, high: FloatArray) -> Stretches:
-    """Return stretches without those of negligible lengths, and those joined between which the gap is negligible."""
-    long = high > low * (1 + NEGLIGIBLE)
+    """Return stretches without those that are SHORT, and those joined between which the gap is."""
+    long = high > low * (1 + SHORT)
     path, low, high = path[long], low[long], high[long]
-    apart = (path[1:] != path[:-1]) | (low[1:] > high[:-1] * (1 + NEGLIGIBLE))
+    apart = (path[1:] != path[:-1]) | (low[1:] > high[:-1] * (1 + SHORT))
     first, last = np.append(True, apart)[: len(path)], np.append(apart, True)[: len(path)]
     return Stretches(path[first], low[first], high[last])
 

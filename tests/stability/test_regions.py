@@ -289,6 +289,18 @@ def test_an_unbounded_region_says_so(name: str) -> None:
     assert np.isfinite(np.array(shape.view)).all()
 
 
+@pytest.mark.parametrize(("method", "level"), [(lookup("bdf6"), 0.9), (other_random_method(157), 1.0)], ids=str)
+def test_the_curves_of_what_goes_on_enclose_what_is_stable_in_the_window(method: Method, level: float) -> None:
+    """A part of the first ends in a cusp that rounding closes; of the second thin parts begin beyond the window."""
+    shape = region(method, level)
+    assert not shape.bounded
+    (_, right), (_, top) = window(shape)
+    points = np.random.default_rng(3).uniform((0, 0), (0.9 * right, min(0.9 * top, 30)), (2000, 2))
+    modulus = radius(method, *points.T)
+    clear = np.abs(modulus - level) > 1e-2
+    assert (enclosed(shape.boundary, points) == (modulus < level))[clear].all()
+
+
 def test_an_implicit_stage_that_is_not_used_changes_nothing() -> None:
     unused = runge_kutta("unused", "1/2 0;-1/6 1", "1 0")  # implicit midpoint, and a stage with a pole at mu = 1
     shape, plain = region(unused), region(lookup("implicit-midpoint"))
