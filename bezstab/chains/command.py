@@ -9,6 +9,7 @@ import click
 
 from bezstab.cli import shared_options as shared
 from bezstab.cli.asking import say_what_is_left_out
+from bezstab.cli.grouped_help import GroupedCommand, grouped
 from bezstab.cli.options import ENGINE_VALUES, NUMBER, NUMBERS, EngineValues, ParsedType
 from bezstab.cli.output import Files, for_reading, show_answers
 from bezstab.errors import InputError
@@ -18,18 +19,22 @@ GRAVITY = Fraction("9.81")  # m/s²
 LOAD = ParsedType("number|gravity", lambda text: GRAVITY if text == "gravity" else rational(text), lambda: ["gravity"])
 
 
-@click.command()
-@click.option(
-    "--engine", type=ENGINE_VALUES, required=True, help="An engine, with its values [its defaults]: chipmunk=0.0018."
+@click.command(cls=GroupedCommand)
+@grouped(
+    "The chain",
+    click.option("--bodies", type=int, default=10, help="Bodies of the chain."),
+    click.option("--mass-ratio", type=NUMBER, default="1", help="The last body is so many times as heavy."),
+    click.option("--masses", type=NUMBERS, metavar="M,M,...", help="The masses from the world on, such as 1,1,5."),
+    click.option("--pinned", type=click.Choice(["one", "both"]), default="one", help="Ends that the world holds."),
+    click.option("--load", type=LOAD, help="Acceleration along it, m/s², or gravity (9.81): how far does it sag?"),
 )
-@shared.h
-@click.option("--bodies", type=int, default=10, help="Bodies of the chain.")
-@click.option("--mass-ratio", type=NUMBER, default="1", help="The last body is so many times as heavy.")
-@click.option("--masses", type=NUMBERS, help="The masses of all bodies from the world on: 1,1,5.")
-@click.option("--pinned", type=click.Choice(["one", "both"]), default="one", help="Ends that are held by the world.")
-@click.option("--iterations", type=int, help="Sweeps over all constraints in a step [the engine's own number].")
-@click.option("--load", type=LOAD, help="A steady acceleration along it, m/s², or gravity (9.81): how far does it sag?")
-@shared.output_options
+@grouped(
+    "Your simulation",
+    click.option("--engine", type=ENGINE_VALUES, required=True, help="An engine, with its values: chipmunk=0.0018."),
+    shared.h,
+    click.option("--iterations", type=int, help="Sweeps over all constraints in a step [the engine's]."),
+)
+@grouped("Output", shared.output_options)
 def chain(
     engine: EngineValues,
     h: Fraction,
@@ -49,7 +54,7 @@ def chain(
     come apart although each constraint alone is stable. What stacks of boxes do is not known. --figure draws all chains
     up to --bodies, over the sweeps.
 
-    Example: bezstab chain --engine chipmunk --h 1/60 --bodies 10 --mass-ratio 10
+    Example: bezstab chain --engine chipmunk --h 1/60 --bodies 10
     """
     from bezstab.chains.answer import Links, judge_chain, links
     from bezstab.chains.columns import COLUMNS

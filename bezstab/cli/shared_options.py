@@ -61,8 +61,9 @@ figure = click.option("--figure", type=click.Choice(FIGURES), default="none", he
 output = click.option(
     "-o", "--output", type=click.Path(path_type=Path), default=".", help="Directory for what is written."
 )
+FORMS = get_args(Format)
 form = click.option(
-    "--format", "form", type=click.Choice(get_args(Format)), default="text", help="What to print on standard output."
+    "--format", "form", type=click.Choice(FORMS), default="text", metavar="FORM", help=f"{', '.join(FORMS)}."
 )
 every_column = click.option("--all", "every_column", is_flag=True, help="Print every column, not the main ones alone.")
 

@@ -8,6 +8,7 @@ from pathlib import Path
 import click
 
 from bezstab.cli import shared_options as shared
+from bezstab.cli.grouped_help import GroupedCommand, grouped
 from bezstab.cli.options import NUMBER, POSITIVE, SECONDS, ParsedType
 from bezstab.cli.output import Files, show_answers, show_text
 from bezstab.errors import InputError
@@ -41,24 +42,28 @@ POINTS = 200
 """Along each axis of the figure."""
 
 
-@click.command()
-@click.option("--kp", type=NUMBER, help="Stiffness, N m/rad or N/m.")
-@click.option("--kd", type=NUMBER, help="Damping, N m s/rad or N s/m.")
-@click.option("--ki", type=NUMBER, default="0", help="Integral gain, N m/(rad s) or N/(m s).")
-@click.option("--inertia", type=POSITIVE, required=True, help="Inertia that the drive feels, kg m² or kg.")
-@click.option("--h", type=SECONDS, help="Step of the physics in s; or --physics.")
-@click.option("--physics", type=POSITIVE, help="Rate of the physics in Hz, in place of --h.")
-@click.option("--bandwidth", type=NUMBER, help="Find critically damped gains of this natural frequency in Hz.")
-@click.option("--settle", type=NUMBER, help="Find critically damped gains that settle in so many s.")
-@shared.methods
-@click.option("--every", type=int, help="The torque is computed every so many steps and held in between [1].")
-@click.option("--controller", type=POSITIVE, help="Rate of the controller in Hz, in place of --every.")
-@click.option("--late", type=LATE, default="0", help="The torque is applied so many steps late, or 5ms; fractions too.")
-@click.option(
-    "--filter", "filter_seconds", type=NUMBER, default="0", help="Time constant in s of a filter of the velocity."
+@click.command(cls=GroupedCommand)
+@grouped(
+    "The drive",
+    click.option("--kp", type=NUMBER, help="Stiffness, N m/rad or N/m."),
+    click.option("--kd", type=NUMBER, help="Damping, N m s/rad or N s/m."),
+    click.option("--ki", type=NUMBER, default="0", help="Integral gain, N m/(rad s) or N/(m s)."),
+    click.option("--inertia", type=POSITIVE, required=True, help="Inertia that it feels, kg m² or kg."),
+    click.option("--bandwidth", type=NUMBER, help="Find critically damped gains: of so many Hz."),
+    click.option("--settle", type=NUMBER, help="Find critically damped gains: settle in so many s."),
+    click.option("--load", type=ParsedType("number", _load), help="A steady load, N m or N: how far does it sag?"),
 )
-@click.option("--load", type=ParsedType("number", _load), help="A steady load, N m or N: how far does the joint sag?")
-@shared.output_options
+@grouped(
+    "Your simulation",
+    click.option("--h", type=SECONDS, help="Step of the physics in s; or --physics."),
+    click.option("--physics", type=POSITIVE, help="Rate of the physics in Hz, in place of --h."),
+    shared.methods,
+    click.option("--every", type=int, help="The torque is held for so many steps [1]."),
+    click.option("--controller", type=POSITIVE, help="Rate of the controller in Hz, in place of --every."),
+    click.option("--late", type=LATE, default="0", metavar="STEPS|5MS", help="Delay in steps, or 5ms."),
+    click.option("--filter", "filter_seconds", type=NUMBER, default="0", help="Time constant of a filter of q', s."),
+)
+@grouped("Output", shared.output_options)
 def drive(
     kp: Fraction | None,
     kd: Fraction | None,
@@ -81,12 +86,12 @@ def drive(
     """Judge a joint's drive: exit status 0 if safe, 1 if not.
 
     The torque is -kp (q - target) - kd q', and with --ki an integral part. Without --method all four ways to apply it
-    are judged: explicit (SYM),
-    implicit in velocity (imex-euler), stable PD (stable-pd), fully implicit (implicit-euler). Yours is most often SYM.
+    are judged: explicit (SYM), implicit in velocity (imex-euler), stable PD (stable-pd), fully implicit
+    (implicit-euler). Yours is most often SYM.
 
     A contact of stiffness k and damping c between bodies of reduced mass m is --kp k --kd c --inertia m.
 
-    Example: bezstab drive --kp 200 --kd 5 --inertia 0.1 --h 0.002 --every 4 --late 1
+    Example: bezstab drive --kp 200 --kd 5 --inertia 0.1 --h 0.002 --every 4
     """
     from bezstab.drives.answer import gains_for, judge_drive, rates
     from bezstab.drives.columns import COLUMNS, NOT_JUDGED, timing_words, ways_words

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from bezstab.cli import shared_options as shared
+from bezstab.cli.grouped_help import GroupedCommand, grouped
 from bezstab.cli.options import NUMBER, ParsedType
 from bezstab.cli.output import progress, show_tables, show_text
 from bezstab.errors import InputError
@@ -50,33 +51,39 @@ def _load(text: str) -> tuple[str, tuple[float, ...]]:
 AXES = 3
 
 
-@click.command()
+@click.command(cls=GroupedCommand)
 @click.argument("model", type=click.Path(path_type=Path))
-@click.option("--at", multiple=True, help="Look there: qpos0, a keyframe, or a CSV log of qpos. Repeatable [all].")
-@click.option(
-    "--pd",
-    "gains",
-    type=ParsedType("name=kp,kd", _gains),
-    multiple=True,
-    help="A controller's gains on the motors, else the joints, of that name or regular expression. Repeatable.",
+@grouped(
+    "What is judged",
+    click.option("--at", multiple=True, help="At qpos0, a keyframe, or a CSV log of qpos; repeatable [all]."),
+    click.option("--deep", is_flag=True, help="Judge constraints past solimp's width, too."),
+    click.option(
+        "--spin",
+        type=ParsedType("joint=rate", _rate),
+        multiple=True,
+        help="What a second keeps of the energy, from a joint's rate in rad/s or m/s; repeatable.",
+    ),
+    click.option(
+        "--load",
+        "loads",
+        type=ParsedType("gravity|body=fx,fy,fz", _load, lambda: ["gravity"]),
+        multiple=True,
+        help="How far all sags under gravity, and forces (N) on bodies; repeatable.",
+    ),
 )
-@click.option("--every", type=int, default=1, help="With --pd: the torque is computed every so many steps.")
-@click.option("--late", type=NUMBER, default="0", help="With --pd: the torque is applied so many steps late.")
-@click.option(
-    "--spin",
-    type=ParsedType("joint=rate", _rate),
-    multiple=True,
-    help="Run a second from a joint's rate (rad/s or m/s) at the first state: what is kept of the energy? Repeatable.",
+@grouped(
+    "A controller",
+    click.option(
+        "--pd",
+        "gains",
+        type=ParsedType("name=kp,kd", _gains),
+        multiple=True,
+        help="Its gains on motors, else joints, of that name or regular expression; repeatable.",
+    ),
+    click.option("--every", type=int, default=1, help="The torque is held for so many steps."),
+    click.option("--late", type=NUMBER, default="0", help="The torque is so many steps late."),
 )
-@click.option(
-    "--load",
-    "loads",
-    type=ParsedType("gravity|body=fx,fy,fz", _load, lambda: ["gravity"]),
-    multiple=True,
-    help="How far is all off where it comes to rest, under gravity, and forces (N) on bodies? Repeatable.",
-)
-@click.option("--deep", is_flag=True, help="Judge constraints past solimp's width, too.")
-@shared.form
+@grouped("Output", shared.form)
 def lint(
     model: Path,
     at: Sequence[str],

@@ -1,27 +1,29 @@
 """The command `bezstab paper`: write the tables and figures that are asked for."""
 
 from operator import methodcaller
+from pathlib import Path
 
 import click
 
-from bezstab.cli.options import command, option
+from bezstab.cli import shared_options as shared
 from bezstab.cli.output import Files, write_file
 from bezstab.files import output_directory
 
 PARTS = [*(f"table{number}" for number in range(1, 7)), *(f"fig{number}" for number in range(1, 10))]
 
 
-@command(
-    option(
-        "--only",
-        click.Choice(PARTS),
-        "One of table1 to table6 and fig1 to fig9. Repeatable.",
-        metavar="PART",
-        multiple=True,
-    ),
-    *("compiled", "picture"),
+@click.command()
+@click.option(
+    "--only",
+    type=click.Choice(PARTS),
+    metavar="PART",
+    multiple=True,
+    help="One of table1 to table6 and fig1 to fig9; repeatable.",
 )
-def paper(only: tuple[str, ...], files: Files) -> None:
+@shared.compiled
+@click.option("--figure", type=click.Choice(shared.FIGURES), default="png", help="Format of the figures.")
+@shared.output
+def paper(only: tuple[str, ...], figure: str, output: Path) -> None:
     """Make the paper's tables and figures anew.
 
     Writes Tables 1 to 6 as paper_table1.md and so on, Figures 1 to 9 as paper_fig1a.png and so on. What came of the
@@ -32,8 +34,8 @@ def paper(only: tuple[str, ...], files: Files) -> None:
     from bezstab.paper.figures import FIGURES
     from bezstab.paper.tables import TABLES
 
+    wanted, files = only or PARTS, Files(output, figure)
     output_directory(files.output)
-    wanted = only or PARTS
     for name, table in TABLES.items():
         if name in wanted:
             text = table().encode()

@@ -6,21 +6,27 @@ import click
 
 from bezstab.cli import shared_options as shared
 from bezstab.cli.asking import say_what_is_left_out
+from bezstab.cli.grouped_help import GroupedCommand, grouped
 from bezstab.cli.options import ENGINE_VALUES, NUMBER, SECONDS, EngineValues
 from bezstab.cli.output import for_reading, show_answers, show_command, show_text
 from bezstab.methods.schemes import Method
 
 
-@click.command()
-@shared.methods
-@click.option("--alpha", type=NUMBER, help="Damping α of the feedback in 1/s; with --hold α̂.")
-@click.option("--beta", type=NUMBER, help="Stiffness β of the feedback in 1/s; with --hold β̂.")
-@click.option("--engine", type=ENGINE_VALUES, help="An engine with its values, such as bullet=0.2, in their place.")
-@click.option("--h-min", type=SECONDS, required=True, help="The shortest step in s.")
-@click.option("--h-max", type=SECONDS, required=True, help="The longest step in s.")
-@click.option("--hold", is_flag=True, help="Keep α̂ and β̂ constant while the step varies, as engines with an ERP do.")
-@shared.form
-@shared.every_column
+@click.command(cls=GroupedCommand)
+@grouped(
+    "The feedback [that of `choose`]",
+    click.option("--alpha", type=NUMBER, help="Damping α in 1/s; with --hold α̂."),
+    click.option("--beta", type=NUMBER, help="Stiffness β in 1/s; with --hold β̂."),
+    click.option("--engine", type=ENGINE_VALUES, help="An engine with its values, such as bullet=0.2."),
+    click.option("--hold", is_flag=True, help="α̂ and β̂ are constant, as engines with an ERP do."),
+)
+@grouped(
+    "Your simulation",
+    shared.methods,
+    click.option("--h-min", type=SECONDS, required=True, help="The shortest step in s."),
+    click.option("--h-max", type=SECONDS, required=True, help="The longest step in s."),
+)
+@grouped("Output", shared.every_column, shared.form)
 def steps(
     methods: tuple[Method, ...],
     alpha: Fraction | None,
@@ -39,7 +45,7 @@ def steps(
     Without --alpha and --beta it finds feedback that is proven for these steps: `choose` with --goal robust, then
     fastest, at --h-max.
 
-    Example: bezstab steps --method SYM --alpha 2 --beta 100 --h-min 0.00917 --h-max 1/60
+    Example: bezstab steps --method SYM --h-min 0.009 --h-max 1/60
     """
     from bezstab.step_sequences.answer import answers
     from bezstab.step_sequences.columns import COLUMNS
