@@ -42,13 +42,9 @@ def _load(text: str) -> tuple[str, tuple[float, ...]]:
     if text == "gravity":
         return "", ()
     body, equals, force = text.rpartition("=")
-    numbers = force.split(",")
-    if not (body and equals and len(numbers) == AXES):
+    if not (body and equals):
         raise InputError(f"{text!r}: expected gravity, or BODY=FX,FY,FZ in N")
-    return body, tuple(float(rational(number)) for number in numbers)
-
-
-AXES = 3
+    return body, tuple(float(rational(number)) for number in force.split(","))
 
 
 @click.command(cls=GroupedCommand)

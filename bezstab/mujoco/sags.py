@@ -16,6 +16,9 @@ SECONDS = 60.0
 """In which a model comes to rest, its velocities damped, or does not."""
 
 
+AXES = 3
+
+
 @dataclass(frozen=True)
 class Sag:
     """How far an element is off at rest: a length (m), an angle (rad), of a weld both; of a drive at its joint."""
@@ -39,6 +42,8 @@ def sags(robot: Robot, state: State, loads: Mapping[str, Sequence[float]]) -> tu
     for name, force in loads.items():
         if name not in names[1:]:
             raise InputError(f"--load {name}: no body; there are: {', '.join(names[1:]) or 'none'}")
+        if len(force) != AXES:
+            raise InputError(f"--load {name}: {len(force)} numbers, expected FX,FY,FZ in N")
         forces[names.index(name), :3] = force
     if not forces.any() and (
         model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_GRAVITY or not model.opt.gravity.any()

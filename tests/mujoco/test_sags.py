@@ -98,7 +98,11 @@ def test_what_falls_for_ever_comes_to_no_rest() -> None:
 
 @pytest.mark.parametrize(
     ("load", "words"),
-    [({}, "load gravity: the model has none"), ({"c": (0, 0, 1)}, "load c: no body; there are: b")],
+    [
+        ({}, "load gravity: the model has none"),
+        ({"c": (0, 0, 1)}, "load c: no body; there are: b"),
+        ({"b": (1, 2)}, "load b: 2 numbers, expected FX,FY,FZ in N"),
+    ],
 )
 def test_a_load_that_is_none_is_one_line(load: dict[str, Any], words: str) -> None:
     with pytest.raises(InputError, match=words):
