@@ -6,6 +6,7 @@ from math import lcm
 
 import sympy as sp
 
+from bezstab.methods.added_damping import added_damping
 from bezstab.methods.derivation import ALPHA_HAT, BETA_HAT, MU, PLANE, Z, closed_loop_polynomial, mapping_equation
 from bezstab.methods.orders import accuracy
 from bezstab.methods.registry import lookup
@@ -113,6 +114,19 @@ def stage_torque_text(method: Method, latex: bool = False) -> str:
         return f"{power} times a function of the feedback"
     text = _written(THETA**torque.power * torque.coefficient, latex)
     return text if latex or len(text) <= LONGEST else f"{power} times a quotient too long to be read"
+
+
+def added_damping_text(method: Method, latex: bool = False) -> str:
+    """Return the leading term in theta = omega h of the damping ratio that a method adds to an undamped oscillator.
+
+    Source: added_damping.py. Of coefficients that stand for irrational ones as decimals.
+    """
+    damping = added_damping(method)
+    if damping.power is None:
+        return f"0, up to {_written(THETA**damping.highest, latex)}"
+    exact = method.digits is None
+    coefficient = sp.Rational(damping.coefficient) if exact else sp.Float(float(damping.coefficient), 6)
+    return _written(THETA**damping.power * coefficient, latex)
 
 
 def multiplier_law_text(method: Method, latex: bool = False) -> str:

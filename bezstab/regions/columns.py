@@ -351,6 +351,13 @@ FORMULAS: Sequence[Column[Formulas]] = (
     ),
     Column(
         "",
+        "added_damping",
+        lambda found: found.added_damping,
+        "damping ratio that the method adds to an oscillator without damping, negative where it drives: the first term "
+        "in θ = ωh",
+    ),
+    Column(
+        "",
         "stage_torque",
         lambda found: found.stage_torque,
         "D, where a step multiplies the rate of a uniform rotation by 1 + D: the first term in θ = ωh",

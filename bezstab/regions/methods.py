@@ -33,8 +33,8 @@ class MethodAnswer:
 class Formulas:
     """A method's recursion, s→z mapping and characteristic polynomial (paper Tables 1 and 2), as text or LaTeX.
 
-    And its steady errors, the torque of its stages, on what its multipliers do work, and the order that is left to the
-    forced error where alpha_hat and beta_hat are held.
+    And its steady errors, the damping that it adds to an oscillator, the torque of its stages, on what its multipliers
+    do work, and the order that is left to the forced error where alpha_hat and beta_hat are held.
     """
 
     recursion: str
@@ -42,6 +42,7 @@ class Formulas:
     characteristic_polynomial: str
     steady_error: str
     steady_velocity_error: str
+    added_damping: str
     stage_torque: str
     multiplier_law: str
     order_left: int | None
@@ -80,6 +81,7 @@ def method_answer(method: Method, name: str = "", group: str = "") -> MethodAnsw
 def whole_method(method: Method, *, latex: bool) -> WholeMethod:
     """Return all that is known of a method; errors as `region_answer`."""
     from bezstab.methods.formulas import (
+        added_damping_text,
         characteristic_text,
         mapping_text,
         multiplier_law_text,
@@ -95,6 +97,7 @@ def whole_method(method: Method, *, latex: bool) -> WholeMethod:
         characteristic_polynomial=characteristic_text(method, latex),
         steady_error=steady_error_text(method, "x", latex),
         steady_velocity_error=steady_error_text(method, "v", latex),
+        added_damping=added_damping_text(method, latex),
         stage_torque=stage_torque_text(method, latex),
         multiplier_law=multiplier_law_text(method, latex),
         order_left=order_left(method),

@@ -24,8 +24,9 @@ def methods(methods: Sequence[Method], latex: bool, **_: object) -> None:
 
     For a method that you name it also prints the recursion, s→z mapping, characteristic polynomial and stability region
     (the paper's Tables 1 and 2), the source, and the error that the method makes on a constraint that moves, as a share
-    of that motion. The stage torque is D: each step multiplies the rate ω of a motion on a circle by 1 + D. Where D is
-    positive, the motion speeds up.
+    of that motion. The added damping is the damping ratio of an oscillator that has none itself; a negative one drives
+    it. The stage torque is D: each step multiplies the rate ω of a motion on a circle by 1 + D. Where D is positive,
+    the motion speeds up.
 
     SIE is the paper's "Euler semi-implicit". It is not what engines call semi-implicit Euler: that is SYM.
 
