@@ -36,7 +36,7 @@ FloatArray = NDArray[np.float64]
 SAMPLES = 400  # over a run, or a turn of the fastest driver: K turns a few times in one, so kappa is good to 1e-4
 
 AT_REST = 1e-9
-"""Of an acceleration (SI): below, it is what rounding leaves of a mechanism that does not move."""
+"""Of an acceleration (SI), or of its relative change in a run: below, it is what rounding leaves of none."""
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,8 @@ class ConstraintMotion:
 def constraint_motion(mechanism: Mechanism, duration: float) -> ConstraintMotion:
     """Return rate and amplitude of the motion: over a revolution of steady drivers, else over `duration` (s).
 
-    InputError for a mechanism whose constraints do not accelerate: it has no rate. Else errors as `motion`.
+    InputError for a mechanism whose constraints do not accelerate, or evenly, as those of a body that spins about a
+    pin: they have no rate. Else errors as `motion`.
     """
     along = motion(mechanism, duration)
     derivatives = np.stack([along.a, np.gradient(along.a, along.t, axis=0, edge_order=2)], axis=-1)
@@ -60,6 +61,8 @@ def constraint_motion(mechanism: Mechanism, duration: float) -> ConstraintMotion
     if largest < AT_REST:
         raise InputError(f"{mechanism.scene.name} is at rest: its constraints do not move, so there is no omega")
     omega = float(np.sqrt((changing**2).mean() / (accelerations**2).mean()))
+    if omega * duration < AT_REST:
+        raise InputError(f"{mechanism.scene.name} turns evenly: the accelerations of its constraints show no omega")
     return ConstraintMotion(omega=omega, amplitude=largest / omega**2)
 
 

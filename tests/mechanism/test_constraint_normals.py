@@ -3,10 +3,12 @@
 import numpy as np
 import pytest
 
+from bezstab.errors import InputError
 from bezstab.mechanism.constraint_normals import constraint_motion, turned_across, turning_normals
 from bezstab.mechanism.equations import compiled_mechanism
 from bezstab.mechanism.motions import motion
-from bezstab.mechanism.scene_files import load_scene
+from bezstab.mechanism.scene_files import load_scene, parse_scene
+from tests.mechanism.test_scenes import pendulum
 
 OMEGA = 2 * np.pi  # rad/s, of both driven scenes
 
@@ -50,3 +52,10 @@ def test_a_driven_crank_moves_its_constraints_about_as_fast_as_it_turns() -> Non
     found = constraint_motion(compiled_mechanism(load_scene("driven_four_bar")), 1.0)
     assert 1 < found.omega / OMEGA < 1.5
     assert 0.05 < found.amplitude < 0.1
+
+
+def test_a_body_that_spins_evenly_about_a_pin_shows_no_rate() -> None:
+    initial = {"position": {"bob.x": 1.0, "bob.y": 0.0}, "velocity": {"bob.y": 3.0}}
+    spinning = parse_scene(pendulum(gravity=[0, 0], initial=initial))
+    with pytest.raises(InputError, match="turns evenly"):
+        constraint_motion(compiled_mechanism(spinning), 1.0)
