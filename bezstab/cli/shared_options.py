@@ -29,6 +29,12 @@ physical = click.option("--physical", is_flag=True, help="--alpha and --beta are
 FIGURES, TABLES = [*FIGURE_FORMS, "none"], [*TABLE_FORMS, "none"]
 """Formats of what a command writes."""
 
+METHOD_HELP, FIGURE_HELP, TABLE_HELP = (
+    "A name of `bezstab methods`, or a .toml file.",
+    f"{', '.join(FIGURES)}.",
+    f"{', '.join(TABLES)}.",
+)
+
 h = click.option("--h", type=SECONDS, required=True, help="Step size in s.")
 methods = click.option("--method", "methods", type=METHOD, multiple=True, help=f"{A_METHOD} Repeatable.")
 engine_values = click.option(
@@ -54,9 +60,10 @@ compiled = click.option(
     envvar=COMPILED_CHOICE,
     expose_value=False,
     callback=choose_compiled,
-    help="Compile long runs of explicit methods with numba. auto: if it is installed and saves time.",
+    metavar="WORD",
+    help="auto, yes, no: long runs as machine code, by numba.",
 )
-table = click.option("--table", type=click.Choice(TABLES), default="none", help="Format of the table that is written.")
+table = click.option("--table", type=click.Choice(TABLES), default="none", metavar="FORM", help=TABLE_HELP)
 figure = click.option("--figure", type=click.Choice(FIGURES), default="none", help="Format of the figure.")
 output = click.option(
     "-o", "--output", type=click.Path(path_type=Path), default=".", help="Directory for what is written."

@@ -8,25 +8,29 @@ import click
 
 from bezstab.cli import shared_options as shared
 from bezstab.cli.asking import say_if_units_were_mistaken
+from bezstab.cli.grouped_help import GroupedCommand, grouped
 from bezstab.cli.options import NUMBER, SECONDS, TypedPoint
 from bezstab.cli.output import show_tables, show_text
 from bezstab.errors import NumericalError
 from bezstab.methods.schemes import Method
 
 
-@click.command()
+@click.command(cls=GroupedCommand)
 @click.argument("log", type=click.File("rb"))
-@click.option(
-    "--minus", type=click.File("rb"), help="Another run's log, to subtract: without the kick, or with the opposite one."
+@grouped(
+    "The log",
+    click.option("--minus", type=click.File("rb"), help="Another log, to subtract: not kicked, or the opposite way."),
+    click.option("--column", "columns", multiple=True, help="A column by name [all but t or time]. Repeatable."),
+    click.option("--every", type=int, default=1, help="Steps of the integrator from one row to the next."),
 )
-@click.option("--column", "columns", multiple=True, help="A column by name [all but t or time]. Repeatable.")
-@click.option("--every", type=int, default=1, help="The integrator takes so many steps from one row to the next.")
-@shared.methods
-@shared.point
-@click.option("--h", type=SECONDS, help="Step size of the integrator in s, for α and β in 1/s and --turning.")
-@click.option("--turning", type=NUMBER, help="How fast directions of constraints turn, 1/s: 0 at rest [0.03 a step].")
-@shared.form
-@shared.every_column
+@grouped(
+    "What it is compared with",
+    shared.methods,
+    shared.point,
+    click.option("--h", type=SECONDS, help="Step size of the integrator in s."),
+    click.option("--turning", type=NUMBER, help="Rate at which constraints turn, 1/s; 0 at rest [0.03 a step]."),
+)
+@grouped("Output", shared.every_column, shared.form)
 def probe(
     log: BinaryIO,
     minus: BinaryIO | None,

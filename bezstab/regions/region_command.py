@@ -11,7 +11,8 @@ import click
 from bezstab.cli import shared_options as shared
 from bezstab.cli.asking import of_each, say_each
 from bezstab.cli.command_group import NUMERICAL_TROUBLE
-from bezstab.cli.options import A_METHOD, ENGINE, METHOD, NUMBER, POSITIVE, SCENE, SECONDS, SPEED
+from bezstab.cli.grouped_help import GroupedCommand, grouped
+from bezstab.cli.options import ENGINE, METHOD, NUMBER, POSITIVE, SCENE, SECONDS, SPEED
 from bezstab.cli.output import Files, progress, show_answers, show_text, worked_out
 from bezstab.engines.conversions import Engine
 from bezstab.methods.schemes import Method
@@ -22,39 +23,48 @@ if TYPE_CHECKING:  # so that `bezstab --help`, which lists this command, loads n
 Window = tuple[Fraction, Fraction]
 
 
-@click.command()
-@click.option("--method", "methods", type=METHOD, multiple=True, help=f"{A_METHOD} Repeatable [B4].")
-@click.option("--level", "levels", type=POSITIVE, multiple=True, help="Also where |z_p| < LEVEL, below 1. Repeatable.")
-@click.option("--compare", is_flag=True, help="Draw the boundaries of all methods in one figure, at --level [1].")
-@click.option("--accuracy", is_flag=True, help="Draw the error that the feedback makes on a motion, with |z_p|.")
-@click.option("--motion", "energy", is_flag=True, help="Draw what the feedback does to the energy of a motion.")
-@click.option(
-    "--omega", type=POSITIVE, help="With these: rate of the motion, 1/s; needs --h [the scene's, or ωh = 0.01]."
+@click.command(cls=GroupedCommand)
+@grouped(
+    "What is asked",
+    click.option("--method", "methods", type=METHOD, multiple=True, help=f"{shared.METHOD_HELP} Repeatable [B4]."),
+    click.option("--level", "levels", type=POSITIVE, multiple=True, help="Also where |z_p| < LEVEL. Repeatable."),
+    click.option("--compare", is_flag=True, help="Boundaries of all methods in one figure, at --level [1]."),
+    click.option("--accuracy", is_flag=True, help="The error that the feedback makes on a motion, with |z_p|."),
+    click.option("--motion", "energy", is_flag=True, help="What the feedback does to the energy of a motion."),
 )
-@click.option("--h", type=SECONDS, help="Step size in s; the axes are then 2α (1/s) and β² (1/s²).")
-@click.option("--alpha-beta", is_flag=True, help="Write α and β (1/s) at the axes of the figure; needs --h.")
-@click.option("--engine", type=ENGINE, help="Mark this engine's default values and rules of thumb; needs --h.")
-@click.option("--scene", type=SCENE, help="Also the region of this mechanism as it moves; needs --h.")
-@click.option("--speed", "speeds", type=SPEED, multiple=True, help="With --scene: times its own speed. Repeatable [1].")
-@click.option("--alpha-range", type=NUMBER, nargs=2, help="α̂ is drawn from the first value to the second.")
-@click.option("--beta-range", type=NUMBER, nargs=2, help="β̂ is drawn from the first value to the second.")
-@click.option(
-    "--quality",
-    type=click.Choice(["balanced", "fast", "fine"]),
-    default="balanced",
-    help="Points along each axis of the map: fast 50, balanced 200, fine 1000.",
+@grouped(
+    "Your simulation",
+    click.option("--h", type=SECONDS, help="Step size in s; the axes are then 2α (1/s) and β² (1/s²)."),
+    click.option("--omega", type=POSITIVE, help="Rate of that motion, 1/s; needs --h [the scene's]."),
+    click.option("--engine", type=ENGINE, help="Mark its default values and rules of thumb; needs --h."),
+    click.option("--scene", type=SCENE, help="Also the region of this mechanism as it moves; needs --h."),
+    click.option("--speed", "speeds", type=SPEED, multiple=True, help="Times the scene's own speed. Repeatable [1]."),
 )
-@click.option("--grid", type=int, help="Points along each axis, in place of --quality.")
-@shared.table
-@click.option(
-    "--figure",
-    type=click.Choice(["window", *shared.FIGURES]),
-    default="png",
-    help="Format of the figure; or a window that says under the mouse what the point means.",
+@grouped(
+    "Output",
+    shared.every_column,
+    click.option("--alpha-range", type=NUMBER, nargs=2, help="α̂ is drawn from the first to the second."),
+    click.option("--beta-range", type=NUMBER, nargs=2, help="β̂ is drawn from the first to the second."),
+    click.option("--alpha-beta", is_flag=True, help="Write α and β (1/s) at the axes; needs --h."),
+    click.option(
+        "--quality",
+        type=click.Choice(["balanced", "fast", "fine"]),
+        default="balanced",
+        metavar="WORD",
+        help="Points along an axis: fast 50, balanced 200, fine 1000.",
+    ),
+    click.option("--grid", type=int, help="Points along an axis, in place of --quality."),
+    shared.table,
+    click.option(
+        "--figure",
+        type=click.Choice([*shared.FIGURES, "window"]),
+        default="png",
+        metavar="FORM",
+        help=f"{shared.FIGURE_HELP[:-1]}; or a window, which says what a point means.",
+    ),
+    shared.output,
+    shared.form,
 )
-@shared.output
-@shared.form
-@shared.every_column
 def region(
     methods: tuple[Method, ...],
     levels: tuple[Fraction, ...],

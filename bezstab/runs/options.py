@@ -16,11 +16,10 @@ USUAL_STEP = Fraction("0.001")  # s
 stabilise = click.option(
     "--stabilise",
     type=click.Choice(list(STABILISE)),
-    help="What holds the constraints: feedback, projection after each step, or nothing [baumgarte].",
+    metavar="WORD",
+    help="baumgarte, projection or none: what holds the constraints [baumgarte].",
 )
-iterations = click.option(
-    "--iterations", type=int, help="With projection: at most so many Newton iterations in a step [as many as needed]."
-)
+iterations = click.option("--iterations", type=int, help="With projection: Newton iterations in a step, at most.")
 
 
 @dataclass(frozen=True)
@@ -36,7 +35,7 @@ def shared_work(command: Command) -> Command:
     """Add what says who computes: --workers, --scheduler and --resume."""
     for option in (
         click.option("--resume", is_flag=True, help="Continue a run with the same options that was stopped."),
-        click.option("--scheduler", help="Address of a Dask scheduler, tcp://host:port, in place of --workers."),
+        click.option("--scheduler", help="A Dask scheduler, tcp://host:port, in place of --workers."),
         click.option("--workers", type=click.IntRange(1, 1000), help="Number of processes [one for each core]."),
     ):
         command = option(command)

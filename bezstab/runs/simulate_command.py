@@ -9,7 +9,8 @@ import click
 
 from bezstab.cli import shared_options as shared
 from bezstab.cli.asking import say_if_units_were_mistaken
-from bezstab.cli.options import A_METHOD, METHOD, NUMBER, SCENE, SECONDS, SEQUENCE, TypedPoint
+from bezstab.cli.grouped_help import GroupedCommand, grouped
+from bezstab.cli.options import METHOD, NUMBER, SCENE, SECONDS, SEQUENCE, TypedPoint
 from bezstab.cli.output import Files, say, show_answers, worked_out
 from bezstab.compiling import compiled_choice
 from bezstab.engines.conversions import Point
@@ -25,38 +26,40 @@ if TYPE_CHECKING:  # so that `bezstab --help`, which lists this command, loads n
 USUAL_POINT: Point = (Fraction("0.5"), Fraction("0.1"))
 
 
-@click.command()
-@click.option("--scene", type=SCENE, default="slider_crank", help="A shipped scene's name, or a .toml file.")
-@shared.speed
-@click.option("--method", type=METHOD, default="B4", help=A_METHOD)
-@shared.point
-@options.stabilise
-@options.iterations
-@click.option("--h", "given_h", type=SECONDS, help="Step size in s [0.001].")
-@click.option(
-    "--steps",
-    "sequence",
-    type=SEQUENCE,
-    help="Steps in s that are taken in turn: 1/60,0.00917 or 3*0.01,0.02, or a file. α̂ and β̂ are those at --h.",
+@click.command(cls=GroupedCommand)
+@grouped(
+    "The mechanism",
+    click.option("--scene", type=SCENE, default="slider_crank", help="Name of a shipped scene, or a .toml file."),
+    shared.speed,
+    click.option("--perturb", type=NUMBER, default="0", help="Initial error of the first constraint, in its unit."),
 )
-@click.option("--hold", is_flag=True, help="With --steps: keep α̂ and β̂ constant while the step varies, not α and β.")
-@click.option("--time", "duration", type=SECONDS, default="10", help="Duration in s.")
-@click.option("--perturb", type=NUMBER, default="0", help="Initial error of the first constraint, in its own unit.")
-@click.option(
-    "--start",
-    type=click.Choice(["rk4", "ramp", "euler", "steady"]),
-    default="rk4",
-    help="First values of a multistep method: by RK4, by members of its family with fewer steps, or by Euler's method. "
-    "steady: the velocity that the method has in the long run, half a step back for symplectic Euler.",
+@grouped(
+    "Your simulation",
+    click.option("--method", type=METHOD, default="B4", help=shared.METHOD_HELP),
+    shared.point,
+    options.stabilise,
+    options.iterations,
+    click.option("--h", "given_h", type=SECONDS, help="Step size in s [0.001]."),
+    click.option("--steps", "sequence", type=SEQUENCE, help="Steps in turn: 1/60,0.00917 or 3*0.01,0.02, or a file."),
+    click.option("--hold", is_flag=True, help="With --steps: α̂ and β̂ stay as at --h; else α and β do."),
+    click.option("--time", "duration", type=SECONDS, default="10", help="Duration in s."),
+    click.option(
+        "--start",
+        type=click.Choice(["rk4", "ramp", "euler", "steady"]),
+        default="rk4",
+        metavar="START",
+        help="First values: by rk4, ramp (fewer steps), euler; or steady (half a step back for SYM).",
+    ),
+    shared.compiled,
 )
-@shared.compiled
-@shared.table
-@click.option(
-    "--figure", type=click.Choice(shared.FIGURES), default="png", help="Format of the figure: c and ċ against time."
+@grouped(
+    "Output",
+    shared.every_column,
+    shared.table,
+    click.option("--figure", type=click.Choice(shared.FIGURES), default="png", metavar="FORM", help=shared.FIGURE_HELP),
+    shared.output,
+    shared.form,
 )
-@shared.output
-@shared.form
-@shared.every_column
 def simulate(
     scene: str,
     speed: Fraction,

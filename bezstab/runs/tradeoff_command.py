@@ -9,7 +9,8 @@ import click
 
 from bezstab.cli import shared_options as shared
 from bezstab.cli.asking import say_if_units_were_mistaken
-from bezstab.cli.options import A_METHOD, METHOD, POSITIVE, SCENE, SECONDS, TypedPoint
+from bezstab.cli.grouped_help import GroupedCommand, grouped
+from bezstab.cli.options import METHOD, POSITIVE, SCENE, SECONDS, TypedPoint
 from bezstab.cli.output import Files, progress, show_answers, show_text, worked_out
 from bezstab.errors import InputError
 from bezstab.methods.schemes import Method
@@ -26,32 +27,43 @@ METHODS = ("B2", "B3", "B4", "AB2", "AB4", "ABM4", "RK4", "SIE", "SYM")
 USUAL_SCENE = "slider_crank_light"
 
 
-@click.command()
-@click.option("--scene", type=SCENE, help=f"A shipped scene's name, or a .toml file [{USUAL_SCENE}].")
-@shared.speed
-@click.option("--method", "methods", type=METHOD, multiple=True, default=METHODS, help=f"{A_METHOD} Repeatable.")
-@click.option("--h", "steps", type=SECONDS, multiple=True, help="Step in s. Repeatable [ten from 0.0001 to 0.02].")
-@click.option("--time", "duration", type=SECONDS, help="Duration in s [2].")
-@shared.point
-@click.option("--omega", type=POSITIVE, help="Rate in 1/s of the motion that points are chosen for [the scene's].")
-@options.stabilise
-@options.iterations
-@click.option(
-    "--against",
-    type=click.Choice(["evaluations", "time", "projection"]),
-    help="What errors are compared with: evaluations, processor time, or projection, in factorizations [evaluations].",
+@click.command(cls=GroupedCommand)
+@grouped(
+    "What is run",
+    click.option("--scene", type=SCENE, help=f"Name of a shipped scene, or a .toml file [{USUAL_SCENE}]."),
+    shared.speed,
+    click.option("--method", "methods", type=METHOD, multiple=True, help=f"{shared.METHOD_HELP} Repeatable [nine]."),
+    click.option("--h", "steps", type=SECONDS, multiple=True, help="Step in s. Repeatable [ten, 0.0001 to 0.02]."),
+    click.option("--time", "duration", type=SECONDS, help="Duration in s [2]."),
+    shared.point,
+    click.option("--omega", type=POSITIVE, help="Rate, 1/s, for which points are chosen [the scene's]."),
+    options.stabilise,
+    options.iterations,
 )
-@click.option("--tolerance", type=POSITIVE, help="The error that is good enough, in m and rad [1e-6].")
-@click.option("--repeats", type=int, help="How often each run is timed [3].")
-@click.option("--predicted", is_flag=True, help="Simulate nothing: print the least errors, for each speed of decay.")
-@click.option("--level", "levels", type=POSITIVE, multiple=True, help="With --predicted: |z_p| at most. Repeatable.")
-@shared.compiled
-@options.shared_work
-@click.option("--table", type=click.Choice(shared.TABLES), default="csv", help="Format of the table.")
-@click.option("--figure", type=click.Choice(shared.FIGURES), help="Format of the figures [png].")
-@shared.output
-@shared.form
-@shared.every_column
+@grouped(
+    "What is compared",
+    click.option(
+        "--against",
+        type=click.Choice(["evaluations", "time", "projection"]),
+        metavar="COST",
+        help="evaluations, time of this processor, or projection [evaluations].",
+    ),
+    click.option("--tolerance", type=POSITIVE, help="The error that is good enough, m and rad [1e-6]."),
+    click.option("--repeats", type=int, help="How often each run is timed [3]."),
+    click.option("--predicted", is_flag=True, help="Simulate nothing: the least errors by speed of decay."),
+    click.option("--level", "levels", type=POSITIVE, multiple=True, help="With --predicted: |z_p|. Repeatable."),
+)
+@grouped("Work that takes long", shared.compiled, options.shared_work)
+@grouped(
+    "Output",
+    shared.every_column,
+    click.option("--table", type=click.Choice(shared.TABLES), default="csv", metavar="FORM", help=shared.TABLE_HELP),
+    click.option(
+        "--figure", type=click.Choice(shared.FIGURES), metavar="FORM", help=f"{shared.FIGURE_HELP[:-1]} [png]."
+    ),
+    shared.output,
+    shared.form,
+)
 def tradeoff(
     scene: str | None,
     speed: Fraction,
@@ -88,6 +100,7 @@ def tradeoff(
 
     Example: bezstab tradeoff --method B4 --method AB4 --h 0.002 --h 0.004 --time 2
     """
+    from bezstab.methods.registry import lookup
     from bezstab.runs.accuracy_costs import measured_runs
     from bezstab.runs.columns import COSTS, ranked_rows
     from bezstab.runs.figures import trade_figures
@@ -95,7 +108,7 @@ def tradeoff(
     from bezstab.runs.tables import table_arrays
     from bezstab.runs.trades import basis_words, ranked, trade
 
-    typed = TypedPoint(alpha, beta, physical)
+    typed, methods = TypedPoint(alpha, beta, physical), methods or tuple(map(lookup, METHODS))
     if predicted:
         of_runs = {
             "--alpha": alpha,

@@ -9,7 +9,8 @@ import click
 
 from bezstab.cli import shared_options as shared
 from bezstab.cli.asking import of_each, say_if_units_were_mistaken
-from bezstab.cli.options import A_METHOD, METHOD, SCENE, SECONDS, TypedPoint
+from bezstab.cli.grouped_help import GroupedCommand, grouped
+from bezstab.cli.options import METHOD, SCENE, SECONDS, TypedPoint
 from bezstab.cli.output import Files, for_reading, progress, show_answers, show_tables, show_text, worked_out
 from bezstab.methods.schemes import Method
 from bezstab.runs import options
@@ -20,22 +21,29 @@ if TYPE_CHECKING:  # so that `bezstab --help`, which lists this command, loads n
     from bezstab.runs.verdict_maps import VerdictMap
 
 
-@click.command()
-@click.option("--scene", type=SCENE, default="slider_crank", help="A shipped scene's name, or a .toml file.")
-@shared.speed
-@click.option("--method", "methods", type=METHOD, multiple=True, default=["B4"], help=f"{A_METHOD} Repeatable.")
-@shared.point
-@click.option("--h", "given_h", type=SECONDS, help="Step size in s [0.001].")
-@click.option("--points", type=int, help="Without a point: so many, spread over the region and around it [20].")
-@click.option("--map", "across", type=int, help="Simulate N×N points, and draw their verdicts.")
-@click.option("--floquet", is_flag=True, help="Also predict exactly, for a motion that repeats itself.")
-@shared.compiled
-@options.shared_work
-@click.option("--table", type=click.Choice(shared.TABLES), default="csv", help="Format of the table of a map.")
-@click.option("--figure", type=click.Choice(shared.FIGURES), default="png", help="Format of the figure of a map.")
-@shared.output
-@shared.form
-@shared.every_column
+@click.command(cls=GroupedCommand)
+@grouped(
+    "What is verified",
+    click.option("--scene", type=SCENE, default="slider_crank", help="Name of a shipped scene, or a .toml file."),
+    shared.speed,
+    click.option(
+        "--method", "methods", type=METHOD, multiple=True, default=["B4"], help=f"{shared.METHOD_HELP} Repeatable."
+    ),
+    shared.point,
+    click.option("--h", "given_h", type=SECONDS, help="Step size in s [0.001]."),
+    click.option("--points", type=int, help="Without a point: so many, over the region and around it [20]."),
+    click.option("--map", "across", type=int, help="Simulate N×N points, and draw their verdicts."),
+    click.option("--floquet", is_flag=True, help="Also predict exactly, for a motion that repeats itself."),
+)
+@grouped("Work that takes long", shared.compiled, options.shared_work)
+@grouped(
+    "Output",
+    shared.every_column,
+    click.option("--table", type=click.Choice(shared.TABLES), default="csv", metavar="FORM", help=shared.TABLE_HELP),
+    click.option("--figure", type=click.Choice(shared.FIGURES), default="png", metavar="FORM", help=shared.FIGURE_HELP),
+    shared.output,
+    shared.form,
+)
 def verify(
     scene: str,
     speed: Fraction,
