@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cache
+from math import isinf
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -105,7 +106,10 @@ def _region(method: Method, level: float) -> Region:
         beyond = 1 + (MARGIN if bounded else GOES_ON)
         boundary = boundary_curves(across, beyond * view[0][1], beyond * view[1][1])
         before, extent = extent, _extent(across, upwards)
-    approached = ((False, _approached(across)), (False, _approached(upwards))) if extent else NOWHERE
+    approached = NOWHERE
+    if extent:
+        goes_on = [isinf(end) for _, end in extent]
+        approached = ((False, goes_on[1] and _approached(across)), (False, goes_on[0] and _approached(upwards)))
     return Region(method, level, area, error, extent, view, boundary, approached, tuple(across.islands()))
 
 

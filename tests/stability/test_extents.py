@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from bezstab.methods.recipes import recipe
+from bezstab.methods.registry import lookup
 from bezstab.methods.schemes import Method
 from bezstab.regions.answer import region_answer
 from bezstab.regions.columns import REGION
@@ -30,6 +31,13 @@ def test_a_scheme_with_one_evaluation_has_the_extent_of_its_polygons(name: str, 
     if found.extent and expected:
         assert np.array(found.extent) == pytest.approx(np.array(expected, float), rel=1e-9, abs=1e-9)
         assert not np.array(found.approached).any()  # polygons have their corners
+
+
+def test_an_end_of_what_is_bounded_is_reached_however_far_out() -> None:
+    """The last line of constant alpha_hat meets gauss4's region at beta_hat = 13,000."""
+    found = region(lookup("gauss4"), 0.9)
+    assert found.bounded
+    assert not np.array(found.approached).any()
 
 
 def test_beta_hat_may_come_near_its_limit_as_alpha_hat_grows() -> None:
