@@ -1,6 +1,7 @@
 """Options that several commands share, as click decorators: `@h`, `@method`; and groups of them: `@output_options`."""
 
 from collections.abc import Callable
+from fractions import Fraction
 from pathlib import Path
 from typing import Any, TypeVar, get_args
 
@@ -15,9 +16,12 @@ from bezstab.cli.options import (
     SCENE,
     SECONDS,
     SPEED,
+    ParsedType,
     choose_compiled,
 )
 from bezstab.compiling import COMPILED_CHOICE
+from bezstab.errors import InputError
+from bezstab.rationals import rational
 from bezstab.show.file_forms import FIGURE_FORMS, TABLE_FORMS
 from bezstab.show.tables import Format
 
@@ -26,6 +30,22 @@ Command = TypeVar("Command", bound=Callable[..., Any])
 alpha = click.option("--alpha", type=NUMBER, help="α̂, or with --physical α in 1/s; a decimal or a fraction.")
 beta = click.option("--beta", type=NUMBER, help="β̂, or with --physical β in 1/s; a decimal or a fraction.")
 physical = click.option("--physical", is_flag=True, help="--alpha and --beta are α and β in 1/s; needs --h.")
+
+
+def _load(text: str) -> Fraction:
+    """Return the acceleration of gravity, or of a force and the mass that it acts on: 50,2."""
+    if text == "gravity":
+        return Fraction("9.81")  # m/s^2
+    force, comma, mass = text.partition(",")
+    if not comma:
+        raise InputError(f"{text}: expected gravity, or a load with the mass that it acts on, such as 50,2 (N and kg)")
+    if (inertia := rational(mass)) <= 0:
+        raise InputError(f"{text}: expected a mass above 0")
+    return rational(force) / inertia
+
+
+LOAD = ParsedType("gravity|load,mass", _load, lambda: ["gravity"])
+
 FIGURES, TABLES = [*FIGURE_FORMS, "none"], [*TABLE_FORMS, "none"]
 """Formats of what a command writes."""
 
@@ -87,3 +107,8 @@ def output_options(command: Command) -> Command:
     for option in (output, figure, form, every_column):
         command = option(command)
     return command
+
+
+load = click.option(
+    "--load", type=LOAD, help="With --engine: how far does it sag? gravity, or 50,2: N and kg, or N m and kg m²."
+)

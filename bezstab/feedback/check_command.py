@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 @shared.scene
 @shared.speed
 @shared.time
+@shared.load
 @click.option("--instead", is_flag=True, help="Also print what `choose` gives, which an unsafe choice gets anyway.")
 @shared.every_column
 @shared.form
@@ -44,6 +45,7 @@ def check(
     scene: str | None,
     speed: Fraction,
     duration: Fraction | None,
+    load: Fraction | None,
     instead: bool,
     every_column: bool,
     form: str,
@@ -69,7 +71,7 @@ def check(
 
     typed = TypedPoint(alpha, beta, physical)
     numbers = typed.numbers
-    if physical and numbers and h is None and not (engine or scene or omega):
+    if physical and numbers and h is None and not (engine or scene or omega or load):
         check_speed(None, speed)
         found = [step_answer(method, *numbers) for method in methods_for(methods, None)]
         show_answers(STEPS, found, [answer.sentence for answer in found])
@@ -78,7 +80,7 @@ def check(
     given = Given(point=typed.at(h), values=values, as_typed=as_typed)
     methods, given, asked = worked_out(
         lambda: asked_to_check(
-            methods, given, h=h, engine=named, omega=omega, scene=scene, speed=speed, duration=duration
+            methods, given, h=h, engine=named, omega=omega, scene=scene, speed=speed, duration=duration, load=load
         ),
         scene,
     )

@@ -67,6 +67,7 @@ def check(
     speed: Number = 1,
     duration: Number | None = None,
     spread: float = USUAL_SPREAD,
+    load: Number | None = None,
     margins: bool = True,
     cost: bool = True,
     instead: bool = False,
@@ -83,6 +84,7 @@ def check(
         times the least error the feedback makes; with `omega`, `energy_rate` what it does to the motion.
     scene, speed, duration: a mechanism that moves so many times as fast as given there, and how long (s) it is run.
     spread: the share by which alpha and beta may be off, for `worst`.
+    load: a steady load over the mass that it acts on, in m/s^2 or rad/s^2, for `sag`: in an engine.
     margins, cost, instead: what else is wanted: how far h, alpha and beta may each go alone; the errors on the motion;
         what `choose` gives in its place.
 
@@ -114,6 +116,7 @@ def check(
         speed=exact_number(speed, "speed"),
         duration=exact_or_none(duration, "duration"),
         spread=real_number(spread, "spread"),
+        load=exact_or_none(load, "load"),
     )
     found = checks(methods, given, asked, margins=margins, cost=cost, instead=instead)
     return next((answer for answer in found if not answer.safe), found[0])
@@ -131,6 +134,7 @@ def asked_to_check(
     speed: Fraction = Fraction(1),
     duration: Fraction | None = None,
     spread: float = USUAL_SPREAD,
+    load: Fraction | None = None,
 ) -> tuple[tuple[Method, ...], Given, Conditions]:
     """Return the methods, what is judged, and the conditions; InputError for what does not go together."""
     if given.values is not None and h is None:
@@ -151,6 +155,7 @@ def asked_to_check(
         speed=speed,
         duration=duration,
         spread=spread,
+        load=load,
     )
     return methods, given, asked
 

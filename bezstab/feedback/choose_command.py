@@ -9,7 +9,7 @@ import click
 
 from bezstab.cli import shared_options as shared
 from bezstab.cli.asking import say_each, say_what_is_left_out, show_sentences
-from bezstab.cli.options import ENGINE, SECONDS, SHARE
+from bezstab.cli.options import ENGINE, POSITIVE, SECONDS, SHARE
 from bezstab.cli.output import for_reading, progress, show_answers, worked_out
 from bezstab.goals import GOALS, Goal
 
@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 @click.option("--spread", type=SHARE, default="0.1", help="The share by which α and β may be wrong.")
 @click.option("--keep", "equal", type=click.Choice(["alpha=beta"]), help="Only points with α = β.")
 @click.option("--engine", type=ENGINE, help="Only what this engine can express, with the line to paste.")
+@click.option("--sag", type=POSITIVE, help="In place of a goal: the weakest that sags by at most so many m or rad.")
+@shared.load
 @shared.methods
 @click.option("--h", type=SECONDS, help="Step in s. Not needed with --omega where α and β are multiples of ω.")
 @click.option("--h-max", type=SECONDS, help="Largest step in s that can occur; for accurate and robust [--h].")
@@ -41,6 +43,8 @@ def choose(
     spread: float,
     equal: str | None,
     engine: Engine | None,
+    sag: Fraction | None,
+    load: Fraction | None,
     methods: tuple[Method, ...],
     h: Fraction | None,
     h_max: Fraction | None,
@@ -69,11 +73,11 @@ def choose(
     """
 
     from bezstab.feedback.checking import step_answer_of
-    from bezstab.feedback.choosing import Wish, asked_to_choose, choices, usual_goal
+    from bezstab.feedback.choosing import asked_to_choose, choices, wish_of
     from bezstab.feedback.columns import CHOSEN, STEPS, spare_words, trade_words
     from bezstab.feedback.sentences import motion_words
 
-    wish = Wish(goal or usual_goal(engine, methods), settle, equal is not None)
+    wish = wish_of(goal, settle, equal is not None, sag, engine, methods)
     methods, asked = worked_out(
         lambda: asked_to_choose(
             methods,
@@ -86,6 +90,7 @@ def choose(
             speed=speed,
             duration=duration,
             spread=spread,
+            load=load,
         ),
         scene,
     )

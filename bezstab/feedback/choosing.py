@@ -20,12 +20,13 @@ from bezstab.mechanism.scenes import Scene
 from bezstab.methods.registry import method as method_named
 from bezstab.methods.schemes import Method
 from bezstab.questions.methods import methods_for
-from bezstab.rationals import typed_number
+from bezstab.rationals import rational, typed_number
 from bezstab.stability.choices import USUAL_SPREAD, Choice, describe_point
 from bezstab.stability.choices import choose as choose_point
 from bezstab.stability.closed_loop import Modulus
 from bezstab.stability.feedback_costs import FeedbackCost, feedback_cost, follows_motion
 from bezstab.stability.forced_errors import OMEGA_H
+from bezstab.stability.rest_offsets import GRAVITY, least_feedback, offset_at_rest
 from bezstab.stability.turning import LAW_HOLDS, moving_modulus
 from bezstab.units import from_dimensionless
 
@@ -38,11 +39,15 @@ SLOWER = 2
 
 @dataclass(frozen=True)
 class Wish:
-    """What a choice is for: a goal, the time (s) in which errors are to settle, and whether alpha = beta."""
+    """What a choice is for: a goal, the time (s) in which errors are to settle, and whether alpha = beta.
+
+    With a `sag` (m or rad), it is the weakest feedback that sags no further under the load, whatever the goal.
+    """
 
     goal: Goal
     settle: Fraction | None = None
     equal: bool = False
+    sag: Fraction | None = None
 
 
 @dataclass(frozen=True)
@@ -119,6 +124,8 @@ def choose(
     settle: Number | None = None,
     spread: float = USUAL_SPREAD,
     equal: bool = False,
+    sag: Number | None = None,
+    load: Number | None = None,
     engine: str | None = None,
     scene: str | Scene | None = None,
     speed: Number = 1,
@@ -146,6 +153,8 @@ def choose(
         is for use at h, and omega_h is that of h_max.
     spread: the share by which alpha and beta may be off.
     equal: only points with alpha = beta.
+    sag, load: in place of a goal, the weakest feedback of an engine that sags by at most `sag` (m or rad) under a load,
+        given over the mass that it acts on, in m/s^2 or rad/s^2 [that of gravity].
     engine: a name, such as "mujoco": only what that engine can express is searched; `setting` is the line to paste.
     scene, speed, duration: a mechanism that moves so many times as fast as given there, and how long (s) it is run.
     margins, cost, trades: what else is wanted: how far h, alpha and beta may grow; the errors on the motion; what
@@ -167,7 +176,7 @@ def choose(
     """
     named = None if engine is None else engine_named(engine)
     given = () if method is None else (method_named(method),)
-    wish = Wish(goal or usual_goal(named, given), exact_or_none(settle, "settle"), equal)
+    wish = wish_of(goal, exact_or_none(settle, "settle"), equal, exact_or_none(sag, "sag"), named, given)
     methods, asked = asked_to_choose(
         given,
         wish,
@@ -180,8 +189,27 @@ def choose(
         speed=exact_number(speed, "speed"),
         duration=exact_or_none(duration, "duration"),
         spread=real_number(spread, "spread"),
+        load=exact_or_none(load, "load"),
     )
     return choose_answer(methods[0], wish, asked, margins=margins, cost=cost, trades=trades)
+
+
+def wish_of(
+    goal: Goal | None,
+    settle: Fraction | None,
+    equal: bool,
+    sag: Fraction | None,
+    engine: Engine | None,
+    methods: tuple[Method, ...],
+) -> Wish:
+    """Return what a choice is for, by the usual goal where none is named; InputError for a sag beside a goal."""
+    if sag is None:
+        return Wish(goal or usual_goal(engine, methods), settle, equal)
+    if goal or settle or equal:
+        raise InputError("--sag takes the place of --goal, --settle and --keep")
+    if engine is None:
+        raise InputError("--sag needs --engine: a hard constraint does not sag")
+    return Wish("robust", sag=sag)
 
 
 def asked_to_choose(
@@ -197,6 +225,7 @@ def asked_to_choose(
     speed: Fraction = Fraction(1),
     duration: Fraction | None = None,
     spread: float = USUAL_SPREAD,
+    load: Fraction | None = None,
 ) -> tuple[tuple[Method, ...], Conditions]:
     """Return the methods and the conditions of a choice; InputError for what does not go together.
 
@@ -216,7 +245,10 @@ def asked_to_choose(
         speed=speed,
         duration=duration,
         spread=spread,
+        load=GRAVITY if load is None and wish.sag is not None else load,
     )
+    if wish.sag is not None:
+        return methods, asked  # one constraint alone: `chain` adds up what many sag
     if wish.goal == "accurate" and wish.settle is None:
         for method in methods:
             check_motion(method, asked, equal=wish.equal)
@@ -280,11 +312,13 @@ def choose_answer(
     if role == "chosen":
         _check_expressed(asked, chosen)
     judged = judge(asked, chosen, role, margins=margins, cost=cost)
-    safe_with = _safe_with(judged, wish) if role == "chosen" and not judged.safe else None
+    safe_with = _safe_with(judged, wish) if role == "chosen" and not judged.safe and wish.sag is None else None
     return ChooseAnswer(
         **vars(judged),
         safe_with=safe_with,
-        trades=_trades(judged, wish) if trades and judged.cost and judged.cost.total_error is not None else None,
+        trades=_trades(judged, wish)
+        if trades and wish.sag is None and judged.cost and judged.cost.total_error is not None
+        else None,
         spare=_spare(judged, wish),
         sentence=judgement_sentence(judged, safe_with),
     )
@@ -317,6 +351,8 @@ def _chosen(method: Method, wish: Wish, asked: Conditions, *, margins: bool) -> 
 
 def _chosen_alone(method: Method, wish: Wish, asked: Conditions, *, margins: bool) -> Choice:
     """Return the choice of a goal for one constraint; if its goal is one of UP_TO_LONGEST, for all steps to h_max."""
+    if wish.sag is not None:
+        return _sags_no_further(method, wish.sag, asked, margins=margins)
     modulus: Modulus | None = None
     if asked.turning and asked.h:
         turned = asked.turning.kappa * float(asked.h_max or asked.h)
@@ -334,6 +370,20 @@ def _chosen_alone(method: Method, wish: Wish, asked: Conditions, *, margins: boo
         omega_h=asked.motion.omega_h_max,
         margins=margins,
     )
+
+
+def _sags_no_further(method: Method, sag: Fraction, asked: Conditions, *, margins: bool) -> Choice:
+    """Return the weakest feedback that the engine expresses and that sags by at most so much (m or rad)."""
+    assert asked.engine
+    assert asked.h is not None
+    assert asked.load is not None
+    found = least_feedback(asked.engine, method, asked.h, asked.load, sag, asked.spread)
+    if found is None:
+        raise InputError(f"--sag {float(sag):g}: no feedback of {asked.engine.name} that is stable sags so little")
+    values = tuple(map(rational, asked.engine.values(found, asked.h)))
+    if not offset_at_rest(asked.engine, values, asked.h, asked.load):
+        raise InputError(f"--sag: {asked.engine.name} holds a load without an offset; choose by a --goal")
+    return describe_point(method, "sag", *found, asked.spread, margins)
 
 
 def _curve(wish: Wish, asked: Conditions) -> Curve | None:
@@ -367,8 +417,10 @@ def _is_safe(method: Method, wish: Wish, asked: Conditions) -> bool:
         return False
 
 
-def _trades(judged: Judgement, wish: Wish) -> Trades:
-    """Return what a choice that decays faster would cost, and one that decays slower gain."""
+def _trades(judged: Judgement, wish: Wish) -> Trades | None:
+    """Return what a choice that decays faster would cost, and one that decays slower gain; None without errors."""
+    if judged.cost is None or judged.cost.total_error is None:
+        return None
     z_abs, faster = abs(judged.pole), None
     for goal in ("robust", "fastest"):
         other = _alternative(judged, Wish(goal, None, wish.equal))

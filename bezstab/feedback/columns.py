@@ -296,6 +296,15 @@ JUDGED: Sequence[Column[Judgement]] = (
         brief=True,
     ),
     *of_part(_swept, SWEPT),
+    Column(
+        "sag",
+        "sag",
+        lambda answer: answer.sag,
+        "offset at rest of one constraint under the load",
+        "m or rad",
+        ".4g",
+        True,
+    ),
     Column("to paste", "setting", lambda answer: answer.setting, "what to write in the engine's words", brief=True),
 )
 

@@ -32,7 +32,8 @@ class Conditions:
     the motion on which errors are told. scene, speed: the mechanism as it was given; mechanism: the same, that runs;
     turning: how the normals of its constraints turn. duration: how long (s) it is to run, None for as long as is usual.
     swept: the constraints over which the engine sweeps; None for one alone, and if it is not known how it sweeps.
-    spread: the share by which alpha and beta may be off. warnings: what is to be known before any answer.
+    spread: the share by which alpha and beta may be off. load: a steady one, as the acceleration that it would give an
+    error that nothing holds (m/s^2 or rad/s^2). warnings: what is to be known before any answer.
     """
 
     h: Fraction | None
@@ -47,6 +48,7 @@ class Conditions:
     duration: float | None
     swept: SweptConstraints | None
     spread: float
+    load: Fraction | None
     warnings: tuple[str, ...]
 
     @property
@@ -66,6 +68,7 @@ def conditions(
     speed: Fraction = Fraction(1),
     duration: Fraction | None = None,
     spread: float = USUAL_SPREAD,
+    load: Fraction | None = None,
 ) -> Conditions:
     """Return the conditions of a question, the scene loaded and its motion followed.
 
@@ -77,6 +80,8 @@ def conditions(
             check_step(step, name)
     check_speed(scene, speed)
     _check_duration(duration, scene, h)
+    if load is not None and engine is None:
+        raise InputError("--load needs --engine: a hard constraint holds any load without an offset")
     swept = _swept(engine, h, scene, speed)
     turning = turning_of(scene, speed, h)
     try:
@@ -99,6 +104,7 @@ def conditions(
         duration=None if duration is None else float(duration),
         swept=swept,
         spread=spread,
+        load=load,
         warnings=tuple(turn_too_far({speed: turning}, scene, h)),
     )
 

@@ -21,6 +21,7 @@ from bezstab.rationals import rational
 from bezstab.stability.choices import Choice, steps_to_settle
 from bezstab.stability.feedback_costs import FeedbackCost, feedback_cost
 from bezstab.stability.margins import Margins, largest_stable_step
+from bezstab.stability.rest_offsets import offset_at_rest
 from bezstab.stability.turning import MovingPole, moving_pole
 from bezstab.units import alpha_and_beta
 
@@ -55,6 +56,8 @@ class Judgement:
     moving: bounds on the poles as the scene moves; run: what a run of it showed; None without a scene. swept: what the
     engine's sweeps do to many constraints; swept_over: for which constraints all this holds, in an engine that sweeps.
     setting: the line to paste for a point that was chosen. applied: what the engine did to values that were given.
+
+    sag: how far (m or rad) one constraint alone rests from its place under the load; None without a load.
 
     safe: whether every error is proven to shrink. Of a scene a run must go through as well, with constraints that hold
     and no energy gained; where the bound on the moving mechanism settles nothing, the run decides. For constraints that
@@ -92,6 +95,7 @@ class Judgement:
     swept_over: str | None
     setting: str | None
     applied: str | None
+    sag: float | None
     safe: bool
 
     def __bool__(self) -> bool:
@@ -167,6 +171,7 @@ def judge(
         swept_over=_swept_over(engine, swept),
         setting=setting,
         applied=applied,
+        sag=_sag(asked, choice, values),
         safe=_safe(choice, moving, run, swept),
     )
 
@@ -186,6 +191,13 @@ def _run(asked: Conditions, choice: Choice, moving: MovingPole | None) -> SceneR
     if asked.mechanism is None or asked.h is None or grows:
         return None
     return scene_run(asked.mechanism, choice.method, asked.h, choice.point, asked.duration)
+
+
+def _sag(asked: Conditions, choice: Choice, values: Sequence[Fraction] | None) -> float | None:
+    """Return how far one constraint rests from its place; None without a load, and where errors do not decay."""
+    if asked.load is None or asked.engine is None or asked.h is None or values is None or choice.verdict != "converges":
+        return None
+    return abs(offset_at_rest(asked.engine, values, asked.h, asked.load))
 
 
 def _cost(asked: Conditions, choice: Choice, role: Role) -> tuple[FeedbackCost | None, str | None]:

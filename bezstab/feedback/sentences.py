@@ -42,6 +42,8 @@ def judgement_sentence(judged: Judgement, safe_with: str | None = None) -> str:
     said = _swept(judged, swept) if swept else _errors(judged)
     if judged.safe and not judged.swept_over:  # more of one constraint alone means nothing for a chain of them
         said += _growth(judged)
+    if judged.sag is not None:
+        said.append(_at_rest(judged.sag))
     if safe_with:
         said.append(f"with {safe_with} it is safe")
     motion = judged.conditions.motion
@@ -49,6 +51,13 @@ def judgement_sentence(judged: Judgement, safe_with: str | None = None) -> str:
         said.append(f"without --omega {_assumed(motion.omega_h, judged.conditions.seconds)} is assumed")
     place = point_words(judged.alpha_hat, judged.beta_hat, h)
     return " ".join([f"{place}: {safe}.", *map(_sentence, said)])
+
+
+def _at_rest(sag: float) -> str:
+    """Return how far one constraint is off under its load: a length, or the angle of a joint that turns."""
+    if not sag:
+        return "under the load it does not sag"
+    return f"under the load it rests {1000 * sag:.3g} mm off (of an angle {math.degrees(sag):.3g}°)"
 
 
 def _sentence(said: str) -> str:

@@ -144,3 +144,30 @@ def test_chipmunk_would_get_a_line_that_lets_ten_bodies_grow_if_one_alone_were_a
     setting, sweeps = spare.alone
     assert swept.growth((Fraction(setting.rpartition("=")[2].strip()),)).factor > 1.05
     assert (spare.sweeps, sweeps) == (10, 19)
+
+
+@pytest.mark.parametrize(("engine", "h", "sag"), [("mujoco", "0.002", "0.001"), ("jolt-spring", "1/60", "0.002")])
+def test_a_sag_is_kept_to_by_the_line_to_paste_and_by_no_weaker_one(engine: str, h: str, sag: str) -> None:
+    """What sags more is softer; MuJoCo's own row holds its offset against MuJoCo: tests/stability."""
+    chosen = choose(engine=engine, h=h, sag=sag)
+    assert chosen.safe
+    assert chosen.sag == pytest.approx(float(sag), rel=1e-6)
+    values = ENGINES[engine].values(chosen.point, Fraction(h))
+    again = check(engine=f"{engine}={','.join(values)}", h=h, load="9.81")
+    assert again.sag == pytest.approx(chosen.sag, rel=1e-6)
+    twice = choose(engine=engine, h=h, sag=sag, load="19.62")
+    assert twice.beta_hat > 1.5 * chosen.beta_hat
+
+
+@pytest.mark.parametrize(
+    ("asked", "message"),
+    [
+        ({"engine": "box2d", "h": "1/60", "sag": "1e-9"}, "no feedback of box2d that is stable sags so little"),
+        ({"engine": "bullet", "h": "1/60", "sag": "0.001"}, "bullet holds a load without an offset"),
+        ({"engine": "mujoco", "h": "1/60", "sag": "0.001", "goal": "robust"}, "sag takes the place of goal"),
+        ({"method": "RK4", "h": "1/60", "sag": "0.001"}, "sag needs engine"),
+    ],
+)
+def test_a_sag_that_means_nothing_is_refused(asked: dict[str, Any], message: str) -> None:
+    with pytest.raises(InputError, match=message):
+        choose(**asked)
