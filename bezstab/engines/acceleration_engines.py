@@ -124,7 +124,7 @@ MUJOCO = Engine(
         "MuJoCo: solref = 0.02 1": "0.02 1 0.95 0.95",
     },
     source="MuJoCo documentation, Modeling, Constraint parameters: Reference; engine_core_constraint.c",
-    excludes="the soft bias of 1 - d; the shape of solimp between no error and its width; implicit joint damping; "
+    excludes="but for a load, the soft bias of 1 - d and the shape of solimp up to its width; implicit joint damping; "
     "contacts; integrator RK4, for which give --method RK4",
 )
 
