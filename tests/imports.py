@@ -19,6 +19,7 @@ ROOMS = (
     "regions",
     "runs",
     "feedback",
+    "catalogue",
     "chains",
     "drives",
     "step_sequences",

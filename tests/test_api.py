@@ -13,7 +13,7 @@ from bezstab.errors import InputError
 from bezstab.feedback.columns import CHECKED, CHOSEN
 from bezstab.goals import GOALS, Goal
 from bezstab.show.columns import row_of
-from bezstab.show.tables import render
+from bezstab.show.tables import for_programs
 from tests.cli.running import DATA, rows, run
 
 TESTS = Path(__file__).parent
@@ -80,7 +80,7 @@ def test_python_answers_what_the_command_line_answers(typed: str, asked: dict[st
     printed = json.loads(run(typed, "--format json").stdout)
     answer = getattr(bezstab, command)(**asked)
     columns = CHECKED if command == "check" else CHOSEN
-    assert printed[0] == json.loads(render([row_of(columns, answer)], [], "json"))[0]
+    assert printed[0] == json.loads(for_programs([row_of(columns, answer)], "json"))[0]
 
 
 def test_of_several_answers_the_first_that_is_not_safe_is_returned() -> None:

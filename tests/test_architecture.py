@@ -6,7 +6,7 @@ other; only appointed files see a library.
 
     paper                  an extension: the main group finds its command by name
       |
-    subjects               a folder for each: chains, drives, step_sequences, probes, mujoco
+    subjects               a folder for each: catalogue, chains, drives, step_sequences, probes, mujoco
       |
     regions, runs, api     regions and methods; runs of mechanisms, and whether predictions hold; the rest in Python
       |         |
@@ -55,7 +55,7 @@ STRANGERS = {
 SHARED_WITH_EXTENSIONS = {"cli.options", "cli.output", "cli.shared_options"}
 """What a command outside the room `cli`, such as the paper's, is written with."""
 
-SUBJECTS = {"chains", "drives", "mujoco", "probes", "step_sequences"}
+SUBJECTS = {"catalogue", "chains", "drives", "mujoco", "probes", "step_sequences"}
 """Folders of one question each, with its command and its figure: each name is imported from where it is defined."""
 
 APPOINTED = {

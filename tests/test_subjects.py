@@ -11,6 +11,7 @@ import pytest
 from tests.imports import PACKAGE
 
 COMMANDS = {
+    "catalogue": "engines",
     "chains": "chain",
     "drives": "drive",
     "mujoco": "lint",

@@ -28,7 +28,7 @@ COMMANDS: Mapping[str, Mapping[str, str]] = {
         "steps": "bezstab.step_sequences.command",
         "drive": "bezstab.drives.command",
         "lint": "bezstab.mujoco.command",
-        "engines": "bezstab.cli.engines_command",
+        "engines": "bezstab.catalogue.command",
         "chain": "bezstab.chains.command",
     },
     "Evidence": {

@@ -1,32 +1,27 @@
-"""Every option that commands share, declared once; the types of values; rules for options that are typed together."""
+"""The types of options' values, and what was typed."""
 
 import os
 import re
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
-from dataclasses import dataclass, fields
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 from fractions import Fraction
-from functools import partial, wraps
+from functools import partial
 from pathlib import Path
-from typing import Any, get_args
+from typing import Any
 
 import click
 from click.shell_completion import CompletionItem
 
-from bezstab.cli.output import NOTES, Files
+from bezstab.cli.output import NOTES
 from bezstab.compiling import COMPILED_CHOICE, compiler
 from bezstab.engines.conversions import Engine, Point
 from bezstab.engines.engine_list import ENGINES, engine_and_values, engine_named
 from bezstab.errors import InputError
 from bezstab.methods.registry import REGISTRY, lookup
 from bezstab.rationals import rational
-from bezstab.show.file_forms import FIGURE_FORMS, TABLE_FORMS
-from bezstab.show.tables import Format
 from bezstab.units import LEAST_STEP, LONGEST_STEP, to_dimensionless
 
 EngineValues = tuple[Engine, tuple[Fraction, ...]]
-Function = Callable[..., Any]
-Option = Callable[..., click.Option]
-"""`click.Option`, with all but what a command may change of the option."""
 
 MOST_IN_SEQUENCE = 10**6  # steps: a run of minutes
 USUAL_METHODS = ("B2", "B3", "B4", "AB2", "AB3", "AB4", "RK4@5", "SIE")
@@ -122,16 +117,6 @@ ENGINE_VALUES = ParsedType("name[=values]", _engine_values, lambda: [f"{name}=" 
 SCENE = ParsedType("scene", str, _scenes)
 
 
-def option(names: str, kind: Any, meaning: str, **more: Any) -> Option:
-    """Return an option: its names as `click.Option` has them, with spaces between; its values' type; its help."""
-    return partial(click.Option, names.split(), type=kind, help=meaning, **more)
-
-
-def flag(names: str, meaning: str) -> Option:
-    """Return an option without a value."""
-    return partial(click.Option, names.split(), is_flag=True, help=meaning)
-
-
 def choose_compiled(_context: click.Context, _option: click.Parameter, choice: str) -> None:
     """Set the environment variable to the value of the option: worker processes inherit it.
 
@@ -144,79 +129,6 @@ def choose_compiled(_context: click.Context, _option: click.Parameter, choice: s
 
 A_METHOD = "A method's name, as `bezstab methods` lists it, or a .toml file; NAME@m takes steps of m h."
 
-OPTIONS = {
-    "methods": option("--method methods", METHOD, f"{A_METHOD} Repeatable.", multiple=True),
-    "method": option("--method", METHOD, A_METHOD),
-    "alpha": option("--alpha", NUMBER, "α̂ as a decimal or a fraction, read exactly. With --physical: α in 1/s."),
-    "beta": option("--beta", NUMBER, "β̂ as a decimal or a fraction, read exactly. With --physical: β in 1/s."),
-    "physical": flag("--physical", "--alpha and --beta are α and β in 1/s; needs --h."),
-    "h": option("--h", SECONDS, "Step size in s."),
-    "engine": option("--engine", ENGINE, "Choose only what this engine can express, and print the line to paste."),
-    "engine_values": option(
-        "--engine",
-        ENGINE_VALUES,
-        "An engine's own values, such as mujoco=0.02,1 [its defaults], in place of --alpha and --beta; needs --h.",
-    ),
-    "scene": option("--scene", SCENE, "A shipped scene's name, or a .toml file."),
-    "speed": option(
-        "--speed", SPEED, "Multiply the speed of the scene's drivers and initial velocities by this.", default="1"
-    ),
-    "omega": option(
-        "--omega",
-        POSITIVE,
-        "The rate of the mechanism's motion in 1/s. The errors that the feedback makes depend on it. Needs --h [the "
-        "rate of --scene, else ωh = 0.01].",
-    ),
-    "duration": option("--time duration", SECONDS, "Duration in s."),
-    "compiled": option(
-        "--compiled",
-        click.Choice(["auto", "yes", "no"]),
-        "Compile runs of explicit methods without projection, with numba. auto: if numba is installed and compiling "
-        "saves time.",
-        default="auto",
-        envvar=COMPILED_CHOICE,
-        expose_value=False,
-        callback=choose_compiled,
-    ),
-    "output": option("-o --output", click.Path(path_type=Path), "Directory for what is written.", default="."),
-    "figure": option("--figure", click.Choice([*FIGURE_FORMS, "none"]), "Format of the figure.", default="png"),
-    "form": option(
-        "--format form", click.Choice(get_args(Format)), "What to print on standard output.", default="text"
-    ),
-    "table": option("--table", click.Choice([*TABLE_FORMS, "none"]), "Format of the table.", default="none"),
-}
-"""The options that several commands take. Most are called like the field of a question that they give."""
-
-
-def changed(name: str, **more: Any) -> Option:
-    """Return the option of that name in OPTIONS as one command has it, with another default, help or type."""
-    return partial(OPTIONS[name], **more)
-
-
-@dataclass(frozen=True)
-class Rule:
-    """Each of some options needs one of some others, and excludes others; `why` is the reason that a message gives.
-
-    The options may be "--stabilise none": with that value alone.
-    """
-
-    options: tuple[str, ...]
-    why: str
-    needs: tuple[str, ...] = ()
-    excludes: tuple[str, ...] = ()
-
-    def check(self) -> None:
-        """Raise UsageError if the options of the running command break this rule."""
-        typed = typed_options()
-        with_values = {f"{option} {value}" for option, value in typed.items()}
-        for option in self.options:
-            if option not in with_values | typed.keys():
-                continue
-            if self.needs and typed.keys().isdisjoint(self.needs):
-                one_of = "one of " if len(self.needs) > 1 else ""
-                raise click.UsageError(f"{option} needs {one_of}{', '.join(self.needs)}: {self.why}")
-            refuse_beside(option, {*self.excludes} - {option}, self.why)
-
 
 def typed_options() -> dict[str, Any]:
     """Return the values that the user gave the running command, each by the long name of its option."""
@@ -227,33 +139,6 @@ def typed_options() -> dict[str, Any]:
         for name, option in names.items()
         if context.get_parameter_source(name) == click.core.ParameterSource.COMMANDLINE
     }
-
-
-def refuse_beside(option: str, others: Collection[str], why: str) -> None:
-    """Raise UsageError if one of the others was typed together with that option in the running command."""
-    for other in sorted(typed_options().keys() & set(others)):
-        raise click.UsageError(f"{other} does not go with {option}: {why}")
-
-
-GROUPS: Mapping[str, tuple[str | Option | Rule, ...]] = {
-    "point": ("alpha", "beta", "physical"),
-    "given_point": (  # in the plane, or by an engine's own values
-        "point",
-        changed("h", help="Step size in s, for --physical, --engine, --scene and --omega."),
-        "engine_values",
-        flag(
-            "--as-typed",
-            "With --engine: take the values as typed, without what the engine does to them, such as clamps.",
-        ),
-        Rule(("--engine",), "it gives the point itself", excludes=("--alpha", "--beta", "--physical")),
-    ),
-    "picture": (
-        "output",
-        "figure",
-    ),
-    "files": ("picture", "table"),
-}
-"""Options that go together, by a name for all of them, with their rules."""
 
 
 @dataclass(frozen=True)
@@ -282,42 +167,3 @@ class TypedPoint:
         if h is None:
             raise click.UsageError("--physical needs --h: α and β in 1/s need the step in s")
         return to_dimensionless(*self.numbers, h)
-
-
-GATHERED = {"point": TypedPoint, "files": Files}
-"""What a command gets as one value, whose fields are the options that it takes of these."""
-
-
-def command(*options: str | Option | Rule) -> Callable[[Function], click.Command]:
-    """Return a decorator that makes a command with options, in this order: of OPTIONS or GROUPS, changed, or its own.
-
-    Rules are checked before the command runs. The command does not get --format: `bezstab.cli.output` knows it.
-    """
-    every = list(_one_by_one(options))
-
-    def with_options(function: Function) -> click.Command:
-        @wraps(function)
-        def checked(**typed: Any) -> Any:
-            for rule in every:
-                if isinstance(rule, Rule):
-                    rule.check()
-            typed.pop("form", None)
-            for parameter, kind in GATHERED.items():
-                if own := {field.name: typed.pop(field.name) for field in fields(kind) if field.name in typed}:
-                    typed[parameter] = kind(**own)
-            return function(**typed)
-
-        return click.command(params=[each() for each in every if not isinstance(each, Rule)])(checked)
-
-    return with_options
-
-
-def _one_by_one(options: Iterable[str | Option | Rule]) -> Iterator[Option | Rule]:
-    """Yield options and rules for their names, and one by one for the names of groups."""
-    for each in options:
-        if not isinstance(each, str):
-            yield each
-        elif each in GROUPS:
-            yield from _one_by_one(GROUPS[each])
-        else:
-            yield OPTIONS[each]

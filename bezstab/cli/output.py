@@ -4,7 +4,7 @@ import re
 import shutil
 import sys
 import textwrap
-from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
@@ -15,8 +15,8 @@ import click
 
 from bezstab.files import output_directory, write_whole
 from bezstab.show.columns import Column, row_of
-from bezstab.show.fields import MISSING, Row, RowKind, visible
-from bezstab.show.tables import Format, block, fits, lines_below, render, table, wrapped
+from bezstab.show.fields import MISSING, Row, visible
+from bezstab.show.tables import Format, fits, for_programs, lines_below, table, wrapped
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -51,21 +51,6 @@ def for_reading() -> bool:
     return chosen_format() in ("text", "markdown")
 
 
-def show_rows(kind: RowKind, found: Iterable[Row], without: Collection[str] = (), *, in_blocks: bool = False) -> None:
-    """Print rows of a kind on standard output; `without` as RowKind.columns.
-
-    As text, a single row is a block of lines below its sentence; so is each row of a table wider than the terminal, and
-    with `in_blocks` of every table.
-    """
-    form, rows = chosen_format(), list(found)
-    columns = kind.columns(rows, without) if for_reading() else []
-    answer = render(rows, columns, form)
-    if form == "text" and rows and (in_blocks or len(rows) == 1 or not fits(answer, text_width())):
-        blocks = [block(row, columns, text_width(), kind.sentence(row)) for row in rows]
-        answer = "\n\n".join(blocks)
-    click.echo(answer)
-
-
 def show_answers(
     columns: Sequence[Column[Item]], answers: Sequence[Item], sentences: Sequence[str], *, in_blocks: bool = False
 ) -> None:
@@ -75,7 +60,7 @@ def show_answers(
     than the terminal, unless they are to be `in_blocks`. A command without --all shows every one.
     """
     if not for_reading():
-        click.echo(render([row_of(columns, answer) for answer in answers], [], chosen_format()))
+        click.echo(_for_programs([row_of(columns, answer) for answer in answers]))
         return
     shown = _shown(columns, answers, click.get_current_context().params.get("every_column", True))
     if in_blocks and chosen_format() == "text":
@@ -96,12 +81,17 @@ def show_tables(
         every_column = click.get_current_context().params.get("every_column", True)
     if not for_reading():
         rows = [row_of(columns, answer) for columns, answers in parts for answer in answers]
-        click.echo(render(rows, [], chosen_format()))
+        click.echo(_for_programs(rows))
         return
     for columns, answers in parts:
         shown = _shown(columns, answers, every_column)
         if answers and shown:
             click.echo(f"\n{_table_or_blocks(shown, answers, [''] * len(answers), table_of_one=True)}")
+
+
+def _for_programs(rows: Sequence[Row]) -> str:
+    """Return rows as JSON or CSV, as the running command's --format says."""
+    return for_programs(rows, "csv" if chosen_format() == "csv" else "json")
 
 
 def _shown(columns: Sequence[Column[Item]], answers: Sequence[Item], every_column: bool) -> list[Column[Item]]:

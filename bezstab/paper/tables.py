@@ -13,8 +13,8 @@ from bezstab.methods.registry import lookup
 from bezstab.paper.experiments import KICK, KICKS, STEP, TABLE_4, compared_runs, kicked_runs, largest, pole
 from bezstab.paper.printed import FASTER_LEVEL, TABLE_5, TABLE_6
 from bezstab.show.cells import pole_words
-from bezstab.show.fields import Row, column, formatted
-from bezstab.show.tables import render
+from bezstab.show.fields import Row, formatted
+from bezstab.show.tables import table
 
 ROUNDED = 1e-13  # m: below, c_1 is rounding amplified by beta^2 h^2 / |1 - z|, and differs between machines
 HALF_A_DIGIT = 0.5001  # of the last place: what rounding may take, and a little for the float64 that is rounded
@@ -26,8 +26,8 @@ RECORDED = Path(__file__).parent / "table6_times.json"
 
 def captioned_table(caption: str, rows: Sequence[Row]) -> str:
     """Return rows, their values by heading, as Markdown below a caption."""
-    columns = [column(heading, heading) for heading in rows[0]]
-    return f"{caption}\n\n{render(rows, columns, 'markdown')}\n"
+    lines = [list(rows[0]), *(list(map(formatted, row.values())) for row in rows)]
+    return f"{caption}\n\n{table(lines, 'markdown')}\n"
 
 
 def steps_table() -> str:

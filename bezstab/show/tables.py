@@ -1,4 +1,4 @@
-"""Rows as text: a table, a block of lines for each on a narrow terminal, Markdown, CSV or JSON; and text that wraps."""
+"""Answers as text: tables, lines below a sentence, Markdown; rows as CSV or JSON; and text that wraps."""
 
 import csv
 import io
@@ -8,7 +8,7 @@ import unicodedata
 from collections.abc import Sequence
 from typing import Literal
 
-from bezstab.show.fields import MISSING, Field, Row, visible
+from bezstab.show.fields import MISSING, Row, visible
 
 Format = Literal["text", "json", "csv", "markdown"]
 
@@ -17,18 +17,12 @@ GAP = "  "
 """Between a heading and its value, and between the columns of a table."""
 
 
-def render(rows: Sequence[Row], columns: Sequence[Field], form: Format) -> str:
-    """Return the rows in the given form: every key for json and csv, the chosen columns for text and markdown.
-
-    A key that only other rows have is missing: null, an empty cell, a dash; every row has the same.
-    """
+def for_programs(rows: Sequence[Row], form: Literal["json", "csv"]) -> str:
+    """Return every key of the rows; a key that only other rows have is null, or an empty cell."""
     nothing = dict.fromkeys(key for row in rows for key in row)
     if form == "json":
         return json.dumps([{**nothing, **row} for row in rows], indent=2, allow_nan=False)
-    if form == "csv":
-        return _comma_separated(rows, list(nothing))
-    headings = [column.heading for column in columns]
-    return table([headings, *([column.cell(row) for column in columns] for row in rows)], form)
+    return _comma_separated(rows, list(nothing))
 
 
 def _comma_separated(rows: Sequence[Row], keys: Sequence[str]) -> str:
@@ -73,11 +67,6 @@ def wrapped(text: str, width: int) -> str:
         textwrap.fill(line, width=max(width, LEAST_ROOM), break_long_words=False, break_on_hyphens=False)
         for line in text.split("\n")
     )
-
-
-def block(row: Row, columns: Sequence[Field], width: int, sentence: str = "") -> str:
-    """Return the row as a line for each column that has a value, its heading in front, below the sentence."""
-    return lines_below(sentence, [(column.heading, column.cell(row)) for column in columns], width)
 
 
 def lines_below(sentence: str, values: Sequence[tuple[str, str]], width: int) -> str:

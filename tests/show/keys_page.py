@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from bezstab.catalogue import columns as catalogue
 from bezstab.chains import columns as chains
 from bezstab.drives import columns as drives
 from bezstab.feedback import columns as feedback
@@ -14,7 +15,6 @@ from bezstab.probes import columns as probes
 from bezstab.regions import columns as regions
 from bezstab.runs import columns as runs
 from bezstab.show.columns import Column
-from bezstab.show.row_kinds import ROW_KINDS
 from bezstab.step_sequences import columns as step_sequences
 
 PAGE = Path(__file__).parents[2] / "bezstab" / "show" / "keys.csv"
@@ -25,6 +25,7 @@ COLUMNS: Mapping[str, Sequence[Sequence[Column[Any]]]] = {
     "choose": [feedback.CHOSEN, feedback.STEPS],
     "poles": [feedback.POLES],
     "drive": [drives.COLUMNS],
+    "engines": [catalogue.COLUMNS],
     "lint": [mujoco.STATES, mujoco.SUSPECTS, mujoco.REMEDIES, mujoco.ENERGIES, mujoco.SAGS, mujoco.SETTINGS],
     "methods": [regions.LISTED, regions.WHOLE],
     "probe": [probes.POLES, probes.COMPARED, probes.FOUND],
@@ -47,11 +48,6 @@ def page() -> str:
 
 
 def _lines() -> Iterator[tuple[str, str, str, str]]:
-    for command, kinds in ROW_KINDS.items():
-        fields = {field.key: field for kind in kinds for field in (*kind.fields, *kind.added)}
-        for field in fields.values():
-            null = f"; null {field.null}" if field.null else ""
-            yield command, field.key, field.unit, f"{field.meaning}{null}"
     for command, tables in COLUMNS.items():
         columns = {column.key: column for table in reversed(tables) for column in table if column.key}
         yield from ((command, column.key, column.unit, column.meaning) for column in columns.values())

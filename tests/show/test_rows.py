@@ -1,4 +1,4 @@
-"""Fields, rows, and the tables and files that are made of them. Every command's rows: tests/cli/test_examples.py."""
+"""Columns, rows, and the tables and files that are made of them. Every command's rows: tests/cli/test_examples.py."""
 
 import csv
 import io
@@ -7,7 +7,6 @@ import math
 import re
 from dataclasses import replace
 from fractions import Fraction
-from types import SimpleNamespace
 from typing import Literal
 
 import numpy as np
@@ -17,49 +16,33 @@ from bezstab.feedback.checking import Given, asked_to_check
 from bezstab.feedback.columns import POLES
 from bezstab.feedback.poles import poles_at
 from bezstab.methods.registry import lookup
-from bezstab.show import row_kinds
+from bezstab.methods.schemes import Method, implicit
 from bezstab.show.arrays import write_arrays
 from bezstab.show.cells import pole_words
-from bezstab.show.columns import row_of
-from bezstab.show.fields import Field, cells, formatted
-from bezstab.show.row_kinds import FIELDS, ROW_KINDS
-from bezstab.show.tables import render
-from tests.show.keys_page import PAGE, page
-
-KINDS = [kind for kinds in ROW_KINDS.values() for kind in kinds]
+from bezstab.show.columns import Column, row_of
+from bezstab.show.fields import formatted
+from bezstab.show.tables import for_programs
+from tests.show.keys_page import COLUMNS, PAGE, page
 
 
-def test_a_key_is_the_same_in_every_kind_of_row_and_means_one_thing() -> None:
-    for kind in KINDS:
-        fields = (*kind.fields, *kind.added)
-        keys = {field.key for field in fields}
-        assert len(keys) == len(fields), kind.title
-        assert "safe" in keys or "verdict" not in keys
-        for field in fields:
-            first = FIELDS[field.key]
-            for name in ("kind", "meaning", "unit", "null"):
-                assert getattr(field, name) == getattr(first, name), field.key
-    meanings = [key.meaning.lower() for key in FIELDS.values()]
-    assert len(set(meanings)) == len(meanings)
-    for name, field in FIELDS.items():
-        assert re.fullmatch(r"[a-z][a-z_]*", name), name
-        assert re.fullmatch(r"[A-Z].*[^.]", field.meaning), name
-        assert (field.meaning + field.null).isascii(), name
+@pytest.mark.parametrize("command", COLUMNS)
+def test_a_key_is_a_plain_word_and_each_kind_of_row_has_it_once(command: str) -> None:
+    for columns in COLUMNS[command]:
+        keys = [column.key for column in columns if column.key]
+        assert len(set(keys)) == len(keys)
+        for column in columns:
+            assert re.fullmatch(r"([a-z][a-z_]*)?", column.key), column.key
+            assert not column.key or re.fullmatch(r"(?s)\S.*[^.]", column.meaning), column.key
 
 
 def test_the_table_of_keys_has_every_key() -> None:
     assert PAGE.read_text(encoding="utf-8") == page(), "python -m tests.show.keys_page"
 
 
-METHOD = Field("method", "Name of the method", "method", kind="text")
-
-
 def test_one_line_makes_a_column_and_a_key() -> None:
-    new = Field("solves", "Whether it is implicit", "solves", kind="truth", path="method.scheme.implicit")
-    kind = replace(row_kinds.ENGINES_LISTED, fields=(METHOD, new))
-    rows = [cells(kind.fields, SimpleNamespace(method=lookup("bdf2")))]
-    assert render(rows, kind.columns(rows), "text").split() == ["method", "solves", "bdf2", "yes"]
-    assert render(rows, [], "csv").splitlines() == ["method,solves", "bdf2,True"]
+    solves = Column[Method]("solves", "solves", implicit, "whether it is implicit")
+    assert solves.text(lookup("bdf2")) == "yes"
+    assert for_programs([row_of([solves], lookup("bdf2"))], "csv").splitlines() == ["solves", "True"]
 
 
 ASKED = asked_to_check((lookup("B4"),), Given(point=(Fraction(1, 2), Fraction(1, 10))))
@@ -68,10 +51,10 @@ ROWS = [row_of(POLES, replace(ANSWER, z=z)) for z in (0.75 + 0.125j, -0.5 + 0j)]
 
 
 def test_json_and_csv_keep_every_digit_and_text_rounds() -> None:
-    assert json.loads(render(ROWS, [], "json")) == ROWS
-    first = next(csv.DictReader(io.StringIO(render(ROWS, [], "csv"))))
+    assert json.loads(for_programs(ROWS, "json")) == ROWS
+    first = next(csv.DictReader(io.StringIO(for_programs(ROWS, "csv"))))
     assert [float(first[key]) for key in ("z_real", "z_imag", "z_abs")] == [0.75, 0.125, abs(0.75 + 0.125j)]
-    assert render([{"a": 1}, {"a": 2, "b": 3}], [], "csv").splitlines() == ["a,b", "1,", "2,3"]
+    assert for_programs([{"a": 1}, {"a": 2, "b": 3}], "csv").splitlines() == ["a,b", "1,", "2,3"]
     assert [pole_words(complex(0.75, imaginary)) for imaginary in (0.125, 1e-9)] == ["0.750000 ± 0.125000i", "0.750000"]
     assert [formatted(None, ".3f"), formatted(""), formatted(-0.0, "g")] == ["-", "-", "0"]
     assert [formatted(True), formatted(False), formatted(False, "NO"), formatted(None, "NO")] == [

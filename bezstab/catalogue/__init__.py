@@ -1,0 +1,1 @@
+"""What other engines call the feedback: the command engines."""

@@ -1,0 +1,51 @@
+"""What `engines` says of an engine: its defaults as a point, what to set for one, and what was run."""
+
+from fractions import Fraction
+
+import pytest
+from click.testing import CliRunner
+
+from bezstab.catalogue.answer import engine_facts
+from bezstab.cli.command_group import main
+from bezstab.engines.engine_list import ENGINES, WITNESSES
+
+H = Fraction(1, 100)
+
+
+def test_defaults_are_shown_as_the_point_that_the_engine_makes_of_them() -> None:
+    assert engine_facts(ENGINES["bullet"], H).usual == (
+        Fraction(1),
+        Fraction(1, 5),
+    )
+    k, d = 100, 20  # of RigidBodyDynamics.jl: alpha_hat = d h, beta_hat = k h^2
+    assert engine_facts(ENGINES["rigidbodydynamics.jl"], H).usual == (d * H, k * H**2)
+    assert engine_facts(ENGINES["maplesim"], H).usual is None  # it has no defaults
+
+
+def test_a_point_comes_as_what_to_set_or_as_the_reason_why_nothing_can_be() -> None:
+    asked = Fraction(1), Fraction(1, 5)
+    assert engine_facts(ENGINES["ode"], H, asked).setting == "ERP = 0.2"
+    assert "reaches only" in str(engine_facts(ENGINES["physx"], H, asked).setting)
+    assert engine_facts(ENGINES["ode"], H).setting is None
+
+
+def test_an_engine_is_said_to_be_run_where_a_test_runs_it() -> None:
+    assert {name for name, engine in ENGINES.items() if engine_facts(engine, H).witness} == set(WITNESSES)
+
+
+def test_the_list_is_a_line_an_engine_and_a_name_shows_the_rest() -> None:
+    lines = CliRunner().invoke(main, ["engines"]).output.splitlines()
+    assert [line.split()[0] for line in lines[2 : 2 + len(ENGINES)]] == list(ENGINES)
+    assert max(map(len, lines[1 : 2 + len(ENGINES)])) <= 120
+    shown = CliRunner().invoke(main, ["engines", "pybullet"]).output
+    for heading in ("left out", "source", "a spinning body", "sweeps in a step"):
+        assert f"\n{heading} " in shown
+        assert heading not in lines[1]
+
+
+@pytest.mark.parametrize("typed", ["bulet", "unity"])
+def test_a_name_that_is_no_engine_is_one_line(typed: str) -> None:
+    result = CliRunner().invoke(main, ["engines", typed])
+    assert result.exit_code == 2
+    assert typed in result.stderr
+    assert result.stderr.count("\n") == 1
