@@ -63,14 +63,13 @@ class MotionEnergy(ReadOnlyArrays):
     rotation: growth of the energy of a uniform rotation, per radian, as a share of it: torque of stages and truncation.
     modulation: what a motion gains beside it, per radian and square of the relative modulation of its rate.
     multiplier: the part of `modulation` that the multiplier's work on the steady error is.
-    offset: c of the uniform rotation. ripple: complex amplitude of c, per relative modulation of the rate.
+    ripple: complex amplitude of c, per relative modulation of the rate.
     nan where a rotation has no solution.
     """
 
     rotation: FloatArray
     modulation: FloatArray
     multiplier: FloatArray
-    offset: FloatArray
     ripple: ComplexArray
 
     def growth(self, modulation: float = MODULATION) -> FloatArray:
@@ -260,7 +259,6 @@ class _Circle:
             rotation=-2 * moment[..., 0] / self.theta**2,
             modulation=np.asarray(-scale * added, np.float64),
             multiplier=scale * work[..., 0] / self.theta,
-            offset=(dot(ux, ux)[..., 0] - 1) / 2,
             ripple=np.asarray(of_modulation * ripple[..., 0], complex),
         )
 
