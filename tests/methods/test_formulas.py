@@ -1,7 +1,7 @@
 import math
 import re
-from collections.abc import Callable
 from fractions import Fraction
+from functools import partial
 from typing import get_args
 
 import pytest
@@ -18,8 +18,8 @@ from bezstab.methods.formulas import (
     steady_error_text,
 )
 from bezstab.methods.registry import REGISTRY, lookup
-from bezstab.methods.schemes import Method
 from bezstab.methods.steady_errors import Part, leading_error
+from tests.methods.exact_lists import plane_value
 from tests.methods.kinds import FEW, SAMPLE, SOLVED, sampled
 
 NAMES = [*REGISTRY, "RK4@5", "B3@5/2", "hht@1/3"]
@@ -38,9 +38,8 @@ RECURSIONS = {
 }
 
 
-@pytest.mark.parametrize("name", RECURSIONS)
-def test_every_kind_of_recursion(name: str) -> None:
-    assert recursion_text(lookup(name)) == RECURSIONS[name]
+def test_every_kind_of_recursion() -> None:
+    assert {name: recursion_text(lookup(name)) for name in RECURSIONS} == RECURSIONS
 
 
 def test_paper_equations_14_and_17_as_text() -> None:
@@ -80,17 +79,14 @@ def test_the_printed_polynomial_is_the_derived_one_in_whole_numbers(name: str) -
     assert sp.igcd(*printed.coeffs(), 0) == 1
 
 
-def steady_error_latex(method: Method, latex: bool) -> str:
-    return steady_error_text(method, latex=latex)
-
-
 @pytest.mark.parametrize("name", [*FEW, *SOLVED, "tsit5", "B6", "RK4@5", "B3@5/2", "hht@1/3"])
-@pytest.mark.parametrize("write", [recursion_text, mapping_text, characteristic_text, steady_error_latex])
 @pytest.mark.slow
-def test_latex_can_be_typeset(name: str, write: Callable[[Method, bool], str]) -> None:
-    for part in re.split(r"; |: ", write(lookup(name), True)):
-        typeset = part.replace(r"\left", "").replace(r"\right", "")  # which mathtext wants in pairs per line
-        MathTextParser("path").parse(f"${typeset}$")
+def test_latex_can_be_typeset(name: str) -> None:
+    method = lookup(name)
+    for write in (recursion_text, mapping_text, characteristic_text, partial(steady_error_text, part="x")):
+        for part in re.split(r"; |: ", write(method, latex=True)):
+            typeset = part.replace(r"\left", "").replace(r"\right", "")  # which mathtext wants in pairs per line
+            MathTextParser("path").parse(f"${typeset}$")
 
 
 PRINTED = {  # theory.md, section 14, and by hand; a share of the motion, of the velocity's motion
@@ -106,9 +102,12 @@ PRINTED = {  # theory.md, section 14, and by hand; a share of the motion, of the
 
 
 @pytest.mark.parametrize("name", PRINTED)
-def test_a_steady_error_is_written_as_by_hand(name: str) -> None:
+def test_a_steady_error_is_written_as_by_hand_and_stays_made_of_fractions(name: str) -> None:
+    """It is remembered, and sympy's polynomials write their own numbers into the terms that they are made of."""
     for part, expected in zip(get_args(Part), PRINTED[name], strict=True):
         assert expected in (None, steady_error_text(lookup(name), part))
+        error = leading_error(lookup(name), part)
+        assert all(isinstance(c, Fraction) for terms in (error.numerator, error.denominator) for c in terms.values())
 
 
 @pytest.mark.parametrize(
@@ -118,26 +117,22 @@ def test_a_steady_error_is_written_as_by_hand(name: str) -> None:
 def test_a_written_steady_error_is_that_of_the_method(name: str, part: Part) -> None:
     error = leading_error(lookup(name), part)
     a, b, theta = sp.Rational(2, 7), sp.Rational(3, 11), sp.Integer(3)
-    over, under = (
-        sum((sp.Rational(c.numerator, c.denominator) * a**i * b**j for (i, j), c in terms.items()), sp.Integer(0))
-        for terms in (error.numerator, error.denominator)
-    )
     written = read_back(steady_error_text(lookup(name), part), a=a, b=b, t=theta)
+    over, under = (plane_value(terms, a, b) for terms in (error.numerator, error.denominator))
     exact = over / under * theta**error.power
     assert float(written) == pytest.approx(float(exact), rel=1e-7 if lookup(name).digits else 1e-15)  # ten digits shown
 
 
-@pytest.mark.parametrize(
-    ("name", "written"),
-    [
-        ("RK2", "-θ^2 β̂/(4 (2 α̂ - β̂ - 4))"),
-        ("AB4", "-13 θ^6/12"),
-        ("SYM", "0, up to θ^4"),
-        ("dopri5", "θ^4 times a function of the feedback"),
-    ],
-)
-def test_the_torque_of_stages_is_written_where_it_can_be_read(name: str, written: str) -> None:
-    assert stage_torque_text(lookup(name)) == written
+TORQUES = {
+    "RK2": "-θ^2 β̂/(4 (2 α̂ - β̂ - 4))",
+    "AB4": "-13 θ^6/12",
+    "SYM": "0, up to θ^4",
+    "dopri5": "θ^4 times a function of the feedback",
+}
+
+
+def test_the_torque_of_stages_is_written_where_it_can_be_read() -> None:
+    assert {name: stage_torque_text(lookup(name)) for name in TORQUES} == TORQUES
 
 
 def test_the_law_of_the_multipliers_work_is_written_where_it_is_known() -> None:
@@ -145,14 +140,6 @@ def test_the_law_of_the_multipliers_work_is_written_where_it_is_known() -> None:
     by_kappa = "c'' + 2α c' + β² c = -α h κ + h/2 κ'ᵥ, κ = q'ᵀ C_qq q'"
     assert multiplier_law_text(lookup("SYM")) == multiplier_law_text(lookup("verlet-half")) == by_kappa
     assert multiplier_law_text(lookup("RK4")).startswith("no closed form is known")
-
-
-@pytest.mark.parametrize("name", PRINTED)
-def test_an_error_that_was_written_is_still_made_of_fractions(name: str) -> None:
-    """It is remembered, and sympy's polynomials write their own numbers into the terms that they are made of."""
-    steady_error_text(lookup(name), "v")
-    error = leading_error(lookup(name), "v")
-    assert all(isinstance(c, Fraction) for terms in (error.numerator, error.denominator) for c in terms.values())
 
 
 def test_a_steady_error_too_long_to_be_read_says_so_and_is_written_out_as_latex() -> None:

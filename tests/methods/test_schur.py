@@ -55,11 +55,3 @@ def test_a_constant_converges_and_the_zero_polynomial_has_no_verdict() -> None:
     for length in (1, 5):
         with pytest.raises(ZeroDivisionError):
             recursion_verdict([Fraction(0)] * length)
-
-
-def test_lehmers_polynomial_diverges_by_the_smallest_known_salem_number() -> None:
-    """Eight simple roots on the circle, one at 1.17628..., one at its reciprocal (D. H. Lehmer, 1933)."""
-    lehmer = [Fraction(a) for a in (1, 1, 0, -1, -1, -1, -1, -1, 0, 1, 1)]
-    assert recursion_verdict(lehmer) == "diverges"
-    assert recursion_verdict(scaled(lehmer, Fraction("0.85013"))) == "converges"  # 1 / 1.1762808 = 0.850137
-    assert recursion_verdict(scaled(lehmer, Fraction("0.85014"))) == "diverges"

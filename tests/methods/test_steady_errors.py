@@ -18,21 +18,17 @@ from bezstab.methods.steady_errors import (
     ExponentialSum,
     ForcedErrors,
     Part,
-    PlanePolynomial,
     forced_errors,
     leading_error,
     turning_error,
     velocity_lag,
 )
 from bezstab.stability.closed_loop import spectral_radius
+from tests.methods.exact_lists import plane_value
 from tests.methods.kinds import SOLVED, sampled
 from tests.reference.forced_runs import DIGITS, exact_value, steady_errors
 
 A, B = sp.symbols("a b")
-
-
-def polynomial(terms: PlanePolynomial) -> sp.Expr:
-    return sum((sp.Rational(c.numerator, c.denominator) * A**i * B**j for (i, j), c in terms.items()), sp.Integer(0))
 
 
 @pytest.mark.parametrize("name", ["B2", "B4", "B12", "AB1", "AB4", "AB8", "bdf2", "bdf6", "am4", "trapezoid"])
@@ -40,9 +36,11 @@ def test_of_a_multistep_method_it_is_its_error_constant_times_the_ratio_of_the_p
     # (sigma theta - rho)(a sigma + sigma theta + rho) over P: -C theta^(p+1) a / b, and C theta^(p+1) of h v
     order, constant = accuracy(lookup(name))
     position, velocity = leading_error(lookup(name)), leading_error(lookup(name), "v")
-    of_velocity = polynomial(velocity.numerator) / polynomial(velocity.denominator)
+    of_position, of_velocity = (
+        plane_value(each.numerator, A, B) / plane_value(each.denominator, A, B) for each in (position, velocity)
+    )
     assert (position.power, velocity.power) == (order + 1, order)
-    assert sp.simplify(polynomial(position.numerator) / polynomial(position.denominator) + of_velocity * A / B) == 0
+    assert sp.simplify(of_position + of_velocity * A / B) == 0
     assert abs(sp.simplify(of_velocity)) == sp.Rational(abs(constant).numerator, constant.denominator)
 
 
@@ -114,12 +112,10 @@ def test_a_step_of_several_h_forces_what_its_own_parameters_do(name: str, tenths
     multiple = Fraction(tenths, 10)
     long, short = leading_error(lookup(f"{name}@{multiple}"), part), leading_error(lookup(name), part)
     a, b = Fraction(3, 7), Fraction(2, 5)
-
-    def at(terms: PlanePolynomial, factor: Fraction) -> Fraction:
-        return sum((c * (factor * a) ** i * (factor**2 * b) ** j for (i, j), c in terms.items()), Fraction(0))
-
-    expected = multiple**short.power * at(short.numerator, multiple) / at(short.denominator, multiple)
-    assert at(long.numerator, Fraction(1)) / at(long.denominator, Fraction(1)) == expected
+    of_long = plane_value(long.numerator, a, b) / plane_value(long.denominator, a, b)
+    a, b = multiple * a, multiple**2 * b
+    of_short = plane_value(short.numerator, a, b) / plane_value(short.denominator, a, b)
+    assert of_long == multiple**short.power * of_short
 
 
 def test_velocities_lag_by_half_a_step_where_positions_use_the_new_ones() -> None:
