@@ -20,8 +20,7 @@ from functools import lru_cache
 from math import comb
 
 import numpy as np
-from numpy.polynomial import Polynomial
-from numpy.polynomial.polynomial import polyval, polyval2d
+from numpy.polynomial.polynomial import polyder, polyval, polyval2d
 from numpy.typing import ArrayLike
 
 from bezstab.errors import InputError
@@ -39,8 +38,8 @@ SLOWEST = Fraction(1, 10**6)
 BETWEEN = 24
 """Frequencies at which |D| is looked at up to pi, besides the feedback's own resonance: of what decays it is smooth."""
 
-POLISHED = 2
-"""Times: eigenvalues have half the digits of a place where |D| nearly vanishes, and each step doubles them."""
+POLISHED = 6
+"""Times: from frequencies of poles, which have half the digits where |D| nearly vanishes, and from some between."""
 
 DIGITS = 120
 """Of what is summed: with omega h = 1e-6 and order 12 all but theta^14 = 1e-84 cancels, and enough are left."""
@@ -78,19 +77,16 @@ def forced_error(
     a, b, theta = multiple * alpha_hat, multiple**2 * beta_hat, multiple * float(omega_h)
     around_one = _denominator(method, a, b)
 
-    def size(frequency: ArrayLike) -> FloatArray:
-        """Return |D| at a frequency, one for all points or one for each."""
-        return np.abs(polyval(np.expm1(1j * np.asarray(frequency)), around_one, tensor=False))
-
     highest = min(theta, np.pi)
-    at_own = size(theta)
+    at_own = np.abs(polyval(np.expm1(1j * theta), around_one, tensor=False))
     resounds = np.sqrt(np.clip(b - a**2 / 2, 0.0, highest**2))  # where poles next to z = 1 are
-    least = np.minimum(at_own, size(resounds))
-    if sampled:
-        for frequency in np.linspace(0.0, highest, BETWEEN + 1):
-            least = np.minimum(least, size(frequency))
-    else:
-        least = np.minimum(least, _least_on_arc(around_one, resounds, highest))
+    places = [*np.linspace(0.0, highest, BETWEEN + 1), resounds]
+    if not sampled:
+        angles = np.abs(np.angle(1 + roots_of_rows(around_one.reshape(len(around_one), -1))))
+        places += [angle.clip(0.0, highest).reshape(a.shape) for angle in np.nan_to_num(angles)]
+    least = at_own  # |D|
+    for place in places:
+        least = np.minimum(least, _least_near(place, around_one, highest, polished=0 if sampled else POLISHED))
     position, velocity = (np.abs(polyval2d(a, b, table)) for table in _numerators(method, omega_h))
     with np.errstate(divide="ignore", invalid="ignore"):  # a pole that answers a frequency without bound
         return ForcedError(position=position / at_own, velocity=velocity / theta / at_own, total=position / least)
@@ -138,53 +134,19 @@ def forced_response(method: Method, alpha_hat: float, beta_hat: float, omega_h: 
     return np.where(followed, numerator / denominator * multiple**power, 0.0)
 
 
-# The least |D| on an arc of the unit circle: at its ends, or where its square, a polynomial in x = |z - 1|^2, is
-# stationary. With w = z - 1 there, w^m + its conjugate is s_m(x): s_0 = 2, s_1 = -x, s_m = -x (s_(m-1) + s_(m-2)).
-
-
-def _least_on_arc(around_one: FloatArray, resounds: FloatArray, highest: float) -> FloatArray:
-    """Return the least |D| over frequencies from 0 to the highest, at most pi; shape of a point's coefficient."""
-    degree = len(around_one) - 1
-    d, shape = around_one.reshape(degree + 1, -1), around_one.shape[1:]
-    ends = np.broadcast_to(np.array([[0.0], [highest]]), (2, d.shape[1]))
-    places = np.concatenate([ends, resounds.reshape(1, -1), _stationary(d, highest)])
-    slope = d[1:] * np.arange(1, degree + 1)[:, np.newaxis]
-    least = np.full(d.shape[1], np.inf)
-    for _ in range(POLISHED + 1):
-        w = np.expm1(1j * places)
-        value, by_angle = polyval(w, d, tensor=False), 1j * (1 + w) * polyval(w, slope, tensor=False)
-        least = np.minimum(least, np.abs(value).min(axis=0))
-        with np.errstate(all="ignore"):  # Gauss-Newton
-            step = (value.conj() * by_angle).real / np.abs(by_angle) ** 2
-        places = np.clip(places - np.nan_to_num(step), 0.0, highest)
-    return np.asarray(least.reshape(shape))
-
-
-def _stationary(d: FloatArray, highest: float) -> FloatArray:
-    """Return frequencies from 0 to the highest that include all where |D| is stationary, shape (n - 1, points).
-
-    d has coefficients of D in powers of z - 1, shape (n + 1, points).
-    """
-    degree, end = len(d) - 1, 4 * np.sin(highest / 2) ** 2
-    powers = np.arange(degree + 1)
-    squared = np.einsum("jp,kp,jkm->mp", d, d, _products(degree))
-    by_x = np.nan_to_num(roots_of_rows((squared * (powers * end**powers)[:, np.newaxis])[1:]))  # shares of x in its end
-    return np.asarray(2 * np.arcsin(np.sqrt(by_x.real.clip(0.0, 1.0) * end) / 2))
-
-
-@lru_cache(maxsize=64)
-def _products(degree: int) -> FloatArray:
-    """Return the polynomials in x that belong to d_j d_k in |D|^2, for j <= k: entry (j, k, m) is that of x^m."""
-    products = np.zeros((degree + 1, degree + 1, degree + 1))
-    x, sums = Polynomial([0.0, 1.0]), [Polynomial([2.0]), Polynomial([0.0, -1.0])]
-    for _ in range(2, degree + 1):
-        sums.append(-x * (sums[-1] + sums[-2]))
-    for j in range(degree + 1):
-        products[j, j, j] = 1
-        for k in range(j + 1, degree + 1):
-            of_both = (x**j * sums[k - j]).coef
-            products[j, k, : len(of_both)] = of_both
-    return products
+def _least_near(place: FloatArray | float, around_one: FloatArray, highest: float, polished: int) -> FloatArray:
+    """Return the least |D| that is seen at a frequency and on the way from it to where |D|^2 is stationary."""
+    w = np.expm1(1j * place)
+    value = polyval(w, around_one, tensor=False)
+    if not polished:
+        return np.abs(value)
+    slope = polyder(around_one)
+    first, second = polyval(w, slope, tensor=False), polyval(w, polyder(slope), tensor=False)
+    by_angle, twice = 1j * (1 + w) * first, -(1 + w) * (first + (1 + w) * second)
+    with np.errstate(all="ignore"):  # Newton's method
+        step = (value.conj() * by_angle).real / np.abs(np.abs(by_angle) ** 2 + (value.conj() * twice).real)
+    place = np.clip(place - np.nan_to_num(step), 0.0, highest)
+    return np.minimum(np.abs(value), _least_near(place, around_one, highest, polished - 1))
 
 
 # Tables by powers of alpha_hat and beta_hat, for a method's own step
