@@ -18,9 +18,14 @@ from bezstab.errors import InputError
 from bezstab.questions.chains import Constraints, SweptConstraints
 from bezstab.stability.arrays import FloatArray
 from bezstab.stability.choices import TENTH, steps_to_settle
-from bezstab.stability.sweeps import LARGEST_RATIO, MOST_BODIES, inverse_effective_masses
+from bezstab.stability.sweeps import inverse_effective_masses
 from bezstab.units import check_step
 from bezstab.words import change_words, counted, decay_words
+
+MOST_BODIES = 100
+"""Of a chain: its matrices have three times as many rows."""
+LARGEST_RATIO = 1e6
+"""Of masses: beyond, rounding of the inverse effective masses leaves too few digits of the growth."""
 
 SPREAD = 0.1
 """The share by which the setting to paste may be stronger and the chain still be stable."""

@@ -6,12 +6,9 @@ MuTable, PlaneTable    tables: of z and mu, and of z, alpha_hat and beta_hat
 Algebra in several variables is sympy's (determinants, derivation).
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from fractions import Fraction
-from functools import reduce
 from typing import TypeVar
-
-from bezstab.errors import InputError
 
 Number = TypeVar("Number", int, Fraction)
 
@@ -76,24 +73,14 @@ def polynomial_gcd(p: Polynomial, q: Polynomial) -> list[Fraction]:
     return trimmed(p)
 
 
-def check_no_shared_factor(polynomials: Iterable[Polynomial], what: str) -> None:
-    """Raise InputError where polynomials in z share a factor other than z, an unused past value: it would stay a pole.
+def shared_factor(p: Polynomial, q: Polynomial) -> str:
+    """Return the factor that two polynomials in z share, but z, in words such as z^2 + 1; "" without one."""
+    shared = polynomial_gcd(p, q)
+    while shared[0] == 0:
+        shared.pop(0)
+    if len(shared) == 1:
+        return ""
+    import sympy as sp  # here alone: naming a method loads no algebra
 
-    No feedback moves such a pole. `what` are the polynomials, in words.
-    """
-    shared: list[Fraction] = reduce(polynomial_gcd, filter(any, polynomials), [])
-    factor = shared[next(k for k, c in enumerate(shared) if c) :]
-    if len(factor) > 1:
-        raise InputError(f"{what} share the factor {_in_words(factor)}: cancel it")
-
-
-def _in_words(polynomial: Polynomial) -> str:
-    """Return a monic polynomial in z, such as z^2 − 1/2 z + 1."""
-    words = ""
-    for k in range(len(polynomial) - 1, -1, -1):
-        if c := polynomial[k]:
-            power = ["", "z", f"z^{k}"][min(k, 2)]
-            size = "" if abs(c) == 1 and k else f"{abs(c)} " if k else f"{abs(c)}"
-            sign = (" − " if c < 0 else " + ") if words else ""
-            words += f"{sign}{size}{power}"
-    return words
+    text = str(sp.Poly(shared[::-1], sp.Symbol("z")).as_expr())
+    return text.replace("**", "^").replace("*", " ").replace("-", "−")

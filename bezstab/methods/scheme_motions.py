@@ -17,7 +17,7 @@ from math import comb, factorial
 
 from bezstab.linear_equations import solution
 from bezstab.methods.second_order import SecondOrder
-from bezstab.methods.step_equations import POSITION, Combination, Quantity
+from bezstab.methods.step_equations import POSITION, Combination, Evaluation, Quantity
 from bezstab.rationals import ONE, ZERO
 
 AT_REST, STEADY, ACCELERATED = range(3)
@@ -57,9 +57,9 @@ def exact_motions(scheme: SecondOrder, highest: int = ACCELERATED) -> Motions:
         return (times[result] if left else ONE) ** left / (factorial(power) * factorial(left))
 
     for equation in scheme.equations:
-        right_side = ((-coefficient, quantity) for coefficient, quantity in equation.without_feedback)
-        difference = ((ONE, equation.result), *right_side)
-        evaluated = equation in scheme.evaluated
+        evaluated = isinstance(equation, Evaluation)
+        added_up = () if isinstance(equation, Evaluation) else equation.value
+        difference = ((ONE, equation.result), *((-coefficient, quantity) for coefficient, quantity in added_up))
         for power in powers:
             values = [acceleration(equation.result, power, motion) if evaluated else ZERO for motion in powers]
             add_row(difference, power, values)

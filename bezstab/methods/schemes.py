@@ -23,7 +23,7 @@ from fractions import Fraction
 from functools import cached_property
 
 from bezstab.errors import InputError
-from bezstab.methods.polynomials import MuTable, check_no_shared_factor
+from bezstab.methods.polynomials import MuTable, shared_factor
 from bezstab.methods.schur import recursion_verdict
 from bezstab.methods.second_order import SecondOrder
 from bezstab.methods.step_equations import (
@@ -77,7 +77,8 @@ class LinearMultistep:
             raise InputError(f"inconsistent: sigma(1) = {sum(self.sigma)}, but rho'(1) = {slope}")
         if recursion_verdict(self.rho[::-1]) == "diverges":
             raise InputError("zero-unstable: rho has a root outside the unit circle, or a repeated one on it")
-        check_no_shared_factor([self.rho[::-1], self.sigma[::-1]], "ρ and σ")
+        if factor := shared_factor(self.rho[::-1], self.sigma[::-1]):  # a pole that no feedback moves
+            raise InputError(f"ρ and σ share the factor {factor}: cancel it")
         leading = self.rho[0]
         object.__setattr__(self, "rho", tuple(a / leading for a in self.rho))
         object.__setattr__(self, "sigma", tuple(b / leading for b in self.sigma))

@@ -88,8 +88,8 @@ def _derivatives(scheme: SecondOrder) -> dict[str, int]:
     for _ in scheme.equations:  # a sum may have a helper in it whose own sum comes later: so often at most
         for equation in scheme.equations:
             result = equation.result.name
-            if result not in KNOWN_DERIVATIVES:
-                added_up = (derivatives[quantity.name] for _, quantity in equation.without_feedback)
+            if result not in KNOWN_DERIVATIVES and isinstance(equation, Assignment):
+                added_up = (derivatives[quantity.name] for _, quantity in equation.value)
                 derivatives[result] = min(added_up, default=KNOWN_DERIVATIVES[ACCELERATION])
     return derivatives
 

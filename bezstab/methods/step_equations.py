@@ -41,11 +41,6 @@ class Assignment:
     value: Combination
 
     @property
-    def without_feedback(self) -> Combination:
-        """The right-hand side for alpha_hat = beta_hat = 0."""
-        return self.value
-
-    @property
     def terms(self) -> tuple[Term, ...]:
         """The right-hand side."""
         return tuple((coefficient, quantity, (0, 0)) for coefficient, quantity in self.value)
@@ -63,11 +58,6 @@ class Evaluation:
     result: Quantity
     position: Combination
     velocity: Combination
-
-    @property
-    def without_feedback(self) -> Combination:
-        """The right-hand side for alpha_hat = beta_hat = 0: nothing."""
-        return ()
 
     @property
     def terms(self) -> tuple[Term, ...]:
