@@ -126,3 +126,9 @@ def characteristic(matrix: Sequence[Sequence[Fraction]]) -> list[Fraction]:
     """Return the coefficients of det(z - matrix) in ascending powers of z, exact."""
     rows = [[sp.QQ.convert(c) for c in row] for row in matrix]
     return [as_fraction(c) for c in reversed(DomainMatrix(rows, (len(rows), len(rows)), sp.QQ).charpoly())]
+
+
+def in_words(polynomial: Sequence[Fraction]) -> str:
+    """Return a polynomial in z as a message has it, such as z^2 − z/2 + 1."""
+    text = str(sp.Poly(polynomial[::-1], sp.Symbol("z")).as_expr())
+    return text.replace("**", "^").replace("*", " ").replace("-", "−")

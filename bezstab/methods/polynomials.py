@@ -73,14 +73,7 @@ def polynomial_gcd(p: Polynomial, q: Polynomial) -> list[Fraction]:
     return trimmed(p)
 
 
-def shared_factor(p: Polynomial, q: Polynomial) -> str:
-    """Return the factor that two polynomials in z share, but z, in words such as z^2 + 1; "" without one."""
+def shared_factor(p: Polynomial, q: Polynomial) -> list[Fraction]:
+    """Return the monic greatest common divisor without its factors z: [1] where two polynomials share no other."""
     shared = polynomial_gcd(p, q)
-    while shared[0] == 0:
-        shared.pop(0)
-    if len(shared) == 1:
-        return ""
-    import sympy as sp  # here alone: naming a method loads no algebra
-
-    text = str(sp.Poly(shared[::-1], sp.Symbol("z")).as_expr())
-    return text.replace("**", "^").replace("*", " ").replace("-", "−")
+    return shared[next(k for k, c in enumerate(shared) if c) :]

@@ -77,8 +77,10 @@ class LinearMultistep:
             raise InputError(f"inconsistent: sigma(1) = {sum(self.sigma)}, but rho'(1) = {slope}")
         if recursion_verdict(self.rho[::-1]) == "diverges":
             raise InputError("zero-unstable: rho has a root outside the unit circle, or a repeated one on it")
-        if factor := shared_factor(self.rho[::-1], self.sigma[::-1]):  # a pole that no feedback moves
-            raise InputError(f"ρ and σ share the factor {factor}: cancel it")
+        if len(factor := shared_factor(self.rho[::-1], self.sigma[::-1])) > 1:  # a pole that no feedback moves
+            from bezstab.methods.determinants import in_words  # loads sympy
+
+            raise InputError(f"ρ and σ share the factor {in_words(factor)}: cancel it")
         leading = self.rho[0]
         object.__setattr__(self, "rho", tuple(a / leading for a in self.rho))
         object.__setattr__(self, "sigma", tuple(b / leading for b in self.sigma))
