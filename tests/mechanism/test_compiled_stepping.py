@@ -16,14 +16,7 @@ from bezstab.mechanism.equations import compiled_mechanism
 from bezstab.mechanism.scene_files import load_scene
 from bezstab.methods.registry import lookup
 from bezstab.stabilising import after_step
-from bezstab.units import feedback_gains
-from tests.mechanism.four_bar_chains import four_bars
-from tests.mechanism.test_stepping import H, both
-
-
-@pytest.mark.slow
-def test_a_chain_compiled_is_the_same() -> None:
-    assert len(both(compiled_mechanism(four_bars(4)), "SYM", 100, feedback_gains(0.3, 0.04, H)).t) == 101
+from tests.mechanism.test_stepping import both
 
 
 def test_runs_are_compiled_where_that_pays_or_is_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -65,19 +65,9 @@ def test_a_run_keeps_its_methods_order_up_to_that_of_its_start(name: str) -> Non
     assert measured_order(name, 400, lambda _: (20.0, 100.0)) == pytest.approx(order(name), abs=0.1)
 
 
-SHOWN_ORDERS = {
-    **{name: order(name) for name in ("B4", "AB4", "ABM3")},
-    "verlet-half": 2,
-    "hht": 2,
-    "trapezoid": 2,
-    "bdf3": 3,
-    "am3": 3,
-    "implicit-euler": 1,
-    # lower than on a free motion, for what happens between the ends of a step leaves the constraints
-    **dict.fromkeys(("RK2", "SIE", "ssprk3", "dirk3"), 1),
-    **dict.fromkeys(("RK4", "dopri5", "yoshida4"), 2),
-    "rkn4": 3,
-}
+SHOWN_ORDERS = {"B4": 2, "AB4": 4, "ABM3": 3, "verlet-half": 2, "hht": 2, "bdf3": 3, "am3": 3, "implicit-euler": 1}
+# lower than on a free motion, for what happens between the ends of a step leaves the constraints
+SHOWN_ORDERS |= {"RK2": 1, "SIE": 1, "dirk3": 1, "RK4": 2, "dopri5": 2, "yoshida4": 2, "rkn4": 3}
 """With alpha_hat and beta_hat fixed. Slow to fall to 1: sdirk2, imex-euler, ralston: 1.19, 1.13, 1.05 at 3200 steps."""
 
 

@@ -44,6 +44,7 @@ def assert_alike(one: Trajectory, other: Trajectory, tolerance: float = 1e-12, o
     assert one.q == pytest.approx(other.q, rel=tolerance, abs=tolerance * of_size)
     close = tolerance * max(1, abs(one.v).max()) + of_velocities * of_size
     assert one.v == pytest.approx(other.v, rel=tolerance, abs=close)
+    assert one.least_pivot == pytest.approx(other.least_pivot, rel=1e-9)
     for key in ("evaluations", "iterations", "failure"):
         assert getattr(one, key) == getattr(other, key)
 

@@ -47,7 +47,7 @@ def gains_of(gains: tuple[float, float], count: int) -> NDArray[np.float64]:
     ],
 )
 def test_truncation_multipliers_and_stages_are_all_there_is(scene: str, duration: float, name: str) -> None:
-    """What is left of the drift is the same at all gains, to a twentieth of what the feedback adds to it."""
+    """What is left of the drift is the same at all gains, to 3 % of what the feedback adds to it."""
     mechanism = compiled_mechanism(load_scene(scene))
     by_feedback, left = [], []
     for alpha, beta in GAINS:
@@ -57,4 +57,4 @@ def test_truncation_multipliers_and_stages_are_all_there_is(scene: str, duration
         of_stages = stage_work(run, alpha, beta) if name == "RK2" else 0.0
         by_feedback.append(run.multiplier_work[-1] + of_stages)
         left.append(run.energy_drift[-1] - by_feedback[-1])
-    assert np.ptp(left) < 0.05 * np.ptp(by_feedback)
+    assert np.ptp(left) < 0.03 * np.ptp(by_feedback)
