@@ -59,14 +59,30 @@ def _spelled_out(function: Function) -> Function:
 def poles(method: str | Method, **point: Unpack[PointAtStep[ArrayLike]]) -> ComplexArray:
     """Return all poles z of the constraint error: each step multiplies a part of the error by z.
 
-    The point is `alpha_hat` and `beta_hat`, or `alpha` and `beta` in 1/s with the step `h` in s.
-    Numbers or arrays.
+    Parameters
+    ----------
+    method : str or Method
+        The integration method.
+    alpha_hat, beta_hat : array_like, optional
+        The feedback, dimensionless.
+    alpha, beta, h : array_like, optional
+        In their place: the feedback in 1/s and the step (s).
 
-    Returns complex numbers, dimensionless, in order of falling |z|. The shape is that of the two
-    coordinates, broadcast, with one more axis at the end for the poles.
+    Returns
+    -------
+    complex array
+        Dimensionless, in order of falling |z|: the shape of the broadcast coordinates, and a last axis for the poles.
 
-    InputError unless the point is given in one of the two ways. NumericalError if a pole leaves the
-    range of float64. Source: the roots of paper Eq. 17.
+    Raises
+    ------
+    InputError
+        The point is not given in one of the two ways.
+    NumericalError
+        A pole leaves the range of float64.
+
+    References
+    ----------
+    The roots of the paper's Eq. 17.
     """
     return closed_loop.poles(method_named(method), *_plane_arrays(point))
 
@@ -75,13 +91,30 @@ def poles(method: str | Method, **point: Unpack[PointAtStep[ArrayLike]]) -> Comp
 def dominant_pole(method: str | Method, **point: Unpack[PointAtStep[ArrayLike]]) -> ComplexArray:
     """Return z_p, the pole of largest modulus: in the long run each step multiplies the error by it.
 
-    The point is `alpha_hat` and `beta_hat`, or `alpha` and `beta` in 1/s with the step `h` in s.
-    Numbers or arrays.
+    Parameters
+    ----------
+    method : str or Method
+        The integration method.
+    alpha_hat, beta_hat : array_like, optional
+        The feedback, dimensionless.
+    alpha, beta, h : array_like, optional
+        In their place: the feedback in 1/s and the step (s).
 
-    Returns complex numbers, dimensionless, in the shape of the two coordinates, broadcast. Of a
-    conjugate pair it is the one with Im z >= 0.
+    Returns
+    -------
+    complex array
+        Dimensionless, of the shape of the broadcast coordinates; of a conjugate pair the pole with Im z >= 0.
 
-    Errors as for `poles`. Source: the paper's section 4.
+    Raises
+    ------
+    InputError
+        The point is not given in one of the two ways.
+    NumericalError
+        A pole leaves the range of float64.
+
+    References
+    ----------
+    The paper's section 4.
     """
     return closed_loop.dominant_pole(method_named(method), *_plane_arrays(point))
 
@@ -90,28 +123,60 @@ def dominant_pole(method: str | Method, **point: Unpack[PointAtStep[ArrayLike]])
 def spectral_radius(method: str | Method, **point: Unpack[PointAtStep[ArrayLike]]) -> FloatArray:
     """Return |z_p|, the factor by which each step multiplies the constraint error in the long run.
 
-    The error decays where it is below 1. The point is `alpha_hat` and `beta_hat`, or `alpha` and `beta`
-    in 1/s with the step `h` in s. Numbers or arrays.
+    Parameters
+    ----------
+    method : str or Method
+        The integration method.
+    alpha_hat, beta_hat : array_like, optional
+        The feedback, dimensionless.
+    alpha, beta, h : array_like, optional
+        In their place: the feedback in 1/s and the step (s).
 
-    Returns float64, dimensionless, in the shape of the two coordinates, broadcast.
+    Returns
+    -------
+    float64 array
+        Dimensionless, of the shape of the broadcast coordinates. Errors decay below 1; close to 1 rounding can decide,
+        and `verdict` is exact.
 
-    Errors as for `poles`. Close to 1 rounding may decide: `verdict` is exact. Source: the paper's Figs.
-    1 to 3.
+    Raises
+    ------
+    InputError
+        The point is not given in one of the two ways.
+    NumericalError
+        A pole leaves the range of float64.
+
+    References
+    ----------
+    The paper's Figs. 1 to 3.
     """
     return closed_loop.spectral_radius(method_named(method), *_plane_arrays(point))
 
 
 @_spelled_out
 def verdict(method: str | Method, **point: Unpack[PointAtStep[Number]]) -> Verdict:
-    """Return "converges", "marginal" or "diverges": what the error does at one point.
+    """Return what the error does at one point, proven in exact arithmetic.
 
-    The point is `alpha_hat` and `beta_hat`, or `alpha` and `beta` in 1/s with the step `h` in s. Each
-    number is read as it is written. 0.1 is one tenth, and "6/11" is a fraction.
+    Parameters
+    ----------
+    method : str or Method
+        The integration method.
+    alpha_hat, beta_hat : number or str, optional
+        The feedback, dimensionless. Read as written: 0.1 is one tenth, "6/11" a fraction.
+    alpha, beta, h : number or str, optional
+        In their place: the feedback in 1/s and the step (s).
 
-    Returns one of the three words. It is proven in exact arithmetic.
+    Returns
+    -------
+    {"converges", "marginal", "diverges"}
 
-    InputError unless the numbers are finite and the point is given in one of the two ways. Source: the
-    Schur-Cohn test (I. Schur, J. reine angew. Math. 147, 1917) on the polynomial of paper Eq. 17.
+    Raises
+    ------
+    InputError
+        A number is not finite, or the point is not given in one of the two ways.
+
+    References
+    ----------
+    The Schur-Cohn test (I. Schur, J. reine angew. Math. 147, 1917) on the polynomial of the paper's Eq. 17.
     """
     return closed_loop.verdict(method_named(method), *_plane_point(point))
 
@@ -119,11 +184,25 @@ def verdict(method: str | Method, **point: Unpack[PointAtStep[Number]]) -> Verdi
 def best_point(method: str | Method) -> best_points.BestPoint | None:
     """Return the point of the plane with the smallest |z_p|, where the constraint error decays fastest.
 
-    Returns a BestPoint with `alpha_hat`, `beta_hat` and `z_abs`, which is good to 1e-7, dimensionless.
-    Returns None if no point is stable, or if |z_p| keeps falling as the parameters grow, as for
-    implicit Euler.
+    Parameters
+    ----------
+    method : str or Method
+        The integration method.
 
-    NumericalError if a pole leaves the range of float64. Source: the paper's section 5.1.
+    Returns
+    -------
+    BestPoint or None
+        `alpha_hat`, `beta_hat` and `z_abs`, dimensionless; `z_abs` within 1e-7. None if no point is stable, or if |z_p|
+        falls as the feedback grows without end, as for implicit Euler.
+
+    Raises
+    ------
+    NumericalError
+        A pole leaves the range of float64.
+
+    References
+    ----------
+    The paper's section 5.1.
     """
     return best_points.best_point(method_named(method))
 
@@ -139,17 +218,32 @@ def feedback_cost(
 ) -> feedback_costs.FeedbackCost:
     """Return the errors that a feedback makes on a mechanism that moves.
 
-    The point is `alpha_hat` and `beta_hat`, or `alpha` and `beta` in 1/s with the step `h` in s. The
-    motion turns by `omega_h` rad a step (0.01 unless given), or by `omega` in 1/s at the step `h`.
+    Parameters
+    ----------
+    method : str or Method
+        The integration method.
+    alpha_hat, beta_hat : number or str, optional
+        The feedback, dimensionless.
+    alpha, beta, h : number or str, optional
+        In their place: the feedback in 1/s and the step (s).
+    omega, omega_h : number, optional
+        Rate of the motion: omega (1/s) with h, or omega_h (rad a step); by default omega_h is 0.01.
 
-    Returns a FeedbackCost. Errors are shares of the motion's amplitude: `forced_error` is that of the
-    constraint in the steady state, `total_error` the error that stays in a run, `velocity_error` that of the
-    velocity. `times_least` is the total error over the least that can be had, by the goal accurate of
-    `choose`. `order_left` is the order in h that remains of the method's own `order` while alpha_hat
-    and beta_hat stay the same. What is not known, as where errors grow, is None.
+    Returns
+    -------
+    FeedbackCost
+        Relative to the amplitude of the motion: `forced_error` of the constraint in the steady state, `total_error`
+        that stays in a run, `velocity_error` of the velocity. `times_least` compares `total_error` with that of the
+        goal accurate. `order_left` is the order in h if alpha_hat and beta_hat stay constant. None for what is not known.
 
-    InputError unless the point is given in one of the two ways and omega h is from 1e-6 to 1. Source:
-    the test equation of Prothero and Robinson (Math. Comp. 28, 1974).
+    Raises
+    ------
+    InputError
+        The point is not given in one of the two ways, or omega h is not from 1e-6 to 1.
+
+    References
+    ----------
+    The test equation of Prothero and Robinson, Math. Comp. 28, 1974.
     """
     motion = motion_of(
         exact_or_none(omega, "omega"),

@@ -41,6 +41,22 @@ def test_what_is_public_is_listed_once_and_found() -> None:
             assert "axes" in inspect.signature(function).parameters, name
 
 
+PUBLIC = [name for name in bezstab.__all__ if inspect.isfunction(getattr(bezstab, name))]
+
+
+@pytest.mark.parametrize("name", PUBLIC)
+def test_help_says_of_every_parameter_what_it_is(name: str) -> None:
+    function = getattr(bezstab, name)
+    summary, after = (inspect.getdoc(function) or "").split("\n\nParameters\n----------\n")
+    parameters, returns = after.split("\n\nReturns\n-------\n")
+    named = [
+        line.partition(" :")[0].split(", ") for line in parameters.splitlines() if not line.startswith((" ", "**"))
+    ]
+    assert {each for names in named for each in names} == set(inspect.signature(function).parameters)
+    assert summary.endswith(".")
+    assert returns
+
+
 def test_both_ways_to_give_a_point_and_a_motion_agree() -> None:
     direct = bezstab.poles("B3", alpha_hat=0.2, beta_hat=0.01)
     assert bezstab.poles("B3", alpha=50, beta=50, h=0.002) == pytest.approx(direct, rel=1e-14)  # a few roundings

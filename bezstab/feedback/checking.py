@@ -76,31 +76,44 @@ def check(
 
     Parameters
     ----------
-    method: your integration method; without one, the engine's own.
-    alpha_hat, beta_hat: the point, dimensionless; or
-    alpha, beta: in 1/s, with the step `h` in s; or
-    engine: an engine's own values, such as "mujoco=0.02,1", with `h`; `as_typed` leaves out the engine's clamps.
-    omega, omega_h: how fast the motion is, in 1/s or in rad a step. With one of them or a scene, `cost` says how many
-        times the least error the feedback makes; with `omega`, `energy_rate` what it does to the motion.
-    scene, speed, duration: a mechanism that moves so many times as fast as given there, and how long (s) it is run.
-    spread: the share by which alpha and beta may be off, for `worst`.
-    load: a steady load over the mass that it acts on, in m/s^2 or rad/s^2, for `sag`: in an engine.
-    margins, cost, instead: what else is wanted: how far h, alpha and beta may each go alone; the errors on the motion;
-        what `choose` gives in its place.
+    method : str or Method, optional
+        The integration method; by default the engine's own.
+    alpha_hat, beta_hat : number or str, optional
+        The feedback, dimensionless, read as written.
+    alpha, beta, h : number or str, optional
+        In their place: the feedback in 1/s and the step (s).
+    engine : str, optional
+        In their place: an engine's own values, such as "mujoco=0.02,1", with h.
+    as_typed : bool
+        Whether to leave out the engine's clamps.
+    omega, omega_h : number, optional
+        Rate of the motion in 1/s, or in rad a step. With one of them or a scene, `cost` compares the error that the
+        feedback makes with the least one; with omega, `energy_rate` says what it does to the motion.
+    scene, speed, duration : str or Scene, number, number, optional
+        A mechanism that moves so many times as fast as given there, and for how long (s) it is run.
+    spread : float
+        The share by which alpha and beta may be wrong, for `worst`.
+    load : number, optional
+        A steady load over the mass that it acts on (m/s^2 or rad/s^2), for `sag`: in an engine.
+    margins, cost, instead : bool
+        Whether to find how far h, alpha and beta may each go alone, the errors on the motion, and what `choose` gives.
 
     Returns
     -------
-    CheckAnswer: true where it is safe. `sentence` says it in words, `verdict` is proven. Of the several points that an
-    engine makes of its values, the first that is not safe.
+    CheckAnswer
+        True if safe. `sentence` says it in words, `verdict` is proven. Of several points that an engine makes of its
+        values, the first that is not safe.
 
     Raises
     ------
-    InputError: the point is not given in one of these ways, or a number is out of range.
-    NumericalError: a pole leaves the range of float64.
+    InputError
+        The point is not given in one of these ways, or a number is out of range.
+    NumericalError
+        A pole leaves the range of float64.
 
     References
     ----------
-    The Schur-Cohn test (I. Schur, J. reine angew. Math. 147, 1917) on the polynomial of paper Eq. 17.
+    The Schur-Cohn test (I. Schur, J. reine angew. Math. 147, 1917) on the polynomial of the paper's Eq. 17.
     """
     named, values = (None, None) if engine is None else engine_and_values(engine)
     given_point = point_if_given if engine else plane_point
@@ -251,10 +264,28 @@ class StepAnswer:
 
 @in_keywords()
 def largest_step(method: str | Method, *, alpha: Number, beta: Number) -> float:
-    """Return the step in s up to which every step is stable with alpha and beta in 1/s.
+    """Return the step (s) up to which every step is stable with alpha and beta.
 
-    Returns a float: infinite if every step is stable, 0 if small ones are not. The verdict is proven on both sides.
-    InputError unless the numbers are finite. Source: the path of all steps through the plane of paper Eq. 17.
+    Parameters
+    ----------
+    method : str or Method
+        The integration method.
+    alpha, beta : number or str
+        The feedback in 1/s.
+
+    Returns
+    -------
+    float
+        Infinite if every step is stable, 0 if small ones are not. The verdict is proven on both sides.
+
+    Raises
+    ------
+    InputError
+        A number is not finite.
+
+    References
+    ----------
+    The path of all steps through the plane of the paper's Eq. 17.
     """
     return stable_up_to(method_named(method), exact_number(alpha, "alpha"), exact_number(beta, "beta"))
 

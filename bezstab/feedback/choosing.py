@@ -138,41 +138,54 @@ def choose(
 
     Parameters
     ----------
-    method: your integration method; without one, the engine's own.
-    goal: what the point is for.
+    method : str or Method, optional
+        The integration method; by default the engine's own.
+    goal : {"accurate", "robust", "fastest", "critical", "gentle"}, optional
         "accurate", the usual one: the least error that the feedback makes on a motion, among the points that settle
-        within `settle` (s), or else while the motion turns by 14 rad. The motion turns by `omega` (1/s), or by
-        `omega_h` rad a step. Where alpha and beta are multiples of omega, whatever the step, as with most Runge-Kutta
-        methods, one of them or a scene is needed; `omega` alone will do. With others omega_h is 0.01 unless given.
-        "robust": the fastest decay in the worst case: alpha and beta off by the share `spread`, and smaller steps. The
-        usual goal with an engine whose alpha and beta depend on each other.
+        within `settle` (s), or else while the motion turns by 14 rad.
+        "robust", usual with an engine whose alpha and beta depend on each other: the fastest decay in the worst case, for
+        all smaller steps and for alpha and beta wrong by up to `spread`.
         "fastest": the least |z_p|.
         "critical": the fastest with alpha = beta whose dominant pole is double, real and positive.
-        "gentle": the mildest alpha = beta whose error falls a thousandfold within `settle` (s).
-    h, h_max: the step and the largest step in s. With both, accurate and robust allow for steps up to h_max; the answer
-        is for use at h, and omega_h is that of h_max.
-    spread: the share by which alpha and beta may be off.
-    equal: only points with alpha = beta.
-    sag, load: in place of a goal, the weakest feedback of an engine that sags by at most `sag` (m or rad) under a load,
-        given over the mass that it acts on, in m/s^2 or rad/s^2 [that of gravity].
-    engine: a name, such as "mujoco": only what that engine can express is searched; `setting` is the line to paste.
-    scene, speed, duration: a mechanism that moves so many times as fast as given there, and how long (s) it is run.
-    margins, cost, trades: what else is wanted: how far h, alpha and beta may grow; the errors on the motion; what
-        faster and slower decay would change.
+        "gentle": the weakest alpha = beta whose error falls a thousandfold within `settle` (s).
+    h, h_max : number, optional
+        The step and the largest step (s). With both, accurate and robust allow for steps up to h_max; the answer is for use
+        at h, and omega_h is that of h_max.
+    omega, omega_h : number, optional
+        Rate of the motion in 1/s, or in rad a step. If alpha and beta are multiples of omega, as with most Runge-Kutta
+        methods, one of them or a scene is needed; else omega_h is 0.01 by default.
+    settle : number, optional
+        Time (s) in which an error must fall a thousandfold, for the goals accurate and gentle.
+    spread : float
+        The share by which alpha and beta may be wrong.
+    equal : bool
+        Only points with alpha = beta.
+    sag, load : number, optional
+        In place of a goal: the weakest feedback of an engine that sags by at most `sag` (m or rad) under a load over
+        the mass that it acts on (m/s^2 or rad/s^2) [gravity].
+    engine : str, optional
+        Only what this engine can express is searched; `setting` is the line to paste.
+    scene, speed, duration : str or Scene, number, number, optional
+        A mechanism that moves so many times as fast as given there, and for how long (s) it is run.
+    margins, cost, trades : bool
+        Whether to find how far h, alpha and beta may grow, the errors on the motion, and what faster and slower decay would
+        change.
 
     Returns
     -------
-    ChooseAnswer: `alpha_hat` and `beta_hat` dimensionless, `alpha` and `beta` in 1/s, `pole`, `margins`, `safe`, and
-    all else that a Judgement has.
+    ChooseAnswer
+        `alpha_hat` and `beta_hat` dimensionless, `alpha` and `beta` in 1/s, `pole`, `margins`, `safe`, `sentence`.
 
     Raises
     ------
-    InputError: nothing stable meets the goal, the engine cannot express it, or an argument is out of range.
-    NumericalError: the point that is found is not stable.
+    InputError
+        Nothing stable meets the goal, the engine cannot express it, or an argument is out of range.
+    NumericalError
+        The point that is found is not stable.
 
     References
     ----------
-    The poles of paper Eq. 17; the goals are this package's.
+    The poles of the paper's Eq. 17; the goals are this package's.
     """
     named = None if engine is None else engine_named(engine)
     given = () if method is None else (method_named(method),)

@@ -97,14 +97,29 @@ def region_answer(method: Method, level: float = 1.0) -> RegionAnswer:
 def region(method: str | Method, level: Number = 1) -> Region:
     """Return the exact region of the plane of alpha_hat and beta_hat in which |z_p| < level.
 
-    level: above 0, at most 0.9999999, or 1. At 1 the region is where the method is stable.
+    Parameters
+    ----------
+    method : str or Method
+        The integration method.
+    level : number
+        Above 0 and at most 0.99999, or 1: where the method is stable.
 
-    Returns a Region, dimensionless. `boundary` is a list of closed curves, arrays of shape (points, 2)
-    with the columns alpha_hat and beta_hat. `area` and `extent` are its size. `contains(alpha_hat,
-    beta_hat)` tells which points lie inside. `bezstab.plot.region` draws it.
+    Returns
+    -------
+    Region
+        Dimensionless. `boundary` is a list of closed curves, arrays of shape (points, 2) with the columns alpha_hat and
+        beta_hat; `area` and `extent` are its size; `contains(alpha_hat, beta_hat)` says which points lie inside.
 
-    InputError for another level. NumericalError if an edge cannot be found. Source: boundary locus of
-    paper Eq. 17.
+    Raises
+    ------
+    InputError
+        Another level.
+    NumericalError
+        An edge cannot be found.
+
+    References
+    ----------
+    Boundary locus of the paper's Eq. 17.
     """
     return region_of(method_named(method), real_number(level, "level"))
 
