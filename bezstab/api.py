@@ -234,7 +234,8 @@ def feedback_cost(
     FeedbackCost
         Relative to the amplitude of the motion: `forced_error` of the constraint in the steady state, `total_error`
         that stays in a run, `velocity_error` of the velocity. `times_least` compares `total_error` with that of the
-        goal accurate. `order_left` is the order in h if alpha_hat and beta_hat stay constant. None for what is not known.
+        goal accurate. `order_left` is the order in h if alpha_hat and beta_hat stay constant. None for what is not
+        known.
 
     Raises
     ------

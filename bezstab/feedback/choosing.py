@@ -143,14 +143,13 @@ def choose(
     goal : {"accurate", "robust", "fastest", "critical", "gentle"}, optional
         "accurate", the usual one: the least error that the feedback makes on a motion, among the points that settle
         within `settle` (s), or else while the motion turns by 14 rad.
-        "robust", usual with an engine whose alpha and beta depend on each other: the fastest decay in the worst case, for
-        all smaller steps and for alpha and beta wrong by up to `spread`.
-        "fastest": the least |z_p|.
-        "critical": the fastest with alpha = beta whose dominant pole is double, real and positive.
-        "gentle": the weakest alpha = beta whose error falls a thousandfold within `settle` (s).
+        "robust", usual with an engine whose alpha and beta depend on each other: the fastest decay in the worst case,
+        for all smaller steps and for alpha and beta wrong by up to `spread`. "fastest": the least |z_p|. "critical":
+        the fastest with alpha = beta whose dominant pole is double, real and positive. "gentle": the weakest alpha =
+        beta whose error falls a thousandfold within `settle` (s).
     h, h_max : number, optional
-        The step and the largest step (s). With both, accurate and robust allow for steps up to h_max; the answer is for use
-        at h, and omega_h is that of h_max.
+        The step and the largest step (s). With both, accurate and robust allow for steps up to h_max; the answer is
+        for use at h, and omega_h is that of h_max.
     omega, omega_h : number, optional
         Rate of the motion in 1/s, or in rad a step. If alpha and beta are multiples of omega, as with most Runge-Kutta
         methods, one of them or a scene is needed; else omega_h is 0.01 by default.
@@ -168,8 +167,8 @@ def choose(
     scene, speed, duration : str or Scene, number, number, optional
         A mechanism that moves so many times as fast as given there, and for how long (s) it is run.
     margins, cost, trades : bool
-        Whether to find how far h, alpha and beta may grow, the errors on the motion, and what faster and slower decay would
-        change.
+        Whether to find how far h, alpha and beta may grow, the errors on the motion, and what faster and slower decay
+        would change.
 
     Returns
     -------
