@@ -21,6 +21,7 @@ PAGES = (
     "bezstab/stability/README.md",
     "bezstab/chains/README.md",
     "bezstab/drives/README.md",
+    "bezstab/feedback/README.md",
     "bezstab/step_sequences/README.md",
     "bezstab/runs/README.md",
     "bezstab/mujoco/README.md",

@@ -10,6 +10,7 @@ import click
 
 from bezstab.cli import shared_options as shared
 from bezstab.cli.asking import say_each, say_if_units_were_mistaken, say_what_is_left_out, show_sentences
+from bezstab.cli.grouped_help import GroupedCommand, grouped
 from bezstab.cli.options import SECONDS, EngineValues, TypedPoint
 from bezstab.cli.output import for_reading, say, show_answers, show_text, worked_out
 
@@ -19,20 +20,24 @@ if TYPE_CHECKING:
     from bezstab.methods.schemes import Method
 
 
-@click.command()
-@shared.point
-@shared.engine_values
-@shared.as_typed
-@shared.methods
-@click.option("--h", type=SECONDS, help="Step in s, for --physical, --engine, --scene and --omega.")
-@shared.omega
-@shared.scene
-@shared.speed
-@shared.time
-@shared.load
-@click.option("--instead", is_flag=True, help="Also print what `choose` gives, which an unsafe choice gets anyway.")
-@shared.every_column
-@shared.form
+@click.command(cls=GroupedCommand)
+@grouped("What is judged", shared.alpha, shared.beta, shared.physical, shared.engine_values, shared.as_typed)
+@grouped(
+    "Your simulation",
+    shared.methods,
+    click.option("--h", type=SECONDS, help="Step in s, for --physical, --engine, --scene and --omega."),
+    shared.omega,
+    shared.scene,
+    shared.speed,
+    shared.time,
+    shared.load,
+)
+@grouped(
+    "Output",
+    click.option("--instead", is_flag=True, help="Also what `choose` gives; an unsafe choice gets it anyway."),
+    shared.every_column,
+    shared.form,
+)
 def check(
     methods: tuple[Method, ...],
     alpha: Fraction | None,

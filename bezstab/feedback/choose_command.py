@@ -9,6 +9,7 @@ import click
 
 from bezstab.cli import shared_options as shared
 from bezstab.cli.asking import say_each, say_what_is_left_out, show_sentences
+from bezstab.cli.grouped_help import GroupedCommand, grouped
 from bezstab.cli.options import ENGINE, POSITIVE, SECONDS, SHARE
 from bezstab.cli.output import for_reading, progress, show_answers, worked_out
 from bezstab.goals import GOALS, Goal
@@ -18,25 +19,28 @@ if TYPE_CHECKING:
     from bezstab.methods.schemes import Method
 
 
-@click.command()
-@click.option(
-    "--goal", type=click.Choice(list(GOALS)), help="What the point is for [accurate; robust in most engines]."
+@click.command(cls=GroupedCommand)
+@grouped(
+    "What is chosen",
+    click.option("--goal", type=click.Choice(list(GOALS)), help="What for [accurate; robust in most engines]."),
+    click.option("--settle", type=SECONDS, help="Accurate and gentle: errors fall to a thousandth in so many s."),
+    click.option("--spread", type=SHARE, default="0.1", help="The share by which α and β may be wrong."),
+    click.option("--keep", "equal", type=click.Choice(["alpha=beta"]), help="Only points with α = β."),
+    click.option("--engine", type=ENGINE, help="Only what this engine can express, with the line to paste."),
+    click.option("--sag", type=POSITIVE, help="In place of a goal: the weakest that sags by at most so many m."),
 )
-@click.option("--settle", type=SECONDS, help="Errors are to fall to a thousandth in so many s: accurate and gentle.")
-@click.option("--spread", type=SHARE, default="0.1", help="The share by which α and β may be wrong.")
-@click.option("--keep", "equal", type=click.Choice(["alpha=beta"]), help="Only points with α = β.")
-@click.option("--engine", type=ENGINE, help="Only what this engine can express, with the line to paste.")
-@click.option("--sag", type=POSITIVE, help="In place of a goal: the weakest that sags by at most so many m or rad.")
-@shared.load
-@shared.methods
-@click.option("--h", type=SECONDS, help="Step in s. Not needed with --omega where α and β are multiples of ω.")
-@click.option("--h-max", type=SECONDS, help="Largest step in s that can occur; for accurate and robust [--h].")
-@shared.omega
-@shared.scene
-@shared.speed
-@shared.time
-@shared.every_column
-@shared.form
+@grouped(
+    "Your simulation",
+    shared.methods,
+    click.option("--h", type=SECONDS, help="Step in s. Not needed with --omega where α and β are multiples of ω."),
+    click.option("--h-max", type=SECONDS, help="Accurate and robust: the largest step in s that can occur [--h]."),
+    shared.omega,
+    shared.scene,
+    shared.speed,
+    shared.time,
+    shared.load,
+)
+@grouped("Output", shared.every_column, shared.form)
 def choose(
     goal: Goal | None,
     settle: Fraction | None,

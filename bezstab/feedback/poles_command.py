@@ -9,6 +9,7 @@ import click
 
 from bezstab.cli import shared_options as shared
 from bezstab.cli.asking import say_each, say_if_units_were_mistaken, say_what_is_left_out, show_sentences
+from bezstab.cli.grouped_help import GroupedCommand, grouped
 from bezstab.cli.options import A_METHOD, METHOD, SECONDS, EngineValues, TypedPoint, typed_options
 from bezstab.cli.output import for_reading, say, show_answers, show_text, worked_out
 
@@ -19,18 +20,22 @@ USUAL_METHODS = ("B2", "B3", "B4", "AB2", "AB3", "AB4", "RK4@5", "SIE")
 """Without --method: the Bezier methods and their usual alternatives."""
 
 
-@click.command()
-@shared.point
-@shared.engine_values
-@shared.as_typed
-@click.option("--method", "methods", type=METHOD, multiple=True, default=USUAL_METHODS, help=f"{A_METHOD} Repeatable.")
-@click.option("--h", type=SECONDS, help="Step in s, for --physical, --engine, --scene and --omega.")
-@shared.omega
-@shared.scene
-@shared.speed
-@click.option("--all-poles", is_flag=True, help="Print every pole, not only the dominant one.")
-@shared.every_column
-@shared.form
+@click.command(cls=GroupedCommand)
+@grouped("What is judged", shared.alpha, shared.beta, shared.physical, shared.engine_values, shared.as_typed)
+@grouped(
+    "Your simulation",
+    click.option("--method", "methods", type=METHOD, multiple=True, help=f"{A_METHOD} Repeatable [some usual ones]."),
+    click.option("--h", type=SECONDS, help="Step in s, for --physical, --engine, --scene and --omega."),
+    shared.omega,
+    shared.scene,
+    shared.speed,
+)
+@grouped(
+    "Output",
+    click.option("--all-poles", is_flag=True, help="Print every pole, not only the dominant one."),
+    shared.every_column,
+    shared.form,
+)
 def poles(
     methods: tuple[Method, ...],
     alpha: Fraction | None,
@@ -58,6 +63,7 @@ def poles(
     from bezstab.feedback.columns import POLES
     from bezstab.feedback.poles import poles_at
     from bezstab.feedback.sentences import motion_words
+    from bezstab.methods.registry import lookup
     from bezstab.words import point_words
 
     named, values = engine or (None, None)
@@ -65,8 +71,8 @@ def poles(
     if "--h" in typed_options() and not (physical or engine or scene or omega):
         raise click.UsageError("--h needs one of --physical, --engine, --scene, --omega: α̂ and β̂ have no unit")
     given = Given(point=typed.at(h), values=values, as_typed=as_typed)
-    if named and "--method" not in typed_options():
-        methods = ()
+    if not methods and named is None:
+        methods = tuple(map(lookup, USUAL_METHODS))
     methods, given, asked = worked_out(
         lambda: asked_to_check(methods, given, h=h, engine=named, omega=omega, scene=scene, speed=speed), scene
     )
