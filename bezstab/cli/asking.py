@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence, Sized
+from collections.abc import Callable, Iterable, Sequence
 from fractions import Fraction
-from typing import Any, TypeVar
+from typing import TypeVar
 
 from bezstab.cli.command_group import NUMERICAL_TROUBLE
 from bezstab.cli.options import TypedPoint, typed_options
 from bezstab.cli.output import say, show_text
-from bezstab.engines.conversions import Engine, Point
+from bezstab.engines.conversions import Engine
 from bezstab.engines.engine_list import WITNESSES
 from bezstab.errors import NumericalError
 from bezstab.methods.registry import lookup
 from bezstab.methods.schemes import Method
 from bezstab.rationals import typed_number
-from bezstab.words import point_words
 
 Found = TypeVar("Found")
 
@@ -43,20 +42,6 @@ def of_each(methods: Iterable[Method], rows_of: Callable[[Method], Iterable[Foun
         raise failed[0]
     say_each(map(str, failed))
     return rows, NUMERICAL_TROUBLE if failed else 0
-
-
-def show_point(typed: Mapping[str, Any], point: Point | None, answers: Sized = ()) -> None:
-    """Print which point (dimensionless) was judged, of all that was typed, unless the sentence of a single answer does.
-
-    A note on standard error says so if that may not be what was meant.
-    """
-    h = typed["h"]
-    if typed["point"] and not typed.get("sequence"):  # which may be to let errors grow
-        methods = typed["methods"] if "methods" in typed else (typed["method"],)
-        say_if_units_were_mistaken(methods, typed["point"], h if "--h" in typed_options() else None)
-    if point and len(answers) != 1:
-        alpha_hat, beta_hat = map(float, point)
-        show_text(f"{point_words(alpha_hat, beta_hat, h)}\n")
 
 
 def show_sentences(sentences: Iterable[str | None]) -> None:

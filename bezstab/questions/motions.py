@@ -3,11 +3,10 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cached_property
 
 from bezstab.errors import InputError
 from bezstab.mechanism.constraint_normals import ConstraintMotion, TurningNormals, constraint_motion, turning_normals
-from bezstab.mechanism.equations import Mechanism, compiled_mechanism
+from bezstab.mechanism.equations import compiled_mechanism
 from bezstab.mechanism.scene_files import load_scene
 from bezstab.mechanism.scenes import Scene, at_speed
 from bezstab.rationals import exact, typed_number
@@ -28,24 +27,6 @@ class ReferenceMotion:
     words: str
     amplitude: float | None = None
     assumed: bool = False
-
-
-@dataclass(frozen=True, kw_only=True)
-class SceneQuestion:
-    """A question about a scene that moves `speed` times as fast as given there; properties: errors as `load_scene`."""
-
-    scene: str | Scene
-    speed: Fraction = Fraction(1)
-
-    @property
-    def moving(self) -> Scene:
-        """The scene, as fast as it is asked about."""
-        return scene_at_speed(self.scene, self.speed)
-
-    @cached_property
-    def mechanism(self) -> Mechanism:
-        """The mechanism that runs."""
-        return compiled_mechanism(self.moving)
 
 
 def motion_of(

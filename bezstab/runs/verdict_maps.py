@@ -55,24 +55,12 @@ class VerdictMap(ReadOnlyArrays):
     @property
     def judged(self) -> int:
         """The number of runs with a verdict."""
-        return self.undecided.size - self.unjudged
-
-    @property
-    def unjudged(self) -> int:
-        """The number of runs without a verdict."""
-        return int(self.undecided.sum())
+        return self.undecided.size - int(self.undecided.sum())
 
     @property
     def agreeing(self) -> int:
         """The number of runs whose verdict is the predicted one."""
         return self.judged - int(self.disagrees.sum())
-
-    @property
-    def agreement(self) -> float | None:
-        """The share of the judged runs whose verdict is the predicted one; None if none was judged."""
-        if not self.judged:
-            return None
-        return self.agreeing / self.judged
 
     @property
     def band(self) -> float:

@@ -79,11 +79,11 @@ def test_agreement_is_of_what_was_judged_and_beyond_the_band_of_what_the_motion_
         undecided=np.array([[False, False, False, True, False, False]]),
         moved=np.array([[0, 0, 0, 0, 0, 0.03]]),
     )
-    assert (made_up.judged, made_up.agreeing, made_up.agreement) == (5, 2, 0.4)
+    assert (made_up.judged, made_up.agreeing) == (5, 2)
     assert made_up.farthest_disagreement == pytest.approx(0.1)
     assert (made_up.band, made_up.close_runs, made_up.disagreements_beyond_band) == (0.005, 2, 1)
     nothing = replace(made_up, undecided=np.ones_like(made_up.undecided))
-    assert (nothing.judged, nothing.agreement, nothing.farthest_disagreement) == (0, None, None)
+    assert (nothing.judged, nothing.farthest_disagreement) == (0, None)
 
 
 @pytest.mark.parametrize("count", [3, 60])
