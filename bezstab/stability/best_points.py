@@ -46,6 +46,7 @@ REACH = 0.3  # of alpha_hat: within it a line as good as any lies, where a start
 HOPEFUL_ZERO = 0.1  # |z_p| from which all poles may be led to zero
 NEWTON_STEPS, NEWTON_TOLERANCE = 60, 1e-11  # a double zero is come to by halves, and to the root of rounding
 CLUSTER = 0.05  # of |z_p|: three poles so near each other are one, which rounding parts by its cube root
+SHORTEST = 1e-11  # of a stretch: a level at which none is longer is off by up to the root of it
 ENOUGH = 1e-13  # of a level, to which its bisection goes on
 AT_ZERO = 1e-7  # |z_p|: where two poles meet at zero, a rounding of the place parts them by so much
 FAR = 500.0  # so far out, in natural logarithms, the highest powers of P stay in the range of float64
@@ -259,7 +260,7 @@ def _narrowed(method: Method, alpha_hat: float, beta_hat: float, level: float) -
         lines, before, low, start = np.abs(alpha_hat + reach * OFFSETS), alpha_hat, 0.0, level
         while level - low > ENOUGH * level and level > AT_ZERO / 2:
             tried = max(level - fall, (low + level) / 2)
-            stable = paths(method, lines, np.ones_like(lines), ALONG_BETA, tried).stretches()
+            stable = paths(method, lines, np.ones_like(lines), ALONG_BETA, tried).stretches(SHORTEST)
             if stable.path.size:
                 _, first = np.unique(stable.path, return_index=True)
                 middle = int(first[len(first) // 2])

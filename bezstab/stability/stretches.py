@@ -130,8 +130,8 @@ class Paths:
         hurwitz = padded[np.where((k >= 0) & (k <= n), k, n + 1)]
         return centre + _singular_places(np.moveaxis(hurwitz, (2, 3), (1, 0)))
 
-    def stretches(self) -> Stretches:
-        """Return all stable stretches of all paths.
+    def stretches(self, short: float = SHORT) -> Stretches:
+        """Return all stable stretches of all paths, but for those that are `short`, a share of their place.
 
         Their ends are those of eigenvalues, held against verdicts, and bisected where these turn elsewhere.
         """
@@ -146,7 +146,7 @@ class Paths:
         last = between.shape[1] - 1
         lower = self._held(path, ends[path, first], between[path, np.maximum(first - 1, 0)], between[path, first])
         upper = self._held(path, ends[path, beyond], between[path, np.minimum(beyond, last)], between[path, beyond - 1])
-        return _joined(path, lower, upper)
+        return _joined(path, lower, upper, short)
 
     def _held(self, path: NDArray[np.intp], end: FloatArray, outside: FloatArray, inside: FloatArray) -> FloatArray:
         """Return ends at which the verdict turns, from those of eigenvalues and a point to either side of each."""
@@ -244,11 +244,11 @@ def _in_s(plane: FloatArray, alpha_hat: FloatArray, beta_hat: FloatArray, powers
     return found
 
 
-def _joined(path: NDArray[np.intp], low: FloatArray, high: FloatArray) -> Stretches:
-    """Return stretches without those that are SHORT, and those joined between which the gap is."""
-    long = high > low * (1 + SHORT)
+def _joined(path: NDArray[np.intp], low: FloatArray, high: FloatArray, short: float) -> Stretches:
+    """Return stretches without those that are short, and those joined between which the gap is."""
+    long = high > low * (1 + short)
     path, low, high = path[long], low[long], high[long]
-    apart = (path[1:] != path[:-1]) | (low[1:] > high[:-1] * (1 + SHORT))
+    apart = (path[1:] != path[:-1]) | (low[1:] > high[:-1] * (1 + short))
     first, last = np.append(True, apart)[: len(path)], np.append(apart, True)[: len(path)]
     return Stretches(path[first], low[first], high[last])
 
