@@ -59,6 +59,12 @@ HALO: list[AbstractPathEffect] = [withStroke(linewidth=1.5, foreground="black")]
 WHITE_HALO: list[AbstractPathEffect] = [withStroke(linewidth=2.6, foreground="white")]
 """So that a black line is told from the others."""
 
+ROOMY = 30
+"""Places along each side of the axes that are tried for a word."""
+
+WORDS_ARE_WIDE = (0.4, 1.0)
+"""What a distance across and a distance up count for a word, which is wider than high."""
+
 PARTS = 300
 """Of each chord of a boundary, which is straight on other axes alone: the last is thinner than a line."""
 
@@ -77,7 +83,8 @@ def map_figure(answer: MapAnswer) -> Figure:
     h, moving = asked.h, answer.moving
     with styled():
         name = region.method.name
-        title = title_lines(name, f"at rest and on the {asked.scene_name}") if moving else name
+        at = f" at rest and on the {asked.scene_name}" if moving else ""
+        title = title_lines(f"{name}: what a step multiplies errors by{at}")
         figure, axes = _plane(title, [answer.method], h)
         image = plot.modulus_map(drawing.alpha_hat, drawing.beta_hat, np.abs(drawing.z), axes, h)
         figure.colorbar(image, label="$|z_p|$")
@@ -93,6 +100,7 @@ def map_figure(answer: MapAnswer) -> Figure:
                 label = "its own speed" if speed == 1 else f"{speed:g} times its own speed"
                 _level_line(axes, x, y, moving.turn_limits, kappa * h, label, DASHES[number % 4])
         _draw_points(answer, axes)
+        _name_areas(axes, region, h)
         _draw_open_edges(region, axes, h, color="white", markeredgecolor="black")
         if asked.alpha_beta:
             mark_in_alpha_and_beta(axes)
@@ -125,6 +133,28 @@ def _draw_points(answer: MapAnswer, axes: Axes) -> None:
     for marker in drawn:
         if not axes.viewLim.contains(*np.asarray(marker.get_xydata())[0]):
             marker.remove()
+
+
+def _name_areas(axes: Axes, region: Region, h: float | None) -> None:
+    """Write into axes whose limits are final where errors decay and where they grow, farthest from what is drawn."""
+    shares = (np.arange(ROOMY) + 0.5) / ROOMY
+    places = np.stack(np.meshgrid(shares, shares), axis=-1).reshape(-1, 2)
+    points = axes.transLimits.inverted().transform(places) / plane_coordinates(1.0, 1.0, h)
+    inside = region.contains(*points.T)
+    in_the_way = [
+        axes.transLimits.transform(line.get_xydata())
+        for line in axes.lines
+        if line.get_marker() != "None" and len(np.atleast_1d(line.get_xdata())) == 1
+    ]
+    walls = [places * [1, 0], places * [1, 0] + [0, 1], places * [0, 1], places * [0, 1] + [1, 0]]
+    for word, area in (("stable", inside), ("diverges", ~inside)):
+        if not area.any():
+            continue
+        others = np.concatenate([places[~area], *in_the_way, *walls])
+        away = [np.hypot(*((others - place) * WORDS_ARE_WIDE).T).min() for place in places[area]]
+        x, y = places[area][int(np.argmax(away))]
+        text = axes.text(x, y, word, transform=axes.transAxes, ha="center", va="center", fontsize=7)
+        text.set_path_effects(WHITE_HALO)
 
 
 def _level_line(

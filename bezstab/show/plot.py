@@ -166,7 +166,7 @@ def critical_damping(alpha_range: Range, axes: Axes | None = None, h: float | No
     h : float, optional
         Step (s) with which the axes are alpha and beta in 1/s; by default they are alpha_hat and beta_hat.
     **line
-        Properties of the line; by default white with a black outline, for a map.
+        Properties of the line; by default thin and grey.
 
     Returns
     -------
@@ -177,10 +177,10 @@ def critical_damping(alpha_range: Range, axes: Axes | None = None, h: float | No
         _plane(axes, r"$(\hat\alpha, \hat\beta)$", h),
         plane_coordinates(alpha_hat, alpha_hat**2 / 4, h),
         line,
-        color="white",
+        color="0.6",
+        linewidth=0.8,
         linestyle=DASHES[2],
         label="critical damping: " + (r"$\hat\beta = \hat\alpha^2/4$" if h is None else r"$\alpha = \beta$"),
-        path_effects=[withStroke(linewidth=2.4, foreground="black")],  # white alone is lost outside the region
     )
 
 

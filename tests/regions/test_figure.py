@@ -11,6 +11,7 @@ from matplotlib.collections import QuadMesh
 from bezstab.methods.registry import lookup
 from bezstab.regions.answer import map_answer, map_conditions
 from bezstab.regions.figure import comparison_figure, map_figure
+from bezstab.stability.closed_loop import spectral_radius
 from bezstab.stability.regions import region
 from tests.show.drawn import lines_of
 
@@ -91,3 +92,18 @@ def test_arrows_along_the_edges_are_where_an_unbounded_region_goes_on(h: Fractio
         points = (low + (high - low) * shares) / scale
         assert of_boundaries[line.get_color()].contains(*points.T).all()
     assert {">", "^"} <= {line.get_marker() for line in arrows}
+
+
+@pytest.mark.parametrize("name", ["SYM", "RK4", "implicit-euler"])
+def test_a_map_says_where_errors_decay_and_where_they_grow(name: str) -> None:
+    """Each word stands in its area, and in the axes; where no error grows nothing is said to diverge."""
+    method = lookup(name)
+    axes = map_figure(map_answer(method, map_conditions(points=21), drawn=True)).axes[0]
+    said = {text.get_text(): np.array(text.get_position()) for text in axes.texts}
+    assert set(said) == ({"stable"} if name == "implicit-euler" else {"stable", "diverges"})
+    for word, share in said.items():
+        assert ((share > 0.05) & (share < 0.95)).all()
+        alpha_hat, beta_hat = axes.transLimits.inverted().transform(share)
+        z_abs = spectral_radius(method, alpha_hat, beta_hat)
+        assert (z_abs < 1) == (word == "stable")
+    assert axes.get_title().startswith(name)

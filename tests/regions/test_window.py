@@ -36,7 +36,7 @@ def test_a_window_opens_on_the_map(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(FigureCanvasAgg, "required_interactive_framework", "a screen")
     monkeypatch.setattr(pyplot, "show", lambda: opened.append(pyplot.gcf().axes[0].get_title()))
     assert run(REGION).exit_code == 0
-    assert opened == ["SYM"]
+    assert opened == ["SYM: what a step multiplies errors by"]
     pyplot.close("all")
 
 
