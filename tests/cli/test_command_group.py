@@ -34,10 +34,9 @@ def test_the_example_in_the_help_runs(name: str) -> None:
     example = re.search(r"Example: bezstab ((?:[^\n]|\n  \S)*)", run(name, "--help").stdout)
     assert example
     needs_more = name == "probe"  # logs of the user's own
-    shows_a_fault = name in ("steps", "chain")  # a sequence that grows, a chain that needs more sweeps
     Path("robot.xml").write_text("<mujoco/>", encoding="utf-8")
     less_to_do = "--time 0.5 --alpha 0.1 --beta 0.01 --repeats 1" if name == "tradeoff" else ""
-    assert run(f"{example[1]} {less_to_do}").exit_code == (2 if needs_more else int(shows_a_fault))
+    assert run(f"{example[1]} {less_to_do}").exit_code == (2 if needs_more else 0)
 
 
 NUMBERS = ["0", "-0.1", "0.5", "1", "2", "1e-17", "-1e-30", "1e-300", "1e100", "1e300", "6/11", "nan", "1e999", "x"]
