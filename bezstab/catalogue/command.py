@@ -30,7 +30,7 @@ def engines(
     omega: Fraction | None,
     **_: object,
 ) -> None:
-    """List what engines call the feedback, or show all about those you name.
+    """List what engines call the feedback, or all about one.
 
     The list says what you set, what the defaults are as α̂ and β̂ at a step of h, and whether we ran the engine itself
     or rely on its source. A name shows the rest: what the conversion leaves out, how the engine sweeps, its source, and
