@@ -315,6 +315,13 @@ LISTED: Sequence[Column[MethodAnswer]] = (
         _exact,
         "the error constant as a rational; null where the coefficients are irrational",
     ),
+    Column(
+        "added damping",
+        "added_damping",
+        lambda about: about.added_damping,
+        "damping ratio that the method adds to an oscillator without damping, negative where it drives: the first term "
+        "in θ = ωh",
+    ),
     Column("", "source", lambda about: about.method.source, "where the method is from"),
     Column("implicit", "implicit", lambda about: about.implicit, "whether a step solves equations"),
     Column(
@@ -348,13 +355,6 @@ FORMULAS: Sequence[Column[Formulas]] = (
         "steady_velocity_error",
         lambda found: found.steady_velocity_error,
         "the same of the velocity, as a share of that of the motion",
-    ),
-    Column(
-        "",
-        "added_damping",
-        lambda found: found.added_damping,
-        "damping ratio that the method adds to an oscillator without damping, negative where it drives: the first term "
-        "in θ = ωh",
     ),
     Column(
         "",

@@ -27,13 +27,14 @@ class MethodAnswer:
     order_position_forces: int
     order_velocity_forces: int
     other_names: str
+    added_damping: str
 
 
 @dataclass(frozen=True)
 class Formulas:
     """A method's recursion, s→z mapping and characteristic polynomial (paper Tables 1 and 2), as text or LaTeX.
 
-    And its steady errors, the damping that it adds to an oscillator, the torque of its stages, on what its multipliers
+    And its steady errors, the torque of its stages, on what its multipliers
     do work, and the order that is left to the forced error where alpha_hat and beta_hat are held.
     """
 
@@ -42,7 +43,6 @@ class Formulas:
     characteristic_polynomial: str
     steady_error: str
     steady_velocity_error: str
-    added_damping: str
     stage_torque: str
     multiplier_law: str
     order_left: int | None
@@ -57,8 +57,9 @@ class WholeMethod:
     region: RegionAnswer
 
 
-def method_answer(method: Method, name: str = "", group: str = "") -> MethodAnswer:
+def method_answer(method: Method, name: str = "", group: str = "", *, latex: bool = False) -> MethodAnswer:
     """Return what a list says of a method, called by its own name unless told another."""
+    from bezstab.methods.formulas import added_damping_text
     from bezstab.methods.orders import accuracy, accuracy_by_force  # loads sympy
 
     order, constant = accuracy(method)
@@ -75,13 +76,13 @@ def method_answer(method: Method, name: str = "", group: str = "") -> MethodAnsw
         order_position_forces=by_force.position[0],
         order_velocity_forces=by_force.velocity[0],
         other_names=OTHER_NAMES.get(method.name, "").replace(" ", ", "),
+        added_damping=added_damping_text(method, latex),
     )
 
 
 def whole_method(method: Method, *, latex: bool) -> WholeMethod:
     """Return all that is known of a method; errors as `region_answer`."""
     from bezstab.methods.formulas import (
-        added_damping_text,
         characteristic_text,
         mapping_text,
         multiplier_law_text,
@@ -97,9 +98,8 @@ def whole_method(method: Method, *, latex: bool) -> WholeMethod:
         characteristic_polynomial=characteristic_text(method, latex),
         steady_error=steady_error_text(method, "x", latex),
         steady_velocity_error=steady_error_text(method, "v", latex),
-        added_damping=added_damping_text(method, latex),
         stage_torque=stage_torque_text(method, latex),
         multiplier_law=multiplier_law_text(method, latex),
         order_left=order_left(method),
     )
-    return WholeMethod(method_answer(method), formulas, region_answer(method))
+    return WholeMethod(method_answer(method, latex=latex), formulas, region_answer(method))

@@ -19,14 +19,13 @@ def methods(methods: Sequence[Method], latex: bool, **_: object) -> None:
     """List the methods, or show all about those you name.
 
     Prints the number of steps, the evaluations of f in a step (of an implicit method in an iteration), the order of
-    accuracy and the error constant. They are computed from the coefficients. In parentheses is the order if forces
-    depend on positions alone.
+    accuracy, the error constant, and the added damping: the damping ratio of an oscillator that has none itself, to
+    leading order in θ = ωh; a negative one drives it. In parentheses is the order if forces depend on positions alone.
 
     For a method that you name it also prints the recursion, s→z mapping, characteristic polynomial and stability region
     (the paper's Tables 1 and 2), the source, and the error that the method makes on a constraint that moves, as a share
-    of that motion. The added damping is the damping ratio of an oscillator that has none itself; a negative one drives
-    it. The stage torque is D: each step multiplies the rate ω of a motion on a circle by 1 + D. Where D is positive,
-    the motion speeds up.
+    of that motion. The stage torque is D: each step multiplies the rate ω of a motion on a circle by 1 + D. Where D
+    is positive, the motion speeds up.
 
     SIE is the paper's "Euler semi-implicit". It is not what engines call semi-implicit Euler: that is SYM.
 

@@ -34,7 +34,7 @@ def test_an_engine_is_said_to_be_run_where_a_test_runs_it() -> None:
 
 
 def test_the_list_is_a_line_an_engine_and_a_name_shows_the_rest() -> None:
-    lines = CliRunner().invoke(main, ["engines"]).output.splitlines()
+    lines = CliRunner(env={"COLUMNS": None}).invoke(main, ["engines"]).output.splitlines()
     assert [line.split()[0] for line in lines[2 : 2 + len(ENGINES)]] == list(ENGINES)
     assert max(map(len, lines[1 : 2 + len(ENGINES)])) <= 120
     shown = CliRunner().invoke(main, ["engines", "pybullet"]).output
