@@ -199,7 +199,7 @@ def judge_drive(
         verdict=found,
         z_abs=z_abs,
         fresh_z_abs=abs(dominant_pole(drive, h, method, FRESH)),
-        damping_ratio=damping_ratio(pole),
+        damping_ratio=0.0 if found == "marginal" else damping_ratio(pole),  # proven on the circle
         tenth_steps=steps_to_settle(z_abs, TENTH) if found == "converges" else None,
         settle_steps=steps_to_settle(z_abs) if found == "converges" else None,
         load=load,
@@ -300,6 +300,8 @@ def _one_gain(answer: DriveAnswer) -> str:
         return " Without kp this is a damper: nothing holds the position, so the velocity is judged."
     if drive.kd:
         return ""
+    if answer.verdict == "marginal":
+        return " Without kd this is a spring, and the integrator neither damps nor drives it."
     added = "" if answer.damping_ratio is None else f": its damping ratio is {answer.damping_ratio:.4g}"
     return f" Without kd this is a spring: nothing but the integrator damps{added}."
 

@@ -88,12 +88,20 @@ def test_what_cannot_be_reached_is_refused_with_what_can() -> None:
     [
         (500, 5, 0, 2, "rests 0.229° (of a slider 4 mm) from its target"),  # 2 / 500 rad
         (500, 5, 2000, 2, "rests at its target"),
-        (1000, 0, 0, None, "nothing but the integrator damps: its damping ratio is"),
+        (1000, 0, 0, None, "a spring, and the integrator neither damps nor drives it"),
         (0, 1, 0, None, "nothing holds the position, so the velocity is judged"),
     ],
 )
 def test_the_sentence_says_what_is_special(kp: int, kd: int, ki: int, load: int | None, part: str) -> None:
     assert part in drive(kp, kd, 0.1, h=0.001, ki=ki, load=load, method="SYM").sentence
+
+
+def test_an_integrator_adds_its_damping_to_a_spring_and_symplectic_euler_none() -> None:
+    """That of implicit Euler is ωh / 2 to leading order."""
+    implicit = drive(1, 0, 1, h=0.01, method="implicit-euler")
+    assert implicit.damping_ratio == pytest.approx(0.005, rel=1e-4)
+    assert "nothing but the integrator damps: its damping ratio is 0.005" in implicit.sentence
+    assert drive(1000, 0, 1, h=0.01, method="SYM").damping_ratio == 0
 
 
 LIMITS = [
