@@ -4,13 +4,16 @@ from functools import partial
 from operator import mul
 from typing import Any
 
+import numpy as np
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from bezstab.drives.answer import DriveAnswer
 from bezstab.drives.columns import timing_words
 from bezstab.drives.held_torque import closed_loop, drive_map
 from bezstab.show import plot
-from bezstab.show.style import ABOVE_THE_AXES, ACCENT, new_axes, styled, title_lines, with_legend
+from bezstab.show.style import ABOVE_THE_AXES, ACCENT, name_areas, new_axes, styled, title_lines, with_legend
+from bezstab.stability.arrays import FloatArray
 
 
 def drive_figure(answer: DriveAnswer, points: int) -> Figure:
@@ -24,12 +27,13 @@ def drive_figure(answer: DriveAnswer, points: int) -> Figure:
     found = drive_map(loop, answer.timing, points, (alpha_hat, beta_hat), law=not drive.ki)
     kp_of_one, kd_of_one = drive.gains(1.0, 1.0, h)
     kd, kp = kd_of_one * found.alpha_hat, kp_of_one * found.beta_hat
-    of_method = title_lines(answer.applied or answer.method.name, f"h = {h:g} s")
+    applied = answer.applied or answer.method.name
+    of_drive = title_lines(f"Drive, {applied}, {float(drive.inertia):g} kg m²", f"h = {h:g} s")
     with styled():
-        title = f"{of_method}\n{title_lines(timing_words(answer.timing, h))}"
+        title = f"{of_drive}\n{title_lines(timing_words(answer.timing, h))}"
         figure, axes = new_axes(title, "kd (N m s/rad)", "kp (N m/rad)", 1.1)
         image = plot.modulus_map(kd, kp, found.z_abs, axes=axes)
-        figure.colorbar(image, label="$|z_p|$ a step", location="bottom", shrink=0.8)
+        figure.colorbar(image, label="what a step multiplies errors by, $|z_p|$", location="bottom", shrink=0.8)
         if found.has_edge:
             axes.plot([], [], color="black", label="$|z_p| = 1$")  # a contour has no label of its own
             axes.contour(kd, kp, found.z_abs, levels=[1.0], colors="black", linewidths=1.2)
@@ -46,6 +50,7 @@ def drive_figure(answer: DriveAnswer, points: int) -> Figure:
         }
         plot.point(own, axes, label=f"kp = {own[1]:g}, kd = {own[0]:g}", **star)
         axes.set(xlim=(min(0.0, kd[0]), kd[-1]), ylim=(min(0.0, kp[0]), kp[-1]), facecolor="0.93")
+        name_areas(axes, partial(_stable_at, kd, kp, found.z_abs))
         across = axes.secondary_xaxis("top", functions=(partial(mul, 1 / kd_of_one), partial(mul, kd_of_one)))
         across.set_xlabel(r"$\hat\alpha = $ kd $h$ / inertia")
         up = axes.secondary_yaxis("right", functions=(partial(mul, 1 / kp_of_one), partial(mul, kp_of_one)))
@@ -53,3 +58,9 @@ def drive_figure(answer: DriveAnswer, points: int) -> Figure:
         for axis in (axes.xaxis, axes.yaxis, across.xaxis, up.yaxis):
             axis.set_major_formatter("{x:g}")  # a common factor would stand beside it, on the axis opposite
         return with_legend(figure, facecolor="0.75")
+
+
+def _stable_at(kd: FloatArray, kp: FloatArray, z_abs: FloatArray, x: FloatArray, y: FloatArray) -> NDArray[np.bool_]:
+    """Return whether errors decay at points (x, y), as the map's nearest points above them say."""
+    rows, columns = np.minimum(np.searchsorted(kp, y), len(kp) - 1), np.minimum(np.searchsorted(kd, x), len(kd) - 1)
+    return z_abs[rows, columns] < 1

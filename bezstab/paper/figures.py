@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from bezstab.mechanism.equations import compiled_mechanism
 from bezstab.mechanism.runner import Start
@@ -14,7 +15,15 @@ from bezstab.mechanism.scene_files import load_scene
 from bezstab.mechanism.simulation import Simulation
 from bezstab.mechanism.start import initial_state
 from bezstab.methods.registry import lookup
-from bezstab.paper.experiments import START_NAMES, STEP, UNSTABILIZED, compared_runs, kicked_runs, unstabilized_runs
+from bezstab.paper.experiments import (
+    KICK,
+    START_NAMES,
+    STEP,
+    UNSTABILIZED,
+    compared_runs,
+    kicked_runs,
+    unstabilized_runs,
+)
 from bezstab.paper.printed import COMPARED, FASTER_LEVEL, TABLE_5
 from bezstab.regions.answer import MapConditions, map_answer
 from bezstab.regions.figure import comparison_figure, map_figure
@@ -28,8 +37,17 @@ COLLAPSE = (0.02, 0.05, 0.1), 2000.0
 GROWTH = (0.001, 0.002, 0.005, 0.01), 100.0
 """Those of Fig. 6: while the error is small."""
 
+COLLAPSED = "the run collapses"
+"""What a cross in Figs. 5 and 6 says."""
+
 DRAWN = 300  # points of a long curve of one sign of slope: more than its pixels tell apart
 VISIBLE = 1e-3  # of the largest ordinate: below it a curve is its axis
+
+GROWN = 20.0
+"""Times its largest value in the first tenth: a history that grows so far is drawn on a logarithmic axis, unsigned."""
+
+SMALLEST = 1e-16
+"""m, of the axes of Fig. 9: what lies below is rounding."""
 
 Runs = Mapping[tuple[Start, str, float], Simulation]
 """Runs without feedback, by their start, method and step (s)."""
@@ -67,7 +85,11 @@ def drift_figure(runs: Runs) -> Figure:
         for start, axes in panels.items():
             axes.set(title=f"start: {START_NAMES[start]}", ylabel="largest $|c_1|$ so far (m)")
         axes.set_xlabel("t (s)")
-        return with_legend(figure, handles=[line for line in axes.lines if line.get_marker() == "None"])
+        figure.suptitle("Slider-crank without feedback: the error grows")
+        lines = [line for line in axes.lines if line.get_marker() == "None"]
+        if any(run.failure for run in runs.values()):
+            lines.append(Line2D([], [], marker="x", linestyle="none", color="0.4", markersize=4, label=COLLAPSED))
+        return with_legend(figure, handles=lines)
 
 
 def _draw_growth(axes: Axes, run: Simulation, label: str, line: Mapping[str, Any]) -> None:
@@ -81,35 +103,46 @@ def _draw_growth(axes: Axes, run: Simulation, label: str, line: Mapping[str, Any
 
 def histories_figure(derivative: bool) -> Figure:
     """Return c_1, or its derivative, against time for the cases of Table 4 (Figs. 7 and 8)."""
+    symbol, unit = (r"\dot c_1", "m/s") if derivative else ("c_1", "m")
     with styled():
         figure = column_figure(1.3)
         for number, (axes, run) in enumerate(zip(figure.subplots(3, 2).flat, kicked_runs(), strict=True), start=1):
             history = (run.cdot if derivative else run.c)[:, 0]
+            grows = np.abs(history).max() > GROWN * np.abs(history[: history.size // 10]).max()
             visible = np.flatnonzero(np.abs(history) > VISIBLE * np.abs(history).max())
             shown = slice(visible[-1] + 1)
-            axes.plot(1e3 * run.t[shown], history[shown], linewidth=0.6, **line_at(0))
+            drawn = np.abs(history) if grows else history
+            axes.plot(1e3 * run.t[shown], drawn[shown], linewidth=0.6, **line_at(0))
             axes.set_xlim(0, 1e3 * run.t[visible[-1]])
             axes.set_title(rf"{number}: $\hat\alpha = {run.alpha_hat:g}$, $\hat\beta = {run.beta_hat:g}$", fontsize=7)
+            if grows:
+                axes.set_yscale("log")
+                axes.set_ylabel(f"$|{symbol}|$ ({unit})", fontsize=7)
+        figure.suptitle(f"B4, h = {STEP:g} s: ${symbol}$ after $c_1$ is moved by {1e3 * KICK:g} mm")
         figure.supxlabel("t (ms)", fontsize=8)
-        figure.supylabel(r"$\dot c_1$ (m/s)" if derivative else "$c_1$ (m)", fontsize=8)
+        figure.supylabel(f"${symbol}$ ({unit})", fontsize=8)
         return figure
 
 
 def compared_figure() -> Figure:
-    """Return c_1 against time for the cases of Table 5, one-step and multistep methods apart (Fig. 9)."""
+    """Return |c_1| against time for the cases of Table 5, one-step and multistep methods apart (Fig. 9)."""
     cases = list(TABLE_5)
     with styled():
         figure = column_figure(1.5)
-        for place, axes in enumerate(figure.subplots(len(cases), 2).flat):
+        for place, axes in enumerate(figure.subplots(len(cases), 2, sharex=True, sharey=True).flat):
             case = cases[place // 2]
             # the paper's panels a to f: on the right the multistep methods, in the last row on the left
-            for name in ("B4", "AB4") if place in (1, 3, 4) else ("RK4@5", "SIE"):
+            # (B4, which does not oscillate, over AB4, which fills an area)
+            for name in ("AB4", "B4") if place in (1, 3, 4) else ("RK4@5", "SIE"):
                 run = compared_runs()[case, name]
-                axes.plot(run.t, run.c[:, 0], label=name, linewidth=0.6, **line_at(COMPARED.index(name)))
+                axes.plot(run.t, np.abs(run.c[:, 0]), label=name, linewidth=0.9, **line_at(COMPARED.index(name)))
             axes.set_title(rf"{'abcdef'[place]}: $\hat\alpha = {case[0]}$, $\hat\beta = {case[1]}$", fontsize=7)
+            axes.set_yscale("log", nonpositive="mask")
+        axes.set_ylim(bottom=SMALLEST)
         for axes in figure.axes[-2:]:
             axes.set_xlabel("t (s)")
-        figure.supylabel("$c_1$ (m)", fontsize=8)
+        figure.suptitle("Slider-crank with feedback: the error of four methods")
+        figure.supylabel("$|c_1|$ (m)", fontsize=8)
         return with_legend(figure, handles=[line for axes in figure.axes[:2] for line in axes.lines])
 
 

@@ -1,16 +1,20 @@
 """What all figures share: size, fonts, colours and dashes, the plane of alpha_hat and beta_hat, and saving."""
 
+from collections.abc import Callable
 from contextlib import AbstractContextManager
 from textwrap import fill
 from typing import Any, BinaryIO
 
+import numpy as np
 from matplotlib import style
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
+from matplotlib.path import Path
+from matplotlib.patheffects import AbstractPathEffect, withStroke
 from matplotlib.ticker import FixedLocator, MaxNLocator
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from bezstab.show.file_forms import FIGURE_FORMS
 from bezstab.stability.arrays import FloatArray
@@ -57,6 +61,15 @@ LEGEND_WIDTH = 0.97  # of the figure's, at most: a little room for letters that 
 LEGEND_HEIGHT = 0.8  # inches: what a legend takes beyond that makes the figure taller, not its axes smaller
 LABEL_WIDTH = 45  # characters of a label that has to be broken into lines
 TITLE_WIDTH = 44  # characters of a line above axes, which need not stand in the middle of a figure of column width
+WHITE_HALO: list[AbstractPathEffect] = [withStroke(linewidth=2.6, foreground="white")]
+"""So that a black line or word is told from what is below it."""
+
+ROOMY = 30
+"""Places along each side of the axes that are tried for a word."""
+
+WORDS_ARE_WIDE = (0.4, 1.0)
+"""What a distance across and a distance up count for a word, which is wider than high."""
+
 HARD_SPACE = "\N{NO-BREAK SPACE}"
 
 
@@ -118,6 +131,31 @@ def title_lines(*parts: str) -> str:
         part if len(part) > TITLE_WIDTH else part.replace(" ", HARD_SPACE) for part in ", ".join(parts).split(", ")
     ]
     return fill(", ".join(whole), TITLE_WIDTH).replace(HARD_SPACE, " ")
+
+
+def name_areas(axes: Axes, stable: Callable[[FloatArray, FloatArray], NDArray[np.bool_]]) -> None:
+    """Write where errors decay and where they grow into linear axes whose limits are final.
+
+    The words are far from the areas' edges, from points and from straight lines. `stable` says it of points (x, y),
+    whose arrays have one axis.
+    """
+    shares = (np.arange(ROOMY) + 0.5) / ROOMY
+    places = np.stack(np.meshgrid(shares, shares), axis=-1).reshape(-1, 2)
+    inside = stable(*axes.transLimits.inverted().transform(places).T)
+    in_the_way = [
+        (line.get_transform() - axes.transAxes).transform(Path(line.get_xydata()).interpolated(ROOMY).vertices)
+        for line in axes.lines
+        if len(np.atleast_1d(line.get_xdata())) in {1, 2}
+    ]
+    walls = [places * [1, 0], places * [1, 0] + [0, 1], places * [0, 1], places * [0, 1] + [1, 0]]
+    for word, area in (("stable", inside), ("diverges", ~inside)):
+        if not area.any():
+            continue
+        others = np.concatenate([places[~area], *in_the_way, *walls])
+        away = [np.hypot(*((others - place) * WORDS_ARE_WIDE).T).min() for place in places[area]]
+        x, y = places[area][int(np.argmax(away))]
+        text = axes.text(x, y, word, transform=axes.transAxes, ha="center", va="center", fontsize=7)
+        text.set_path_effects(WHITE_HALO)
 
 
 def cells(axes: Axes, x: FloatArray, y: FloatArray, values: ArrayLike, **colours: Any) -> AxesImage:

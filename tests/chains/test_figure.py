@@ -13,7 +13,8 @@ from bezstab.chains.figure import chain_figure
 def test_the_line_of_chains_parts_what_decays_from_what_grows() -> None:
     answer = chain("chipmunk", h="1/60", bodies=7, mass_ratio=10)
     z_abs = chain_map(answer.engine, answer.values, answer.h, 7, Fraction(10), both_ends=False)
-    boundary, own = chain_figure(answer).axes[0].get_lines()
+    axes = chain_figure(answer).axes[0]
+    boundary, own = axes.get_lines()
     assert boundary.get_drawstyle() == "steps-pre"
     across, up = (np.asarray(each) for each in boundary.get_data())
     for bodies in range(1, 8):
@@ -21,3 +22,22 @@ def test_the_line_of_chains_parts_what_decays_from_what_grows() -> None:
         stable = np.arange(1, z_abs.shape[1] + 1) > across[bodies - 1]
         assert ((z_abs[bodies - 1] < 1 - 1e-9) == stable).all()  # two bodies are marginal with one sweep
     assert np.asarray(own.get_xdata())[0] == pytest.approx(10)
+    said = {text.get_text(): axes.transLimits.inverted().transform(text.get_position()) for text in axes.texts}
+    assert set(said) == {"stable", "diverges"}
+    for word, (sweeps, bodies) in said.items():
+        assert (z_abs[round(bodies) - 1, round(sweeps) - 1] < 1) == (word == "stable")
+
+
+@pytest.mark.parametrize(
+    ("fraction", "word", "label"),
+    [
+        ("2.1", "diverges", "no number of sweeps up to 50 is stable"),
+        ("1.9", "stable", "every number of sweeps is stable"),
+    ],
+)
+def test_a_figure_without_an_edge_says_why(fraction: str, word: str, label: str) -> None:
+    """Bullet's steps take so large a fraction of an error away that its size is multiplied by 1.1, or by 0.9."""
+    axes = chain_figure(chain(f"bullet={fraction}", h="1/60", bodies=3)).axes[0]
+    assert [text.get_text() for text in axes.texts] == [word]
+    edge = axes.get_lines()[0]
+    assert (edge.get_label(), edge.get_linestyle()) == (label, "None")

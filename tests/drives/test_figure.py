@@ -26,7 +26,9 @@ def test_the_edge_parts_what_is_proven_stable_from_what_is_not() -> None:
     timing = Timing(4, Fraction(1))
     figure = drawn(timing)
     axes = figure.axes[0]
-    assert axes.get_title().startswith("explicit, h = 0.002 s\nThe torque is computed every 4 steps (8 ms)")
+    assert axes.get_title().startswith(
+        "Drive, explicit, 0.1 kg m², h = 0.002 s\nThe torque is computed every 4 steps (8 ms)"
+    )
     (edge,) = [each for each in axes.collections if isinstance(each, ContourSet)]
     points = np.concatenate([path.vertices for path in edge.get_paths()])
     assert len(points) > 40
@@ -40,6 +42,11 @@ def test_the_edge_parts_what_is_proven_stable_from_what_is_not() -> None:
             if kd + across > 0 and kp + up > 0
         ]
         assert {"converges", "diverges"} <= set(nearby), (kd, kp)
+    for text in axes.texts:
+        kd, kp = map(Fraction, axes.transLimits.inverted().transform(text.get_position()))
+        found = verdict(Drive(kp, kd, DRIVE.inertia), H, SYM, timing)
+        assert text.get_text() == {"converges": "stable"}.get(found, found)
+    assert len(axes.texts) == 2
     (own,) = (line for line in axes.get_lines() if line.get_marker() == "*")
     assert (np.array(own.get_xydata()).tolist(), own.get_label()) == ([[5, 200]], "kp = 200, kd = 5")
 

@@ -36,10 +36,22 @@ def test_figs_5_and_6_show_the_largest_error_so_far_by_start_and_step() -> None:
         assert len(crossed) == sum(other.failure is not None for (of, *_), other in runs.items() if of == start)
 
 
+def test_figs_5_and_6_name_their_crosses_where_there_are_any() -> None:
+    for steps, duration, collapses in ((0.1,), 100.0, True), ((0.05,), 1.0, False):
+        runs = unstabilized_runs(steps, duration)
+        assert any(run.failure for run in runs.values()) == collapses
+        (legend,) = figures.drift_figure(runs).legends
+        assert (figures.COLLAPSED in {text.get_text() for text in legend.get_texts()}) == collapses
+
+
 @pytest.mark.parametrize("derivative", [False, True])
 def test_figs_7_and_8_draw_the_histories(derivative: bool) -> None:
-    for axes, run in zip(figures.histories_figure(derivative).axes, kicked_runs(), strict=True):
+    """Of those that grow, the first and the last, the absolute value on a logarithmic axis."""
+    for place, (axes, run) in enumerate(zip(figures.histories_figure(derivative).axes, kicked_runs(), strict=True)):
         history = (run.cdot if derivative else run.c)[:, 0]
+        grows = place in (0, 5)
+        assert (axes.get_yscale() == "log", axes.get_ylabel().startswith("$|")) == (grows, grows)
+        history = np.abs(history) if grows else history
         (line,) = axes.lines
         t, drawn = np.array(line.get_xdata()), np.array(line.get_ydata())
         assert t == pytest.approx(1e3 * run.t[: t.size])
@@ -56,3 +68,8 @@ def test_fig_9_keeps_the_papers_panels(monkeypatch: pytest.MonkeyPatch) -> None:
     shown = ["".join(sorted(str(line.get_label()) for line in axes.lines)) for axes in figure.axes]
     assert shown == ["RK4@5SIE", "AB4B4", "RK4@5SIE", "AB4B4", "AB4B4", "RK4@5SIE"]
     assert [axes.get_title()[0] for axes in figure.axes] == list("abcdef")
+    for axes, case in zip(figure.axes, np.repeat(list(TABLE_5), 2, axis=0).tolist(), strict=True):
+        assert axes.get_yscale() == "log"
+        for line in axes.lines:
+            run = runs[tuple(case), str(line.get_label())]
+            assert np.array(line.get_ydata()).tolist() == np.abs(run.c[:, 0]).tolist()
