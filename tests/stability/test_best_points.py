@@ -16,10 +16,9 @@ from tests.reference.companion_poles import radius
 from tests.reference.least_by_descent import least_within, modulus_of, random_implicit_runge_kutta
 from tests.reference.made_methods import multistep, runge_kutta
 from tests.reference.random_methods import other_random_method, random_method
-from tests.reference.second_order_methods import as_second_order, second_order
+from tests.reference.second_order_methods import as_second_order
 
 F = Fraction
-KINKS = [f"B{n}" for n in range(3, 13)] + [f"AB{n}" for n in range(3, 9)]
 P = 3**-0.5
 
 
@@ -33,7 +32,7 @@ def places(found: BestPoint) -> list[tuple[float, float]]:
     return [(found.alpha_hat, found.beta_hat), *found.elsewhere]
 
 
-@pytest.mark.parametrize("name", sampled(KINKS))
+@pytest.mark.parametrize("name", ["B4", "B12", "AB3"])
 def test_the_kink_where_two_opposite_real_roots_meet(name: str) -> None:
     scheme, found = lookup(name).scheme, best(lookup(name))
     assert isinstance(scheme, LinearMultistep)
@@ -61,16 +60,13 @@ def test_nothing_in_the_plane_is_faster(name: str) -> None:
     assert here == pytest.approx(found.z_abs, abs=1e-3 if name == "ABM2" else 1e-6)
 
 
-@pytest.mark.parametrize(
-    "name", ["SYM", "RK2", "SIE", "RK4", *(pytest.param(name, marks=pytest.mark.slow) for name in ("B2", "AB3@2"))]
-)
+@pytest.mark.parametrize("name", ["RK4", pytest.param("AB3@2", marks=pytest.mark.slow)])
 def test_a_recipe_that_spells_out_a_method_has_its_best_point(name: str) -> None:
-    """Of the first four all poles are zero, of the others poles of P are double along curves at a slant."""
+    """Of the first all poles are zero, of the other poles of P are double along curves at a slant."""
     of_recipe, of_method = best(as_second_order(name)), best(lookup(name))
     assert of_recipe.z_abs == pytest.approx(of_method.z_abs, rel=1e-7)
-    if not of_method.z_abs:
-        offsets = np.array(places(of_method)) - places(of_recipe)[0]
-        assert np.abs(offsets).max(axis=1).min() < 1e-7
+    offsets = np.array(places(of_method)) - places(of_recipe)[0]
+    assert np.abs(offsets).max(axis=1).min() < (1e-5 if of_method.z_abs else 1e-7)
 
 
 @pytest.mark.parametrize("name", ["B2", "AB2"])
@@ -81,22 +77,14 @@ def test_along_an_arc_the_most_damped_end_is_taken(name: str) -> None:
     assert places(found) == [pytest.approx((4 / 3, 4 / 9), abs=1e-10)]
 
 
-RK4_ZEROS = np.array([(3.45888846213, 3.78125278982), (0.541111537865, 6.34710275518)])
-
-
 @pytest.mark.parametrize(
     ("method", "points"),
     [
-        (lookup("RK1"), [(2, 1)]),
         (lookup("radau3"), [(6, 9)]),  # R has a numerator of lower degree
         (lookup("RK2"), [(2, 2)]),
-        (lookup("SIE"), [(1, 1)]),
         (lookup("SYM"), [(1, 1)]),
-        (lookup("RK3"), [(3.19214327596, 2.54744467359), (1.40392836202, 3.75922975962)]),
-        (lookup("RK4"), RK4_ZEROS),
-        (lookup("RK4@5"), RK4_ZEROS / (5, 25)),
+        (lookup("RK4@5"), np.array([(3.45888846213, 3.78125278982), (0.541111537865, 6.34710275518)]) / (5, 25)),
         (lookup("verlet-half"), [(1, 1)]),  # z^2 = 0 where 1 - alpha = 0 and alpha + beta = 2
-        (lookup("verlet-implicit"), [(2, 2)]),  # alpha = 2, 2 beta = 4
         (lookup("verlet-kdk"), [(2, 2)]),  # (1 - alpha / 2)^2 = 0
         (lookup("average-acceleration"), [(4, 4)]),
     ],
@@ -133,47 +121,27 @@ def test_where_poles_meet_in_other_ways_nothing_nearby_is_lower(method: Method) 
     assert found.z_abs == pytest.approx(nearby[40, 40], rel=1e-6)
 
 
-@pytest.mark.parametrize("name", ["dopri5", "tsit5", "cash-karp"])
-def test_where_all_poles_are_zero_with_negative_damping_nobody_is_sent(name: str) -> None:
-    """Of degree five or six, R has zeros on either side of the imaginary axis."""
-    found = best(lookup(name))
+def test_where_all_poles_are_zero_with_negative_damping_nobody_is_sent() -> None:
+    """R has zeros on either side of the imaginary axis."""
+    found = best(lookup("dopri5"))
     assert found.z_abs == 0
     assert all(alpha_hat > 0 for alpha_hat, _ in places(found))
 
 
-NO_ZERO = {
-    "bounded": runge_kutta("bounded", "1/2 0 0;1/3 1/2 0;1 1/3 1/2", "-2/5 -11/12 139/60"),
-    "unbounded": runge_kutta("unbounded", "0 -2;1 121/101", "203/424 221/424"),
-}
+NO_ZERO = [
+    runge_kutta("bounded", "1/2 0 0;1/3 1/2 0;1 1/3 1/2", "-2/5 -11/12 139/60"),
+    runge_kutta("unbounded", "0 -2;1 121/101", "203/424 221/424"),
+]
 
 
-@pytest.mark.parametrize(("name", "z_abs"), [("bounded", 0.0540368), ("unbounded", 0.125147)])
-def test_without_a_zero_of_r_where_mu_is_damped_the_least_value_is_on_the_edge(name: str, z_abs: float) -> None:
+@pytest.mark.parametrize("method", NO_ZERO, ids=str)
+def test_without_a_zero_of_r_where_mu_is_damped_the_least_value_is_on_the_edge(method: Method) -> None:
     """log|R| is harmonic there: it has no minimum inside. Both have |R| < 1 on a piece of the imaginary axis."""
-    found, modulus = best(NO_ZERO[name]), modulus_of(NO_ZERO[name])
+    found, modulus = best(method), modulus_of(method)
     assert found.alpha_hat == 0
     assert float(modulus(np.zeros(1), np.array([found.beta_hat]))[0]) == pytest.approx(found.z_abs, rel=1e-9)
     on_edge = modulus(np.zeros(20001), np.linspace(1e-3, 20, 20001))
     assert found.z_abs == pytest.approx(on_edge.min(), abs=1e-5)  # samples lie 1e-3 apart
-    assert found.z_abs == pytest.approx(z_abs, abs=1e-6)
-
-
-@pytest.mark.parametrize(("number", "alpha_hat"), [(250, "0.198585"), (134, "0")])
-@pytest.mark.slow
-def test_negative_damping_is_no_answer(number: int, alpha_hat: str) -> None:
-    """Pairs whose |z_p| is least at alpha_hat = -3.1 and -0.06."""
-    method = random_method(number)
-    found = best(method)
-    assert f"{found.alpha_hat:g}" == alpha_hat
-    assert found.z_abs == pytest.approx(least_within(modulus_of(method), 1e4)[0], rel=1e-6)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("number", [205, 220])
-def test_a_curved_valley_narrower_than_a_grid_holds_nothing_fast(number: int) -> None:
-    """PECE pairs: grids of points alone end a thousandth above what descent finds."""
-    method = random_method(number)
-    assert best(method).z_abs <= least_within(modulus_of(method), 1e4)[0] * (1 + 1e-6)
 
 
 def test_a_sharp_valley_is_narrowed_to_its_floor() -> None:
@@ -186,7 +154,7 @@ def test_a_sharp_valley_is_narrowed_to_its_floor() -> None:
 IMPLICIT_SPRING = Method(
     "implicit spring", recipe({"x1": "x0 + v1", "v1": "v0 + acc", "acc": "acceleration(x1, v0)"}), ""
 )
-FALLING = [second_order("implicit euler"), IMPLICIT_SPRING, *map(lookup, ("implicit-euler", "bdf2", "bdf4"))]
+FALLING = [IMPLICIT_SPRING, lookup("implicit-euler"), lookup("bdf4")]
 
 
 @pytest.mark.parametrize("method", FALLING, ids=str)
@@ -203,7 +171,7 @@ def test_it_may_fall_along_one_ratio_of_both_parameters_alone() -> None:
     assert limit.ratio == pytest.approx(1)
 
 
-@pytest.mark.parametrize("method", [lookup("verlet-half"), lookup("trapezoid"), lookup("generalized-alpha")], ids=str)
+@pytest.mark.parametrize("method", [lookup("verlet-half"), lookup("trapezoid")], ids=str)
 def test_what_has_a_best_point_falls_towards_nothing_less(method: Method) -> None:
     assert falls_towards(method) is None
     angle = np.linspace(0, np.pi / 2, 201)
@@ -218,6 +186,8 @@ def test_without_a_stable_region_there_is_no_best_point() -> None:
 DRAWN = [
     *(pytest.param(random_implicit_runge_kutta, k, marks=[] if k < 2 else pytest.mark.slow) for k in range(24)),
     *(pytest.param(other_random_method, k, marks=pytest.mark.slow) for k in range(1, 48, 4)),
+    # |z_p| is least at alpha_hat = -0.06 and -3.1; a grid of points misses the curved valley of the others
+    *(pytest.param(random_method, k, marks=pytest.mark.slow) for k in (134, 250, 205, 220)),
 ]
 
 
@@ -235,6 +205,7 @@ def test_the_least_value_of_random_methods(draw: Callable[[int], Method], number
     near, far = (least_within(modulus, furthest)[0] for furthest in (1e4, 1e12))
     found, limit = best_point(method), falls_towards(method)
     if found:
+        assert min(found.alpha_hat, found.beta_hat) >= 0
         assert found.z_abs <= min(near, far) * (1 + 1e-6) + 1e-9
         # a double pole at the rounded point is known to the root of rounding, a quadruple one to its fourth root
         assert float(modulus(np.array([found.alpha_hat]), np.array([found.beta_hat]))[0]) - found.z_abs < 1e-3
@@ -247,13 +218,10 @@ def test_the_least_value_of_random_methods(draw: Callable[[int], Method], number
         assert min(near, far) > 1 - 1e-6
 
 
-@pytest.mark.parametrize(
-    ("rho", "sigma"), [("1 -371/200 171/200", "2/11 -81/2200 0"), ("1 -527/280 247/280", "15/56 -3/20 0")]
-)
-def test_the_best_point_of_a_region_without_end_may_lie_far_beyond_what_is_seen_of_it(rho: str, sigma: str) -> None:
+def test_the_best_point_of_a_region_without_end_may_lie_far_beyond_what_is_seen_of_it() -> None:
     """At mu = -x the two z have z_1 z_2 = r_0 / (1 + s_2 x), which falls until they meet; then one grows."""
-    method = multistep("far", rho, sigma)
-    (_, r_1, r_0), (s_2, s_1, _) = ([float(F(c)) for c in text.split()] for text in (rho, sigma))
+    method = multistep("far", "1 -371/200 171/200", "2/11 -81/2200 0")
+    r_1, r_0, s_2, s_1 = -371 / 200, 171 / 200, 2 / 11, -81 / 2200
     x = np.roots([s_1**2, 2 * r_1 * s_1 - 4 * r_0 * s_2, r_1**2 - 4 * r_0]).max()
     found = best(method)
     assert found.z_abs == pytest.approx(np.sqrt(r_0 / (1 + s_2 * x)), rel=1e-7)
