@@ -66,18 +66,19 @@ def _wrong_end(method: Method) -> str:
 def _wrong_area(shape: Region) -> str:
     """Return how an area contradicts a midpoint rule, with more lines before that counts; nothing if it does not."""
     assert shape.area is not None
-    plain = [_plain_area(shape, RULES[0])]
+    plain = [plain_area(shape, RULES[0])]
     for count in RULES[1:]:
-        plain.append(_plain_area(shape, count))
+        plain.append(plain_area(shape, count))
         if abs(shape.area - plain[-1]) <= shape.area_error + 2 * abs(plain[-1] - plain[-2]) + ADMITTED * shape.area:
             return ""
     return f"area {shape.area:.9g}, {plain[-1]:.9g} by a plain rule"
 
 
-def _plain_area(shape: Region, count: int) -> float:
+def plain_area(shape: Region, count: int) -> float:
+    """Return the area by a midpoint rule over many lines, wherever a region is, islands and all."""
     assert shape.extent
     (low, high), _ = shape.extent
-    stretches = Lines(shape.method, 1.0, 0)._stretches(low + (high - low) * (np.arange(count) + 0.5) / count)
+    stretches = Lines(shape.method, shape.level, 0)._stretches(low + (high - low) * (np.arange(count) + 0.5) / count)
     return float(sum(np.diff(ends).sum() for ends in stretches) * (high - low) / count)
 
 

