@@ -175,7 +175,6 @@ COST: Sequence[Column[FeedbackCost]] = (
         lambda cost: cost.times_least,
         "constraint error over that of the goal accurate; null where the motion's rate is not given",
         form=times_words,
-        brief=True,
     ),
     Column(
         "velocity error / least",
@@ -293,7 +292,6 @@ JUDGED: Sequence[Column[Judgement]] = (
         "swept",
         lambda answer: answer.swept_over,
         "for which constraints `safe` holds in an engine that sweeps",
-        brief=True,
     ),
     *of_part(_swept, SWEPT),
     Column(

@@ -256,3 +256,9 @@ def test_points_at_the_ends_of_float64_are_judged_in_silence(size: str) -> None:
     answer = check("implicit-euler", alpha_hat=size, beta_hat=size)
     assert answer.safe
     assert abs(answer.pole) == pytest.approx(0.5 if size == "1e308" else 1)
+
+
+def test_what_is_printed_without_all_is_at_most_eight_lines() -> None:
+    brief = [column.heading for column in columns.CHOSEN if column.brief]
+    assert "stable from sweeps" in brief  # of an engine that sweeps over many: it has no factors
+    assert len(set(brief) - {"stable from sweeps"}) <= 8
