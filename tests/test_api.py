@@ -4,7 +4,7 @@ import inspect
 import json
 from fractions import Fraction
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import pytest
 
@@ -68,6 +68,10 @@ def test_both_ways_to_give_a_point_and_a_motion_agree() -> None:
     assert chosen.point == bezstab.choose("RK4", goal="accurate", omega_h=0.02).point
     of_longest = bezstab.choose("RK4", h=0.001, h_max=0.002, omega=10)
     assert of_longest.alpha_hat == pytest.approx(chosen.alpha_hat / 2)
+
+
+def test_every_goal_has_a_meaning() -> None:
+    assert set(GOALS) == set(get_args(Goal))
 
 
 @pytest.mark.parametrize("goal", GOALS)

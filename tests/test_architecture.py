@@ -161,6 +161,12 @@ def test_every_library_that_is_imported_is_declared() -> None:
     assert imported - set(sys.stdlib_module_names) - {"bezstab", "__future__"} <= declared
 
 
+def test_every_room_is_installed() -> None:
+    project = tomllib.loads((PACKAGE.parent / "pyproject.toml").read_text(encoding="utf-8"))
+    packages = project["tool"]["setuptools"]["packages"]
+    assert set(packages) == {"bezstab", "bezstab.scenes", *(f"bezstab.{room}" for room in ROOMS)}
+
+
 def test_import_and_help_are_light() -> None:
     for code in ["import bezstab", "from bezstab.cli.command_group import main; main(['--help'])"]:
         heavy = "{'numpy', 'sympy', 'matplotlib', 'mujoco', 'distributed'}"

@@ -220,6 +220,7 @@ class Files:
         from bezstab.show.style import save
         from bezstab.show.window import show_in_window
 
+        self.check_output()
         if table and self.table != "none":
             write_file(path.with_name(f"{path.name}.{self.table}"), partial(write_arrays, table(), self.table))
         if figure and self.figure == "window":

@@ -179,3 +179,8 @@ def test_who_solves_all_constraints_together_below_acceleration_level() -> None:
     below = {name for name, engine in ENGINES.items() if engine.level != "acceleration"}
     assert {name for name in below if not ENGINES[name].sweeps} == {"dart", "kamino", "drake-sap", "sofa"}
     assert not any(engine.sweeps for engine in ENGINES.values() if engine.level == "acceleration")
+
+
+def test_what_an_engine_does_to_the_energy_of_a_motion_is_known_of_all_but_two() -> None:
+    below = {name for name, engine in ENGINES.items() if engine.level != "acceleration"}
+    assert {name for name in below if ENGINES[name].energy_class is None} == {"sofa", "physx-drive"}

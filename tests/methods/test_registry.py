@@ -12,6 +12,7 @@ import pytest
 from bezstab.errors import InputError
 from bezstab.methods.method_files import read_method
 from bezstab.methods.registry import GROUPS, REGISTRY, lookup
+from bezstab.methods.second_order_methods import RECIPES
 
 NAMES = list(REGISTRY)
 
@@ -37,6 +38,7 @@ def test_the_registry_holds_every_method_once_under_one_heading() -> None:
     assert names == NAMES
     assert len({name.lower() for name in names}) == len(names)
     assert len({group.heading for group in GROUPS}) == len(GROUPS)
+    assert set(RECIPES) <= set(REGISTRY)
 
 
 def test_a_registered_name_looks_up_its_method_with_its_source() -> None:

@@ -31,9 +31,12 @@ def test_a_label_that_is_wider_than_the_figure_is_broken_into_lines() -> None:
 
 
 @pytest.mark.parametrize("form", FIGURE_FORMS)
-def test_equal_figures_are_equal_bytes_whatever_the_users_settings(form: str) -> None:
+def test_equal_figures_are_equal_bytes_whatever_the_users_settings_and_the_day(
+    form: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     outputs = []
     for settings in ({}, {"font.size": 20, "lines.linewidth": 9, "savefig.dpi": 10, "svg.hashsalt": "x"}):
+        monkeypatch.setenv("SOURCE_DATE_EPOCH", str(86400 * len(settings)))
         with mpl.rc_context(settings):  # type: ignore[arg-type,unused-ignore]
             save(comparison_figure([region(lookup("B4"))], MapConditions()), form, file := io.BytesIO())
         outputs.append(file.getvalue())
