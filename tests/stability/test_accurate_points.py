@@ -11,7 +11,6 @@ from bezstab.stability.accurate_points import default_rate
 from bezstab.stability.choices import choose
 from bezstab.stability.closed_loop import spectral_radius
 from bezstab.stability.forced_errors import forced_error
-from tests.methods.kinds import sampled
 from tests.reference.settling import settling
 
 OMEGA_H = Fraction(1, 50)
@@ -54,26 +53,3 @@ def test_where_nothing_decays_so_fast_it_is_half_as_fast_as_robust() -> None:
         )
     chosen = choose(method, "accurate", omega_h=Fraction(6, 100), margins=False)
     assert chosen.worst <= choose(method, "robust", margins=False).worst ** 0.5 * (1 + 1e-9)
-
-
-WITH_STAGES = ("RK3", "bs3", "ssprk3", "dirk3", "RK4", "rkn4", "gauss4", "dopri5", "tsit5", "cash-karp", "radau5")
-"""Of order three and more. Of the others of such an order, radau3's best beta is 5 omega, as that of order two is."""
-
-
-@pytest.mark.parametrize("name", sampled(WITH_STAGES, quick=["RK4"]))
-def test_of_methods_with_stages_it_is_a_multiple_of_the_motions_own_rate_whatever_the_step(name: str) -> None:
-    """All terms of the error have the same power of omega h where alpha and beta are of the size of omega.
-
-    Alpha is 0.55 omega: errors fall by e^(-1/2) for each rad even with 10 % less; and beta near 0.8 omega.
-    """
-    beta = {}
-    for omega_h in (Fraction(1, 10), Fraction(1, 20), Fraction(1, 1000)):
-        chosen = choose(lookup(name), "accurate", omega_h=omega_h, margins=False)
-        beta[omega_h] = chosen.beta_hat**0.5 / float(omega_h)
-        assert 0.75 < beta[omega_h] < (1.9 if name == "rkn4" else 1.1)
-        if omega_h < Fraction(1, 10) and name != "rkn4":
-            assert chosen.alpha_hat / 2 / float(omega_h) == pytest.approx(0.556, rel=0.01)
-            assert 0.77 < beta[omega_h] < 0.92
-            assert chosen.worst ** (1 / float(omega_h)) == pytest.approx(np.exp(-0.5), rel=1e-3)
-    if name not in ("rkn4", "tsit5"):  # whose next terms are many times their leading ones
-        assert beta[Fraction(1, 10)] == pytest.approx(beta[Fraction(1, 1000)], rel=0.05)
