@@ -84,12 +84,6 @@ def test_next_to_critical_damping_the_first_of_both_mu_that_crosses_is_the_end()
         assert_each_end_is_proven("ABM4", Fraction(2 * alpha_h), Fraction(alpha_h**2))
 
 
-def test_the_largest_step_of_fixed_gains_is_the_margin() -> None:
-    a, b, h = Fraction("0.5"), Fraction("0.1"), Fraction("0.001")
-    limit = largest_stable_step(lookup("RK4"), lambda step: [(a * step / h, b * (step / h) ** 2)], 0.001)
-    assert limit == pytest.approx(stability_margins(lookup("RK4"), a, b).h * 0.001, rel=1e-9)
-
-
 def test_the_largest_step_of_a_setting_is_that_of_all_its_points_and_may_be_none() -> None:
     inside = Fraction(1), Fraction(1, 5)
 

@@ -10,7 +10,6 @@ from bezstab.errors import NumericalError
 from bezstab.methods.registry import lookup
 from bezstab.methods.schemes import Method
 from bezstab.stability.arrays import Extent
-from bezstab.stability.damping_limits import critical_damping_limit
 from bezstab.stability.lines import Lines
 from bezstab.stability.regions import Region, _region, region, window
 from tests.methods.kinds import FEW
@@ -120,13 +119,6 @@ def test_extents_in_closed_form(name: str, extent: tuple[float, ...]) -> None:
     assert np.ravel(found_extent(region(lookup(name)))) == pytest.approx(extent, abs=1e-9)
 
 
-def test_an_extent_reaches_to_the_tip_of_a_cusp_on_critical_damping() -> None:
-    limit = critical_damping_limit(lookup("ABM4"))  # between two verdicts in rationals
-    assert limit
-    tip = (2 * limit, limit**2)
-    assert tuple(high for _, high in found_extent(region(lookup("ABM4")))) == pytest.approx(tip, rel=1e-9)
-
-
 def test_the_window_shows_the_region_the_origin_and_a_margin() -> None:
     shape = region(lookup("B3"), 0.9)
     for (low, high), (first, last) in zip(found_extent(shape), window(shape), strict=True):
@@ -135,7 +127,6 @@ def test_the_window_shows_the_region_the_origin_and_a_margin() -> None:
 
 
 USERS = [
-    multistep("extrapolated BDF2", "1 -4/3 1/3", "0 4/3 -2/3"),
     runge_kutta("lobes", "2; 0 1", "0 0 1"),
     runge_kutta("real branch points", "-1/6 0 0;-1/4 0 0;3/5 2 1", "1/4 -2/3 17/12"),  # each arc counts once there
     # an arc ends 4e-9 of |mu| short of the real axis
