@@ -12,7 +12,7 @@ from bezstab.arguments import Number, exact_number, exact_or_none, in_keywords, 
 from bezstab.engines.conversions import Applied, Engine, Point
 from bezstab.engines.engine_list import engine_and_values
 from bezstab.errors import InputError, NumericalError
-from bezstab.feedback.choosing import ChooseAnswer, Wish, check_motion, choose_answer, usual_goal
+from bezstab.feedback.choosing import ChooseAnswer, Wish, check_motion, choose_answer
 from bezstab.feedback.conditions import Conditions, conditions, for_choosing
 from bezstab.feedback.judgement import AS_GIVEN, Judgement, judge
 from bezstab.feedback.sentences import judgement_sentence, step_sentence
@@ -20,7 +20,7 @@ from bezstab.mechanism.scene_files import scene as scene_named
 from bezstab.mechanism.scenes import Scene
 from bezstab.methods.registry import method as method_named
 from bezstab.methods.schemes import Method
-from bezstab.questions.methods import methods_for
+from bezstab.questions.methods import methods_for, usual_goal
 from bezstab.stability.choices import USUAL_SPREAD, describe_point
 from bezstab.stability.damping_limits import stable_up_to
 

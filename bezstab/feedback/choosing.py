@@ -19,7 +19,7 @@ from bezstab.mechanism.scene_files import scene as scene_named
 from bezstab.mechanism.scenes import Scene
 from bezstab.methods.registry import method as method_named
 from bezstab.methods.schemes import Method
-from bezstab.questions.methods import methods_for
+from bezstab.questions.methods import methods_for, usual_goal
 from bezstab.rationals import rational, typed_number
 from bezstab.stability.choices import USUAL_SPREAD, Choice, describe_point
 from bezstab.stability.choices import choose as choose_point
@@ -98,18 +98,6 @@ class ChooseAnswer(Judgement):
 
     def __repr__(self) -> str:
         return f"{self.sentence} [{self.method.name}, {self.goal}, |z_p| = {abs(self.pole):.6g}]"
-
-
-def usual_goal(engine: Engine | None, methods: tuple[Method, ...] = ()) -> Goal:
-    """Return the goal for a question that names none: robust in an engine, else accurate.
-
-    In an engine bodies collide, and the feedback that forces least lets what a collision leaves die slowly; but where
-    that feedback follows the motion, strong feedback forces far too much. On an engine's curve alpha and beta depend on
-    each other, so that no gentle feedback can be found there. InputError as `methods_for`.
-    """
-    if engine and engine.curve:
-        return "robust"
-    return "robust" if engine and not all(map(follows_motion, methods_for(methods, engine))) else "accurate"
 
 
 @in_keywords()

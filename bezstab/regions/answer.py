@@ -18,6 +18,7 @@ from bezstab.mechanism.scene_files import load_scene
 from bezstab.methods.registry import method as method_named
 from bezstab.methods.schemes import Method
 from bezstab.motion.modulated_circle import motion_energy
+from bezstab.questions.methods import usual_goal
 from bezstab.questions.motions import ReferenceMotion, check_speed, motion_of, turn_too_far, turning_of
 from bezstab.stability.accurate_points import default_rate
 from bezstab.stability.arrays import ComplexArray, Extent, FloatArray
@@ -136,7 +137,8 @@ class MapConditions:
     a step `h` (s) there may be `marks`, points (alpha_hat, beta_hat) by label, and a scene, called `scene_name`, whose
     constraints turn at most at rates `kappas` (1/s), by times its own speed. `motion`: that on which errors are told,
     or with `energy` what the feedback does to its energy; None if neither is asked about. With `alpha_beta` axes are
-    marked in alpha and beta (1/s). `warnings` are to be known before the answers.
+    alpha and beta (1/s). In an `engine` the point to choose is one that it can express. `warnings` are
+    to be known before the answers.
     """
 
     levels: tuple[float, ...] = ()
@@ -150,6 +152,7 @@ class MapConditions:
     motion: ReferenceMotion | None = None
     energy: bool = False
     alpha_beta: bool = False
+    engine: Engine | None = None
     warnings: tuple[str, ...] = ()
 
 
@@ -195,6 +198,8 @@ def map_conditions(
         raise InputError(f"--grid {points}: expected 2 to {MOST_POINTS} points along each axis")
     for level in levels:
         check_level(float(level))
+    if alpha_beta and beta_range and beta_range[0] < 0:
+        raise InputError(f"--beta-range {float(beta_range[0]):g} {float(beta_range[1]):g}: no real β has a β² below 0")
     ranges = [
         _range(option, ends, of_motion)
         for option, ends in (("--alpha-range", alpha_range), ("--beta-range", beta_range))
@@ -216,6 +221,7 @@ def map_conditions(
         motion=motion_of(omega, scene, speeds[0], h) if of_motion else None,
         energy=energy,
         alpha_beta=alpha_beta,
+        engine=engine,
         warnings=tuple(turn_too_far(turnings, scene, h)),
     )
 
@@ -267,10 +273,10 @@ def moving_regions(method: Method) -> MovingRegions:
 class Drawing:
     """What the figure of a map and its table show beside the answer.
 
-    Points on both axes, equally spaced, or by equal factors on a motion; the dominant poles `z` over them, of shape
-    (beta_hat.size, alpha_hat.size); on a motion the `errors` that are forced and, where asked about, the `growth` of
-    its energy in a revolution, shares of it of that shape, nan where |z| is not below 1. `levels` of |z_p| are drawn;
-    of a method at rest `faster` has their regions.
+    Points on both axes, equally spaced (with `alpha_beta` in beta), or by equal factors on a motion; the dominant poles
+    `z` over them, of shape (beta_hat.size, alpha_hat.size); on a motion the `errors` that are forced and,
+    where asked about, the `growth` of its energy in a revolution, shares of it of that shape, nan where |z| is not
+    below 1. `levels` of |z_p| are drawn; of a method at rest `faster` has their regions.
     """
 
     alpha_hat: FloatArray
@@ -287,8 +293,8 @@ class MapAnswer:
     """One method's answer: its stable region and those of the levels below 1.
 
     `moving`: the regions of a scene as it moves, for every speed. On a motion `chosen` is the choice of the goal
-    accurate, None if there is none, and `reason` says why; without a motion, what a figure marks beside the fastest
-    point. Errors and growths of energy on a motion are shares of it, at the point of least |z_p| and at `chosen`.
+    accurate; without one, of the usual goal, if it is to be drawn. None if there is none, and `reason` says why. Errors
+    and growths of energy on a motion are shares of it, at the point of least |z_p| and at `chosen`.
     """
 
     method: Method
@@ -318,7 +324,7 @@ def map_answer(
     below = [level for level in asked.levels if level < 1]
     regions = tuple(region_answer(method, level) for level in (1.0, *below))
     stable, motion = regions[0], asked.motion
-    chosen, reason = _chosen(method, stable, motion, drawn)
+    chosen, reason = _chosen(method, asked, drawn)
     points = (stable.best, chosen)
     best_error, accurate_error = (_at(point, method, motion, _error) for point in points)
     best_growth, accurate_growth = (_at(point, method, motion if asked.energy else None, _growth) for point in points)
@@ -337,16 +343,20 @@ def map_answer(
     )
 
 
-def _chosen(
-    method: Method, stable: RegionAnswer, motion: ReferenceMotion | None, drawn: bool
-) -> tuple[Choice | None, str | None]:
-    """Return the point beside the fastest, or why there is no most accurate one on a motion."""
-    if motion is None:
-        return choose(method, "robust", margins=False) if drawn and stable.best else None, None
+def _chosen(method: Method, asked: MapConditions, drawn: bool) -> tuple[Choice | None, str | None]:
+    """Return the most accurate point on a motion, or without one that of the usual goal; or why there is none.
+
+    The usual goal is that of one constraint alone at rest, on a motion of OMEGA_H.
+    """
     try:
-        return choose(method, "accurate", margins=False, omega_h=motion.omega_h), None
+        if asked.motion:
+            return choose(method, "accurate", margins=False, omega_h=asked.motion.omega_h), None
+        if not drawn:
+            return None, None
+        along = asked.engine.curve if asked.engine else None
+        return choose(method, usual_goal(asked.engine, (method,)), along=along, margins=False), None
     except (InputError, NumericalError) as error:
-        return None, f"no most accurate point: {error}"
+        return None, f"no {'most accurate point' if asked.motion else 'point to choose'}: {error}"
 
 
 def _error(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray, motion: ReferenceMotion) -> FloatArray:
@@ -383,6 +393,8 @@ def _drawing(
     spaced = np.geomspace if motion else np.linspace
     ends = (asked.alpha_range or shown[0], asked.beta_range or shown[1])
     alpha_hat, beta_hat = (spaced(low, high, asked.points) for low, high in ends)
+    if asked.alpha_beta:
+        beta_hat = np.linspace(max(ends[1][0], 0) ** 0.5, ends[1][1] ** 0.5, asked.points) ** 2
     z = np.array(list(bar(chain.from_iterable(pole_map(method, alpha_hat, beta_hat)))))
     levels = _levels(method, asked, stable.best)
 

@@ -1,16 +1,18 @@
 """Figures of maps: |z_p| over the plane, the error that is forced there."""
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.collections import QuadMesh
 from matplotlib.colors import FuncNorm
 from matplotlib.contour import QuadContourSet
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.path import Path
 from matplotlib.patheffects import AbstractPathEffect, withStroke
-from matplotlib.ticker import MaxNLocator
 
 from bezstab.methods.schemes import Method
 from bezstab.regions.answer import Drawing, MapAnswer, MapConditions
@@ -18,8 +20,10 @@ from bezstab.show import plot
 from bezstab.show.style import (
     ABOVE_THE_AXES,
     DASHES,
+    WHITE_HALO,
     line_at,
     mark_in_alpha_and_beta,
+    name_areas,
     new_axes,
     plane_coordinates,
     plane_words,
@@ -29,6 +33,8 @@ from bezstab.show.style import (
 )
 from bezstab.show.window import under_the_mouse
 from bezstab.stability.arrays import FloatArray
+from bezstab.stability.choices import Choice
+from bezstab.stability.forced_errors import OMEGA_H
 from bezstab.stability.regions import Region
 
 EDGE_LINES = 0.015  # of the axes' sides: so far apart are the arrows of regions that go on beyond the same edge
@@ -41,11 +47,14 @@ TICKS = (0.1, 0.5, 0.9, 0.99, 0.999, 0.9999)
 FASTEST_DRAWN, SLOWEST_DRAWN = 0.1, 0.9999
 """|z_p|: beyond, three steps are enough, or tens of thousands are not, and colours no longer change."""
 
-MOST_CONTOURS = 12
-"""Of a map, each a power of ten; where there would be more, only every second is drawn."""
+MOST_CONTOURS = 6
+"""Of a map, powers of ten, one more at most: more would say nothing to who is not an expert."""
 
 WHOLE: dict[str, Any] = {"clip_on": False, "zorder": ABOVE_THE_AXES}
 """Of markers: no edge of the axes cuts through them."""
+
+KEY = "key"
+"""Marks lines that stand only in the legend, for contours, which have no label of their own."""
 
 MARK_SHAPES = "Ds^vP"
 """Of points to mark, by their place: more than any engine has."""
@@ -56,14 +65,8 @@ BELOW_MARKERS = 2.9
 HALO: list[AbstractPathEffect] = [withStroke(linewidth=1.5, foreground="black")]
 """So that a white line shows on any colour, in grey too."""
 
-WHITE_HALO: list[AbstractPathEffect] = [withStroke(linewidth=2.6, foreground="white")]
-"""So that a black line is told from the others."""
-
-ROOMY = 30
-"""Places along each side of the axes that are tried for a word."""
-
-WORDS_ARE_WIDE = (0.4, 1.0)
-"""What a distance across and a distance up count for a word, which is wider than high."""
+MOST_FINE = 20_000
+"""Points of a line that is drawn on axes even in beta, or looked for in a window."""
 
 PARTS = 300
 """Of each chord of a boundary, which is straight on other axes alone: the last is thinner than a line."""
@@ -86,8 +89,12 @@ def map_figure(answer: MapAnswer) -> Figure:
         at = f" at rest and on the {asked.scene_name}" if moving else ""
         title = title_lines(f"{name}: what a step multiplies errors by{at}")
         figure, axes = _plane(title, [answer.method], h)
-        image = plot.modulus_map(drawing.alpha_hat, drawing.beta_hat, np.abs(drawing.z), axes, h)
-        figure.colorbar(image, label="$|z_p|$")
+        if asked.alpha_beta:
+            x, y = plane_coordinates(drawing.alpha_hat, drawing.beta_hat, h)
+            figure.colorbar(_mesh(axes, x, y, np.abs(drawing.z), vmax=1.0), label="$|z_p|$")
+        else:
+            image = plot.modulus_map(drawing.alpha_hat, drawing.beta_hat, np.abs(drawing.z), axes, h)
+            figure.colorbar(image, label="$|z_p|$")
         at_rest = " at rest" if moving else ""
         unbounded = "" if region.bounded else " (unbounded)"
         plot.region(region, axes, h, color="black", linestyle="-", label=f"$|z_p| = 1${at_rest}{unbounded}")
@@ -100,10 +107,13 @@ def map_figure(answer: MapAnswer) -> Figure:
                 label = "its own speed" if speed == 1 else f"{speed:g} times its own speed"
                 _level_line(axes, x, y, moving.turn_limits, kappa * h, label, DASHES[number % 4])
         _draw_points(answer, axes)
-        _name_areas(axes, region, h)
-        _draw_open_edges(region, axes, h, color="white", markeredgecolor="black")
         if asked.alpha_beta:
             mark_in_alpha_and_beta(axes)
+            _refine(axes)
+        _say_what_is_missing(axes, axes.lines, answer.reason)
+        unit_x, unit_y = plane_coordinates(1.0, 1.0, h)
+        name_areas(axes, lambda x, y: region.contains(x / unit_x, y / unit_y), at_rest)
+        _draw_open_edges(region, axes, h, color="white", markeredgecolor="black")
         return with_legend(figure, facecolor="0.75")
 
 
@@ -127,42 +137,48 @@ def _draw_points(answer: MapAnswer, axes: Axes) -> None:
     x, y = plane_coordinates(alpha_hat, beta_hat, h)
     axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]), facecolor="0.93")
 
-    drawn = [plot.point(found, axes, h, **WHOLE) for found in (answer.regions[0].best, answer.chosen) if found]
+    if best := answer.regions[0].best:
+        plot.point(best, axes, h, **WHOLE)
+    if answer.chosen:
+        plot.point(answer.chosen, axes, h, label=_choose_words(answer.chosen, asked), **WHOLE)
     for shape, (label, point) in zip(MARK_SHAPES, asked.marks.items(), strict=False):
-        drawn.append(plot.point(point, axes, h, marker=shape, label=label, **WHOLE))
-    for marker in drawn:
-        if not axes.viewLim.contains(*np.asarray(marker.get_xydata())[0]):
-            marker.remove()
+        plot.point(point, axes, h, marker=shape, label=label, **WHOLE)
 
 
-def _name_areas(axes: Axes, region: Region, h: float | None) -> None:
-    """Write into axes whose limits are final where errors decay and where they grow, farthest from what is drawn."""
-    shares = (np.arange(ROOMY) + 0.5) / ROOMY
-    places = np.stack(np.meshgrid(shares, shares), axis=-1).reshape(-1, 2)
-    points = axes.transLimits.inverted().transform(places) / plane_coordinates(1.0, 1.0, h)
-    inside = region.contains(*points.T)
-    in_the_way = [
-        axes.transLimits.transform(line.get_xydata())
-        for line in axes.lines
-        if line.get_marker() != "None" and len(np.atleast_1d(line.get_xdata())) == 1
-    ]
-    walls = [places * [1, 0], places * [1, 0] + [0, 1], places * [0, 1], places * [0, 1] + [1, 0]]
-    for word, area in (("stable", inside), ("diverges", ~inside)):
-        if not area.any():
-            continue
-        others = np.concatenate([places[~area], *in_the_way, *walls])
-        away = [np.hypot(*((others - place) * WORDS_ARE_WIDE).T).min() for place in places[area]]
-        x, y = places[area][int(np.argmax(away))]
-        text = axes.text(x, y, word, transform=axes.transAxes, ha="center", va="center", fontsize=7)
-        text.set_path_effects(WHITE_HALO)
+def _choose_words(chosen: Choice, asked: MapConditions) -> str:
+    """Return what `choose` gives, and on what conditions."""
+    if asked.motion:  # which the title names
+        where = ""
+    elif chosen.goal == "accurate":
+        where = rf"{' at rest' if asked.kappas else ''} at $\omega h = {float(OMEGA_H):g}$"
+    else:
+        where = f" {chosen.goal}{', one constraint' if asked.engine and asked.engine.sweeping else ''}"
+    return f"choose{where}: $|z_p| = {abs(chosen.pole):.4g}$"
+
+
+def _say_what_is_missing(axes: Axes, lines: Sequence[Line2D], reason: str | None = None) -> None:
+    """Take those lines out of the legend that do not show in the axes, whose limits are final; say there why."""
+    window, missing = axes.viewLim, []
+    for line in list(lines):
+        points = _fine(np.asarray(line.get_xydata()))  # a chord may cross the window
+        shown = ((points >= window.min) & (points <= window.max)).all(axis=1).any()
+        label = str(line.get_label())
+        if not (shown or label.startswith("_") or line.get_gid() == KEY):
+            missing.append(label.partition(":")[0])
+            line.remove()
+    told = [title_lines("nowhere in this window: " + ", ".join(missing))] if missing else []
+    for words in [*told, *([reason] if reason else [])]:
+        axes.plot([], [], linestyle="none", label=words)
 
 
 def _level_line(
     axes: Axes, x: FloatArray, y: FloatArray, values: FloatArray, level: float, label: str, dashes: Any = "-"
 ) -> None:
     """Draw in black, with a label, where values of shape (y.size, x.size) have a level."""
-    axes.plot([], [], color="black", linestyle=dashes, label=label)  # a contour has no label of its own
-    axes.contour(x, y, values, levels=[level], colors="black", linestyles=[dashes], linewidths=1.2)
+    drawn = axes.contour(x, y, values, levels=[level], colors="black", linestyles=[dashes], linewidths=1.2)
+    found = any(np.size(path.vertices) for path in drawn.get_paths())
+    # a contour has no label of its own
+    axes.plot([], [], color="black", linestyle=dashes, label=label, gid=KEY if found else None)
 
 
 def _draw_open_edges(region: Region, axes: Axes, h: float | None, inset: float = EDGE_LINES, **line: Any) -> None:
@@ -176,7 +192,7 @@ def _draw_open_edges(region: Region, axes: Axes, h: float | None, inset: float =
     for axis, end in np.argwhere(np.isinf(region.extent)):
         edge = np.full((ALONG_AN_EDGE, 2), float(end))  # in shares of the axes
         edge[:, 1 - axis] = along
-        points = axes.transLimits.inverted().transform(edge) / plane_coordinates(1.0, 1.0, h)
+        points = (axes.transScale + axes.transLimits).inverted().transform(edge) / plane_coordinates(1.0, 1.0, h)
         inside = region.contains(*points.T)
         if inside.any():
             x, y = np.where(inside, np.clip(edge, inset, 1 - inset).T, np.nan)
@@ -197,23 +213,25 @@ def from_decay_scale(values: FloatArray) -> FloatArray:
 def _motion_map_figure(answer: MapAnswer, omega_h: float) -> Figure:
     """Return contours of what the feedback does on a motion over the map of |z_p|, on logarithmic axes.
 
-    They are of the forced error, a share of the motion, or of the growth of its energy. Marked are both best points;
-    dashed are further levels of |z_p|.
+    They are of the forced error, which the feedback adds, as a share of the motion, or of the growth of its energy.
+    Marked are both best points; dashed are further levels of |z_p|.
     """
     region, h, drawing = answer.regions[0].region, answer.conditions.h, _drawn(answer)
     z_abs, energy = np.abs(drawing.z), answer.conditions.energy
     with styled():
-        what = "growth of energy" if energy else "forced errors"
-        title = rf"{region.method.name}, {what} at $\omega h$ = {omega_h:.3g}"
+        told = (
+            "white lines: energy gained in a revolution, as a share of the motion's"
+            if energy
+            else "white lines: the error that feedback adds, as a share of the motion"
+        )
+        title = title_lines(rf"{region.method.name} at $\omega h$ = {omega_h:.3g}", told)
         figure, axes = _plane(title, [answer.method], h)
         axes.set(xscale="log", yscale="log")
         axes.grid(visible=False)
         x, y = plane_coordinates(drawing.alpha_hat, drawing.beta_hat, h)
         norm = FuncNorm((decay_scale, from_decay_scale), vmin=FASTEST_DRAWN, vmax=SLOWEST_DRAWN)
-        # as an image in files of lines, too: a mesh of so many cells has no place there
-        stable = np.ma.masked_greater_equal(z_abs, 1.0)
-        mesh = axes.pcolormesh(x, y, stable, cmap="cividis", norm=norm, shading="nearest", rasterized=True)
-        bar = figure.colorbar(mesh, label="$|z_p|$", extend="both", format="{x:g}", ticks=TICKS)
+        mesh = _mesh(axes, x, y, z_abs, norm=norm)
+        bar = figure.colorbar(mesh, label="$|z_p|$: dark = fast decay", extend="both", format="{x:g}", ticks=TICKS)
         bar.ax.minorticks_off()
         share = drawing.growth if energy else drawing.errors
         assert share is not None
@@ -223,6 +241,7 @@ def _motion_map_figure(answer: MapAnswer, omega_h: float) -> Figure:
         for number, level in enumerate(drawing.levels, start=1):
             _level_line(axes, x, y, z_abs, level, f"$|z_p| = {level:.4g}$", DASHES[number % 4])
         _draw_points(answer, axes)
+        _say_what_is_missing(axes, axes.lines, answer.reason)
         for lines, form in contours:
             for text in axes.clabel(lines, fmt=form, fontsize=6, colors="black", inline=False):
                 box = {"boxstyle": "round,pad=0.1", "facecolor": "white", "edgecolor": "none"}
@@ -230,33 +249,65 @@ def _motion_map_figure(answer: MapAnswer, omega_h: float) -> Figure:
         return with_legend(figure, facecolor="0.75")
 
 
+def _mesh(axes: Axes, x: FloatArray, y: FloatArray, z_abs: FloatArray, **colours: Any) -> QuadMesh:
+    """Draw |z_p| of shape (y.size, x.size) where it is below 1, on axes that are even in other values than x and y."""
+    axes.grid(visible=False)
+    stable = np.ma.masked_greater_equal(z_abs, 1.0)
+    # as an image in files of lines, too: a mesh of so many cells has no place there
+    return axes.pcolormesh(x, y, stable, cmap="cividis", shading="nearest", rasterized=True, **colours)
+
+
+def _fine(points: FloatArray) -> FloatArray:
+    """Return points along the chords between points, PARTS to a chord where there are few."""
+    parts = max(1, min(PARTS, MOST_FINE // max(1, len(points))))
+    return np.asarray(Path(points).interpolated(parts).vertices, dtype=np.float64)
+
+
+def _refine(axes: Axes) -> None:
+    """Put points on the chords of all lines, which are straight on other axes alone."""
+    for line in axes.lines:
+        points = np.asarray(line.get_xydata())
+        if len(points) > 1:
+            line.set_data(*_fine(points).T)
+
+
+def _powers(values: FloatArray) -> FloatArray:
+    """Return which powers of ten to draw of the logarithms of shares: every second, or fewer."""
+    low, high = float(np.nanmin(values)), float(np.nanmax(values))
+    every = max(2, math.ceil((high - low) / MOST_CONTOURS))
+    return every * np.arange(math.ceil(low / every), math.floor(high / every) + 1, dtype=np.float64)
+
+
 def _error_contours(axes: Axes, x: FloatArray, y: FloatArray, errors: FloatArray) -> list[tuple[QuadContourSet, str]]:
     """Draw powers of ten of the forced error; return the lines, and how their labels are written."""
-    powers = MaxNLocator(MOST_CONTOURS, integer=True)
-    contours = axes.contour(x, y, np.log10(errors), locator=powers, colors="white", linewidths=0.7, linestyles="-")
+    powers = np.log10(errors)
+    contours = axes.contour(x, y, powers, levels=_powers(powers), colors="white", linewidths=0.7, linestyles="-")
     contours.set_path_effects(HALO)
-    axes.plot([], [], color="white", linewidth=0.7, path_effects=HALO, label="forced error / motion")  # a key
+    axes.plot([], [], color="white", linewidth=0.7, path_effects=HALO, label="added error / motion", gid=KEY)  # a key
     return [(contours, "$10^{%d}$")]
 
 
 def _energy_contours(axes: Axes, x: FloatArray, y: FloatArray, growth: FloatArray) -> list[tuple[QuadContourSet, str]]:
     """Draw powers of ten of the growth of energy in a revolution, dashed where it falls, and where it is nought."""
     drawn = []
-    for sign, dashes, what in ((1, "-", "gains"), (-1, DASHES[1], "loses")):
+    for sign, dashes, what in ((1, "-", "gained"), (-1, DASHES[1], "lost")):
         with np.errstate(invalid="ignore", divide="ignore"):
             powers = np.log10(np.where(sign * growth > 0, sign * growth, np.nan))
         if np.isfinite(powers).sum() < growth.size / 100:  # nothing to see
             continue
-        levels = MaxNLocator(MOST_CONTOURS, integer=True)
-        lines = axes.contour(x, y, powers, locator=levels, colors="white", linewidths=0.7, linestyles=[dashes])
+        lines = axes.contour(x, y, powers, levels=_powers(powers), colors="white", linewidths=0.7, linestyles=[dashes])
         lines.set_path_effects(HALO)
-        label = f"a revolution {what} this share"
-        axes.plot([], [], color="white", linewidth=0.7, linestyle=dashes, path_effects=HALO, label=label)  # a key
+        label = f"energy that is {what}"
+        axes.plot(
+            [], [], color="white", linewidth=0.7, linestyle=dashes, path_effects=HALO, label=label, gid=KEY
+        )  # a key
         drawn.append((lines, "$+10^{%d}$" if sign > 0 else "$-10^{%d}$"))
     if len(drawn) == 2:
         kept = axes.contour(x, y, growth, levels=[0.0], colors="black", linewidths=1.2)
         kept.set_path_effects(WHITE_HALO)
-        axes.plot([], [], color="black", linewidth=1.2, path_effects=WHITE_HALO, label="energy is kept")  # a key
+        axes.plot(
+            [], [], color="black", linewidth=1.2, path_effects=WHITE_HALO, label="energy is kept", gid=KEY
+        )  # a key
     return drawn
 
 
@@ -275,8 +326,11 @@ def comparison_figure(regions: Sequence[Region], asked: MapConditions) -> Figure
             axes.set_xlim(*plane_coordinates(np.array(asked.alpha_range), np.zeros(2), h)[0])
         if asked.beta_range:
             axes.set_ylim(*plane_coordinates(np.zeros(2), np.array(asked.beta_range), h)[1])
-        for place, region in enumerate(regions):
-            _draw_open_edges(region, axes, h, inset=EDGE_LINES * (place + 1), **line_at(place))
         if asked.alpha_beta:
             mark_in_alpha_and_beta(axes)
+            _refine(axes)
+        bounded = [line for line, region in zip(axes.lines, regions, strict=False) if region.bounded]
+        _say_what_is_missing(axes, bounded)
+        for place, region in enumerate(regions):
+            _draw_open_edges(region, axes, h, inset=EDGE_LINES * (place + 1), **line_at(place))
         return with_legend(figure)

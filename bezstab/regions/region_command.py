@@ -45,7 +45,7 @@ Window = tuple[Fraction, Fraction]
     shared.every_column,
     click.option("--alpha-range", type=NUMBER, nargs=2, help="α̂ is drawn from the first to the second."),
     click.option("--beta-range", type=NUMBER, nargs=2, help="β̂ is drawn from the first to the second."),
-    click.option("--alpha-beta", is_flag=True, help="Write α and β (1/s) at the axes; needs --h."),
+    click.option("--alpha-beta", is_flag=True, help="Axes of α and β (1/s); needs --h."),
     click.option(
         "--quality",
         type=click.Choice(["balanced", "fast", "fine"]),
@@ -148,8 +148,7 @@ def _map(method: Method, asked: "MapConditions", files: Files, kind: str | None)
 
     bar = partial(progress, label=method.name, length=asked.points)
     answer = map_answer(method, asked, drawn=files.wanted, bar=bar)
-    if asked.motion:
-        say_each([answer.reason])
+    say_each([answer.reason])
     if drawing := answer.drawing:
         path = files.path("region", method.name, kind)
         files.write(path, lambda: map_figure(answer), lambda: map_arrays(drawing, asked.h))

@@ -73,7 +73,7 @@ def region(region: Region, axes: Axes | None = None, h: float | None = None, **l
     axes : Axes, optional
         Where to draw; by default a figure of its own.
     h : float, optional
-        Step (s) with which the axes are alpha and beta in 1/s; by default they are alpha_hat and beta_hat.
+        Step (s) with which the axes are 2 alpha (1/s) and beta^2 (1/s^2); by default they are alpha_hat and beta_hat.
     **line
         Properties of the line. By default its colour and dashes are new in the axes, its label the method's name.
 
@@ -116,7 +116,7 @@ def spectral_radius(
     axes : Axes, optional
         Where to draw; by default a figure of its own.
     h : float, optional
-        Step (s) with which the axes are alpha and beta in 1/s; by default they are alpha_hat and beta_hat.
+        Step (s) with which the axes are 2 alpha (1/s) and beta^2 (1/s^2); by default they are alpha_hat and beta_hat.
 
     Returns
     -------
@@ -143,7 +143,7 @@ def modulus_map(
     axes : Axes, optional
         Where to draw; by default a figure of its own.
     h : float, optional
-        Step (s) with which the axes are alpha and beta in 1/s; by default they are alpha_hat and beta_hat.
+        Step (s) with which the axes are 2 alpha (1/s) and beta^2 (1/s^2); by default they are alpha_hat and beta_hat.
 
     Returns
     -------
@@ -164,7 +164,7 @@ def critical_damping(alpha_range: Range, axes: Axes | None = None, h: float | No
     axes : Axes, optional
         Where to draw; by default a figure of its own.
     h : float, optional
-        Step (s) with which the axes are alpha and beta in 1/s; by default they are alpha_hat and beta_hat.
+        Step (s) with which the axes are 2 alpha (1/s) and beta^2 (1/s^2); by default they are alpha_hat and beta_hat.
     **line
         Properties of the line; by default thin and grey.
 
@@ -196,7 +196,7 @@ def point(
     axes : Axes, optional
         Where to draw; by default a figure of its own.
     h : float, optional
-        Step (s) with which the axes are alpha and beta in 1/s; by default they are alpha_hat and beta_hat.
+        Step (s) with which the axes are 2 alpha (1/s) and beta^2 (1/s^2); by default they are alpha_hat and beta_hat.
     **line
         Properties of the marker; by default white.
 
@@ -210,7 +210,7 @@ def point(
         label = "deadbeat: $|z_p| = 0$" if at.z_abs == 0 else f"least $|z_p|$: {at.z_abs:.4f}"
         usual |= {"marker": "*", "markersize": 8, "label": label}
     elif isinstance(at, Choice):
-        usual |= {"marker": "o", "label": f"choose {at.goal}: {f'{abs(at.pole):.4f}' if at.pole else 'deadbeat'}"}
+        usual |= {"marker": "o", "label": f"choose {at.goal}: $|z_p| = {abs(at.pole):.4g}$"}
     else:
         check_kind(at, tuple, "bezstab.best_point or bezstab.choose")
         usual |= {"marker": "D"}

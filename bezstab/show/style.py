@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
 from matplotlib.path import Path
 from matplotlib.patheffects import AbstractPathEffect, withStroke
-from matplotlib.ticker import FixedLocator, MaxNLocator
+from matplotlib.ticker import MaxNLocator
 from numpy.typing import ArrayLike, NDArray
 
 from bezstab.show.file_forms import FIGURE_FORMS
@@ -114,15 +114,31 @@ def plane_coordinates(
 
 
 def mark_in_alpha_and_beta(axes: Axes) -> None:
-    """Put round values of alpha and beta (1/s) on the axes 2 alpha and beta^2 of plane_words, whose limits are final.
+    """Make the axes 2 alpha and beta^2 of plane_words, whose limits are final, even in alpha and in beta (1/s).
 
-    The region keeps its shape; only what is written at its axes changes. Below beta^2 = 0 there is no real beta.
+    What is drawn stays in 2 alpha and beta^2. Below beta^2 = 0 there is no real beta: the axis begins there.
     """
-    axes.xaxis.set_major_formatter(lambda two_alpha, _: f"{two_alpha / 2:g}")
-    beta = MaxNLocator(4).tick_values(0, max(axes.get_ylim()[1], 0) ** 0.5)  # so few that the first two are apart
-    axes.yaxis.set_major_locator(FixedLocator([value**2 for value in beta]))
-    axes.yaxis.set_major_formatter(lambda beta_squared, _: f"{beta_squared**0.5:g}")
-    axes.set(xlabel=r"$\alpha$ (1/s)", ylabel=r"$\beta$ (1/s), even in $\beta^2$")
+    low, high = np.sqrt(np.maximum(axes.get_ylim(), 0))
+    axes.set_yscale("function", functions=(_signed_root, _signed_square))
+    axes.set_ylim(low**2, high**2)
+    left, right = np.divide(axes.get_xlim(), 2)
+    alpha, beta = (_round_values(*ends) for ends in ((left, right), (low, high)))
+    axes.set_xticks([2 * value for value in alpha], [f"{value:g}" for value in alpha])
+    axes.set_yticks([value**2 for value in beta], [f"{value:g}" for value in beta])
+    axes.set(xlabel=r"$\alpha$ (1/s)", ylabel=r"$\beta$ (1/s)")
+
+
+def _round_values(low: float, high: float) -> list[float]:
+    values = MaxNLocator(6, steps=[1, 2, 2.5, 5, 10]).tick_values(low, high)
+    return [float(value) for value in values if low <= value <= high]
+
+
+def _signed_root(values: FloatArray) -> FloatArray:
+    return np.sign(values) * np.sqrt(np.abs(values))
+
+
+def _signed_square(values: FloatArray) -> FloatArray:
+    return np.sign(values) * np.square(values)
 
 
 def title_lines(*parts: str) -> str:
@@ -133,15 +149,15 @@ def title_lines(*parts: str) -> str:
     return fill(", ".join(whole), TITLE_WIDTH).replace(HARD_SPACE, " ")
 
 
-def name_areas(axes: Axes, stable: Callable[[FloatArray, FloatArray], NDArray[np.bool_]]) -> None:
-    """Write where errors decay and where they grow into linear axes whose limits are final.
+def name_areas(axes: Axes, stable: Callable[[FloatArray, FloatArray], NDArray[np.bool_]], at_rest: str = "") -> None:
+    """Write where errors decay and where they grow, perhaps `at_rest` alone, into axes whose limits are final.
 
     The words are far from the areas' edges, from points and from straight lines. `stable` says it of points (x, y),
     whose arrays have one axis.
     """
     shares = (np.arange(ROOMY) + 0.5) / ROOMY
     places = np.stack(np.meshgrid(shares, shares), axis=-1).reshape(-1, 2)
-    inside = stable(*axes.transLimits.inverted().transform(places).T)
+    inside = stable(*(axes.transScale + axes.transLimits).inverted().transform(places).T)
     in_the_way = [
         (line.get_transform() - axes.transAxes).transform(Path(line.get_xydata()).interpolated(ROOMY).vertices)
         for line in axes.lines
@@ -154,7 +170,7 @@ def name_areas(axes: Axes, stable: Callable[[FloatArray, FloatArray], NDArray[np
         others = np.concatenate([places[~area], *in_the_way, *walls])
         away = [np.hypot(*((others - place) * WORDS_ARE_WIDE).T).min() for place in places[area]]
         x, y = places[area][int(np.argmax(away))]
-        text = axes.text(x, y, word, transform=axes.transAxes, ha="center", va="center", fontsize=7)
+        text = axes.text(x, y, word + at_rest, transform=axes.transAxes, ha="center", va="center", fontsize=7)
         text.set_path_effects(WHITE_HALO)
 
 

@@ -11,12 +11,13 @@ from bezstab.engines.engine_list import ENGINES
 from bezstab.errors import InputError
 from bezstab.feedback import judgement
 from bezstab.feedback.checking import check, largest_step
-from bezstab.feedback.choosing import choose, usual_goal
+from bezstab.feedback.choosing import choose
 from bezstab.feedback.columns import trade_words
 from bezstab.goals import Goal
 from bezstab.mechanism.equations import Mechanism
 from bezstab.methods.registry import lookup
 from bezstab.methods.schemes import Method
+from bezstab.questions.methods import usual_goal
 from bezstab.questions.scene_runs import SceneRun, scene_run
 from bezstab.rationals import exact
 from bezstab.stability.choices import choose as choose_point

@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 from matplotlib.collections import QuadMesh
 
+from bezstab.engines.engine_list import ENGINES
+from bezstab.feedback.choosing import choose
 from bezstab.methods.registry import lookup
 from bezstab.regions.answer import map_answer, map_conditions
 from bezstab.regions.figure import comparison_figure, map_figure
@@ -38,9 +40,10 @@ def test_a_map_draws_what_it_is_given(accuracy: bool, h: Fraction | None) -> Non
     best, chosen = answer.regions[0].best, answer.chosen
     assert best
     assert chosen
+    where = "" if accuracy else r" at $\omega h = 0.01$"
     for label, point in {
         "least $|z_p|$: 0.6259": (best.alpha_hat, best.beta_hat),
-        f"choose {chosen.goal}: {abs(chosen.pole):.4f}": (chosen.alpha_hat, chosen.beta_hat),
+        rf"choose{where}: $|z_p| = {abs(chosen.pole):.4g}$": (chosen.alpha_hat, chosen.beta_hat),
         "a rule": (0.1, 0.2),
     }.items():
         assert lines[label][0] == pytest.approx(np.array(point) * scale)
@@ -70,6 +73,56 @@ def test_a_comparison_draws_each_boundary_in_a_given_window_or_in_alpha_and_beta
     ):
         assert len(ticks) > 2
         assert ticks == pytest.approx([scale * float(label.get_text()) ** power for label in labels])
+    heights = [axes.transData.transform((0, tick))[1] for tick in axes.get_yticks()]
+    assert np.diff(heights) == pytest.approx(heights[1] - heights[0])  # even in beta
+
+
+def test_in_alpha_and_beta_critical_damping_is_straight() -> None:
+    asked = map_conditions(h=Fraction("0.001"), alpha_beta=True, points=21)
+    answer = map_answer(lookup("SYM"), asked, drawn=True)
+    axes = map_figure(answer).axes[0]
+    (line,) = (points for label, points in lines_of(axes).items() if label.startswith("critical damping"))
+    across, up = axes.transData.transform(line).T
+    slope = (up[-1] - up[0]) / (across[-1] - across[0])
+    assert up - up[0] == pytest.approx(slope * (across - across[0]), abs=0.002 * (up[-1] - up[0]))
+    assert answer.drawing
+    assert np.diff(np.sqrt(answer.drawing.beta_hat)) == pytest.approx(np.sqrt(answer.drawing.beta_hat[-1]) / 20)
+
+
+@pytest.mark.parametrize("name", ["SYM", "B4"])
+def test_a_map_marks_the_point_of_choose(name: str) -> None:
+    method = lookup(name)
+    marked = map_answer(method, map_conditions(points=2), drawn=True).chosen
+    assert marked
+    assert marked.point == choose(name, margins=False, cost=False).point
+
+
+def test_in_an_engine_the_point_is_on_its_curve_and_says_that_constraints_are_not_many() -> None:
+    answer = map_answer(lookup("SYM"), map_conditions(h=Fraction("1/60"), engine=ENGINES["ode"], points=2), drawn=True)
+    assert answer.chosen
+    assert (answer.chosen.goal, answer.chosen.alpha_hat) == ("robust", 1)  # ERP alone: alpha_hat = 1
+    assert any(label.startswith("choose robust, one constraint:") for label in lines_of(map_figure(answer).axes[0]))
+
+
+def test_what_is_not_in_the_window_is_named_as_such_and_not_drawn() -> None:
+    window: dict[str, Any] = {
+        "alpha_range": (Fraction(0), Fraction("0.5")),
+        "beta_range": (Fraction("0.1"), Fraction(1)),
+    }
+    asked = map_conditions(levels=(Fraction("0.9"), Fraction("0.3")), points=21, **window)
+    labels = list(lines_of(map_figure(map_answer(lookup("SYM"), asked, drawn=True)).axes[0]))
+    assert "$|z_p| = 0.9$" in labels  # a chord crosses the window, whose ends are outside
+    (missing,) = (label for label in labels if label.startswith("nowhere"))
+    for name in ("$|z_p| = 0.3$", "critical damping", "deadbeat", "choose"):
+        assert name in missing
+        assert not any(label.startswith(name) for label in labels)
+
+
+def test_of_a_scene_that_moves_words_and_point_are_those_at_rest() -> None:
+    asked = map_conditions(h=Fraction("0.005"), scene="driven_four_bar", points=21)
+    axes = map_figure(map_answer(lookup("B4"), asked, drawn=True)).axes[0]
+    assert {text.get_text() for text in axes.texts} == {"stable at rest", "diverges at rest"}
+    assert any(label.startswith("choose at rest") for label in lines_of(axes))
 
 
 @pytest.mark.parametrize("h", [None, Fraction("0.01")])
