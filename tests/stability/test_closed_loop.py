@@ -10,7 +10,7 @@ from bezstab.errors import NumericalError
 from bezstab.methods.derivation import closed_loop_at
 from bezstab.methods.registry import lookup
 from bezstab.methods.schemes import Method, RungeKutta
-from bezstab.stability.closed_loop import dominant_pole, feedback_roots, poles, spectral_radius, verdict
+from bezstab.stability.closed_loop import all_within, dominant_pole, feedback_roots, poles, spectral_radius, verdict
 from tests.methods.kinds import FEW, sampled
 from tests.reference.fifty_digit_poles import poles_with_errors
 from tests.reference.made_methods import multistep
@@ -109,6 +109,14 @@ def test_where_a_step_has_no_solution_a_pole_is_infinite(method: Method, point: 
     for ask in (poles, dominant_pole):
         with pytest.raises(NumericalError, match="no solution"):
             ask(method, *map(float, point))
+
+
+@pytest.mark.parametrize("name", ["AB3", "ABM3", "bdf3", "verlet-old"])
+def test_all_poles_are_within_a_level_where_the_largest_is(name: str) -> None:
+    alpha_hat, beta_hat, level = np.random.default_rng(5).uniform(0, (3, 3, 1.2), (2000, 3)).T
+    z_abs = spectral_radius(lookup(name), alpha_hat, beta_hat)
+    clear = np.abs(z_abs - level) > 1e-6
+    assert (all_within(lookup(name), alpha_hat, beta_hat, level) == (z_abs < level))[clear].all()
 
 
 def both_mu(alpha_hat: float, beta_hat: float) -> tuple[complex, complex]:

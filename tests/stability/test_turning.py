@@ -2,8 +2,6 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from bezstab.methods.registry import lookup
 from bezstab.methods.schemes import Method
@@ -40,14 +38,3 @@ def test_a_method_and_its_second_order_form_have_the_same_sensitivity(
         turning_shift(written_out, alpha_hat, beta_hat, z),
         rtol=1e-6,  # next to a double pole P_z keeps half the digits
     )
-
-
-@given(rate=st.floats(0.2, 2.0), damping=st.floats(0.1, 0.9))
-def test_the_better_the_method_the_less_it_is_turned(rate: float, damping: float) -> None:
-    """An exact method has chi = 0; one of order p has chi of order h^p on principal poles."""
-    h = 0.01
-    for name, order in (("RK2", 2), ("RK4", 4), ("trapezoid", 2), ("verlet-implicit", 2)):
-        alpha_hat, beta_hat = 2 * damping * rate * h, (rate * h) ** 2
-        z = poles(lookup(name), alpha_hat, beta_hat)[0]
-        chi = complex(turning_shift(lookup(name), alpha_hat, beta_hat, z)) / z
-        assert abs(chi) < 5 * (rate * h) ** (order - 1)  # of a velocity scheme one order less
