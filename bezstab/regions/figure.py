@@ -166,7 +166,7 @@ def _say_what_is_missing(axes: Axes, lines: Sequence[Line2D], reason: str | None
         if not (shown or label.startswith("_") or line.get_gid() == KEY):
             missing.append(label.partition(":")[0])
             line.remove()
-    told = [title_lines("nowhere in this window: " + ", ".join(missing))] if missing else []
+    told = ["nowhere in this window:\n" + title_lines(*missing)] if missing else []  # no line ends in a formula
     for words in [*told, *([reason] if reason else [])]:
         axes.plot([], [], linestyle="none", label=words)
 

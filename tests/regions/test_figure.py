@@ -118,6 +118,14 @@ def test_what_is_not_in_the_window_is_named_as_such_and_not_drawn() -> None:
         assert not any(label.startswith(name) for label in labels)
 
 
+def test_no_line_of_a_legend_ends_in_a_formula() -> None:
+    """The point of choose is far out with the trapezoidal rule."""
+    labels = lines_of(map_figure(map_answer(lookup("trapezoid"), map_conditions(points=21), drawn=True)).axes[0])
+    (missing,) = (label for label in labels if label.startswith("nowhere"))
+    assert "choose" in missing
+    assert all(line.count("$") % 2 == 0 for line in missing.splitlines())
+
+
 def test_of_a_scene_that_moves_words_and_point_are_those_at_rest() -> None:
     asked = map_conditions(h=Fraction("0.005"), scene="driven_four_bar", points=21)
     axes = map_figure(map_answer(lookup("B4"), asked, drawn=True)).axes[0]
