@@ -50,10 +50,6 @@ DASHES: list[str | tuple[int, tuple[float, ...]]] = [
 ]
 """One more than there are colours: 42 lines differ in colour or dashes, and the first six in both."""
 
-MARKERS = "osD^v<>ph*PXd"
-LARGEST_MARKER, MARKER_STEP, MARKER_SIZES = 7.0, 0.5, 10
-"""Points: hollow markers of falling size, so that those that coincide all show."""
-
 ACCENT = "#d55e00"  # for what must be seen first: a limit, a disagreement
 ABOVE_THE_AXES = 3  # their lines and ticks are drawn at 2.5
 CONVERGES, DIVERGES = "#9ecae1", "0.45"
@@ -185,18 +181,6 @@ def cells(axes: Axes, x: FloatArray, y: FloatArray, values: ArrayLike, **colours
 def line_at(place: int) -> dict[str, Any]:
     """Return colour and dashes of the line that is drawn in that place, from 0, of a figure: no two share both."""
     return {"color": COLOURS[place % len(COLOURS)], "linestyle": DASHES[place % len(DASHES)]}
-
-
-def marked_line_at(place: int) -> dict[str, Any]:
-    """Return the same, thinner, with hollow markers of another shape, smaller than those of the place before."""
-    return {
-        **line_at(place),
-        "linewidth": 0.8,
-        "marker": MARKERS[place % len(MARKERS)],
-        "markersize": LARGEST_MARKER - MARKER_STEP * (place % MARKER_SIZES),
-        "markerfacecolor": "none",
-        "markeredgewidth": 0.7,
-    }
 
 
 def with_legend(figure: Figure, **box: Any) -> Figure:

@@ -11,7 +11,7 @@ from bezstab.mechanism.scene_files import load_scene
 from bezstab.mechanism.simulation import simulated
 from bezstab.methods.registry import lookup
 from bezstab.runs.accuracy_costs import Cost, ErrorOf, Run, ranked_runs
-from bezstab.runs.figures import history_figure, projection_figure, verdict_figure, work_precision_figure
+from bezstab.runs.figures import FRONT, history_figure, projection_figure, verdict_figure, work_precision_figure
 from bezstab.runs.tables import history_arrays
 from bezstab.runs.verdict_maps import map_rows, simulated_verdicts, verdict_map
 from bezstab.stability.regions import region
@@ -35,23 +35,41 @@ RUNS = [
 
 
 @pytest.mark.parametrize(("error", "against"), [("constraint", "evaluations"), ("trajectory", "time")])
-def test_the_work_precision_figure_has_every_run_and_rings_the_front(error: ErrorOf, against: Cost) -> None:
-    (axes,) = work_precision_figure(ranked_runs(RUNS, 0.0, 6e-3, against), "made up", error).axes
+def test_the_work_precision_figure_has_every_run_and_fills_the_front(error: ErrorOf, against: Cost) -> None:
+    figure = work_precision_figure(ranked_runs(RUNS, 0.0, 6e-3, against), "made up", error)
+    panels = {axes.get_title(): axes for axes in figure.axes}
     scale = [1 if against == "evaluations" else 1e-3, 0.1 if error == "constraint" else 1]
-    lines = lines_of(axes)
-    for name, places in {
-        "B2": [(100, 1e-2), (200, 3e-3)],
-        "AB4": [(300, 5e-3)],
-        "front": [(100, 1e-2), (200, 3e-3)],  # AB4 costs more and errs more than the second
-    }.items():
-        assert lines[name] == pytest.approx(np.multiply(places, scale)), name
+    own = {"B2": [(100, 1e-2), (200, 3e-3)], "AB4": [(300, 5e-3)]}
+    front = {"B2": own["B2"], "AB4": []}  # AB4 costs more and errs more than the second
+    for name, other in (("B2", "AB4"), ("AB4", "B2")):
+        lines = lines_of(panels[name])
+        assert lines["the method named above"] == pytest.approx(np.multiply(own[name], scale))
+        assert lines[f"_{other}"] == pytest.approx(np.multiply(own[other], scale))
+        assert lines[str(FRONT["label"])] == pytest.approx(np.reshape(front[name], (-1, 2)) * scale)
+        assert lines["diverged"][:, 0] == pytest.approx([80 * scale[0]] if name == "AB4" else [])
+    (legend,) = figure.legends
+    said = {text.get_text() for text in legend.get_texts()}
+    assert {"diverged", "the method named above", "the other methods"} < said
+    cheapest = "cheapest: B2, h = 0.01 s"
+    assert ({cheapest, "tolerance 0.006"} <= said) == (error == "trajectory")
     if error == "trajectory":  # AB4's 5e-3 is good enough as well, but dearer
-        assert lines["cheapest: B2, h = 0.01 s"] == pytest.approx(np.array([[0.2, 3e-3]]))
-        assert set(lines["tolerance 0.006"][:, 1]) == {6e-3}
-    else:
-        assert not any(label.startswith(("cheapest", "tolerance")) for label in lines)
-    crosses = [np.array(line.get_xydata()).tolist() for line in axes.lines if line.get_marker() == "x"]
-    assert [x for points in crosses for x, _ in points] == pytest.approx([80 * scale[0]])
+        assert lines_of(panels["B2"])[cheapest] == pytest.approx(np.array([[0.2, 3e-3]]))
+        assert cheapest not in lines_of(panels["AB4"])
+        assert set(lines_of(panels["AB4"])["tolerance 0.006"][:, 1]) == {6e-3}
+
+
+def test_a_legend_names_only_what_is_drawn_and_a_method_without_a_line_says_why() -> None:
+    runs = [a_run("B2", 100, 1e-9), a_run("AB4", 80, 9.0, failure="too far"), a_run("SYM", 90, 1e-3)]
+    figure = work_precision_figure(ranked_runs(runs, 1e-8, 1e-12), "made up", "trajectory")
+    said = {axes.get_title(): " ".join(axes.texts[0].get_text().split()) for axes in figure.axes}
+    assert said == {"B2": "errors below the reference's", "AB4": "every run diverged", "SYM": ""}
+    alone = work_precision_figure(ranked_runs(RUNS[:2], 0.0, 1e-9), "made up", "trajectory")
+    (legend,) = alone.legends
+    assert [text.get_text() for text in legend.get_texts()] == [
+        "the method named above",
+        FRONT["label"],
+        "tolerance 1e-09",
+    ]
 
 
 def test_the_projection_figure_shows_all_three_errors_of_every_way_to_hold_the_constraints() -> None:
@@ -67,8 +85,28 @@ def test_the_projection_figure_shows_all_three_errors_of_every_way_to_hold_the_c
     for axes, share in zip(figure.axes, (1, 0.1, 2), strict=True):
         of_runs = [line for line in axes.lines if str(line.get_label()).startswith(("B2", "SYM"))]
         drawn = [point for line in of_runs for point in np.array(line.get_xydata()).tolist()]
-        assert np.array(drawn) == pytest.approx(np.array([(20 + 2 * k, share * 10.0**-k) for k in range(3)] * 2))
+        assert np.array(drawn) == pytest.approx(np.array([(20 + 2 * k, share * 10.0**-k) for k in (0, 0, 1, 1, 2, 2)]))
     assert len({(line.get_color(), line.get_marker(), line.get_markerfacecolor()) for line in of_runs}) == 6
+    (legend,) = figure.legends
+    said = [text.get_text() for text in legend.get_texts()]
+    ways_said = ["feedback, advised", "feedback, given", "projection"]
+    assert said == ["B2", "SYM", *ways_said, "tolerance 0.1", "cheapest: B2, h = 0.02 s"]
+
+
+def test_the_projection_figure_says_which_line_is_missing_and_why() -> None:
+    runs = [
+        a_run(method, 10, error, stabilise=stabilise, advised=stabilise == "baumgarte", h=0.02)
+        for method, of_feedback in (("B2", 1.0), ("SYM", 1e-9))
+        for stabilise, error in (("baumgarte", of_feedback), ("projection", 1e-9))
+    ]
+    figure = projection_figure(ranked_runs(runs, 1e-8, 1e-12, "projection"), "made up")
+    trajectory, constraint, _ = ([text.get_text() for text in axes.texts] for axes in figure.axes)
+    assert trajectory == [
+        "feedback, advised, SYM: errors below the reference's\nprojection: errors below the reference's"
+    ]
+    assert constraint == [""]
+    (legend,) = figure.legends
+    assert "feedback, given" not in {text.get_text() for text in legend.get_texts()}
 
 
 def test_the_history_figure_and_the_table_show_the_run() -> None:

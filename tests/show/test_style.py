@@ -11,14 +11,14 @@ from bezstab.methods.registry import lookup
 from bezstab.regions.answer import MapConditions
 from bezstab.regions.figure import comparison_figure
 from bezstab.show.file_forms import FIGURE_FORMS
-from bezstab.show.style import line_at, marked_line_at, new_axes, save, styled, title_lines, with_legend
+from bezstab.show.style import line_at, new_axes, save, styled, title_lines, with_legend
 from bezstab.stability.regions import region
 
 
-def test_lines_in_a_figure_differ_in_colour_or_dashes_and_neighbours_in_marker_too() -> None:
+def test_lines_in_a_figure_differ_in_colour_or_dashes_and_neighbours_in_both() -> None:
     assert len({str(line_at(place)) for place in range(42)}) == 42
-    for key in ("color", "linestyle", "marker", "markersize"):  # of neighbours all
-        assert len({str(marked_line_at(place)[key]) for place in range(6)}) == 6
+    for key in ("color", "linestyle"):
+        assert len({str(line_at(place)[key]) for place in range(6)}) == 6
 
 
 def test_a_label_that_is_wider_than_the_figure_is_broken_into_lines() -> None:
