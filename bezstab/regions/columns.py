@@ -288,7 +288,7 @@ LISTED: Sequence[Column[MethodAnswer]] = (
     Column("", "method", lambda about: about.name, "integration method"),
     Column("steps", "steps", lambda about: about.steps, "number of steps of the method"),
     Column(
-        "evaluations",
+        "f calls",
         "evaluations",
         lambda about: about.evaluations,
         "evaluations of the right-hand side in a step, of an implicit method in an iteration",
@@ -323,7 +323,7 @@ LISTED: Sequence[Column[MethodAnswer]] = (
         "in θ = ωh",
     ),
     Column("", "source", lambda about: about.method.source, "where the method is from"),
-    Column("implicit", "implicit", lambda about: about.implicit, "whether a step solves equations"),
+    Column("", "implicit", lambda about: about.implicit, "whether a step solves equations"),
     Column(
         "",
         "digits",
