@@ -27,7 +27,7 @@ from numpy.polynomial import Legendre
 from bezstab.errors import NumericalError
 from bezstab.methods.schemes import Method
 from bezstab.stability.arrays import FloatArray
-from bezstab.stability.stretches import ALONG_ALPHA, ALONG_BETA, SHORT, paths
+from bezstab.stability.stretches import ALONG_ALPHA, ALONG_BETA, paths
 
 FIRST_LINES: FloatArray = np.concatenate([[1e-12], np.geomspace(1e-5, 1e6, 177)])
 """alpha h and beta h of the method's own step, 15 % apart: a region from the first on begins at zero, one that is there
@@ -77,10 +77,6 @@ class Strip:
         return self.places[line], (low + high) / 2 if high < np.inf else 2 * low + 1
 
 
-class EndlessDetailsError(NumericalError):
-    """Between lines with different numbers of stretches there are always more."""
-
-
 class MoreStripsError(Exception):
     """A line within a strip has another number of stretches: there are more strips."""
 
@@ -90,27 +86,26 @@ class Lines:
     """Lines of constant alpha_hat (axis 0) or beta_hat (axis 1), and on each the stretches where |z_p| < level.
 
     `stable`: of a level below one, the lines of constant alpha_hat where |z_p| < 1: in their region a part must lie.
-    `short`: of its place, a stretch or a gap that is not told. `found` has each line's stretches by its place, shape
-    (stretches, 2); it grows as lines are looked at. All are dimensionless.
+    `found` has each line's stretches by its place, shape (stretches, 2); it grows as lines are looked at. All are
+    dimensionless.
     """
 
     method: Method
     level: float
     axis: int
     stable: "Lines | None" = None
-    short: float = SHORT
     found: dict[float, FloatArray] = field(default_factory=dict)
 
     def look(self, places: Iterable[float]) -> None:
         """Look at these lines, and between neighbours with different numbers of stretches.
 
-        EndlessDetailsError where no end of that is in sight.
+        NumericalError where no end of that is in sight.
         """
         new = [place for place in places if place not in self.found]
         while new:
             self.found.update(zip(new, self._stretches(np.array(new)), strict=True))
             if len(self.found) > MOST_LINES:
-                raise EndlessDetailsError(
+                raise NumericalError(
                     f"{self.method.name}: the region |z_p| < {self.level:g} has details without end near {new[0]:.6g}"
                 )
             new = [
@@ -122,7 +117,7 @@ class Lines:
     def _stretches(self, places: FloatArray) -> list[FloatArray]:
         one = np.ones_like(places)
         at = (places, one) if self.axis == 0 else (one, places)
-        found = paths(self.method, *at, (ALONG_BETA, ALONG_ALPHA)[self.axis], self.level).stretches(self.short)
+        found = paths(self.method, *at, (ALONG_BETA, ALONG_ALPHA)[self.axis], self.level).stretches()
         ends = np.stack([found.low, found.high], axis=-1)
         return np.split(ends, np.cumsum(found.counts(len(places)))[:-1])
 

@@ -15,9 +15,9 @@ from bezstab.stability.arrays import BoolArray, Extent, FloatArray
 from bezstab.stability.best_points import best_point_or_reason
 from bezstab.stability.closed_loop import mu_table, spectral_radius
 from bezstab.stability.curves import boundary_curves
-from bezstab.stability.lines import FAR, FIRST_LINES, EndlessDetailsError, Lines
+from bezstab.stability.lines import FAR, FIRST_LINES, Lines
 from bezstab.stability.path_ends import Path, verdict_end
-from bezstab.stability.stretches import ALONG_H, END_ACCURACY, SHORT
+from bezstab.stability.stretches import ALONG_H
 
 MARGIN = 0.05
 """Of what is to be seen of a bounded region."""
@@ -95,16 +95,7 @@ def region(method: Method, level: float = 1.0) -> Region:
 
 @cache
 def _region(method: Method, level: float) -> Region:
-    """Return the region; corners are told to END_ACCURACY, but where rounding would then decide at a cusp to SHORT."""
-    try:
-        return _told(method, level, END_ACCURACY)
-    except EndlessDetailsError:
-        return _told(method, level, SHORT)
-
-
-def _told(method: Method, level: float, short: float) -> Region:
-    """Return the region by stretches and gaps that are not `short`."""
-    across, upwards = _lines(method, level, short)
+    across, upwards = _lines(method, level)
     before, extent = None, _extent(across, upwards)
     area: float | None = 0.0
     error, view, boundary = 0.0, before, tuple[FloatArray, ...]()
@@ -147,10 +138,10 @@ def _tip(across: Lines, alpha_hat: float, downwards: bool) -> tuple[float, float
 
 
 @cache
-def _lines(method: Method, level: float, short: float) -> tuple[Lines, Lines]:
+def _lines(method: Method, level: float) -> tuple[Lines, Lines]:
     """Return lines of constant alpha_hat and of constant beta_hat, each laid through what the other ones saw."""
-    stable = None if level == 1 else _lines(method, 1.0, short)[0]
-    both = Lines(method, level, 0, stable, short), Lines(method, level, 1, stable, short)
+    stable = None if level == 1 else _lines(method, 1.0)[0]
+    both = Lines(method, level, 0, stable), Lines(method, level, 1, stable)
     multiple = float(method.step_multiple)
     best = best_point_or_reason(method)[0] if stable else None
     through = (best.alpha_hat, best.beta_hat) if best and best.z_abs < level else (0.0, 0.0)
