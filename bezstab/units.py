@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 LEAST_STEP = 1e-100  # s, and the inverse of the longest: so their squares are within float64
 LONGEST_STEP = 1e100
+GRAVITY = Fraction("9.81")  # m/s^2
 DECIMALS = Context(prec=40)  # far more digits than a float64 has, and far larger numbers
 
 FloatOrArray = TypeVar("FloatOrArray", float, "NDArray[np.float64]")

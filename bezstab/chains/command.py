@@ -14,8 +14,8 @@ from bezstab.cli.options import ENGINE_VALUES, NUMBER, NUMBERS, EngineValues, Pa
 from bezstab.cli.output import Files, for_reading, show_answers
 from bezstab.errors import InputError
 from bezstab.rationals import rational
+from bezstab.units import GRAVITY
 
-GRAVITY = Fraction("9.81")  # m/s²
 LOAD = ParsedType("number|gravity", lambda text: GRAVITY if text == "gravity" else rational(text), lambda: ["gravity"])
 
 

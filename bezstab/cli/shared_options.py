@@ -24,6 +24,7 @@ from bezstab.errors import InputError
 from bezstab.rationals import rational
 from bezstab.show.file_forms import FIGURE_FORMS, TABLE_FORMS
 from bezstab.show.tables import Format
+from bezstab.units import GRAVITY
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
@@ -35,7 +36,7 @@ physical = click.option("--physical", is_flag=True, help="--alpha and --beta are
 def _load(text: str) -> Fraction:
     """Return the acceleration of gravity, or of a force and the mass that it acts on: 50,2."""
     if text == "gravity":
-        return Fraction("9.81")  # m/s^2
+        return GRAVITY
     force, comma, mass = text.partition(",")
     if not comma:
         raise InputError(f"{text}: expected gravity, or a load with the mass that it acts on, such as 50,2 (N and kg)")

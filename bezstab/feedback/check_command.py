@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
 import click
 
 from bezstab.cli import shared_options as shared
-from bezstab.cli.asking import say_each, say_if_units_were_mistaken, say_what_is_left_out, show_sentences
+from bezstab.cli.asking import say_each, say_if_units_were_mistaken, show_sentences
 from bezstab.cli.grouped_help import GroupedCommand, grouped
 from bezstab.cli.options import SECONDS, EngineValues, TypedPoint
 from bezstab.cli.output import for_reading, say, show_answers, show_text, worked_out
@@ -68,8 +67,10 @@ def check(
     Example: bezstab check --method RK2 --h 0.002 --alpha 50 --beta 50 --physical
     """
 
-    from bezstab.feedback.checking import Given, asked_to_check, checks, made_points, step_answer
+    from bezstab.feedback.beside import say_what_the_engine_did, show_point
+    from bezstab.feedback.checking import Given, checks, step_answer
     from bezstab.feedback.columns import CHECKED, STEPS, spare_words
+    from bezstab.feedback.conditions import Setup, conditions
     from bezstab.feedback.sentences import costs_words, energy_sentence, motion_words
     from bezstab.questions.methods import methods_for
     from bezstab.questions.motions import check_speed
@@ -83,18 +84,14 @@ def check(
         return all(found)
     named, values = engine or (None, None)
     given = Given(point=typed.at(h), values=values, as_typed=as_typed)
-    methods, given, asked = worked_out(
-        lambda: asked_to_check(
-            methods, given, h=h, engine=named, omega=omega, scene=scene, speed=speed, duration=duration, load=load
-        ),
-        scene,
-    )
+    setup = Setup(h=h, engine=named, omega=omega, scene=scene, speed=speed, duration=duration, load=load)
+    methods, asked = methods_for(methods, named), worked_out(lambda: conditions(setup), scene)
     say_each(asked.warnings)
     answers = checks(methods, given, asked, instead=instead, instead_of_unsafe=True)
     say_if_units_were_mistaken(methods, typed, h)
     better = [each.instead for each in answers if each.instead is not None]
     if for_reading():
-        _show_point(answers)
+        show_point(answers)
         show_answers(CHECKED, answers, [answer.sentence for answer in answers])
         if len(answers) > 1:  # a single one has said so
             said = ((each, energy_sentence(each)) for each in answers)
@@ -113,17 +110,6 @@ def check(
         if answer.instead_reason:
             say(f"bezstab: nothing instead: {answer.instead_reason}")
     say_each(answer.cost_reason for answer in answers)
-    if named and for_reading():
-        for note in made_points(given, asked).notes or ():
-            say(f"{named.name}: {note} (--as-typed leaves that out)")
-        say_what_is_left_out(named, many=asked.swept is not None)
+    if for_reading():
+        say_what_the_engine_did(given, asked)
     return all(answers)
-
-
-def _show_point(answers: Sequence[CheckAnswer]) -> None:
-    """Print which point was judged, above a table: the sentence of a single answer says it."""
-    from bezstab.words import point_words
-
-    if len(answers) > 1:
-        first = answers[0]
-        show_text(f"{point_words(first.alpha_hat, first.beta_hat, first.conditions.h)}\n")

@@ -9,11 +9,11 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from bezstab.arguments import Number, exact_number, exact_or_none, in_keywords, plane_point, point_if_given, real_number
-from bezstab.engines.conversions import Applied, Engine, Point
+from bezstab.engines.conversions import Applied, Point
 from bezstab.engines.engine_list import engine_and_values
 from bezstab.errors import InputError, NumericalError
 from bezstab.feedback.choosing import ChooseAnswer, Wish, check_motion, choose_answer
-from bezstab.feedback.conditions import Conditions, conditions, for_choosing
+from bezstab.feedback.conditions import Conditions, Setup, conditions, for_choosing
 from bezstab.feedback.judgement import AS_GIVEN, Judgement, judge
 from bezstab.feedback.sentences import judgement_sentence, step_sentence
 from bezstab.mechanism.scene_files import scene as scene_named
@@ -43,11 +43,22 @@ class CheckAnswer(Judgement):
 
 @dataclass(frozen=True, kw_only=True)
 class Given:
-    """The point that is judged, or the `values` of an engine, which makes points of them; `as_typed` without clamps."""
+    """The point that is judged, or the `values` of an engine, which makes points of them; `as_typed` without clamps.
+
+    InputError unless it is one of the two.
+    """
 
     point: Point | None = None
     values: tuple[Fraction, ...] | None = None
     as_typed: bool = False
+
+    def __post_init__(self) -> None:
+        if self.as_typed and self.values is None:
+            raise InputError("--as-typed needs --engine: it leaves out what that engine does to its values")
+        if self.values is not None and self.point is not None:
+            raise InputError("--engine takes the place of --alpha, --beta and --physical")
+        if self.values is None and self.point is None:
+            raise InputError("a point is needed: --alpha with --beta, or --engine")
 
 
 @in_keywords()
@@ -118,9 +129,8 @@ def check(
     named, values = (None, None) if engine is None else engine_and_values(engine)
     given_point = point_if_given if engine else plane_point
     point = given_point(alpha_hat, beta_hat, alpha, beta, h)
-    methods, given, asked = asked_to_check(
-        () if method is None else (method_named(method),),
-        Given(point=point, values=values, as_typed=as_typed),
+    given = Given(point=point, values=values, as_typed=as_typed)
+    setup = Setup(
         h=exact_or_none(h, "h"),
         engine=named,
         omega=exact_or_none(omega, "omega"),
@@ -131,46 +141,9 @@ def check(
         spread=real_number(spread, "spread"),
         load=exact_or_none(load, "load"),
     )
-    found = checks(methods, given, asked, margins=margins, cost=cost, instead=instead)
+    methods = methods_for(() if method is None else (method_named(method),), named)
+    found = checks(methods, given, conditions(setup), margins=margins, cost=cost, instead=instead)
     return next((answer for answer in found if not answer.safe), found[0])
-
-
-def asked_to_check(
-    methods: tuple[Method, ...],
-    given: Given,
-    *,
-    h: Fraction | None = None,
-    engine: Engine | None = None,
-    omega: Fraction | None = None,
-    omega_h: Fraction | None = None,
-    scene: str | Scene | None = None,
-    speed: Fraction = Fraction(1),
-    duration: Fraction | None = None,
-    spread: float = USUAL_SPREAD,
-    load: Fraction | None = None,
-) -> tuple[tuple[Method, ...], Given, Conditions]:
-    """Return the methods, what is judged, and the conditions; InputError for what does not go together."""
-    if given.values is not None and h is None:
-        raise InputError("--physical and --engine need --h: the step in s")
-    if given.as_typed and given.values is None:
-        raise InputError("--as-typed needs --engine: it leaves out what that engine does to its values")
-    if given.values is not None and given.point is not None:
-        raise InputError("--engine takes the place of --alpha, --beta and --physical")
-    if given.values is None and given.point is None:
-        raise InputError("a point is needed: --alpha with --beta, or --engine")
-    methods = methods_for(methods, engine)
-    asked = conditions(
-        h=h,
-        engine=engine,
-        omega=omega,
-        omega_h=omega_h,
-        scene=scene,
-        speed=speed,
-        duration=duration,
-        spread=spread,
-        load=load,
-    )
-    return methods, given, asked
 
 
 def made_points(given: Given, asked: Conditions) -> Applied:

@@ -79,25 +79,22 @@ def choose(
     from bezstab.feedback.checking import step_answer_of
     from bezstab.feedback.choosing import asked_to_choose, choices, wish_of
     from bezstab.feedback.columns import CHOSEN, STEPS, spare_words, trade_words
+    from bezstab.feedback.conditions import Setup
     from bezstab.feedback.sentences import motion_words
 
     wish = wish_of(goal, settle, equal is not None, sag, engine, methods)
-    methods, asked = worked_out(
-        lambda: asked_to_choose(
-            methods,
-            wish,
-            h=h,
-            h_max=h_max,
-            engine=engine,
-            omega=omega,
-            scene=scene,
-            speed=speed,
-            duration=duration,
-            spread=spread,
-            load=load,
-        ),
-        scene,
+    setup = Setup(
+        h=h,
+        h_max=h_max,
+        engine=engine,
+        omega=omega,
+        scene=scene,
+        speed=speed,
+        duration=duration,
+        spread=spread,
+        load=load,
     )
+    methods, asked = worked_out(lambda: asked_to_choose(methods, wish, setup), scene)
     if asked.h is None:
         raise click.MissingParameter(param_hint="'--h'", param_type="option")
     say_each(asked.warnings)

@@ -11,7 +11,7 @@ from bezstab.arguments import Number, exact_number, exact_or_none, in_keywords, 
 from bezstab.engines.conversions import READ_BACK, Curve, Engine
 from bezstab.engines.engine_list import engine_named
 from bezstab.errors import InputError, NumericalError
-from bezstab.feedback.conditions import Conditions, at_step, conditions, for_choosing
+from bezstab.feedback.conditions import Conditions, Setup, at_step, conditions, for_choosing
 from bezstab.feedback.judgement import Judgement, Role, judge
 from bezstab.feedback.sentences import judgement_sentence
 from bezstab.goals import SETTLING, UP_TO_LONGEST, Goal
@@ -26,9 +26,9 @@ from bezstab.stability.choices import choose as choose_point
 from bezstab.stability.closed_loop import Modulus
 from bezstab.stability.feedback_costs import FeedbackCost, feedback_cost, follows_motion
 from bezstab.stability.forced_errors import OMEGA_H
-from bezstab.stability.rest_offsets import GRAVITY, least_feedback, offset_at_rest
+from bezstab.stability.rest_offsets import least_feedback, offset_at_rest
 from bezstab.stability.turning import LAW_HOLDS, moving_modulus
-from bezstab.units import from_dimensionless
+from bezstab.units import GRAVITY, from_dimensionless
 
 SHORTER = (2, 4)
 """A step may be so many times as short for a choice that is not safe: a mechanism then turns less in a step."""
@@ -177,9 +177,7 @@ def choose(
     named = None if engine is None else engine_named(engine)
     given = () if method is None else (method_named(method),)
     wish = wish_of(goal, exact_or_none(settle, "settle"), equal, exact_or_none(sag, "sag"), named, given)
-    methods, asked = asked_to_choose(
-        given,
-        wish,
+    setup = Setup(
         h=exact_or_none(h, "h"),
         h_max=exact_or_none(h_max, "h_max"),
         engine=named,
@@ -191,6 +189,7 @@ def choose(
         spread=real_number(spread, "spread"),
         load=exact_or_none(load, "load"),
     )
+    methods, asked = asked_to_choose(given, wish, setup)
     return choose_answer(methods[0], wish, asked, margins=margins, cost=cost, trades=trades)
 
 
@@ -212,41 +211,18 @@ def wish_of(
     return Wish("robust", sag=sag)
 
 
-def asked_to_choose(
-    methods: tuple[Method, ...],
-    wish: Wish,
-    *,
-    h: Fraction | None = None,
-    h_max: Fraction | None = None,
-    engine: Engine | None = None,
-    omega: Fraction | None = None,
-    omega_h: Fraction | None = None,
-    scene: str | Scene | None = None,
-    speed: Fraction = Fraction(1),
-    duration: Fraction | None = None,
-    spread: float = USUAL_SPREAD,
-    load: Fraction | None = None,
-) -> tuple[tuple[Method, ...], Conditions]:
+def asked_to_choose(methods: tuple[Method, ...], wish: Wish, setup: Setup) -> tuple[tuple[Method, ...], Conditions]:
     """Return the methods and the conditions of a choice; InputError for what does not go together.
 
-    Without a step, it is what makes OMEGA_H of the rate omega, where every method follows the motion.
+    Without a step, it is what makes OMEGA_H of the rate omega, where every method follows the motion. A sag is that
+    under gravity, unless a load is given.
     """
-    _check_wish(wish, h, h_max, engine)
-    if h is None and omega and methods and all(map(follows_motion, methods)):
-        h = OMEGA_H / omega
-    methods = methods_for(methods, engine)
-    asked = conditions(
-        h=h,
-        h_max=h_max,
-        engine=engine,
-        omega=omega,
-        omega_h=omega_h,
-        scene=scene,
-        speed=speed,
-        duration=duration,
-        spread=spread,
-        load=GRAVITY if load is None and wish.sag is not None else load,
-    )
+    _check_wish(wish, setup.h, setup.h_max, setup.engine)
+    if setup.h is None and setup.omega and methods and all(map(follows_motion, methods)):
+        setup = replace(setup, h=OMEGA_H / setup.omega)
+    if setup.load is None and wish.sag is not None:
+        setup = replace(setup, load=GRAVITY)
+    methods, asked = methods_for(methods, setup.engine), conditions(setup)
     if wish.sag is not None:
         return methods, asked  # one constraint alone: `chain` adds up what many sag
     if wish.goal == "accurate" and wish.settle is None:

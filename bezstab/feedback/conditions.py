@@ -1,6 +1,6 @@
 """Your simulation, as far as an answer depends on it: its step, its engine, how it moves, how exact its feedback is.
 
-h, engine, scene, omega, ...   →   conditions()   →   Conditions
+h, engine, scene, omega, ...   →   Setup   →   conditions   →   Conditions
 """
 
 from dataclasses import dataclass, replace
@@ -25,31 +25,34 @@ from bezstab.units import check_step
 
 
 @dataclass(frozen=True, kw_only=True)
-class Conditions:
-    """What answers depend on beside the feedback; made by `conditions`.
+class Setup:
+    """Your simulation as it was given, checked when made.
 
-    h: the step; h_max: the longest that may occur (s). omega: the rate of the motion (1/s), if it was given. motion:
-    the motion on which errors are told. scene, speed: the mechanism as it was given; mechanism: the same, that runs;
-    turning: how the normals of its constraints turn. duration: how long (s) it is to run, None for as long as is usual.
-    swept: the constraints over which the engine sweeps; None for one alone, and if it is not known how it sweeps.
-    spread: the share by which alpha and beta may be off. load: a steady one, as the acceleration that it would give an
-    error that nothing holds (m/s^2 or rad/s^2). warnings: what is to be known before any answer.
+    h: the step; h_max: the longest that may occur (s). omega: the rate of the motion (1/s); omega_h: the same in rad a
+    step. scene, speed: the mechanism that moves, so many times as fast; duration: how long (s) it is to run, None for
+    as long as is usual. spread: the share by which alpha and beta may be off. load: a steady one, as the acceleration
+    that it would give an error that nothing holds (m/s^2 or rad/s^2). InputError for what does not go together.
     """
 
-    h: Fraction | None
-    h_max: Fraction | None
-    engine: Engine | None
-    omega: Fraction | None
-    motion: ReferenceMotion
-    scene: str | Scene | None
-    speed: Fraction
-    mechanism: Mechanism | None
-    turning: TurningNormals | None
-    duration: float | None
-    swept: SweptConstraints | None
-    spread: float
-    load: Fraction | None
-    warnings: tuple[str, ...]
+    h: Fraction | None = None
+    h_max: Fraction | None = None
+    engine: Engine | None = None
+    omega: Fraction | None = None
+    omega_h: Fraction | None = None
+    scene: str | Scene | None = None
+    speed: Fraction = Fraction(1)
+    duration: Fraction | None = None
+    spread: float = USUAL_SPREAD
+    load: Fraction | None = None
+
+    def __post_init__(self) -> None:
+        for name, step in (("h", self.h), ("h_max", self.h_max)):
+            if step is not None:
+                check_step(step, name)
+        check_speed(self.scene, self.speed)
+        _check_duration(self.duration, self.scene, self.h)
+        if self.load is not None and self.engine is None:
+            raise InputError("--load needs --engine: a hard constraint holds any load without an offset")
 
     @property
     def seconds(self) -> float | None:
@@ -57,54 +60,45 @@ class Conditions:
         return None if self.h is None else float(self.h)
 
 
-def conditions(
-    *,
-    h: Fraction | None = None,
-    h_max: Fraction | None = None,
-    engine: Engine | None = None,
-    omega: Fraction | None = None,
-    omega_h: Fraction | None = None,
-    scene: str | Scene | None = None,
-    speed: Fraction = Fraction(1),
-    duration: Fraction | None = None,
-    spread: float = USUAL_SPREAD,
-    load: Fraction | None = None,
-) -> Conditions:
+@dataclass(frozen=True, kw_only=True)
+class Conditions(Setup):
+    """What answers depend on beside the feedback; made by `conditions`.
+
+    motion: the motion on which errors are told. mechanism: that of the scene; turning: how the normals of its
+    constraints turn. swept: the constraints over which the engine sweeps; None for one alone, and if it is not known
+    how it sweeps. warnings: what is to be known before any answer.
+    """
+
+    motion: ReferenceMotion
+    mechanism: Mechanism | None
+    turning: TurningNormals | None
+    swept: SweptConstraints | None
+    warnings: tuple[str, ...]
+
+
+def conditions(setup: Setup) -> Conditions:
     """Return the conditions of a question, the scene loaded and its motion followed.
 
-    h, h_max and duration in s, omega in 1/s, omega_h in rad a step. InputError for what does not go together, for
-    numbers out of range, and as `motion_of` and `turning_of`.
+    InputError for an engine without a step, and as `motion_of` and `turning_of`.
     """
-    for name, step in (("h", h), ("h_max", h_max)):
-        if step is not None:
-            check_step(step, name)
-    check_speed(scene, speed)
-    _check_duration(duration, scene, h)
-    if load is not None and engine is None:
-        raise InputError("--load needs --engine: a hard constraint holds any load without an offset")
-    swept = _swept(engine, h, scene, speed)
+    h, scene, speed = setup.h, setup.scene, setup.speed
+    if setup.engine is not None and h is None:
+        raise InputError("--physical and --engine need --h: the step in s")
+    swept = _swept(setup.engine, h, scene, speed)
     turning = turning_of(scene, speed, h)
     try:
-        motion = motion_of(omega, scene, speed, h, h_max, omega_h=omega_h)
+        motion = motion_of(setup.omega, scene, speed, h, setup.h_max, omega_h=setup.omega_h)
     except InputError:
         at_rest = swept is not None and turning is not None and turning.kappa == 0
-        if omega is not None or not at_rest:
+        if setup.omega is not None or not at_rest:
             raise
-        motion = motion_of(None, None, Fraction(1), h, h_max)  # the sweeps are what is asked about
+        motion = motion_of(None, None, Fraction(1), h, setup.h_max)  # the sweeps are what is asked about
     return Conditions(
-        h=h,
-        h_max=h_max,
-        engine=engine,
-        omega=omega,
+        **vars(setup),
         motion=motion,
-        scene=scene,
-        speed=speed,
         mechanism=None if scene is None else compiled_mechanism(scene_at_speed(scene, speed)),
         turning=turning,
-        duration=None if duration is None else float(duration),
         swept=swept,
-        spread=spread,
-        load=load,
         warnings=tuple(turn_too_far({speed: turning}, scene, h)),
     )
 
@@ -120,7 +114,7 @@ def for_choosing(asked: Conditions) -> Conditions:
 
 def at_step(asked: Conditions, h: Fraction) -> Conditions:
     """Return the same with another step (s)."""
-    return replace(asked, h=h, motion=motion_of(asked.omega, asked.scene, asked.speed, h))
+    return replace(asked, h=h, motion=motion_of(asked.omega, asked.scene, asked.speed, h, omega_h=asked.omega_h))
 
 
 def _swept(

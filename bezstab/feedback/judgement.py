@@ -190,7 +190,8 @@ def _run(asked: Conditions, choice: Choice, moving: MovingPole | None) -> SceneR
     grows = choice.verdict != "converges" or (moving is not None and moving.verdict == "diverges")
     if asked.mechanism is None or asked.h is None or grows:
         return None
-    return scene_run(asked.mechanism, choice.method, asked.h, choice.point, asked.duration)
+    duration = None if asked.duration is None else float(asked.duration)
+    return scene_run(asked.mechanism, choice.method, asked.h, choice.point, duration)
 
 
 def _sag(asked: Conditions, choice: Choice, values: Sequence[Fraction] | None) -> float | None:

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 import click
 
 from bezstab.cli import shared_options as shared
-from bezstab.cli.asking import say_each, say_if_units_were_mistaken, say_what_is_left_out, show_sentences
+from bezstab.cli.asking import say_each, say_if_units_were_mistaken, show_sentences
 from bezstab.cli.grouped_help import GroupedCommand, grouped
 from bezstab.cli.options import A_METHOD, METHOD, SECONDS, EngineValues, TypedPoint, typed_options
-from bezstab.cli.output import for_reading, say, show_answers, show_text, worked_out
+from bezstab.cli.output import for_reading, show_answers, worked_out
 
 if TYPE_CHECKING:
     from bezstab.methods.schemes import Method
@@ -59,12 +59,14 @@ def poles(
     Example: bezstab poles --alpha 0.5 --beta 0.1
     """
 
-    from bezstab.feedback.checking import Given, asked_to_check
+    from bezstab.feedback.beside import say_what_the_engine_did, show_point
+    from bezstab.feedback.checking import Given
     from bezstab.feedback.columns import POLES
+    from bezstab.feedback.conditions import Setup, conditions
     from bezstab.feedback.poles import poles_at
     from bezstab.feedback.sentences import motion_words
     from bezstab.methods.registry import lookup
-    from bezstab.words import point_words
+    from bezstab.questions.methods import methods_for
 
     named, values = engine or (None, None)
     typed = TypedPoint(alpha, beta, physical)
@@ -73,21 +75,15 @@ def poles(
     given = Given(point=typed.at(h), values=values, as_typed=as_typed)
     if not methods and named is None:
         methods = tuple(map(lookup, USUAL_METHODS))
-    methods, given, asked = worked_out(
-        lambda: asked_to_check(methods, given, h=h, engine=named, omega=omega, scene=scene, speed=speed), scene
-    )
+    setup = Setup(h=h, engine=named, omega=omega, scene=scene, speed=speed)
+    methods, asked = methods_for(methods, named), worked_out(lambda: conditions(setup), scene)
     say_each(asked.warnings)
     found = poles_at(methods, given, asked, every=all_poles)
     say_if_units_were_mistaken(methods, typed, h)
-    if for_reading() and len(found) > 1:
-        judged = found[0].judged
-        show_text(f"{point_words(judged.alpha_hat, judged.beta_hat, h)}\n")
+    show_point([each.judged for each in found])
     show_answers(POLES, found, [each.sentence for each in found])
     if every_column and not asked.motion.assumed:
         show_sentences([motion_words(asked.motion)])
     say_each(each.judged.cost_reason for each in found)
-    if named and for_reading():
-        for note in (found[0].judged.applied or "").split("; ") if found else ():
-            if note and note != "as typed":
-                say(f"{named.name}: {note} (--as-typed leaves that out)")
-        say_what_is_left_out(named, many=asked.swept is not None)
+    if for_reading():
+        say_what_the_engine_did(given, asked)

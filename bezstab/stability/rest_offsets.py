@@ -28,9 +28,6 @@ from bezstab.stability.regions import region
 from bezstab.stability.searches import first_where, least_between
 from bezstab.stability.sweeps import swept_rest
 
-GRAVITY = Fraction("9.81")
-"""m/s^2"""
-
 ROUNDED = 1e-9
 """Of what the load moves in a step: a smaller offset is rounding of none."""
 

@@ -12,14 +12,16 @@ from bezstab.engines.conversions import Point
 from bezstab.engines.engine_list import ENGINES
 from bezstab.errors import InputError
 from bezstab.feedback import checking, columns
-from bezstab.feedback.checking import CheckAnswer, Given, asked_to_check, check, checks, largest_step
+from bezstab.feedback.checking import CheckAnswer, Given, check, checks, largest_step
 from bezstab.feedback.choosing import ChooseAnswer
+from bezstab.feedback.conditions import Setup, conditions
 from bezstab.feedback.judgement import Judgement
 from bezstab.feedback.poles import PoleAnswer
 from bezstab.methods.registry import lookup
 from bezstab.motion.spinning_bodies import spin_change
 from bezstab.questions.energy import engine_energy_rate
 from bezstab.questions.meant import meant_in_seconds
+from bezstab.questions.methods import methods_for
 from bezstab.rationals import rational
 from bezstab.stability.choices import choose, describe_point
 from bezstab.stability.feedback_costs import feedback_cost
@@ -108,7 +110,8 @@ def test_safe_is_what_is_safe_as_a_scene_moves() -> None:
 def all_points(engine: str, values: str, h: str, **asked: Any) -> list[CheckAnswer]:
     """Return the answers for every point that an engine makes of its values."""
     given = Given(values=tuple(map(rational, values.split(","))))
-    return checks(*asked_to_check((), given, h=Fraction(h), engine=ENGINES[engine], **asked), instead=True)
+    setup = Setup(h=Fraction(h), engine=ENGINES[engine], **asked)
+    return checks(methods_for((), ENGINES[engine]), given, conditions(setup), instead=True)
 
 
 def test_an_engine_answers_for_every_point_that_it_takes() -> None:
