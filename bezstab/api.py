@@ -8,10 +8,7 @@ of a TOML file, or what `scene` returns.
 
 from __future__ import annotations  # so that help() shows annotations as they are written
 
-import inspect
-from collections.abc import Callable, Mapping
 from fractions import Fraction
-from typing import Any, Generic, TypedDict, TypeVar, Unpack, get_args, get_origin, get_type_hints
 
 from numpy.typing import ArrayLike
 
@@ -23,40 +20,16 @@ from bezstab.questions.motions import motion_of
 from bezstab.stability import arrays, best_points, closed_loop, feedback_costs
 from bezstab.stability.arrays import ComplexArray, FloatArray
 
-Given = TypeVar("Given")
 
-
-class Point(TypedDict, Generic[Given], total=False):
-    """A point: alpha_hat and beta_hat, dimensionless, or alpha and beta in 1/s."""
-
-    alpha_hat: Given | None
-    beta_hat: Given | None
-    alpha: Given | None
-    beta: Given | None
-
-
-class PointAtStep(Point[Given], total=False):
-    """A point, with the step in s for one in 1/s."""
-
-    h: Number | None
-
-
-Function = TypeVar("Function", bound=Callable[..., Any])
-
-
-def _spelled_out(function: Function) -> Function:
-    """Have help() and notebooks show one by one the keywords that a function gathers in its last parameter."""
-    signature = inspect.signature(function)
-    *others, gathered = signature.parameters.values()
-    (kind,) = get_args(get_type_hints(function)[gathered.name])
-    for name in (get_origin(kind) or kind).__annotations__:
-        others.append(inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=None))
-    function.__signature__ = signature.replace(parameters=others)  # type: ignore[attr-defined]
-    return function
-
-
-@_spelled_out
-def poles(method: str | Method, **point: Unpack[PointAtStep[ArrayLike]]) -> ComplexArray:
+def poles(
+    method: str | Method,
+    *,
+    alpha_hat: ArrayLike | None = None,
+    beta_hat: ArrayLike | None = None,
+    alpha: ArrayLike | None = None,
+    beta: ArrayLike | None = None,
+    h: Number | None = None,
+) -> ComplexArray:
     """Return all poles z of the constraint error: each step multiplies a part of the error by z.
 
     Parameters
@@ -84,11 +57,18 @@ def poles(method: str | Method, **point: Unpack[PointAtStep[ArrayLike]]) -> Comp
     ----------
     The roots of the paper's Eq. 17.
     """
-    return closed_loop.poles(method_named(method), *_plane_arrays(point))
+    return closed_loop.poles(method_named(method), *_plane_arrays(alpha_hat, beta_hat, alpha, beta, h))
 
 
-@_spelled_out
-def dominant_pole(method: str | Method, **point: Unpack[PointAtStep[ArrayLike]]) -> ComplexArray:
+def dominant_pole(
+    method: str | Method,
+    *,
+    alpha_hat: ArrayLike | None = None,
+    beta_hat: ArrayLike | None = None,
+    alpha: ArrayLike | None = None,
+    beta: ArrayLike | None = None,
+    h: Number | None = None,
+) -> ComplexArray:
     """Return z_p, the pole of largest modulus: in the long run each step multiplies the error by it.
 
     Parameters
@@ -116,11 +96,18 @@ def dominant_pole(method: str | Method, **point: Unpack[PointAtStep[ArrayLike]])
     ----------
     The paper's section 4.
     """
-    return closed_loop.dominant_pole(method_named(method), *_plane_arrays(point))
+    return closed_loop.dominant_pole(method_named(method), *_plane_arrays(alpha_hat, beta_hat, alpha, beta, h))
 
 
-@_spelled_out
-def spectral_radius(method: str | Method, **point: Unpack[PointAtStep[ArrayLike]]) -> FloatArray:
+def spectral_radius(
+    method: str | Method,
+    *,
+    alpha_hat: ArrayLike | None = None,
+    beta_hat: ArrayLike | None = None,
+    alpha: ArrayLike | None = None,
+    beta: ArrayLike | None = None,
+    h: Number | None = None,
+) -> FloatArray:
     """Return |z_p|, the factor by which each step multiplies the constraint error in the long run.
 
     Parameters
@@ -149,11 +136,18 @@ def spectral_radius(method: str | Method, **point: Unpack[PointAtStep[ArrayLike]
     ----------
     The paper's Figs. 1 to 3.
     """
-    return closed_loop.spectral_radius(method_named(method), *_plane_arrays(point))
+    return closed_loop.spectral_radius(method_named(method), *_plane_arrays(alpha_hat, beta_hat, alpha, beta, h))
 
 
-@_spelled_out
-def verdict(method: str | Method, **point: Unpack[PointAtStep[Number]]) -> Verdict:
+def verdict(
+    method: str | Method,
+    *,
+    alpha_hat: Number | None = None,
+    beta_hat: Number | None = None,
+    alpha: Number | None = None,
+    beta: Number | None = None,
+    h: Number | None = None,
+) -> Verdict:
     """Return what the error does at one point, proven in exact arithmetic.
 
     Parameters
@@ -178,7 +172,7 @@ def verdict(method: str | Method, **point: Unpack[PointAtStep[Number]]) -> Verdi
     ----------
     The Schur-Cohn test (I. Schur, J. reine angew. Math. 147, 1917) on the polynomial of the paper's Eq. 17.
     """
-    return closed_loop.verdict(method_named(method), *_plane_point(point))
+    return closed_loop.verdict(method_named(method), *plane_point(alpha_hat, beta_hat, alpha, beta, h))
 
 
 def best_point(method: str | Method) -> best_points.BestPoint | None:
@@ -207,14 +201,17 @@ def best_point(method: str | Method) -> best_points.BestPoint | None:
     return best_points.best_point(method_named(method))
 
 
-@_spelled_out
 @in_keywords()
 def feedback_cost(
     method: str | Method,
     *,
     omega: Number | None = None,
     omega_h: Number | None = None,
-    **point: Unpack[PointAtStep[Number]],
+    alpha_hat: Number | None = None,
+    beta_hat: Number | None = None,
+    alpha: Number | None = None,
+    beta: Number | None = None,
+    h: Number | None = None,
 ) -> feedback_costs.FeedbackCost:
     """Return the errors that a feedback makes on a mechanism that moves.
 
@@ -250,22 +247,20 @@ def feedback_cost(
         exact_or_none(omega, "omega"),
         None,
         Fraction(1),
-        exact_or_none(point.get("h"), "h"),
+        exact_or_none(h, "h"),
         omega_h=exact_or_none(omega_h, "omega_h"),
     )
-    return feedback_costs.feedback_cost(method_named(method), *_plane_point(point), motion.omega_h)
+    return feedback_costs.feedback_cost(
+        method_named(method), *plane_point(alpha_hat, beta_hat, alpha, beta, h), motion.omega_h
+    )
 
 
-def _four(point: Mapping[str, Any]) -> tuple[Any, Any, Any, Any, Any]:
-    """Return the coordinates of a point in both ways, None where they are not given, and the step."""
-    return point.get("alpha_hat"), point.get("beta_hat"), point.get("alpha"), point.get("beta"), point.get("h")
-
-
-def _plane_point(point: Mapping[str, Any]) -> tuple[Any, Any]:
-    """Return alpha_hat and beta_hat from whichever of the two ways was taken, exact."""
-    return plane_point(*_four(point))
-
-
-def _plane_arrays(point: Mapping[str, Any]) -> tuple[FloatArray, FloatArray]:
-    """Return the same as float64 arrays, broadcast; InputError if their shapes do not fit each other."""
-    return arrays.plane_arrays(*plane_point(*_four(point), arrays.real_array))
+def _plane_arrays(
+    alpha_hat: ArrayLike | None,
+    beta_hat: ArrayLike | None,
+    alpha: ArrayLike | None,
+    beta: ArrayLike | None,
+    h: Number | None,
+) -> tuple[FloatArray, FloatArray]:
+    """Return alpha_hat and beta_hat as float64 arrays, broadcast; InputError if their shapes do not fit each other."""
+    return arrays.plane_arrays(*plane_point(alpha_hat, beta_hat, alpha, beta, h, arrays.real_array))
