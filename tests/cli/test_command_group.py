@@ -70,11 +70,10 @@ def test_whatever_is_typed_ends_in_an_answer_or_one_line(data: st.DataObject) ->
 
 
 @pytest.mark.parametrize("name", WENT)
-def test_what_was_removed_says_where_it_went_and_the_readme_lists_it(name: str) -> None:
+def test_what_was_removed_says_where_it_went(name: str) -> None:
     result = run(name)
     assert (result.exit_code, result.stdout) == (2, "")
     assert result.stderr == f"bezstab: `{name}`: {WENT[name]}\n"
-    assert f"`{name}`" in (Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8")
 
 
 def test_numerical_trouble_is_status_three_and_no_file(tmp_path: Path) -> None:
