@@ -1,8 +1,4 @@
-"""Is a chain of bodies stable in an engine that sweeps over its constraints, with how many sweeps, and what to set?
-
-world --o--[m]--o--[m]--o--[m]          links of a straight chain, swept from the world on; with both ends pinned
-                                        one more holds the last body
-"""
+"""Is a chain of bodies stable in an engine that sweeps over its constraints, with how many sweeps, and what to set?"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
@@ -10,22 +6,17 @@ from fractions import Fraction
 
 import numpy as np
 
-from bezstab.arguments import Number, exact_number, in_keywords, whole_number
+from bezstab.arguments import Number, exact_number, exact_or_none, in_keywords, whole_number
+from bezstab.chains.links import Links, Load, links
 from bezstab.engines.conversions import Engine
 from bezstab.engines.engine_list import engine_and_values
-from bezstab.engines.sweeping import check_iterations
+from bezstab.engines.sweeping import check_iterations, motor_named
 from bezstab.errors import InputError
-from bezstab.questions.chains import Constraints, SweptConstraints
+from bezstab.questions.chains import SweptConstraints
 from bezstab.stability.arrays import FloatArray
 from bezstab.stability.choices import TENTH, steps_to_settle
-from bezstab.stability.sweeps import inverse_effective_masses
 from bezstab.units import check_step
 from bezstab.words import change_words, counted, decay_words
-
-MOST_BODIES = 100
-"""Of a chain: its matrices have three times as many rows."""
-LARGEST_RATIO = 1e6
-"""Of masses: beyond, rounding of the inverse effective masses leaves too few digits of the growth."""
 
 SPREAD = 0.1
 """The share by which the setting to paste may be stronger and the chain still be stable."""
@@ -34,56 +25,6 @@ SWEEPS_DRAWN = 50
 
 NO_SAG = 1e-9
 """m: impulses that are kept hold a load without an error; what is computed then is rounding."""
-
-
-@dataclass(frozen=True)
-class Links:
-    """A straight chain along its own line: the masses of its bodies from the world on, in any unit.
-
-    With `both_ends` the last body is held by the world, too. InputError for masses that are no chain.
-    """
-
-    masses: tuple[Fraction, ...]
-    both_ends: bool = False
-
-    def __post_init__(self) -> None:
-        if not 1 <= len(self.masses) <= MOST_BODIES:
-            raise InputError(f"--bodies {len(self.masses)}: expected 1 to {MOST_BODIES} bodies")
-        least, most = min(self.masses), max(self.masses)
-        if least <= 0 or most > LARGEST_RATIO * least:
-            raise InputError(f"--masses: expected positive masses, at most {LARGEST_RATIO:g} times the least")
-
-    @property
-    def words(self) -> str:
-        """What the chain is: a chain of 10 with the last body 10 times as heavy."""
-        last = self.masses[-1] / self.masses[0]
-        if len(set(self.masses)) == 1:
-            words = f"a chain of {len(self.masses)} equal bodies" if len(self.masses) > 1 else "a chain of 1"
-        elif len(set(self.masses[:-1])) == 1:
-            words = f"a chain of {len(self.masses)} with the last body {float(last):g} times as heavy"
-        else:
-            words = f"a chain of masses {', '.join(f'{float(mass):g}' for mass in self.masses)}"
-        return f"{words}, pinned at both ends" if self.both_ends else words
-
-    @property
-    def jacobian(self) -> FloatArray:
-        """What each link's error is of the places of the bodies, shape (links, bodies)."""
-        count = len(self.masses)
-        jacobian = np.eye(count) - np.eye(count, k=-1)  # each link: where its body is, less where the one before is
-        return np.vstack([jacobian, -np.eye(count)[-1]]) if self.both_ends else jacobian
-
-    def constraints(self) -> Constraints:
-        """Return its links as constraints in the order in which they are swept over."""
-        jacobian = self.jacobian
-        inverse_masses = inverse_effective_masses(np.diag([float(mass) for mass in self.masses]), jacobian)
-        return Constraints(self.words, inverse_masses, tuple(range(len(jacobian))))
-
-
-def links(bodies: int, mass_ratio: Fraction = Fraction(1), *, both_ends: bool = False) -> Links:
-    """Return a chain of so many bodies, the last one `mass_ratio` times as heavy as each other one."""
-    if not 1 / LARGEST_RATIO <= mass_ratio <= LARGEST_RATIO:
-        raise InputError(f"--mass-ratio {float(mass_ratio):g}: expected {1 / LARGEST_RATIO:g} to {LARGEST_RATIO:g}")
-    return Links((*[Fraction(1)] * (bodies - 1), mass_ratio)[: max(bodies, 0)], both_ends)
 
 
 @dataclass(frozen=True, repr=False)
@@ -96,7 +37,7 @@ class ChainAnswer:
     thousandth; None where it does not fall. `stable_iterations`: from how many sweeps errors decay; None if
     from none that is tried. `setting`: the strongest values with which this chain is stable even if they were SPREAD
     stronger; None where there are none, or where the engine has nothing to set. `sag`: how far (m) some body rests from
-    its place, at most, where all accelerate by `load` (m/s^2) along the chain; None without a load, and if not safe.
+    its place, at most, under a `load`; None without a load, and if not safe.
     `sentence`: the answer in words.
     """
 
@@ -114,7 +55,7 @@ class ChainAnswer:
     settle_steps: int | None
     stable_iterations: int | None
     setting: str | None
-    load: Fraction | None
+    load: Load | None
     sag: float | None
     sentence: str = field(compare=False)
 
@@ -134,6 +75,7 @@ def chain(
     mass_ratio: Number = 1,
     masses: Sequence[Number] | None = None,
     both_ends: bool = False,
+    motor: str | None = None,
     iterations: int | None = None,
     load: Number | None = None,
 ) -> ChainAnswer:
@@ -150,33 +92,42 @@ def chain(
     mass_ratio : int, float, str or Fraction
         The last body is so many times as heavy as each other one.
     masses : sequence of numbers, shape (bodies,), optional
-        Masses from the world on, in any unit, in place of `bodies` and `mass_ratio`.
+        Masses from the world on, in place of `bodies` and `mass_ratio`; in kg where there is a force.
     both_ends : bool
         Whether the world also holds the last body.
+    motor : str, optional
+        A motor in each joint; bodies are then equally long rods. "rate" holds the joint's rate at 0, "angle" its angle
+        as hard as its pin, "5,1" its angle by an implicit spring of 5 Hz and damping ratio 1.
     iterations : int, optional
         Sweeps in a step; by default the engine's own number.
     load : int, float, str or Fraction, optional
-        A steady acceleration along the chain (m/s^2); `sag` says how far it sags.
+        A steady force (N) on the end of the chain, which needs `masses`, or "gravity" on all of it; along the chain,
+        with motors across it. `sag` says how far it sags.
 
     Returns
     -------
     ChainAnswer
-        True if errors decay; `sentence` says it in words. The map is linear, along the chain's own line.
+        True if errors decay; `sentence` says it in words. The map is linear: the chain is nearly straight.
 
     Raises
     ------
     InputError
-        The engine does not sweep, or it is not known how; or the numbers are no chain.
+        The engine does not sweep, or it is not known how; the numbers are no chain; or nothing holds the load.
     NumericalError
         Rounding leaves open whether errors decay.
     """
     named, values = engine_and_values(engine)
-    whole = links(whole_number(bodies, "bodies"), exact_number(mass_ratio, "mass_ratio"), both_ends=both_ends)
-    if masses is not None:
-        whole = Links(tuple(exact_number(mass, "masses") for mass in masses), both_ends)
+    pulls: Load | None = "gravity" if load == "gravity" else exact_or_none(load, "load")
+    whole = links(
+        whole_number(bodies, "bodies"),
+        exact_number(mass_ratio, "mass_ratio"),
+        None if masses is None else tuple(exact_number(mass, "masses") for mass in masses),
+        both_ends=both_ends,
+        motor=None if motor is None else motor_named(motor),
+        load=pulls,
+    )
     sweeps = None if iterations is None else whole_number(iterations, "iterations")
-    along = None if load is None else exact_number(load, "load")
-    return judge_chain(named, values, exact_number(h, "h"), whole, sweeps, along)
+    return judge_chain(named, values, exact_number(h, "h"), whole, sweeps, pulls)
 
 
 def judge_chain(
@@ -185,7 +136,7 @@ def judge_chain(
     h: Fraction,
     chained: Links,
     iterations: int | None = None,
-    load: Fraction | None = None,
+    load: Load | None = None,
 ) -> ChainAnswer:
     """Return what a step of h (s) does to the errors of a chain; errors as `chain`."""
     swept = swept_links(engine, h, chained, iterations)
@@ -201,7 +152,7 @@ def judge_chain(
         z_abs=found.growth.factor,
         accuracy=found.growth.accuracy,
         alone_z_abs=found.alone,
-        growing=tuple(swept.slowest_errors(values).tolist()),
+        growing=chained.gaps(swept.slowest_errors(values)),
         tenth_steps=steps_to_settle(found.growth.factor, TENTH) if safe else None,
         settle_steps=steps_to_settle(found.growth.factor) if safe else None,
         stable_iterations=found.stable_iterations,
@@ -222,14 +173,17 @@ def swept_links(engine: Engine, h: Fraction, chained: Links, iterations: int | N
         raise InputError(f"how {engine.name} sweeps over its constraints is not known here")
     sweeps = engine.sweeping.iterations if iterations is None else iterations
     check_iterations(sweeps)
-    return SweptConstraints(engine, h, chained.constraints(), sweeps)
+    if chained.motor and chained.motor.kind not in engine.sweeping.motors:
+        known = ", ".join(engine.sweeping.motors) or "none"
+        raise InputError(f"--motor {chained.motor.kind}: of {engine.name}'s motors are known here: {known}")
+    return SweptConstraints(engine, h, chained.constraints(h), sweeps)
 
 
-def _sag(swept: SweptConstraints, values: tuple[Fraction, ...], chained: Links, load: Fraction) -> float:
-    """Return how far (m) some body of a chain rests from its place, at most, under a load (m/s^2)."""
-    pull = float(swept.h**2 * load) * chained.jacobian.sum(axis=1)
-    moved = np.cumsum(swept.rest(values, pull)[: len(chained.masses)])
-    sag = float(np.abs(moved).max())
+def _sag(swept: SweptConstraints, values: tuple[Fraction, ...], chained: Links, load: Load) -> float:
+    """Return how far (m) some body of a chain rests from its place, at most, under a load."""
+    if chained.motor and chained.motor.kind == "rate":
+        raise InputError("--load: motors that hold a rate hold no angle, so the chain droops on and on")
+    sag = float(chained.moved(swept.rest(values, float(swept.h) ** 2 * chained.pull(load))).max())
     return sag if sag > NO_SAG else 0.0
 
 
@@ -254,19 +208,23 @@ def _sentence(answer: ChainAnswer) -> str:
         enough = f"It is stable from {counted(answer.stable_iterations, 'sweep')}"
     sentence = f"{judged}: {'safe' if answer.safe else 'not safe'}. {change[0].upper()}{change[1:]}. {enough}."
     if answer.sag is not None:
-        sags = f"sags by {1000 * answer.sag:.3g} mm" if answer.sag else "does not sag"
-        sentence += f" Under {float(answer.load or 0):g} m/s² along it, it {sags}."
+        sags = f"sags by {_length_words(answer.sag)}" if answer.sag else "does not sag"
+        pull = "gravity" if answer.load == "gravity" else f"{float(answer.load or 0):g} N at its end"
+        sentence += f" Under {pull} {'across' if answer.links.motor else 'along'} it, it {sags}."
     if answer.setting and not answer.safe:
         sentence += f" With these sweeps {answer.setting} is stable, with {SPREAD:.0%} to spare."
     return sentence
 
 
-def chain_map(
-    engine: Engine, values: tuple[Fraction, ...], h: Fraction, longest: int, mass_ratio: Fraction, *, both_ends: bool
-) -> FloatArray:
-    """Return the factors by which a step multiplies errors, for chains of 1 to `longest` bodies with 1 to 50 sweeps.
+def _length_words(metres: float) -> str:
+    return f"{metres:.3g} m" if metres >= 1 else f"{1000 * metres:.3g} mm"
 
-    Shape (longest, SWEEPS_DRAWN). Errors as `chain`.
+
+def chain_map(engine: Engine, values: tuple[Fraction, ...], h: Fraction, longest: Links) -> FloatArray:
+    """Return the factors by which a step multiplies errors, with 1 to 50 sweeps, of all chains up to the longest.
+
+    A shorter one is its end. Shape (bodies, SWEEPS_DRAWN). Errors as `chain`.
     """
-    chains = [swept_links(engine, h, links(n, mass_ratio, both_ends=both_ends), 1) for n in range(1, longest + 1)]
+    bodies = range(1, len(longest.masses) + 1)
+    chains = [swept_links(engine, h, replace(longest, masses=longest.masses[-count:]), 1) for count in bodies]
     return np.array([[each.growth(values, sweeps + 1).factor for sweeps in range(SWEEPS_DRAWN)] for each in chains])

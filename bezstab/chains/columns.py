@@ -1,6 +1,7 @@
 """What is printed of a chain: its columns."""
 
 from collections.abc import Sequence
+from fractions import Fraction
 
 from bezstab.chains.answer import ChainAnswer
 from bezstab.show.columns import Column, in_seconds
@@ -48,6 +49,12 @@ COLUMNS: Sequence[Column[ChainAnswer]] = (
     Column("bodies", "bodies", lambda answer: len(answer.links.masses), "bodies of the chain"),
     Column("masses", "masses", lambda answer: [float(mass) for mass in answer.links.masses], "from the world on"),
     Column("both ends", "both_ends", lambda answer: answer.links.both_ends, "whether both ends are pinned"),
+    Column(
+        "motor",
+        "motor",
+        lambda answer: answer.links.motor.words if answer.links.motor else None,
+        "in each joint; null: none",
+    ),
     Column("h", "h", lambda answer: float(answer.h), "step", unit="s"),
     Column("sweeps", "iterations", lambda answer: answer.iterations, "sweeps over all constraints in a step"),
     Column(
@@ -67,9 +74,8 @@ COLUMNS: Sequence[Column[ChainAnswer]] = (
     Column(
         "load",
         "load",
-        lambda answer: None if answer.load is None else float(answer.load),
-        "steady acceleration along the chain",
-        unit="m/s²",
+        lambda answer: float(answer.load) if isinstance(answer.load, Fraction) else answer.load,
+        "steady force on the end of the chain in N, or gravity on all of it; null where none is given",
     ),
     Column(
         "sags by",

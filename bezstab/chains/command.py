@@ -1,9 +1,9 @@
 """The command that judges a chain of bodies in an engine that sweeps over its constraints: chain."""
 
-from collections.abc import Sequence
 from fractions import Fraction
 from functools import partial
 from pathlib import Path
+from typing import Literal
 
 import click
 
@@ -12,11 +12,12 @@ from bezstab.cli.asking import say_what_is_left_out
 from bezstab.cli.grouped_help import GroupedCommand, grouped
 from bezstab.cli.options import ENGINE_VALUES, NUMBER, NUMBERS, EngineValues, ParsedType
 from bezstab.cli.output import Files, for_reading, show_answers
+from bezstab.engines.sweeping import Motor, motor_named
 from bezstab.errors import InputError
 from bezstab.rationals import rational
-from bezstab.units import GRAVITY
 
-LOAD = ParsedType("number|gravity", lambda text: GRAVITY if text == "gravity" else rational(text), lambda: ["gravity"])
+LOAD = ParsedType("newtons|gravity", lambda text: text if text == "gravity" else rational(text), lambda: ["gravity"])
+MOTOR = ParsedType("rate|angle|hz,ratio", motor_named, lambda: ["rate", "angle"])
 
 
 @click.command(cls=GroupedCommand)
@@ -26,7 +27,8 @@ LOAD = ParsedType("number|gravity", lambda text: GRAVITY if text == "gravity" el
     click.option("--mass-ratio", type=NUMBER, default="1", help="The last body is so many times as heavy."),
     click.option("--masses", type=NUMBERS, metavar="M,M,...", help="The masses from the world on, such as 1,1,5."),
     click.option("--pinned", type=click.Choice(["one", "both"]), default="one", help="Ends that the world holds."),
-    click.option("--load", type=LOAD, help="Acceleration along it, m/s², or gravity (9.81): how far does it sag?"),
+    click.option("--motor", type=MOTOR, help="A motor in each joint: holds its rate, its angle, or is a spring, 5,1."),
+    click.option("--load", type=LOAD, help="Gravity, or a force in N on its end: how far does it sag?"),
 )
 @grouped(
     "Your simulation",
@@ -40,10 +42,11 @@ def chain(
     h: Fraction,
     bodies: int,
     mass_ratio: Fraction,
-    masses: Sequence[Fraction] | None,
+    masses: tuple[Fraction, ...] | None,
     pinned: str,
+    motor: Motor | None,
     iterations: int | None,
-    load: Fraction | None,
+    load: Fraction | Literal["gravity"] | None,
     output: Path,
     figure: str,
     **_: object,
@@ -54,16 +57,19 @@ def chain(
     come apart although each constraint alone is stable. What stacks of boxes do is not known. --figure draws all chains
     up to --bodies, over the sweeps.
 
+    With --motor bodies are equally long rods, each joint a pin and a motor: an arm, which may bend, too. --motor angle
+    is a weld.
+
     Example: bezstab chain --engine chipmunk --h 1/60 --bodies 10
     """
-    from bezstab.chains.answer import Links, judge_chain, links
+    from bezstab.chains.answer import judge_chain
     from bezstab.chains.columns import COLUMNS
+    from bezstab.chains.links import links
 
     words, values = engine
-    both_ends = pinned == "both"
     if masses and figure != "none":
         raise InputError("--figure draws chains with --mass-ratio: leave out --masses")
-    whole = Links(tuple(masses), both_ends) if masses else links(bodies, mass_ratio, both_ends=both_ends)
+    whole = links(bodies, mass_ratio, masses, both_ends=pinned == "both", motor=motor, load=load)
     answer = judge_chain(words, values, h, whole, iterations, load)
     files = Files(output, figure)
     files.check_output()

@@ -25,7 +25,7 @@ def chain_figure(answer: ChainAnswer) -> Figure:
     assert answer.engine.sweeping
     masses = answer.links.masses
     ratio = masses[-1] / masses[0]
-    found = chain_map(answer.engine, answer.values, answer.h, len(masses), ratio, both_ends=answer.links.both_ends)
+    found = chain_map(answer.engine, answer.values, answer.h, answer.links)
     bodies, sweeps = (np.arange(1.0, count + 1) for count in found.shape)
     named = zip(answer.engine.parameters, answer.values, strict=False)
     typed = ", ".join(f"{name} = {float(value):.4g}" for name, value in named)

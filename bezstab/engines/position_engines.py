@@ -13,7 +13,7 @@ from fractions import Fraction
 from typing import Any
 
 from bezstab.engines.conversions import Engine, Point, engine_without_parameters, hard
-from bezstab.engines.sweeping import Move, Pass, Sweeping, SweptStep, VelocityOfMove
+from bezstab.engines.sweeping import ALL_MOTORS, Move, Pass, Sweeping, SweptStep, VelocityOfMove
 from bezstab.errors import InputError
 from bezstab.rationals import ONE, ZERO
 from bezstab.units import feedback_gains, from_feedback_gains
@@ -44,6 +44,7 @@ BOX2D_V2 = engine_without_parameters(
     excludes="joints; contacts take back a fifth; errors within the slop of 5 mm, which end the sweeps; joint springs",
     sweeping=Sweeping(
         lambda iterations, h: SweptStep(1.0, (Pass("velocity", iterations), Move(), Pass("position", 3, 1.0))),
+        motors=("rate", "spring"),  # its weld solves pin and angle together
         iterations=8,
         word="velocityIterations",
         source="Box2D 2.4 source, b2_island.cpp, b2_revolute_joint.cpp; its testbed's 8 velocity and 3 position sweeps",
@@ -83,6 +84,7 @@ JOLT = Engine(
     excludes="constraints with springs, which are jolt-spring; contacts' slop; constraints that share bodies",
     sweeping=Sweeping(
         _jolt_step,
+        motors=ALL_MOTORS,
         iterations=10,
         word="mNumVelocitySteps",
         source="Jolt source, PhysicsSystem.cpp (JobSolveVelocityConstraints), PhysicsSettings.h, AxisConstraintPart.h",
@@ -114,6 +116,7 @@ PBD = Engine(
         lambda iterations, h, share, typed=ONE: SweptStep(
             0.0, (Move(), Pass("position", iterations, 1.0, relaxation=float(share)), VelocityOfMove())
         ),
+        motors=(),
         iterations=1,
         word="iterations",
         source="Mueller et al., Position based dynamics, 2007, Section 3.3 (Gauss-Seidel); derived",

@@ -11,12 +11,14 @@ their rates of change h c' = v, it sweeps towards the impulses p with
 with D the part of A that a constraint, or a joint whose constraints are solved together, has with itself.
 """
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Literal
 
 from bezstab.errors import InputError
+from bezstab.rationals import rational
 
 MOST_SWEEPS = 10_000
 """More than anybody runs, and few enough that their powers stay accurate."""
@@ -54,6 +56,73 @@ class VelocityOfMove:
 Stage = Pass | Move | VelocityOfMove
 
 
+MotorKind = Literal["rate", "angle", "spring"]
+"""What a motor holds: the rate of its angle, at 0; its angle, as hard as the joint; or its angle by a soft constraint.
+"""
+RATE_OR_ANGLE: tuple[MotorKind, ...] = ("rate", "angle")
+ALL_MOTORS: tuple[MotorKind, ...] = (*RATE_OR_ANGLE, "spring")
+
+
+@dataclass(frozen=True)
+class Motors:
+    """Constraints that only velocity passes sweep over: motors that hold a rate, or an angle softly.
+
+    `rows` says of each constraint whether it is one. `share` and `softness` are theirs, as those of a `Pass`; None: as
+    soft as the others.
+    """
+
+    rows: tuple[bool, ...]
+    share: float = 0.0
+    softness: float | None = None
+
+
+@dataclass(frozen=True)
+class Motor:
+    """A motor of a joint; a spring has a frequency (Hz) and a damping ratio on the inertia that the motor feels.
+
+    InputError for a frequency that is not positive, or a negative damping ratio.
+    """
+
+    kind: MotorKind
+    hertz: Fraction = Fraction(1)
+    damping_ratio: Fraction = Fraction(1)
+
+    def __post_init__(self) -> None:
+        if self.hertz <= 0 or self.damping_ratio < 0:
+            typed = f"{float(self.hertz):g},{float(self.damping_ratio):g}"
+            raise InputError(f"{typed}: expected a frequency above 0 and a damping ratio from 0")
+
+    @property
+    def words(self) -> str:
+        """What it does: holds angles; a spring of 5 Hz."""
+        return f"of {float(self.hertz):g} Hz" if self.kind == "spring" else f"that hold {self.kind}s"
+
+    def on(self, rows: tuple[bool, ...], h: Fraction) -> Motors | None:
+        """Return what such motors on these constraints are in a step of h (s); None if constraints as all others.
+
+        Source of the spring: Catto, Soft constraints, GDC 2011.
+        """
+        if self.kind == "angle":
+            return None
+        if self.kind == "rate":
+            return Motors(rows)
+        turn = 2 * math.pi * float(self.hertz * h)
+        damped = 2 * float(self.damping_ratio) + turn
+        return Motors(rows, share=turn / damped, softness=1 / (turn * damped))
+
+
+def motor_named(text: str) -> Motor:
+    """Return a motor as it is typed: rate, angle, or a frequency (Hz) and a damping ratio; InputError for another."""
+    if text == "rate":
+        return Motor("rate")
+    if text == "angle":
+        return Motor("angle")
+    hertz, comma, damping_ratio = text.partition(",")
+    if not comma:
+        raise InputError(f"{text}: expected rate, angle, or a frequency in Hz and a damping ratio, such as 5,1")
+    return Motor("spring", rational(hertz), rational(damping_ratio))
+
+
 @dataclass(frozen=True)
 class SweptStep:
     """One step: the part of the last step's impulses that it starts with, and its stages in order.
@@ -63,6 +132,7 @@ class SweptStep:
 
     kept: float
     stages: tuple[Stage, ...]
+    motors: Motors | None = None
 
 
 @dataclass(frozen=True)
@@ -72,7 +142,7 @@ class Sweeping:
     `step(iterations, h, *values)` is its step with so many sweeps, for its values as `Engine.read` takes them, h in s.
     `iterations` is its own number and `word` its name for that. `source` is where this is from, `excludes` what it
     leaves out. `together` is whether it solves the constraints of one joint, such as the two of a pin, exactly and
-    together, and sweeps over joints; otherwise it sweeps over constraints.
+    together, and sweeps over joints; otherwise it sweeps over constraints. `motors` are those that its joints may have.
     """
 
     step: Callable[..., SweptStep]
@@ -81,6 +151,7 @@ class Sweeping:
     source: str
     excludes: str
     together: bool = False
+    motors: tuple[MotorKind, ...] = RATE_OR_ANGLE
 
 
 def check_iterations(iterations: int) -> int:

@@ -26,7 +26,7 @@ from bezstab.engines.conversions import (
     point_of_gains,
     stiffness_and_damping,
 )
-from bezstab.engines.sweeping import Move, Pass, Sweeping, SweptStep, hard_velocity_step
+from bezstab.engines.sweeping import ALL_MOTORS, Move, Pass, Sweeping, SweptStep, hard_velocity_step
 from bezstab.errors import InputError
 from bezstab.rationals import ONE, ZERO
 
@@ -117,6 +117,7 @@ ODE = Engine(
     excludes=f"CFM = 0 unless given, with the effective mass 1 / (J M^-1 J'); {IMPULSES}",
     sweeping=Sweeping(
         _ode_step,
+        motors=ALL_MOTORS,
         iterations=20,
         word="dWorldSetQuickStepNumIterations",
         source="ODE source, quickstep.cpp (WARM_STARTING not defined), objects.cpp (w = 1.3), include/ode/objects.h",
@@ -205,6 +206,7 @@ BOX2D = Engine(
     excludes="h is the substep's; contacts, joint springs, warm starts and the error of Gauss-Seidel sweeps",
     sweeping=Sweeping(
         _box2d_step,
+        motors=ALL_MOTORS,
         iterations=1,
         word="ITERATIONS",
         source="Box2D v3 source, solver.c (ITERATIONS, RELAX_ITERATIONS), revolute_joint.c, joint.c",
@@ -252,6 +254,7 @@ RAPIER = Engine(
     excludes="h is the substep's, dt / num_solver_iterations; limits' largest corrective speed; warmstart_joints",
     sweeping=Sweeping(
         _rapier_step,
+        motors=ALL_MOTORS,
         iterations=1,
         word="num_internal_pgs_iterations",
         source="Rapier source, staged_island_solver (solve.rs, worker.rs), joint_velocity_constraint.rs, "
@@ -416,6 +419,7 @@ GODOT_2D = _engine_with_erp(
         lambda iterations, h, bias: SweptStep(
             1.0, (Pass("velocity", iterations), Pass("position", iterations, float(bias)), Move())
         ),
+        motors=("rate",),
         iterations=16,
         word="physics/2d/solver/solver_iterations",
         source="Godot source, godot_joints_2d.cpp (pre_solve applies P, solve has its own bias impulse), "
@@ -483,6 +487,7 @@ JOLT_SPRING = _engine_with_springs(
     excludes="its modes by stiffness; the error of iterations; for a hard constraint see jolt",
     sweeping=Sweeping(
         _spring_step,
+        motors=ALL_MOTORS,
         iterations=10,
         word="mNumVelocitySteps",
         source="Jolt source, SpringPart.h, AxisConstraintPart.h, PhysicsSystem.cpp, PhysicsSettings.h",
@@ -504,6 +509,7 @@ BEPU = _engine_with_springs(
     excludes="h is the substep's; servos' largest speed and force; motors; contacts",
     sweeping=Sweeping(
         _spring_step,
+        motors=ALL_MOTORS,
         iterations=1,
         word="VelocityIterationCount",
         source="bepuphysics2 source, SolveDescription.cs (1 unless given), BallSocket.cs (WarmStart, Solve)",

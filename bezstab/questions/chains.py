@@ -8,7 +8,7 @@ from functools import partial
 import numpy as np
 
 from bezstab.engines.conversions import Engine, Point
-from bezstab.engines.sweeping import SweptStep
+from bezstab.engines.sweeping import Motors, SweptStep
 from bezstab.errors import InputError
 from bezstab.mechanism.equations import compiled_mechanism
 from bezstab.mechanism.scenes import Scene
@@ -40,12 +40,13 @@ class Constraints:
     """Constraints in the order in which an engine sweeps over them.
 
     `words` name the mechanism. `inverse_masses` is J M^-1 J', shape (m, m); `joints` the number of each constraint's
-    joint, rising.
+    joint, rising. `motors` are those among them that are not held as the others are.
     """
 
     words: str
     inverse_masses: FloatArray
     joints: tuple[int, ...]
+    motors: Motors | None = None
 
     @property
     def count(self) -> int:
@@ -113,7 +114,7 @@ class SweptConstraints:
     def _step(self, values: Sequence[Fraction], sweeps: int | None = None) -> tuple[SweptStep, tuple[int, ...] | None]:
         sweeping = self.engine.sweeping
         assert sweeping
-        step = sweeping.step(sweeps or self.iterations, self.h, *values)
+        step = replace(sweeping.step(sweeps or self.iterations, self.h, *values), motors=self.constraints.motors)
         return step, self.constraints.joints if sweeping.together else None
 
     def fewest(self, values: Sequence[Fraction]) -> int | None:

@@ -9,6 +9,7 @@ towards B p = b is, with D the diagonal of A and B = A + softness D,
 so that k sweeps are p <- T p + G b with T = S^k and G = P + S P + ... + S^(k-1) P. Every stage of a step is linear in
 (y, u, p), so a step is one matrix. It is exact where J is constant, as for a straight chain along its own line.
 Where the constraints of a joint are solved together, D and what is below it are those of A in blocks, one a joint.
+Motors are constraints with a share and a softness of their own.
 
 Free motions are not in it, because y and u are errors, not coordinates.
 """
@@ -20,7 +21,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from bezstab.engines.sweeping import MOST_SWEEPS, Move, Pass, SweptStep, VelocityOfMove
+from bezstab.engines.sweeping import MOST_SWEEPS, Motors, Move, Pass, SweptStep, VelocityOfMove
 from bezstab.errors import InputError, NumericalError
 from bezstab.rationals import bisected_integers
 from bezstab.stability.arrays import EPS, FloatArray
@@ -74,11 +75,7 @@ def swept_growth(inverse_masses: FloatArray, step: SweptStep, joints: Sequence[i
     their joints, rising: those of one joint are solved together; None: each by itself. InputError where a constraint
     follows from others and impulses are softened. NumericalError where a number leaves float64's range.
     """
-    _, root, take = _scaled_step(inverse_masses, step, joints)
-    matrix = take(np.eye(3 * len(root)), np.zeros((len(root), 1)))
-    if not np.isfinite(matrix).all():
-        raise NumericalError("the matrix of a step with such sweeps leaves the range of float64")
-    return _spectral_radius(matrix)
+    return _spectral_radius(_matrix(_scaled_step(inverse_masses, step, joints)))
 
 
 def slowest_errors(inverse_masses: FloatArray, step: SweptStep, joints: Sequence[int] | None = None) -> FloatArray:
@@ -86,9 +83,10 @@ def slowest_errors(inverse_masses: FloatArray, step: SweptStep, joints: Sequence
 
     Those of the eigenvector of the factor that `swept_growth` has; arguments and errors as there.
     """
-    scale, root, take = _scaled_step(inverse_masses, step, joints)
-    values, vectors = np.linalg.eig(take(np.eye(3 * len(root)), np.zeros((len(root), 1))))
-    sizes = np.abs(root.T @ vectors[: len(root), int(np.argmax(np.abs(values)))] / scale)
+    swept = _scaled_step(inverse_masses, step, joints)
+    values, vectors = np.linalg.eig(_matrix(swept))
+    errors = swept.seen @ vectors[: swept.seen.shape[1], int(np.argmax(np.abs(values)))]
+    sizes = np.abs(swept.root.T @ errors / swept.scale)
     return np.asarray(sizes / (sizes.max() or 1.0))
 
 
@@ -100,34 +98,65 @@ def swept_rest(
     `pull` (m,) is what it adds to their errors' rates in a step, times h: h^2 J a. The others and errors as
     `swept_growth`. Only where errors decay is there such a place.
     """
-    scale, root, take = _scaled_step(inverse_masses, step, joints)
-    size = 3 * len(root)
-    pulled = np.asarray(np.linalg.lstsq(root.T, scale * pull, rcond=None)[0], dtype=np.float64)[:, None]
-    matrix = take(np.eye(size), np.zeros_like(pulled))
-    at_rest = np.linalg.solve(np.eye(size) - matrix, take(np.zeros((size, 1)), pulled))[:, 0]
-    return np.asarray(root.T @ at_rest[: len(root)] / scale)
+    swept = _scaled_step(inverse_masses, step, joints)
+    pulled = np.asarray(np.linalg.lstsq(swept.root.T, swept.scale * pull, rcond=None)[0], dtype=np.float64)[:, None]
+    matrix = _matrix(swept)
+    nothing = np.zeros((3 * len(pulled), 1))
+    at_rest = np.linalg.solve(np.eye(len(matrix)) - matrix, _seen(swept, swept.take(nothing, pulled)))[:, 0]
+    return np.asarray(swept.root.T @ swept.seen @ at_rest[: swept.seen.shape[1]] / swept.scale)
 
 
 Taking = Callable[[FloatArray, FloatArray], FloatArray]
 """What a step makes of states, columns of shape (3 r, k), and of what is added to their rates, (r, k) or (r, 1)."""
 
 
-def _scaled_step(
-    inverse_masses: FloatArray, step: SweptStep, joints: Sequence[int] | None
-) -> tuple[FloatArray, FloatArray, Taking]:
-    """Return the factors by which errors are multiplied first, the root (r, m) of A that is left, and the step.
+@dataclass(frozen=True)
+class _ScaledStep:
+    """A step of constraints whose errors are multiplied by `scale` (m,) first, so that the diagonal of A is one.
 
-    Errors as `swept_growth`.
+    `root` (r, m) is that of this A, root' root = A. `seen` (r, f) spans the errors that some pass takes back, which are
+    the state; those of motors that hold a rate are not. `take` is the step.
     """
+
+    scale: FloatArray
+    root: FloatArray
+    seen: FloatArray
+    take: Taking
+
+
+def _scaled_step(inverse_masses: FloatArray, step: SweptStep, joints: Sequence[int] | None) -> _ScaledStep:
+    """Return the step of constraints with such inverse effective masses; errors as `swept_growth`."""
     scale = 1 / np.sqrt(np.diag(inverse_masses))
     scaled = scale[:, None] * inverse_masses * scale  # sweeps do the same; its diagonal is one
     values, vectors = np.linalg.eigh(scaled)
     made = values > ROUNDINGS * EPS * len(values)  # by motions
-    if not made.all() and any(isinstance(stage, Pass) and stage.softness for stage in step.stages):
+    softened = step.motors and step.motors.softness
+    softened = softened or any(isinstance(stage, Pass) and stage.softness for stage in step.stages)
+    if softened and not made.all():
         raise InputError("constraints that follow from others are not judged where the engine softens impulses")
     root = np.sqrt(values[made])[:, None] * vectors.T[made]  # root' root = A
     number = np.arange(len(scaled)) if joints is None else np.array(joints)
-    return scale, root, partial(_take_step, scaled, root, number, step)
+    seen = np.eye(len(root))
+    if step.motors and not step.motors.share:
+        seen = np.linalg.qr(root[:, ~np.array(step.motors.rows)])[0]
+    return _ScaledStep(scale, root, seen, partial(_take_step, scaled, root, number, step))
+
+
+def _matrix(swept: _ScaledStep) -> FloatArray:
+    """Return the matrix of a step on the errors that are seen, rates and impulses; errors as `swept_growth`."""
+    size, seen = len(swept.root), swept.seen
+    states = np.eye(3 * size)
+    states = np.hstack([states[:, :size] @ seen, states[:, size:]])
+    matrix = _seen(swept, swept.take(states, np.zeros((size, 1))))
+    if not np.isfinite(matrix).all():
+        raise NumericalError("the matrix of a step with such sweeps leaves the range of float64")
+    return matrix
+
+
+def _seen(swept: _ScaledStep, states: FloatArray) -> FloatArray:
+    """Return of states (3 r, k) the errors that are seen, rates and impulses."""
+    size = len(swept.root)
+    return np.vstack([swept.seen.T @ states[:size], states[size:]])
 
 
 def _take_step(
@@ -153,35 +182,43 @@ def _take_step(
             case VelocityOfMove():
                 rates = errors - before
             case Pass("velocity"):
-                of_old, of_wanted = _sweeps(inverse_masses, root, joints, stage)
+                share, of_old, of_wanted = _sweeps(inverse_masses, root, joints, stage, step.motors)
                 taken = stage.damping * rates + (1 - stage.damping) * pulled  # of what forces did, all
-                new = of_old @ impulses + of_wanted @ (impulses - taken - stage.share * errors)
+                wanted = root.T @ (impulses - taken) - share * (root.T @ errors)
+                new = of_old @ impulses + of_wanted @ wanted
                 rates, impulses = rates + new - impulses, new
             case Pass("position"):
-                _, of_wanted = _sweeps(inverse_masses, root, joints, stage)
-                errors = errors - stage.share * of_wanted @ errors
+                share, _, of_wanted = _sweeps(inverse_masses, root, joints, stage, step.motors)
+                errors = errors - of_wanted @ (share * (root.T @ errors))
     return np.vstack([errors, rates, impulses])
 
 
 def _sweeps(
-    inverse_masses: FloatArray, root: FloatArray, joints: NDArray[np.intp], one_pass: Pass
-) -> tuple[FloatArray, FloatArray]:
-    """Return T and G in the coordinates of root: k sweeps make T p + G b of p.
+    inverse_masses: FloatArray, root: FloatArray, joints: NDArray[np.intp], one_pass: Pass, motors: Motors | None
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return the share of each error that is wanted (m, 1), T and G root'^-1: k sweeps make T p + G b of p.
 
-    One sweep takes (p, b) to (S p + P b, b); the matrix of that to the power k has T and G in its upper half.
+    T is in the coordinates of root; b is as it is. One sweep takes (p, b) to (S p + P b, b); the matrix of that to the
+    power k has T and G in its upper half.
     """
-    diagonal = np.where(joints[:, None] == joints, inverse_masses, 0.0)  # D, in blocks
-    below = np.where(joints[:, None] > joints, inverse_masses, 0.0)
-    triangle = diagonal * (1 + one_pass.softness) / one_pass.relaxation + below
-    added = root @ np.linalg.solve(triangle, root.T)  # P
-    identity = np.eye(len(root))
-    softened = identity  # B
-    if one_pass.softness:
-        inverse = np.linalg.inv(root)
-        softened = identity + one_pass.softness * inverse.T @ diagonal @ inverse
-    one_sweep = np.block([[identity - added @ softened, added], [np.zeros_like(identity), identity]])
-    of_old, of_wanted = np.split(np.linalg.matrix_power(one_sweep, one_pass.sweeps)[: len(root)], 2, axis=1)
-    return of_old, of_wanted
+    driven = np.array(motors.rows if motors else [False] * len(inverse_masses))
+    share, softness = np.full(driven.shape, one_pass.share), np.full(driven.shape, one_pass.softness)
+    if motors:
+        share[driven] = motors.share
+        softness[driven] = one_pass.softness if motors.softness is None else motors.softness
+    over = ~driven if one_pass.kind == "position" else np.full(driven.shape, True)
+    apart = np.where(over[:, None] & over, inverse_masses, np.eye(len(over)))  # others stay as they are
+    diagonal = np.where(joints[:, None] == joints, apart, 0.0)  # D, in blocks
+    below = np.where(joints[:, None] > joints, apart, 0.0)
+    triangle = diagonal * (1 + softness[:, None]) / one_pass.relaxation + below
+    added = (root * over) @ np.linalg.inv(triangle)  # P
+    back = root.T.copy()  # B
+    if softness.any():
+        back += softness[:, None] * diagonal @ np.linalg.inv(root)
+    count, others = added.shape
+    one_sweep = np.block([[np.eye(count) - added @ back, added], [np.zeros((others, count)), np.eye(others)]])
+    of_old, of_wanted = np.hsplit(np.linalg.matrix_power(one_sweep, one_pass.sweeps)[:count], [count])
+    return share[:, None], of_old, of_wanted
 
 
 ROUNDINGS = 10

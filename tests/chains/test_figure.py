@@ -1,7 +1,5 @@
 """The figure of chains: its line parts what decays from what grows."""
 
-from fractions import Fraction
-
 import numpy as np
 import pytest
 
@@ -12,7 +10,7 @@ from bezstab.chains.figure import chain_figure
 @pytest.mark.slow
 def test_the_line_of_chains_parts_what_decays_from_what_grows() -> None:
     answer = chain("chipmunk", h="1/60", bodies=7, mass_ratio=10)
-    z_abs = chain_map(answer.engine, answer.values, answer.h, 7, Fraction(10), both_ends=False)
+    z_abs = chain_map(answer.engine, answer.values, answer.h, answer.links)
     axes = chain_figure(answer).axes[0]
     boundary, own = axes.get_lines()
     assert boundary.get_drawstyle() == "steps-pre"

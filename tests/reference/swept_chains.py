@@ -100,3 +100,72 @@ def columns(step: Callable[[State], State], bodies: int, one: Any = 1.0) -> list
     """Return what becomes of each unit vector: the columns of the step's matrix."""
     count = 3 * bodies
     return [step([one if i == j else 0 * one for i in range(count)]) for j in range(count)]
+
+
+def arm_step(
+    masses: Sequence[float],
+    sweeps: int,
+    share: float,
+    motor: tuple[float, float],
+    *,
+    length: float = 2.0,
+    pull: tuple[float, float] = (0.0, 0.0),
+    kept: float = 1.0,
+    relaxation: float = 1.0,
+    positions: int = 0,
+) -> Callable[[State], State]:
+    """Return a step of rods that bend: each is held at its near end by a pin and then by a motor on the angle there.
+
+    A state is the heights of their middles, their angles, both rates and the impulses of pins and of motors. Pins take
+    back a share of their error; with `positions` so many sweeps move them after the step, all the way. A `motor` has a
+    share and a softness, of its own inverse effective mass. `pull`: an acceleration of all rods across their line, and
+    a force on the far end of the last one.
+    """
+    count = len(masses)
+    inertias = [mass * length**2 / 12 for mass in masses]
+
+    def gap(y: State, angle: State, rod: int) -> float:
+        far_end = y[rod - 1] + length / 2 * angle[rod - 1] if rod else 0.0
+        return float(y[rod] - length / 2 * angle[rod] - far_end)
+
+    def bend(angle: State, rod: int) -> float:
+        return float(angle[rod] - (angle[rod - 1] if rod else 0.0))
+
+    def push(y: State, angle: State, rod: int, force: float, torque: float) -> None:
+        y[rod] += force / masses[rod]
+        angle[rod] += (torque - length / 2 * force) / inertias[rod]
+        if rod:
+            y[rod - 1] -= force / masses[rod - 1]
+            angle[rod - 1] -= (torque + length / 2 * force) / inertias[rod - 1]
+
+    def gives(rod: int, force: float, torque: float) -> float:
+        """Return how far a force or a torque of one at a joint opens it."""
+        y, angle = [0.0] * count, [0.0] * count
+        push(y, angle, rod, force, torque)
+        return gap(y, angle, rod) if force else bend(angle, rod)
+
+    def step(state: State) -> State:
+        y, angle, v, turn, forces, torques = (state[i * count : (i + 1) * count] for i in range(6))
+        v = [each + pull[0] for each in v]
+        v[-1] += pull[1] / masses[-1]
+        turn[-1] += pull[1] * length / 2 / inertias[-1]
+        forces, torques = [kept * each for each in forces], [kept * each for each in torques]
+        for rod in range(count):
+            push(v, turn, rod, forces[rod], torques[rod])
+        for _ in range(sweeps):
+            for rod in range(count):
+                force = -relaxation * (gap(v, turn, rod) + share * gap(y, angle, rod)) / gives(rod, 1, 0)
+                push(v, turn, rod, force, 0.0)
+                forces[rod] += force
+                softness = motor[1] * gives(rod, 0, 1)
+                wanted = bend(turn, rod) + motor[0] * bend(angle, rod) + softness * torques[rod]
+                torque = -relaxation * wanted / (gives(rod, 0, 1) + softness)
+                push(v, turn, rod, 0.0, torque)
+                torques[rod] += torque
+        y, angle = moved(y, v), moved(angle, turn)
+        for _ in range(positions):
+            for rod in range(count):
+                push(y, angle, rod, -gap(y, angle, rod) / gives(rod, 1, 0), 0.0)
+        return y + angle + v + turn + forces + torques
+
+    return step

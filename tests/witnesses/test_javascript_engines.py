@@ -158,7 +158,7 @@ def test_hanging_chains_in_spook_engines_sag_as_predicted(
     settings = {"stiffness": stiffness, "relaxation": 4, "timeStep": 1 / 60, "iterations": 10, "gravity": 9.81}
     masses, places = [1] * (bodies - 1) + [ratio], list(range(1, bodies + 1))
     run = links(engine, 1800, h=1 / 60, masses=masses, places=places, velocities=[0] * bodies, **settings)
-    answer = judge(f"{engine}={stiffness},4", h="1/60", bodies=bodies, mass_ratio=ratio, load="9.81")
+    answer = judge(f"{engine}={stiffness},4", h="1/60", bodies=bodies, mass_ratio=ratio, load="gravity")
     assert run[-1].sum() == pytest.approx(answer.sag, rel=0.01)
 
 
@@ -168,5 +168,5 @@ def test_balls_that_stand_on_each_other_sag_as_a_chain_that_hangs(bodies: int, r
     masses = [1] * (bodies - 1) + [ratio]
     settings = {"masses": masses, "velocities": [0] * bodies, "iterations": 10, "gravity": 9.81, "balls": True}
     run = links("cannon-es", 3000, h=1 / 60, **settings)
-    answer = judge("cannon-es=1e7,3", h="1/60", bodies=bodies, mass_ratio=ratio, load="9.81")
+    answer = judge("cannon-es=1e7,3", h="1/60", bodies=bodies, mass_ratio=ratio, load="gravity")
     assert -run[-1].sum() == pytest.approx(answer.sag, rel=0.01)
