@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from bezstab.chains.answer import SPREAD, Links, chain, judge_chain, links
+from bezstab.chains.answer import SPREAD, chain, judge_chain
+from bezstab.chains.links import Links, links
 from bezstab.engines.engine_list import ENGINES, engine_and_values
 from bezstab.errors import InputError
 from bezstab.stability.arrays import FloatArray
