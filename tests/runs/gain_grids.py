@@ -1,6 +1,6 @@
 """What runs cost at gains of all sizes, and at those that a goal chooses: errors of constraints and of the trajectory.
 
-python -m tests.runs.gain_grids [METHOD ...]      the table of bezstab/runs/README.md, in some minutes
+python -m tests.runs.gain_grids [METHOD ...]      prints errors over the least of 27 gains, in some minutes
 """
 
 import sys
