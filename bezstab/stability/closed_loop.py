@@ -8,7 +8,7 @@ the roots of P(z; alpha_hat, beta_hat) itself.
 
 from collections.abc import Callable, Iterator
 from fractions import Fraction
-from functools import cache, lru_cache
+from functools import cache, lru_cache, partial
 from typing import Any
 
 import numpy as np
@@ -22,18 +22,18 @@ from bezstab.methods.schur import Verdict, is_schur, recursion_verdict
 from bezstab.stability.arrays import EPS, BoolArray, ComplexArray, FloatArray, plane_arrays
 from bezstab.stability.root_finding import (
     CHUNK,
+    Number,
+    has_formula,
     horner,
     inside_circle,
     larger_root,
+    largest_root,
     largest_roots,
     roots_of_rows,
 )
 from bezstab.stability.stretches import float_table
 
-BLOCK = 32 * CHUNK  # points whose poles are found in one go: their work arrays stay below 50 MB
-CANCELS = 0.1  # of (alpha_hat/2)^2: where the discriminant is below it, float64 would lose digits of mu
-LEADING = 4 * EPS  # of the sum of its terms' sizes: a leading coefficient below it is rounding of zero
-LARGE = 1e10  # |mu|: of larger ones powers may overflow
+BLOCK = 16 * CHUNK  # points whose poles are found in one go: their work arrays stay below 50 MB
 SPLITTER = 2.0**27 + 1  # multiplying by it parts the 53 bits of a float64 into two halves (Dekker)
 
 Modulus = Callable[[FloatArray, FloatArray], FloatArray]
@@ -102,7 +102,7 @@ def spectral_radius(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike) -
     Infinite where an implicit step has no solution. NumericalError if a finite root of paper Eq. 17 leaves the range
     of float64.
     """
-    return np.abs(largest_pole(method, alpha_hat, beta_hat))
+    return np.abs(_either_conjugate(method, alpha_hat, beta_hat))
 
 
 def pole_map(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray) -> Iterator[ComplexArray]:
@@ -118,13 +118,21 @@ def pole_map(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray) -> Ite
 
 def largest_pole(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> ComplexArray:
     """Return what dominant_pole does; infinite where an implicit step has no solution."""
+    z = _either_conjugate(method, alpha_hat, beta_hat)
+    z.imag = np.abs(z.imag)
+    return _without_rounding(z)
+
+
+def _either_conjugate(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> ComplexArray:
+    """Return the same or its conjugate."""
     alpha_hat, beta_hat = plane_arrays(alpha_hat, beta_hat)
     alphas, betas = alpha_hat.ravel(), beta_hat.ravel()
     z = np.empty(alphas.shape, complex)
-    for start in range(0, z.size, BLOCK):
-        some = slice(start, start + BLOCK)
+    at_once = CHUNK if _has_formula(method) else BLOCK
+    for start in range(0, z.size, at_once):
+        some = slice(start, start + at_once)
         z[some] = _largest_pole(method, alphas[some], betas[some])
-    return _without_rounding(z).reshape(alpha_hat.shape)
+    return z.reshape(alpha_hat.shape)
 
 
 def _without_rounding(z: ComplexArray) -> ComplexArray:
@@ -155,17 +163,11 @@ def feedback_roots(
 
     Of a conjugate pair it is the one with Im mu > 0, of two real ones the larger in modulus.
     """
-    with np.errstate(all="ignore"):
-        half = alpha_hat / 2
-        square = half * half
-        discriminant = square - beta_hat
-        first = larger_root(half, discriminant)
-        close = ~(np.abs(discriminant) > CANCELS * square)
-        if close.any():
-            first[close] = _careful_root(half[close], beta_hat[close])
-        real = np.flatnonzero(first.imag == 0)
-        larger = first.real[real]
-        other = np.divide(beta_hat[real], larger, out=np.zeros(real.size), where=larger != 0)
+    half = alpha_hat / 2
+    first = larger_root(half, _square_less(half, beta_hat))
+    real = np.flatnonzero(first.imag == 0)
+    larger = first.real[real]
+    other = np.divide(beta_hat[real], larger, out=np.zeros(real.size), where=larger != 0)
     multiple = float(method.step_multiple)
     return multiple * first, real, (multiple * other).astype(complex)
 
@@ -180,57 +182,32 @@ def own_feedback_root(method: Method, alpha_hat: FloatArray, beta_hat: FloatArra
     return np.asarray(np.take_along_axis(both, np.argmin(left_over, axis=0)[np.newaxis], axis=0)[0])
 
 
-def _careful_root(half: FloatArray, beta_hat: FloatArray) -> ComplexArray:
-    """Return the same of mu^2 + 2 half mu + beta_hat, from a discriminant that is exact until rounded.
-
-    The square keeps what its rounding takes away (T. J. Dekker, Numer. Math. 18, 1971), in units of a power of two, so
-    that it does not leave the range of float64.
-    """
-    exponent = np.maximum(np.frexp(half)[1], (np.frexp(beta_hat)[1] + 1) // 2)
-    x, y = np.ldexp(half, -exponent), np.ldexp(beta_hat, -2 * exponent)
+def _square_less(x: FloatArray, y: FloatArray) -> FloatArray:
+    """Return x^2 - y, exact until rounded: the square keeps what its rounding takes away (T. J. Dekker, 1971)."""
     shifted = SPLITTER * x
     high = shifted - (shifted - x)
     low = x - high
     square = x * x
-    lost = low * low - ((square - high * high) - 2 * high * low)
-    return np.asarray(larger_root(x, (square - y) + lost) * np.ldexp(1.0, exponent))
+    return (square - y) + (low * low - ((square - high * high) - 2 * high * low))
 
 
-def _in_mu(table: FloatArray, mu: ComplexArray) -> ComplexArray:
-    """Return pi's coefficients in z, ascending; where mu is LARGE times mu^-d: a common factor moves no root.
-
-    A leading one is zero where it is but rounding: there an implicit step has no solution.
-    """
-    large = np.abs(mu) > LARGE
-    small = np.where(large, 0, mu)
-    rows = np.empty((len(table), mu.size), complex)
-    for k, row in enumerate(table.tolist()):
-        rows[k] = horner(row, small)
-    rows[-1] = _certain(rows[-1], horner(np.abs(table[-1]).tolist(), np.abs(small)))
-    if large.any():
-        inverse = 1 / mu[large]
-        rows[:, large] = [np.broadcast_to(horner(row[::-1], inverse), inverse.shape) for row in table.tolist()]
-    return rows
+def _in_mu(method: Method, mu: ComplexArray) -> ComplexArray:
+    """Return pi's coefficients in z at each mu, ascending."""
+    return _stacked([horner(row, mu) for row in mu_table(method).tolist()], mu)
 
 
 def _in_plane(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray) -> FloatArray:
-    """Return P's coefficients in z, ascending, a leading one that is but rounding zero."""
-    table = float_table(method)
-    rows = np.empty((len(table), alpha_hat.size))
-    for k, in_plane in enumerate(table.tolist()):
-        rows[k] = _at(in_plane, alpha_hat, beta_hat)
-    rows[-1] = _certain(rows[-1], _at(np.abs(table[-1]).tolist(), np.abs(alpha_hat), np.abs(beta_hat)))
+    """Return P's coefficients in z, ascending."""
+    in_plane = [horner([horner(row, beta_hat) for row in rows], alpha_hat) for rows in float_table(method).tolist()]
+    return _stacked(in_plane, alpha_hat)
+
+
+def _stacked(coefficients: list[Any], like: Number) -> Number:
+    """Return coefficients, of which some may be constant, as rows."""
+    rows = np.empty((len(coefficients), like.size), like.dtype)
+    for row, coefficient in zip(rows, coefficients, strict=True):
+        row[:] = coefficient
     return rows
-
-
-def _at(in_plane: list[list[float]], alpha_hat: FloatArray, beta_hat: FloatArray) -> Any:
-    """Return a polynomial in the plane, from its rows by powers of alpha_hat; a number where it is constant."""
-    return horner([horner(row, beta_hat) for row in in_plane], alpha_hat)
-
-
-def _certain(leading: NDArray[np.inexact], size: FloatArray | float) -> NDArray[np.inexact]:
-    """Return leading coefficients, zero where they are small against the sizes of their terms."""
-    return np.where(np.abs(leading) <= LEADING * np.asarray(size), 0, leading)
 
 
 def _all_poles(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray) -> ComplexArray:
@@ -241,7 +218,7 @@ def _all_poles(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray) -> C
             z = roots_of_rows(_in_plane(method, alpha_hat, beta_hat))
         else:
             first, real, other = feedback_roots(method, alpha_hat, beta_hat)
-            z = roots_of_rows(_in_mu(in_mu, np.concatenate([first, other])))
+            z = roots_of_rows(_in_mu(method, np.concatenate([first, other])))
             z, of_other = z[:, : first.size], z[:, first.size :]
             z = np.concatenate([z, z.conj()])
             z[len(in_mu) - 1 :, real] = of_other
@@ -249,24 +226,32 @@ def _all_poles(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray) -> C
 
 
 def _largest_pole(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray) -> ComplexArray:
-    """Return the largest pole, Im >= 0, and errors, as `_with_infinite`."""
-    in_mu = mu_table(method)
+    """Return the largest pole, or its conjugate, and errors, as `_with_infinite`."""
     with np.errstate(all="ignore"):
-        if not in_mu.size:
-            z = largest_roots(lambda place: _in_plane(method, place.real, place.imag), alpha_hat + 1j * beta_hat)
-        else:
+        if mu_table(method).size:
             first, real, other = feedback_roots(method, alpha_hat, beta_hat)
             z = largest_at_mu(method, np.concatenate([first, other]))
             z, of_other = z[: first.size], z[first.size :]
             z[real] = np.where(np.abs(of_other) > np.abs(z[real]), of_other, z[real])
-    z.imag = np.abs(z.imag)
+        elif _has_formula(method):
+            z = largest_root(_in_plane(method, alpha_hat, beta_hat))
+        else:
+            z = largest_roots(lambda place: _in_plane(method, place.real, place.imag), alpha_hat + 1j * beta_hat)
     return np.asarray(_with_infinite(method, alpha_hat, beta_hat, z[np.newaxis])[0])
 
 
 def largest_at_mu(method: Method, mu: ComplexArray) -> ComplexArray:
     """Return the root z of pi(., mu) of largest modulus at each of a row of mu of the method's own step."""
     with np.errstate(all="ignore"):
-        return largest_roots(lambda some: _in_mu(mu_table(method), some), mu)
+        if _has_formula(method):
+            return largest_root(_in_mu(method, mu))
+        return largest_roots(partial(_in_mu, method), mu)
+
+
+def _has_formula(method: Method) -> bool:
+    """Return whether its largest pole is found by a formula: nothing is gained by its neighbours' poles."""
+    in_mu = mu_table(method)
+    return has_formula(len(in_mu), real=False) if in_mu.size else has_formula(len(float_table(method)), real=True)
 
 
 def _with_infinite(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray, z: ComplexArray) -> ComplexArray:
@@ -274,23 +259,14 @@ def _with_infinite(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray, 
 
     NumericalError where a pole is beyond float64 elsewhere.
     """
-    lost = np.flatnonzero(~np.isfinite(z).all(axis=0))
-    if not lost.size:
-        return z
-    alpha_hat, beta_hat = alpha_hat[lost], beta_hat[lost]
-    with np.errstate(all="ignore"):
-        if not (in_mu := mu_table(method)).size:
-            infinite = _in_plane(method, alpha_hat, beta_hat)[-1] == 0
-        elif not in_mu[-1, 1:].any():  # an explicit step has a solution, though its coefficient, scaled, underflows
-            infinite = np.zeros(lost.size, bool)
-        else:
-            first, real, other = feedback_roots(method, alpha_hat, beta_hat)
-            infinite = _in_mu(in_mu, first)[-1] == 0
-            infinite[real] |= _in_mu(in_mu, other)[-1] == 0
-    z[:, lost[infinite]] = np.inf
-    if not infinite.all():
-        place = f"alpha_hat = {alpha_hat[~infinite][0]:.6g}, beta_hat = {beta_hat[~infinite][0]:.6g}"
-        raise NumericalError(f"{method.name}: at {place} a pole leaves the range of float64")
+    lost = ~np.isfinite(z).all(axis=0)
+    if lost.any():
+        with np.errstate(all="ignore"):
+            solved = _in_plane(method, alpha_hat[lost], beta_hat[lost])[-1] != 0
+        if solved.any():
+            place = f"alpha_hat = {alpha_hat[lost][solved][0]:.6g}, beta_hat = {beta_hat[lost][solved][0]:.6g}"
+            raise NumericalError(f"{method.name}: at {place} a pole leaves the range of float64")
+        z[:, lost] = np.inf
     return z
 
 
@@ -306,6 +282,6 @@ def all_within(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray, leve
             within = inside_circle(_in_plane(method, alphas, betas), levels)
         else:
             first, real, other = feedback_roots(method, alphas, betas)
-            within = inside_circle(_in_mu(in_mu, first), levels)  # of a conjugate pair both have the same moduli
-            within[real] &= inside_circle(_in_mu(in_mu, other), levels[real])
+            within = inside_circle(_in_mu(method, first), levels)  # of a conjugate pair both have the same moduli
+            within[real] &= inside_circle(_in_mu(method, other), levels[real])
     return within.reshape(np.broadcast_shapes(np.shape(alpha_hat), np.shape(beta_hat), np.shape(level)))

@@ -16,15 +16,14 @@ Coefficients = Sequence[Any] | NDArray[np.inexact]
 Rows = Callable[[ComplexArray], NDArray[np.inexact]]
 """Coefficients of polynomials at places of a plane, of shape (points,)."""
 
-CHUNK = 4096  # points at a time: the work arrays of one chunk stay in a core's cache
+CHUNK = 8192  # points at a time: the work arrays of one chunk stay in a core's cache
 ITERATIONS = 200  # Aberth's iteration needs about ten; a multiple root, where it is linear, about sixty
 LOG_OF_ZERO = -1e15  # finite, but below every logarithm of a float64
 TOLD = 1e-10  # relative: Schur's recursion tells apart what differs by more
 FEWEST = 256  # points: of fewer all roots are solved for
 SPACING = 4  # points along an axis to one node of the table from which their largest roots are followed
-STEPS = 4  # of Newton's method from there: the last one leaves but rounding, and its size says so
+STEPS = 5  # of Newton's method from there: the last one leaves but rounding, and its size says so
 CUBIC_STEPS = 6  # of Newton's method, from at most three times the root's distance from the inflection
-AROUND = ((0, 0), (0, 1), (0, -1), (1, 0), (-1, 0))  # the nearest node, and its neighbours across a kink
 
 
 def roots_of_rows(coefficients: NDArray[np.inexact]) -> ComplexArray:
@@ -36,8 +35,8 @@ def roots_of_rows(coefficients: NDArray[np.inexact]) -> ComplexArray:
         if len(coefficients) == 2:
             return np.asarray(-coefficients[:1] / coefficients[1], complex)
         if len(coefficients) == 3 and not np.iscomplexobj(coefficients):
-            larger, last = _larger_root(coefficients), coefficients[0] / coefficients[2]
-            other = np.divide(last, larger, out=np.zeros_like(larger), where=larger != 0)
+            larger, product = largest_root(coefficients), coefficients[0] / coefficients[2]
+            other = np.divide(product, larger, out=np.zeros_like(larger), where=larger != 0)
             return np.stack([larger, np.where(larger.imag == 0, other, larger.conj())])
         at_once = 4 * CHUNK // len(coefficients)
         chunks = [
@@ -47,60 +46,54 @@ def roots_of_rows(coefficients: NDArray[np.inexact]) -> ComplexArray:
     return np.concatenate(chunks, axis=1)
 
 
+def has_formula(coefficients: int, real: bool) -> bool:
+    """Return whether the largest root of polynomials with so many coefficients is found by a formula."""
+    return coefficients <= (4 if real else 2)
+
+
+def largest_root(rows: NDArray[np.inexact]) -> ComplexArray:
+    """Return the root of largest modulus, or one of several; shape (points,). Not finite as `roots_of_rows`."""
+    real = not np.iscomplexobj(rows)
+    with np.errstate(all="ignore"):
+        if real and len(rows) == 3:
+            half = 0.5 * rows[1] / rows[2]
+            return larger_root(half, half * half - rows[0] / rows[2])
+        if real and len(rows) == 4:
+            return largest_cubic_root(*(rows[2::-1] / rows[3]))
+    z = roots_of_rows(rows)
+    return z[0] if len(z) == 1 else z[np.argmax(np.abs(z), axis=0), range(z.shape[1])]
+
+
 def largest_roots(rows_at: Rows, places: ComplexArray) -> ComplexArray:
     r"""Return the root of largest modulus of the polynomial at each of a cloud of places; both of shape (points,).
 
         o-----o-----o     o: a node of a table over all of the cloud, whose largest root is known by the same means
         |  .  | . . |     .: a place. Newton's method leads from the root of its nearest node to a root of its own.
-        o-----o--\--o        That no other root is larger, Schur's recursion tells of what is left, divided by it.
-        | .   |  .\ |     \: a kink, where another root becomes the largest: there a node on the other side leads to it.
-        o-----o----\o
+        o-----o-----o        That no other root is larger, Schur's recursion tells of what is left, divided by it.
 
-    Where neither does, as where roots meet, all are solved for. Not finite as `roots_of_rows`.
+    Where neither does, as where another root becomes the largest, or roots meet, all are solved for.
     """
-    if places.size < FEWEST or _by_formula(rows_at(places[:1])):
-        starts = range(0, max(1, places.size), CHUNK)
-        return np.concatenate([_largest_root(rows_at(places[start : start + CHUNK])) for start in starts])
+    if places.size < FEWEST:
+        return largest_root(rows_at(places))
     count = int(np.sqrt(places.size)) // SPACING + 2
     x, y = (np.linspace(each.min(), each.max(), count) for each in (places.real, places.imag))
     table = largest_roots(rows_at, np.add.outer(1j * y, x).ravel()).reshape(count, count)
-    with np.errstate(all="ignore"):
-        i, j = (
-            np.nan_to_num((each - axis[0]) / (axis[1] - axis[0]) + 0.5).astype(np.intp).clip(0, count - 1)
-            for each, axis in ((places.real, x), (places.imag, y))
-        )
     z = np.empty(places.shape, complex)
-    left = np.arange(places.size)
-    for across, along in AROUND:
-        lost = np.empty(left.shape, bool)
-        for start in range(0, left.size, CHUNK):
-            some = left[start : start + CHUNK]
-            near = table[(j[some] + across) % count, (i[some] + along) % count]
-            z[some], lost[start : start + CHUNK] = _followed(rows_at(places[some]), near)
-        left = left[lost]
-    if left.size:
-        z[left] = _largest_root(rows_at(places[left]))
+    lost = np.empty(places.shape, bool)
+    for start in range(0, places.size, CHUNK):
+        some = slice(start, start + CHUNK)
+        i, j = (_nearest(axis, each) for axis, each in ((x, places[some].real), (y, places[some].imag)))
+        z[some], lost[some] = _followed(rows_at(places[some]), table[j, i])
+    if lost.any():
+        z[lost] = largest_root(rows_at(places[lost]))
     return z
 
 
-def _by_formula(rows: NDArray[np.inexact]) -> bool:
-    return len(rows) == 2 or (len(rows) in (3, 4) and not np.iscomplexobj(rows))
-
-
-def _largest_root(rows: NDArray[np.inexact]) -> ComplexArray:
-    if _by_formula(rows) and len(rows) == 3:
-        return _larger_root(rows)
-    if _by_formula(rows) and len(rows) == 4:
-        with np.errstate(all="ignore"):
-            return largest_cubic_root(*(rows[2::-1] / rows[3]))
-    z = roots_of_rows(rows)
-    return np.asarray(z[np.argmax(np.abs(z), axis=0), range(z.shape[1])])
-
-
-def _larger_root(rows: NDArray[np.inexact]) -> ComplexArray:
-    """Return the larger root of real quadratics."""
-    half = 0.5 * rows[1] / rows[2]
-    return larger_root(half, half * half - rows[0] / rows[2])
+def _nearest(axis: FloatArray, places: FloatArray) -> NDArray[np.intp]:
+    """Return the number of the point of an even axis that is nearest to each place."""
+    with np.errstate(all="ignore"):  # of an axis without length
+        steps = np.nan_to_num((places - axis[0]) / (axis[1] - axis[0]))
+    return np.asarray(np.rint(steps).clip(0, len(axis) - 1), np.intp)
 
 
 def _followed(rows: NDArray[np.inexact], near: ComplexArray) -> tuple[ComplexArray, BoolArray]:
@@ -109,7 +102,7 @@ def _followed(rows: NDArray[np.inexact], near: ComplexArray) -> tuple[ComplexArr
     with np.errstate(all="ignore"):
         for _ in range(STEPS):
             value, slope = horner_with_slope(rows, z)
-            step = value * slope.conj() / (slope.real**2 + slope.imag**2)  # a complex division takes ten times as long
+            step = value / slope
             z = z - step
         rest = [rows[-1]]
         for coefficient in rows[-2:0:-1]:
@@ -177,7 +170,8 @@ def largest_cubic_root(b: FloatArray, c: FloatArray, d: FloatArray) -> ComplexAr
     size = np.abs(r)
     t = np.sqrt(3 * np.maximum(q, 0)) + np.cbrt(2 * size)
     for _ in range(CUBIC_STEPS):
-        t = np.fmax((t * t * t + size) / (1.5 * (t * t - q)), 0)  # 0 / 0 where all three roots meet
+        t = (t * t * t + size) / (1.5 * (t * t - q))
+    t = np.fmax(t, 0)  # 0 / 0 where all three roots meet
     alone = -np.copysign(t, r) - shift
     half = 0.5 * (b + alone)
     z = larger_root(half, half * half - (c + alone * (b + alone)))
