@@ -352,22 +352,25 @@ def judged_by(pool: ProcessPoolExecutor, chunks: list[MapRows]) -> list[Mapping[
 
 
 def report(lines: Sequence[Line]) -> str:
-    """Return the Markdown report: a row for all that is compared with the same and has the same promise."""
-    rows = [
+    """Return the Markdown report: an item for all that is compared with the same and has the same promise.
+
+    Of more than four it names the least; bench.json has them all.
+    """
+    items = [
         "# Speed",
         "",
-        "Written by `make bench`, from one run: how many times as fast as something else bezstab is.",
+        "Written by `make bench`, from one run: how many times as fast as something else bezstab is, and at least shall be.",
         "",
-        "| | beside | ratio | promised |",
-        "| - | - | - | - |",
     ]
-    beside: dict[tuple[str, str, float], list[str]] = {}
+    beside: dict[tuple[str, str, float], list[Line]] = {}
     for line in lines:
-        subject, _, other = line.what.partition(": ")
-        beside.setdefault((line.section, other, line.promise), []).append(f"{subject} {line.ratio:.3g}")
-    for (section, other, promise), ratios in beside.items():
-        rows.append(f"| {section} | {other} | {', '.join(ratios)} | {promise:.3g} |")
-    return "\n".join([*rows, ""])
+        beside.setdefault((line.section, line.what.partition(": ")[2], line.promise), []).append(line)
+    for (section, other, promise), found in beside.items():
+        least = min(found, key=lambda line: line.ratio)
+        shown, remark = (found, "") if len(found) <= 4 else ([least], f", the least of {len(found)}")
+        ratios = ", ".join(f"{line.what.partition(': ')[0]} {line.ratio:.3g}" for line in shown)
+        items.append(f"- **{section}**, beside {other}: {ratios}{remark} (promised: {promise:.3g})")
+    return "\n".join([*items, ""])
 
 
 def main() -> int:
