@@ -359,7 +359,7 @@ def report(lines: Sequence[Line]) -> str:
     items = [
         "# Speed",
         "",
-        "Written by `make bench`, from one run: how many times as fast as something else bezstab is, and at least shall be.",
+        "Written by `make bench`, from one run: how many times as fast as something else bezstab is, and must be.",
         "",
     ]
     beside: dict[tuple[str, str, float], list[Line]] = {}
