@@ -60,7 +60,7 @@ SUBJECTS = {"catalogue", "chains", "drives", "mujoco", "probes", "step_sequences
 
 APPOINTED = {
     "sympy": {
-        *("methods/determinants.py", "methods/derivation.py", "methods/formulas.py"),
+        *("methods/added_damping.py", "methods/determinants.py", "methods/derivation.py", "methods/formulas.py"),
         "methods/step_matrices.py",
         *("methods/recipes.py", "methods/steady_errors.py", "methods/rotation_torque.py"),
         "stability/quadrant_proofs.py",

@@ -5,18 +5,23 @@ or drive it. The damping ratio is -Re L / |L|.
 """
 
 from fractions import Fraction
+from functools import reduce
 from typing import NamedTuple
 
+import sympy as sp
+from sympy.polys.ring_series import rs_exp, rs_mul
+from sympy.polys.rings import ring
+
 from bezstab.methods.derivation import closed_loop_table
+from bezstab.methods.determinants import as_fraction
 from bezstab.methods.orders import accuracy_by_force
 from bezstab.methods.schemes import Method
-from bezstab.rationals import ONE, ZERO
+from bezstab.rationals import ZERO
+
+SERIES, MU = ring("mu", sp.QQ)
 
 BEYOND_ORDER = 4
 """Powers of theta above the order of accuracy that are looked at: a damping of the truncation stands among them."""
-
-Series = list[Fraction]
-"""Coefficients of powers of mu, ascending, all of one length."""
 
 
 class AddedDamping(NamedTuple):
@@ -37,40 +42,19 @@ def added_damping(method: Method) -> AddedDamping:
     their digits is zero.
     """
     highest = accuracy_by_force(method).position[0] + BEYOND_ORDER
-    rows = [row[0] for row in closed_loop_table(method)]  # of alpha_hat = 0: powers of beta_hat = -mu^2
-    length = highest + 3
-    multiple = method.step_multiple
-    exponent: Series = [ZERO, multiple, *[ZERO] * (length - 2)]
-    curvature = sum(
-        (k**2 * row[0] for k, row in enumerate(rows)), ZERO
-    )  # P(e^L) = curvature / 2 (L^2 - (m mu)^2) + ...
+    in_z = [
+        SERIES.from_dict({(2 * j,): (-1) ** j * c for j, c in enumerate(in_plane[0]) if c})  # beta_hat = -mu^2
+        for in_plane in closed_loop_table(method)
+    ]
+    multiple = sp.QQ.convert(method.step_multiple)
+    curvature = sum(k**2 * c.coeff(1) for k, c in enumerate(in_z))  # P(e^L) = curvature / 2 (L^2 - (m mu)^2) + ...
+    exponent = multiple * MU
     for power in range(2, highest + 2):
-        left_over = _value(rows, exponent)[power + 1]
-        exponent[power] = -left_over / (curvature * multiple)
-        if power % 2 == 0 and abs(exponent[power]) > method.rounding:
-            return AddedDamping(power - 1, -exponent[power] * (-1) ** (power // 2) / multiple, highest)
+        terms = power + 2
+        growth = rs_exp(exponent, MU, terms)
+        left_over = reduce(lambda value, c: rs_mul(value, growth, MU, terms) + c, reversed(in_z))
+        change = left_over.coeff(MU ** (power + 1)) / (curvature * multiple)
+        exponent -= change * MU**power
+        if power % 2 == 0 and abs(change) > method.rounding:
+            return AddedDamping(power - 1, as_fraction(change * (-1) ** (power // 2) / multiple), highest)
     return AddedDamping(None, ZERO, highest)
-
-
-def _value(rows: list[tuple[Fraction, ...]], exponent: Series) -> Series:
-    """Return P(e^L; 0, -mu^2) as a series."""
-    growth, power = _exponential(exponent), [ONE, *[ZERO] * (len(exponent) - 1)]
-    total = [ZERO] * len(exponent)
-    for row in rows:
-        for j, coefficient in enumerate(row[: (len(exponent) + 1) // 2]):
-            for place in range(len(exponent) - 2 * j):
-                total[place + 2 * j] += (-1) ** j * coefficient * power[place]
-        power = _product(power, growth)
-    return total
-
-
-def _exponential(exponent: Series) -> Series:
-    """Return e^L for a series without a constant: n g_n = sum_k k L_k g_(n-k)."""
-    growth = [ONE, *[ZERO] * (len(exponent) - 1)]
-    for n in range(1, len(exponent)):
-        growth[n] = sum((k * exponent[k] * growth[n - k] for k in range(1, n + 1)), ZERO) / n
-    return growth
-
-
-def _product(first: Series, second: Series) -> Series:
-    return [sum((first[k] * second[n - k] for k in range(n + 1)), ZERO) for n in range(len(first))]

@@ -6,10 +6,12 @@ Each kind of scheme gives both (schemes.py); here they are taken to the user's h
 from fractions import Fraction
 from functools import cache
 
+import numpy as np
 import sympy as sp
+from numpy.polynomial.polynomial import polyval2d
 from sympy.polys.rings import PolyElement
 
-from bezstab.methods.polynomials import PlaneTable, horner
+from bezstab.methods.determinants import ExactArray
 from bezstab.methods.schemes import Method, RungeKutta
 
 Z, MU, ALPHA_HAT, BETA_HAT, S, H = sp.symbols("z mu alpha_hat beta_hat s h")
@@ -33,25 +35,22 @@ def closed_loop_polynomial(method: Method) -> sp.Poly:
     return sp.Poly(plane_elements(closed_loop_table(method))[::-1], Z, domain=PLANE)
 
 
-def plane_elements(table: PlaneTable) -> list[PolyElement]:
+def plane_elements(table: ExactArray) -> list[PolyElement]:
     """Return the coefficients of P in z, ascending, as sympy's polynomials in alpha_hat and beta_hat."""
-    return [
-        PLANE.ring.from_dict({(i, j): c for i, row in enumerate(in_plane) for j, c in enumerate(row) if c})
-        for in_plane in table
-    ]
+    return [PLANE.ring.from_dict({powers: c for powers, c in np.ndenumerate(each) if c}) for each in table]
 
 
 @cache
-def closed_loop_table(method: Method) -> PlaneTable:
-    """Return C with P = sum_kij C[k][i][j] z^k alpha_hat^i beta_hat^j (paper Eq. 17), exact, in the user's parameters.
+def closed_loop_table(method: Method) -> ExactArray:
+    """Return C with P = sum_kij C[k, i, j] z^k alpha_hat^i beta_hat^j (paper Eq. 17), exact, in the user's parameters.
 
-    Dimensionless; one plane for each power of z, ascending, all of one shape.
+    Dimensionless, C[k, i, j].
     """
+    table = method.scheme.second_order.table
+    _, most_alpha, most_beta = table.shape
     m = method.step_multiple
-    return tuple(
-        tuple(tuple(c * m ** (i + 2 * j) for j, c in enumerate(row)) for i, row in enumerate(in_plane))
-        for in_plane in method.scheme.second_order.table
-    )
+    scaled: ExactArray = table * np.array([[m ** (i + 2 * j) for j in range(most_beta)] for i in range(most_alpha)])
+    return scaled
 
 
 def closed_loop_at(method: Method, alpha_hat: Fraction, beta_hat: Fraction) -> list[Fraction]:
@@ -59,8 +58,8 @@ def closed_loop_at(method: Method, alpha_hat: Fraction, beta_hat: Fraction) -> l
 
     The last is zero where a root is infinite: there an implicit step has no solution.
     """
-    table = closed_loop_table(method)
-    return [horner([horner(row, beta_hat) for row in in_plane], alpha_hat) for in_plane in table]
+    found: list[Fraction] = polyval2d(alpha_hat, beta_hat, np.moveaxis(closed_loop_table(method), 0, -1)).tolist()
+    return found
 
 
 def rational_feedback_roots(method: Method, z: int) -> list[Fraction]:

@@ -1,22 +1,19 @@
 """The equations of a step as a matrix of polynomials in w = 1/z, alpha_hat, beta_hat, and its determinants, by sympy.
 
-A shift back by one step is a factor w. Most rows have a number on the diagonal: they are eliminated exactly; sympy
-expands the little that remains.
-
-    | c   r |
-    |       |   det = c det(S - s r / c)
-    | s   S |
+A shift back by one step is a factor w.
 """
 
 from collections.abc import Sequence
 from fractions import Fraction
+from functools import cache
 
+import numpy as np
 import sympy as sp
+from numpy.typing import NDArray
 from sympy.polys.matrices import DomainMatrix
 from sympy.polys.rings import PolyElement, ring
 
 from bezstab.errors import InputError
-from bezstab.methods.polynomials import PlaneTable
 from bezstab.methods.step_equations import POSITION, VELOCITY, Equation, Evaluation
 from bezstab.rationals import ZERO
 
@@ -24,7 +21,11 @@ RING, RING_W, RING_ALPHA, RING_BETA = ring("w, alpha_hat, beta_hat", sp.QQ)
 
 Matrix = list[list[PolyElement]]
 
-MOST_TOGETHER = 12  # rows whose determinant is expanded: in some seconds
+ExactArray = NDArray[np.object_]
+"""An array of whole numbers of any size, or of fractions.
+
+As a polynomial in z, alpha_hat and beta_hat the entry [k, i, j] belongs to z^k alpha_hat^i beta_hat^j.
+"""
 
 
 def coefficient_rows(equations: Sequence[Equation], parts: int = 1) -> Matrix:
@@ -52,73 +53,61 @@ def as_fraction(number: sp.Rational) -> Fraction:
 
 
 def determinant(rows: Matrix) -> PolyElement:
-    """Return the determinant; InputError for more than 12 rows that cannot be eliminated: it would take too long."""
-    factor = RING.one
-    while (number := _simple_row(rows)) is not None:
-        pivot, others = rows[number][number], [k for k in range(len(rows)) if k != number]
-        eliminated = [entry.quo_ground(pivot.LC) for entry in rows[number]]
-        rows = [[rows[i][j] - rows[i][number] * eliminated[j] for j in others] for i in others]
-        factor *= pivot
-    n = len(rows)
-    if n > MOST_TOGETHER:
-        raise InputError(f"{n} equations wait for each other: expected at most {MOST_TOGETHER}")
-    return RING(DomainMatrix(rows, (n, n), RING.to_domain()).det()) * factor
+    """Return the determinant."""
+    return RING(DomainMatrix(rows, (len(rows), len(rows)), RING.to_domain()).det())
 
 
-def _simple_row(rows: Matrix) -> int | None:
-    """Return the first row with a number other than 0 on the diagonal; None if none has."""
-    return next((k for k, row in enumerate(rows) if row[k] and row[k].is_ground), None)
+def cramer(rows: Matrix, unknown: int, right_side: Sequence[PolyElement]) -> PolyElement:
+    """Return the determinant with the right side in place of an unknown's column: that unknown is the quotient."""
+    return determinant([
+        [*row[:unknown], side, *row[unknown + 1 :]] for row, side in zip(rows, right_side, strict=True)
+    ])  # fmt: skip
 
 
-def determinant_table(equations: Sequence[Equation]) -> PlaneTable:
-    """Return the determinant of the equations without roots z = 0 that no parameters move; () for zero.
+def determinant_table(equations: Sequence[Equation]) -> ExactArray:
+    """Return the determinant of the equations without roots z = 0 that no parameters move; empty for zero.
 
     Leading coefficient one at alpha_hat = beta_hat = 0, if there is one.
     """
     found = determinant(coefficient_rows(equations))
     if not found:
-        return ()
+        return np.empty((0, 0, 0), object)
     at_origin = {k: c for (k, i, j), c in found.terms() if i == j == 0}
     leading = at_origin[min(at_origin)] if at_origin else sp.QQ(1)
-    return tables_of(found.quo_ground(leading))[0]
+    return plane_tables(found.quo_ground(leading))[0]
 
 
-def responses(equations: Sequence[Equation]) -> tuple[PlaneTable, PlaneTable]:
+@cache
+def responses(equations: tuple[Equation, ...]) -> list[ExactArray]:
     """Return x and v where the acceleration of one evaluation is free, up to one factor, as polynomials.
 
-    They are the minors of the coefficients without the row of that evaluation, the first that acts on x at all: on a
-    motion z^k that satisfies all equations x and v are in their ratio (Cramer's rule). InputError if none acts on x.
+    Of the first evaluation that acts on x at all: on a motion z^k that satisfies all equations x and v are in the ratio
+    of what they answer to that acceleration. InputError if none acts on x.
     """
     rows = coefficient_rows(equations)
-    results = [equation.result for equation in equations]
+    place = {equation.result.name: number for number, equation in enumerate(equations)}
     for number, equation in enumerate(equations):
         if isinstance(equation, Evaluation):
-            minors = []
-            for name in (POSITION, VELOCITY):
-                unit = [RING_W**result.step if result.name == name else RING.zero for result in results]
-                minors.append(determinant([unit if place == number else row for place, row in enumerate(rows)]))
-            position, velocity = minors
+            free = [RING.one if other == number else RING.zero for other in range(len(rows))]
+            position, velocity = (
+                cramer(rows, place[name], free) * RING_W ** equations[place[name]].result.step
+                for name in (POSITION, VELOCITY)
+            )
             if sum(c for (_, i, j), c in position.terms() if i == j == 0):
-                position, velocity = tables_of(position, velocity)
-                return position, velocity
+                return plane_tables(position, velocity)
     raise InputError("inconsistent: no acceleration acts on x1")
 
 
-def tables_of(*polynomials: PolyElement) -> list[PlaneTable]:
+def plane_tables(*polynomials: PolyElement) -> list[ExactArray]:
     """Return the tables of polynomials other than zero, all multiplied by the power of z that makes them such in z."""
     degree = max(k for polynomial in polynomials for k, _, _ in polynomial)
     tables = []
     for polynomial in polynomials:
         lowest, (_, most_alpha, most_beta) = min(k for k, _, _ in polynomial), polynomial.degrees()
-        tables.append(
-            tuple(
-                tuple(
-                    tuple(as_fraction(polynomial.get((k, i, j), ZERO)) for j in range(most_beta + 1))
-                    for i in range(most_alpha + 1)
-                )
-                for k in range(degree, lowest - 1, -1)
-            )
-        )
+        table = np.full((degree - lowest + 1, most_alpha + 1, most_beta + 1), ZERO)
+        for (k, i, j), c in polynomial.terms():
+            table[degree - k, i, j] = as_fraction(c)
+        tables.append(table)
     return tables
 
 

@@ -15,7 +15,8 @@ EXAMPLE = "x0 + v0 + 1/2 a0"
 EQUATIONS = f"a table of equations like x1 = {EXAMPLE!r}"
 RATIONAL_STRINGS = 'a list of whole numbers and rational strings like "175/108"'
 
-MOST_STAGES = 40  # of a tableau: its exact P takes 3 s
+LARGEST = Fraction(10**50)  # of a coefficient: float64 holds the squares of quotients
+MOST_STAGES = 20  # of a tableau: its exact P takes seconds
 MOST_STEPS = 100  # of a multistep method: its region takes 20 s
 
 
@@ -42,7 +43,10 @@ def _parse_scheme(table: TomlTable, keys: list[str]) -> Scheme:
     from bezstab.methods.recipes import exact_number, recipe  # loads sympy
 
     def coefficient(value: object) -> Fraction:
-        return exact_number(str(value) if type(value) is int else of_type(str, value))  # not bool, which is an int, too
+        number = exact_number(str(value) if type(value) is int else of_type(str, value))  # not bool, an int, too
+        if number and not 1 / LARGEST <= abs(number) <= LARGEST:
+            raise InputError(f"{shown(value)}: expected 0 or a size of 1e-50 to 1e50")
+        return number
 
     row = list_of(coefficient)
     match keys:

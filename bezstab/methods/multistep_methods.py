@@ -16,7 +16,7 @@ from fractions import Fraction
 from functools import partial
 from math import comb
 
-from bezstab.methods.polynomials import lagrange_integral
+from bezstab.methods.polynomials import integrals
 from bezstab.methods.schemes import LinearMultistep, Method, MethodGroup, PredictorCorrector, Scheme
 from bezstab.rationals import ONE, ZERO
 
@@ -57,8 +57,7 @@ def adams_bashforth(n: int) -> Method:
 def _adams(n: int, newest: int) -> LinearMultistep:
     """Return the scheme of the polynomial through n values, the newest at 0 (explicit) or at 1 (implicit)."""
     nodes = [newest - j for j in range(n)]
-    weights = [lagrange_integral(node, [other for other in nodes if other != node], ONE) for node in nodes]
-    return _from_one_step_back([*[ZERO] * (1 - newest), *weights])
+    return _from_one_step_back([*[ZERO] * (1 - newest), *(weight for (weight,) in integrals(nodes, [ONE]))])
 
 
 def _from_one_step_back(sigma: Sequence[Fraction]) -> LinearMultistep:

@@ -4,10 +4,15 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import count
+from math import comb, factorial
 
+import numpy as np
+
+from bezstab.methods.determinants import ExactArray, responses
 from bezstab.methods.polynomials import Polynomial
 from bezstab.methods.rooted_trees import tree_errors
 from bezstab.methods.schemes import Method, RungeKutta
+from bezstab.methods.second_order import SecondOrder
 from bezstab.rationals import ZERO
 
 Accuracy = tuple[int, Fraction]
@@ -82,7 +87,7 @@ def _order(method: Method, force: Force) -> int:
 
 def _left_over(method: Method, power: int) -> Iterator[Polynomial]:
     """Yield what linear motions leave over, then nonlinear ones of a Runge-Kutta method: one for each rooted tree."""
-    yield from method.scheme.second_order.left_over(power)
+    yield from left_over(method.scheme.second_order, power)
     if isinstance(method.scheme, RungeKutta):
         for error in tree_errors(method.scheme.tableau, method.scheme.weights, power):
             yield (error,)
@@ -91,8 +96,39 @@ def _left_over(method: Method, power: int) -> Iterator[Polynomial]:
 def _error_under(method: Method, force: Force) -> Accuracy:
     """Return order and constant for one kind of force."""
     p = _order(method, force)
-    growth, ratio = map(force, method.scheme.second_order.left_over(p + 1))
+    growth, ratio = map(force, left_over(method.scheme.second_order, p + 1))
     if abs(growth) > method.rounding:
         # P(e^mu) = (e^mu - z) (mu - mu_2) ... is so much, mu_2 the other root: -mu, or 0 without a force of position
         return p, growth / (2 if force is _force_of_position else 1)
     return p, ratio
+
+
+def left_over(scheme: SecondOrder, power: int) -> Iterator[Polynomial]:
+    """Yield what an exact motion leaves over in P, of degree power + 1, and in v - mu x, of degree `power`.
+
+    The one is relative to the roots that stay, the other to x. Entry i of each belongs to mu^(n - i) alpha_hat^i,
+    beta_hat = -mu (alpha_hat + mu).
+    """
+    roots_that_stay = sum(comb(k, 2) * c for k, c in enumerate(scheme.table[:, 0, 0]))  # P''(1)/2
+    yield [c / roots_that_stay for c in defect(scheme.table, power + 1)]
+    position, velocity = responses(scheme.equations)
+    times_mu = [*defect(position, power - 1), ZERO]
+    yield [(v - x) / position[:, 0, 0].sum() for v, x in zip(defect(velocity, power), times_mu, strict=True)]
+
+
+def defect(table: ExactArray, degree: int) -> list[Fraction]:
+    """Return what an exact motion leaves over in P: the terms of one degree in mu_1, mu_2, as a list of coefficients.
+
+    Feedback with roots mu_1 and mu_2 has alpha_hat = -(mu_1 + mu_2) and beta_hat = mu_1 mu_2, and exact motions
+    e^(mu_1 t): P(e^mu_1; alpha_hat, beta_hat) would be zero. With beta_hat = -mu_1 (alpha_hat + mu_1) it is a
+    power series in mu_1 and alpha_hat; entry i of the list belongs to mu_1^(degree - i) alpha_hat^i. An order of
+    accuracy p makes all terms up to degree p + 1 vanish.
+    """
+    left_over = [ZERO] * (degree + 1)
+    for (k, i, j), coefficient in np.ndenumerate(table):
+        n = degree - i - 2 * j  # the power of mu_1 that e^(k mu_1) must give
+        if n >= 0 and coefficient:
+            growth = coefficient * Fraction(k**n, factorial(n)) * (-1) ** j
+            for shared in range(j + 1):  # mu_1^j (alpha_hat + mu_1)^j
+                left_over[i + shared] += growth * comb(j, shared)
+    return left_over

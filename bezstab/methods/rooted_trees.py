@@ -13,56 +13,37 @@ A Runge-Kutta method's result has the same products with other factors. It is of
 for every tree t of up to p vertices: sum_i b_i Phi_i(t) = 1 / gamma(t), where gamma(t) is the product over the vertices
 of the size of the subtree that each is the root of. Only linear problems have nothing but tall trees, which is why
 R(mu) alone does not tell the order.
+
+A tree of several vertices is a smaller one with another tree put on its root, as one more branch (Butcher's product).
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from fractions import Fraction
 from functools import cache
+from operator import mul
 
-from bezstab.methods.polynomials import Polynomial
-from bezstab.rationals import ONE, ZERO
+from bezstab.rationals import ONE
 
-Tableau = Sequence[Polynomial]
-
-Tree = tuple["Tree", ...]
-"""A rooted tree: the subtrees of its root, sorted. () is a single vertex, ((),) one with a leaf on it."""
+Coefficients = tuple[Fraction, ...]
 
 
-def tree_errors(tableau: Tableau, weights: Polynomial, vertices: int) -> Iterator[Fraction]:
-    """Yield gamma(t) sum_i b_i Phi_i(t) - 1 for every rooted tree t of so many vertices."""
-    for tree in _trees(vertices):
-        terms = zip(weights, _stage_weights(tableau, tree), strict=True)
-        yield vertices * sum((b * psi for b, psi in terms), ZERO) - 1
-
-
-def _stage_weights(tableau: Tableau, tree: Tree) -> list[Fraction]:
-    """Return psi_i(t) = gamma(t) Phi_i(t) / |t| for every stage i, |t| being the number of vertices.
-
-    It is the product over the root's subtrees t' of |t'| sum_j a_ij psi_j(t'), as gamma(t) is |t| times those of t'.
-    """
-    product = [ONE] * len(tableau)
-    for subtree in tree:
-        size, inner = _vertices(subtree), _stage_weights(tableau, subtree)
-        for i, row in enumerate(tableau):
-            product[i] *= size * sum((a * psi for a, psi in zip(row, inner, strict=True)), ZERO)
-    return product
-
-
-def _vertices(tree: Tree) -> int:
-    return 1 + sum(_vertices(subtree) for subtree in tree)
+def tree_errors(tableau: tuple[Coefficients, ...], weights: Coefficients, vertices: int) -> Iterator[Fraction]:
+    """Yield gamma(t) sum_i b_i Phi_i(t) - 1 for the rooted trees t of so many vertices."""
+    for of_stages in stage_weights(tableau, vertices):
+        yield vertices * sum(map(mul, weights, of_stages)) - 1
 
 
 @cache
-def _trees(order: int) -> frozenset[Tree]:
-    """Return the rooted trees with `order` vertices: 1, 1, 2, 4, 9, 20, ... of them."""
-    if order == 1:
-        return frozenset({()})
-    return frozenset(larger for tree in _trees(order - 1) for larger in _with_another_leaf(tree))
+def stage_weights(tableau: tuple[Coefficients, ...], vertices: int) -> set[Coefficients]:
+    """Return psi_i(t) = gamma(t) Phi_i(t) / |t| for all stages i, for the trees t of |t| = `vertices` vertices.
 
-
-def _with_another_leaf(tree: Tree) -> Iterator[Tree]:
-    """Yield the trees that a leaf makes of a tree, at its root or anywhere above; subtrees are sorted."""
-    yield ((), *tree)
-    for i, subtree in enumerate(tree):
-        for larger in _with_another_leaf(subtree):
-            yield tuple(sorted([*tree[:i], larger, *tree[i + 1 :]]))
+    A branch t' more at the root multiplies it by |t'| sum_j a_ij psi_j(t'), as gamma(t) is |t| times those of branches.
+    """
+    if vertices == 1:
+        return {(ONE,) * len(tableau)}
+    return {
+        tuple(size * psi * sum(map(mul, row, branch)) for psi, row in zip(root, tableau, strict=True))
+        for size in range(1, vertices)
+        for root in stage_weights(tableau, vertices - size)
+        for branch in stage_weights(tableau, size)
+    }

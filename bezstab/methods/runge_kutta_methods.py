@@ -13,7 +13,7 @@ from fractions import Fraction
 from functools import partial
 
 from bezstab.methods.algebraic_numbers import DIGITS, decimal_root
-from bezstab.methods.polynomials import lagrange_integral
+from bezstab.methods.polynomials import integrals
 from bezstab.methods.schemes import Coefficients, Method, MethodGroup, RungeKutta
 from bezstab.rationals import ONE, ZERO
 
@@ -163,11 +163,8 @@ def gauss4() -> Method:
 
 def _collocation(nodes: Coefficients) -> RungeKutta:
     """Return the collocation method on some nodes: each row integrates the polynomial through the slopes at all."""
-
-    def row(c: Fraction) -> Coefficients:
-        return tuple(lagrange_integral(node, [other for other in nodes if other != node], c) for node in nodes)
-
-    return RungeKutta(tuple(row(c) for c in nodes), row(ONE))
+    *tableau, weights = zip(*integrals(nodes, [*nodes, ONE]), strict=True)
+    return RungeKutta(tuple(tableau), weights)
 
 
 EXPLICIT_RUNGE_KUTTA = MethodGroup(

@@ -16,19 +16,19 @@ pi = sum_kj C[k][j] z^k mu^j. It has `steps` + 1 rows, one column for each power
 for every mu unless implicit. P is its product over both mu of the feedback.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from decimal import Decimal
 from fractions import Fraction
 from functools import cached_property
 
 from bezstab.errors import InputError
-from bezstab.methods.polynomials import MuTable, shared_factor
+from bezstab.methods.polynomials import MuTable, polynomial_gcd
 from bezstab.methods.schur import recursion_verdict
 from bezstab.methods.second_order import SecondOrder
 from bezstab.methods.step_equations import (
     ACCELERATION,
     POSITION,
+    STATE,
     VELOCITY,
     Assignment,
     Combination,
@@ -40,18 +40,34 @@ from bezstab.rationals import ONE, ZERO
 
 Coefficients = tuple[Fraction, ...]
 
-LARGEST_COEFFICIENT = Fraction(10**100)
-
 LEAST_STEP_MULTIPLE = Fraction("1e-6")
 LARGEST_STEP_MULTIPLE = Fraction("1e6")  # six orders either way: beyond any use, and powers of it stay within float64
 
 
-def _refuse_what_is_out_of_size(what: str, *coefficients: Fraction) -> None:
-    """Raise InputError for a coefficient whose square float64 cannot hold: no method that is used has one."""
-    for c in coefficients:
-        if abs(c) > LARGEST_COEFFICIENT:
-            found = Decimal(c.numerator) / c.denominator  # which may be too large for a float
-            raise InputError(f"{what}: found {found:.3g}, expected numbers up to 1e100 in size")
+Weighted = Sequence[tuple[Fraction, str, int]]
+"""Weights of states or of slopes, by what stands in front of their name, and their step."""
+
+
+def _moved(part: str, states: Weighted, slopes: Weighted) -> Combination:
+    """Return a sum of states and slopes, of x or of v: the slope of x is v, that of v is a."""
+    slope = VELOCITY if part == POSITION else ACCELERATION
+    named = [
+        (c, Quantity(prefix + name, step))
+        for name, terms in ((part, states), (slope, slopes))
+        for c, prefix, step in terms
+    ]
+    return tuple((c, quantity) for c, quantity in named if c)
+
+
+def _state(new: str, states: Weighted, slopes: Weighted) -> list[Equation]:
+    """Return the assignments to a new x and v."""
+    return [Assignment(Quantity(new + part, 1), _moved(part, states, slopes)) for part in (POSITION, VELOCITY)]
+
+
+def _evaluated(state: str, step: int) -> Evaluation:
+    """Return the evaluation at an x and v."""
+    position, velocity = (((ONE, Quantity(state + part, step)),) for part in (POSITION, VELOCITY))
+    return Evaluation(Quantity(state + ACCELERATION, step), position, velocity)
 
 
 @dataclass(frozen=True)
@@ -77,14 +93,14 @@ class LinearMultistep:
             raise InputError(f"inconsistent: sigma(1) = {sum(self.sigma)}, but rho'(1) = {slope}")
         if recursion_verdict(self.rho[::-1]) == "diverges":
             raise InputError("zero-unstable: rho has a root outside the unit circle, or a repeated one on it")
-        if len(factor := shared_factor(self.rho[::-1], self.sigma[::-1])) > 1:  # a pole that no feedback moves
+        shared = polynomial_gcd(self.rho[::-1], self.sigma[::-1])
+        if any(shared[:-1]):  # a pole other than 0 that no feedback moves
             from bezstab.methods.determinants import in_words  # loads sympy
 
-            raise InputError(f"ρ and σ share the factor {in_words(factor)}: cancel it")
+            raise InputError(f"ρ and σ share the factor {in_words(shared)}: cancel it")
         leading = self.rho[0]
         object.__setattr__(self, "rho", tuple(a / leading for a in self.rho))
         object.__setattr__(self, "sigma", tuple(b / leading for b in self.sigma))
-        _refuse_what_is_out_of_size("rho and sigma, with 1 in front of rho", *self.rho, *self.sigma)
 
     @property
     def steps(self) -> int:
@@ -104,22 +120,17 @@ class LinearMultistep:
     @cached_property
     def second_order(self) -> SecondOrder:
         """The equations of a step, which evaluates the acceleration at the newest point that it needs."""
-        step = 1 if self.implicit else 0
-        evaluation = Evaluation(Quantity(ACCELERATION, step), _one(POSITION, step), _one(VELOCITY, step))
-        updates = self.updates("")
-        return SecondOrder((*updates, evaluation) if self.implicit else (evaluation, *updates))
+        new = self.end("")
+        return SecondOrder((*new, _evaluated("", 1)) if self.implicit else (_evaluated("", 0), *new))
 
-    def updates(self, new: str, slopes: str = "") -> list[Equation]:
+    def end(self, new: str, newest_slope: str = "") -> list[Equation]:
         """Return the assignments to x and v at the end of the step, called so with `new` in front.
 
-        `slopes` stands in front of what their slopes there are called.
+        `newest_slope` stands in front of what their slopes there are called.
         """
-        equations: list[Equation] = []
-        for part, slope in ((POSITION, VELOCITY), (VELOCITY, ACCELERATION)):
-            past = [(-a, Quantity(part, -j)) for j, a in enumerate(self.rho[1:])]
-            weighted = [(b, Quantity(slope if j else slopes + slope, 1 - j)) for j, b in enumerate(self.sigma)]
-            equations.append(Assignment(Quantity(new + part, 1), _sum([*past, *weighted])))
-        return equations
+        states = [(-a, "", -j) for j, a in enumerate(self.rho[1:])]
+        slopes = [(b, "" if j else newest_slope, 1 - j) for j, b in enumerate(self.sigma)]
+        return _state(new, states, slopes)
 
 
 @dataclass(frozen=True)
@@ -147,12 +158,8 @@ class PredictorCorrector:
     @cached_property
     def second_order(self) -> SecondOrder:
         """The equations of a step: evaluate, predict, evaluate, correct."""
-        evaluation = Evaluation(Quantity(ACCELERATION, 0), _one(POSITION, 0), _one(VELOCITY, 0))
-        at_predicted = Evaluation(
-            Quantity(PREDICTED + ACCELERATION, 1), _one(PREDICTED + POSITION, 1), _one(PREDICTED + VELOCITY, 1)
-        )
-        predicted, corrected = self.predictor.updates(PREDICTED), self.corrector.updates("", slopes=PREDICTED)
-        return SecondOrder((evaluation, *predicted, at_predicted, *corrected))
+        predicted, corrected = self.predictor.end("predicted_"), self.corrector.end("", newest_slope="predicted_")
+        return SecondOrder((_evaluated("", 0), *predicted, _evaluated("predicted_", 1), *corrected))
 
 
 @dataclass(frozen=True)
@@ -179,44 +186,29 @@ class RungeKutta:
             raise InputError(f"A must be square with a row for each of the {stages} weights b")
         if sum(self.weights) != 1:
             raise InputError(f"inconsistent: the weights b sum to {sum(self.weights)}, not 1")
-        _refuse_what_is_out_of_size("A and b", *self.weights, *(a for row in self.tableau for a in row))
 
     @cached_property
     def mu_table(self) -> MuTable:
         """z - R(mu) times det(I - mu A), which is one for an explicit method, from P(z; -mu, 0) = (z - 1) pi(z, mu)."""
-        constant, _, leading = (
-            [(-1) ** i * by_alpha[0] for i, by_alpha in enumerate(in_plane)] for in_plane in self.second_order.table
+        constant, _, leading = self.second_order.table[:, :, 0].tolist()
+        return tuple(-c * (-1) ** j for j, c in enumerate(constant)), tuple(
+            c * (-1) ** j for j, c in enumerate(leading)
         )
-        return tuple(-c for c in constant), tuple(leading)
 
     @cached_property
     def second_order(self) -> SecondOrder:
         """The equations of the stages, V_i = v + sum_j a_ij A_j and X_i = x + sum_j a_ij V_j, and of the step."""
-        stages = range(len(self.weights))
-        velocity = [Quantity(f"stage_v_{i + 1}", 1) for i in stages]
-        acceleration = [Quantity(f"stage_a_{i + 1}", 1) for i in stages]
-
-        def moved(part: str, weights: Coefficients, slopes: list[Quantity]) -> Combination:
-            return _sum([(ONE, Quantity(part, 0)), *zip(weights, slopes, strict=True)])
-
+        start = [(ONE, "", 0)]
+        *stages, end = (
+            [(weight, f"stage_{j}_", 1) for j, weight in enumerate(row)] for row in (*self.tableau, self.weights)
+        )
         equations: list[Equation] = []
-        for i, row in enumerate(self.tableau):
-            equations.append(Assignment(velocity[i], moved(VELOCITY, row, acceleration)))
-            equations.append(Evaluation(acceleration[i], moved(POSITION, row, velocity), ((ONE, velocity[i]),)))
-        equations.append(Assignment(Quantity(POSITION, 1), moved(POSITION, self.weights, velocity)))
-        equations.append(Assignment(Quantity(VELOCITY, 1), moved(VELOCITY, self.weights, acceleration)))
-        return SecondOrder(tuple(equations))
-
-
-PREDICTED = "predicted_"
-
-
-def _one(name: str, step: int) -> Combination:
-    return ((ONE, Quantity(name, step)),)
-
-
-def _sum(terms: list[tuple[Fraction, Quantity]]) -> Combination:
-    return tuple((coefficient, quantity) for coefficient, quantity in terms if coefficient)
+        for i, slopes in enumerate(stages):
+            velocity = Quantity(f"stage_{i}_{VELOCITY}", 1)
+            equations.append(Assignment(velocity, _moved(VELOCITY, start, slopes)))
+            evaluated = Quantity(f"stage_{i}_{ACCELERATION}", 1)
+            equations.append(Evaluation(evaluated, _moved(POSITION, start, slopes), ((ONE, velocity),)))
+        return SecondOrder((*equations, *_state("", start, end)))
 
 
 Scheme = LinearMultistep | PredictorCorrector | RungeKutta | SecondOrder
@@ -271,9 +263,6 @@ def evaluations(method: Method) -> int:
     Of an implicit method: for one iteration.
     """
     return len(method.scheme.second_order.evaluated)
-
-
-STATE = (POSITION, VELOCITY, ACCELERATION)
 
 
 def check_one_step(method: Method) -> None:

@@ -6,7 +6,7 @@ Polynomials are sequences of Fraction in ascending powers of z.
 from math import gcd
 from typing import Literal
 
-from bezstab.methods.polynomials import Polynomial, polynomial_gcd, quotient_and_remainder, trimmed, without_zeros
+from bezstab.methods.polynomials import Polynomial, divided, monic, polynomial_gcd
 from bezstab.rationals import whole_multiples
 
 Verdict = Literal["converges", "marginal", "diverges"]
@@ -25,14 +25,14 @@ def recursion_verdict(polynomial: Polynomial) -> Verdict:
     G = gcd(P, P*). A reciprocal G has all its roots on the circle, and simple, if and only if every root of G'
     has |z| < 1 (A. Cohn, Math. Z. 14, 1922); what is left of P must have its roots inside.
     """
-    p = trimmed(polynomial)
+    p = monic(polynomial)
     if is_schur(p):
         return "converges"
     if abs(p[0]) > abs(p[-1]):  # the product of all |z| exceeds one
         return "diverges"
-    reciprocal = trimmed(p[::-1])
+    reciprocal = monic(p[::-1])
     shared = polynomial_gcd(p, reciprocal)
-    rest, _ = quotient_and_remainder(p, shared)
+    rest, _ = divided(p, shared)
     derivative = [k * a for k, a in enumerate(shared)][1:]
     return "marginal" if is_schur(derivative) and is_schur(rest) else "diverges"
 
@@ -46,7 +46,9 @@ def is_schur(polynomial: Polynomial) -> bool:
 
     A proof either way: whole numbers, whose last bits are dropped as long as their sum of errors decides nothing.
     """
-    whole = without_zeros(whole_multiples(polynomial)[0])
+    whole, _ = whole_multiples(polynomial)
+    while len(whole) > 1 and whole[-1] == 0:
+        whole.pop()
     decided = _whole_is_schur(whole, WORKING_BITS)
     return bool(_whole_is_schur(whole, None)) if decided is None else decided
 

@@ -49,6 +49,7 @@ from bezstab.methods.determinants import (
     RING_BETA,
     as_fraction,
     coefficient_rows,
+    cramer,
     determinant,
 )
 from bezstab.methods.scheme_motions import evaluation_errors, evaluation_times
@@ -148,11 +149,12 @@ def _determinant(step: SecondOrder, forced: tuple[str, Mapping[Quantity, PolyEle
     if forced is None:
         return determinant(rows).mul_monom((parts * (latest - 1), 0, 0)).set_ring(FORCED_RING)
     name, added = forced
+    side = [
+        added[result].mul_monom((int((latest - times[result]) * parts), 0, 0)) if result in times else RING.zero
+        for result in (equation.result for equation in step.equations)
+    ]
     column = [equation.result.name for equation in step.equations].index(name)
-    for row, equation in zip(rows, step.equations, strict=True):
-        earlier = int((latest - times.get(equation.result, ZERO)) * parts)
-        row[column] = added.get(equation.result, RING.zero).mul_monom((earlier, 0, 0))
-    return determinant(rows).set_ring(FORCED_RING)
+    return cramer(rows, column, side).set_ring(FORCED_RING)
 
 
 def _parts(step: SecondOrder) -> int:

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
-POSITION, VELOCITY, ACCELERATION = "x", "v", "a"
+STATE = POSITION, VELOCITY, ACCELERATION = "x", "v", "a"
 
 
 @dataclass(frozen=True, order=True)
@@ -21,7 +21,7 @@ class Quantity:
     step: int
 
     def __str__(self) -> str:
-        if self.name not in (POSITION, VELOCITY, ACCELERATION):
+        if self.name not in STATE:
             return self.name if self.step == 1 else f"{self.name}[{self.step}]"
         return f"{self.name}{self.step}" if self.step >= 0 else f"{self.name}[{self.step}]"
 

@@ -12,12 +12,9 @@ its entries are polynomials in s over one common denominator, which is a number 
 
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cache
 
 import numpy as np
 from numpy.polynomial.polynomial import polyval
-from numpy.typing import NDArray
-from sympy.polys.rings import PolyElement
 
 from bezstab.errors import InputError
 from bezstab.methods.determinants import (
@@ -25,20 +22,18 @@ from bezstab.methods.determinants import (
     RING_ALPHA,
     RING_BETA,
     RING_W,
-    Matrix,
+    ExactArray,
     as_fraction,
     coefficient_rows,
+    cramer,
     determinant,
 )
-from bezstab.methods.schemes import STATE, Method, check_one_step
+from bezstab.methods.schemes import Method, check_one_step
 from bezstab.methods.second_order import SecondOrder
-from bezstab.methods.step_equations import ACCELERATION, POSITION, VELOCITY, Evaluation, Quantity
+from bezstab.methods.step_equations import ACCELERATION, POSITION, STATE, VELOCITY, Evaluation, Quantity
 from bezstab.rationals import ONE, ZERO, whole_multiples
 
 LENGTH = RING_W  # s, where no w is left
-
-ExactArray = NDArray[np.object_]
-"""An array of whole numbers of any size, or of fractions."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,21 +64,34 @@ def step_matrix(method: Method, alpha_hat: Fraction, beta_hat: Fraction, hold: b
 
     alpha and beta stay as they are while s varies; with `hold` alpha_hat and beta_hat do. The method's step multiple is
     counted in. InputError for a method whose next state depends on more than one step.
+
+    By Cramer's rule on the scheme's equations, which are linear in what a step finds: in their rows that has the power
+    w^0, what the step begins with has w^1.
     """
-    multiple = method.step_multiple
-    entries, denominator = _plane_matrix(method, hold)
+    check_one_step(method)
+    scheme, multiple = method.scheme.second_order, method.step_multiple
     along_s = RING.one if hold else LENGTH
-    by_length = [
-        (RING_ALPHA, along_s * (alpha_hat * multiple)),
-        (RING_BETA, along_s**2 * (beta_hat * multiple**2)),
-    ]
-    below = denominator.compose(by_length)
+    alpha, beta = along_s * (alpha_hat * multiple), along_s**2 * (beta_hat * multiple**2)
+    found, known = (
+        [[entry.coeff_wrt(0, power).compose([(RING_ALPHA, alpha), (RING_BETA, beta)]) for entry in row] for row in rows]
+        for rows, power in ((coefficient_rows(scheme.equations), power) for power in (0, 1))
+    )
+    place = {equation.result.name: column for column, equation in enumerate(scheme.equations)}
+    stored = Quantity(ACCELERATION, 0)
+    results = {equation.result for equation in scheme.equations}
+    carried = stored not in results and any(stored in equation.used for equation in scheme.equations)
+    state = STATE if carried else STATE[:2]
+    below = determinant(found)
     if not below:
         raise InputError(f"{method.name}: a step has no solution at this point")
+    entries = [[cramer(found, place[name], [-row[place[side]] for row in known]) for side in state] for name in state]
+    if carried and not hold and _ends_with_its_acceleration(scheme):
+        # the stored acceleration is that of the state: it says nothing new
+        entries = [[by_x - beta * by_a, by_v - alpha * by_a] for by_x, by_v, by_a in entries[:2]]
     size = len(entries)
     in_s = [below * LENGTH ** (size - 1)]  # all times so much, lest powers be negative
     for i, row in enumerate(entries):
-        in_s += [entry.compose(by_length) * LENGTH ** (size - 1 + j - i) for j, entry in enumerate(row)]
+        in_s += [entry * LENGTH ** (size - 1 + j - i) for j, entry in enumerate(row)]
     powers = [power for polynomial in in_s for power, _, _ in polynomial]
     whole, _ = whole_multiples([
         as_fraction(polynomial.get((power, 0, 0), ZERO))
@@ -96,38 +104,6 @@ def step_matrix(method: Method, alpha_hat: Fraction, beta_hat: Fraction, hold: b
         denominator=table[:, 0],
         commuting=not hold and bool(method.scheme.mu_table),
     )
-
-
-@cache
-def _plane_matrix(method: Method, hold: bool) -> tuple[Matrix, PolyElement]:
-    """Return numerators and denominator of the matrix of what a step carries, as polynomials in alpha_hat, beta_hat.
-
-    By Cramer's rule on the scheme's equations, which are linear in what a step finds: in their rows that has the power
-    w^0, what the step begins with has w^1.
-    """
-    check_one_step(method)
-    scheme = method.scheme.second_order
-    results = [equation.result for equation in scheme.equations]
-    place = {result.name: column for column, result in enumerate(results)}
-    rows = coefficient_rows(scheme.equations)
-    found, known = ([[entry.coeff_wrt(0, power) for entry in row] for row in rows] for power in (0, 1))
-    stored = Quantity(ACCELERATION, 0)
-    carried = stored not in results and any(stored in equation.used for equation in scheme.equations)
-    state = STATE if carried else STATE[:2]
-
-    def cramer(name: str, side: str) -> PolyElement:
-        """Return the determinant with minus the column of what is known in place of one of what a step finds."""
-        return determinant([
-            [-known[number][place[side]] if column == place[name] else entry for column, entry in enumerate(row)]
-            for number, row in enumerate(found)
-        ])  # fmt: skip
-
-    entries = [[cramer(name, side) for side in state] for name in state]
-    denominator = determinant(found)
-    if carried and not hold and _ends_with_its_acceleration(scheme):
-        # with alpha and beta fixed the stored acceleration is that of the state: it says nothing new
-        entries = [[by_x - RING_BETA * by_a, by_v - RING_ALPHA * by_a] for by_x, by_v, by_a in entries[:2]]
-    return entries, denominator
 
 
 def _ends_with_its_acceleration(scheme: SecondOrder) -> bool:

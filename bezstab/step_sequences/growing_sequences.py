@@ -11,9 +11,9 @@ from itertools import groupby
 
 import numpy as np
 
-from bezstab.methods.determinants import characteristic
+from bezstab.methods.determinants import ExactArray, characteristic
 from bezstab.methods.schur import is_schur
-from bezstab.methods.step_matrices import ExactArray, StepMatrix
+from bezstab.methods.step_matrices import StepMatrix
 from bezstab.rationals import exact
 
 LENGTHS = 40  # tried for either kind of step, evenly spaced

@@ -14,7 +14,8 @@ from itertools import combinations_with_replacement, product
 import numpy as np
 from numpy.polynomial.polynomial import polyadd, polymul
 
-from bezstab.methods.step_matrices import ExactArray, StepMatrix
+from bezstab.methods.determinants import ExactArray
+from bezstab.methods.step_matrices import StepMatrix
 from bezstab.rationals import whole_multiples
 from bezstab.stability.arrays import SLOW, FloatArray
 from bezstab.step_sequences.positive_polynomials import positivity

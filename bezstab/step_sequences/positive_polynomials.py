@@ -14,7 +14,7 @@ from math import lcm
 import numpy as np
 from numpy.polynomial.polynomial import polymul, polypow
 
-from bezstab.methods.step_matrices import ExactArray
+from bezstab.methods.determinants import ExactArray
 
 HALVINGS = 60  # what is still undecided then touches zero within 1e-18 of the interval
 

@@ -46,16 +46,25 @@ def test_a_root_is_good_to_forty_digits_and_rounded_up_and_rational_numbers_stay
 
 
 REFUSED = {
-    "expected a number such as": ("w", "1_0", "1)", "nan", "1 0"),
-    "expected a quantity such as": ("", "2**3", "1--2", "*2"),
-    "expected '[()]'": ("sqrt 6", "(1", "sqrt"),
+    "expected a number such as": (
+        "w",
+        "1_0",
+        "nan",
+        "",
+        "2**3",
+        "*2",
+        "1)",
+        "1 0",
+        "(1",
+        "1/w",
+        "(" * 300 + "1" + ")" * 300,
+    ),
     "expected numbers, names": ("١", "__import__('os')"),
     "2001 characters": ("1" * 2001,),
-    "expected to divide by": ("1/0", "1/(sqrt(2) - 2/sqrt(2))", "1/w", "1/(1+sqrt(2)+sqrt(3)+sqrt(5)+sqrt(7))"),
+    "expected to divide by": ("1/0", "1/(sqrt(2) - 2/sqrt(2))", "1/(1+sqrt(2)+sqrt(3)+sqrt(5)+sqrt(7))"),
     "a root is taken of": ("sqrt(-1)", "sqrt(sqrt(2))", "sqrt(1e9)"),
-    "at most 20 parentheses": ("(" * 30 + "1" + ")" * 30,),
     "outside the range of float64": ("1e308*1e308", "1" * 400),
-    "products of fewer sums": ("*".join(f"(1+sqrt({p}))" for p in (2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31)),),
+    "at most 40 roots": ("*".join(f"(1+sqrt({p}))" for p in (2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31)),),
 }
 
 

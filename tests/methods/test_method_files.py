@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from fractions import Fraction
 from pathlib import Path
 
+import numpy as np
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
@@ -75,9 +76,9 @@ REFUSED: dict[str, tuple[str | bytes, str]] = {
     "truth": ("rho = [true, -1]\nsigma = [0, 1]", "whole numbers and rational strings"),
     "code": ('rho = ["__import__(\'os\')", "-1"]\nsigma = ["0", "1"]', "rho"),
     "huge digits": (f'rho = ["{DIGITS}", "-{DIGITS}"]\nsigma = ["0", "{DIGITS}"]', "rho"),
-    "squares beyond float64": ('A = [["0", "0"], ["1e200", "0"]]\nb = ["1/2", "1/2"]', "numbers up to 1e100 in size"),
+    "squares beyond float64": ('A = [["0", "0"], ["1e200", "0"]]\nb = ["1/2", "1/2"]', "0 or a size of 1e-50 to 1e50"),
     "deep nesting": ("rho = " + "[" * 20000 + "]" * 20000 + "\nsigma = []", "brackets nested too deeply"),
-    "stages": (f"A = {[['0'] * 41] * 41}\nb = {['1', *['0'] * 40]}", "41 stages: expected at most 40"),
+    "stages": (f"A = {[['0'] * 21] * 21}\nb = {['1', *['0'] * 20]}", "21 stages: expected at most 20"),
     "steps": (f"rho = {['1', '-1', *['0'] * 100]}\nsigma = {['0', '1', *['0'] * 100]}", "expected at most 100"),
     "unknown key": (EBDF2 + 'order = "2"', "order"),
     "both kinds": (EBDF2 + HEUN, "found A, b, rho, sigma"),
@@ -133,7 +134,7 @@ def test_coefficients_with_roots_are_those_of_the_book(tmp_path: Path) -> None:
 def test_equations_with_roots_are_reckoned_exactly(tmp_path: Path) -> None:
     update = "[update]\na0 = 'acceleration(x0, v0)'\nv1 = 'v0 + sqrt(2)/2 a0 + (a0 - a0/sqrt(2))'\nx1 = 'x0 + v1'\n"
     own = read_method(written(tmp_path, update))
-    assert own.scheme.second_order.table == lookup("SYM").scheme.second_order.table
+    assert np.array_equal(own.scheme.second_order.table, lookup("SYM").scheme.second_order.table)
     assert own.digits == 40
 
 

@@ -92,7 +92,6 @@ WITHOUT_FORCE = {"x1": "x0 + v0", "v1": "v0"}
     [
         (VERLET | {"x1": "x0 + v0 + 1/2 a0 + w"}, "x1: no equation gives w"),
         (VERLET | {"a1": "acceleration(x2, vh)"}, "a1: uses x2, but x1 is the latest there is"),
-        (VERLET | {"w": "x[-21]"}, "w: uses .*: expected at most 20 steps back"),
         (VERLET | {"w[3]": "x0"}, r"w\[3\]: expected an equation for step 0, 1 or 2"),
         (VERLET | {"a0": "acceleration(x0, v0)"}, "a0: a second equation for a"),
         (VERLET | {"x1": "x1"}, "do not determine x1 and v1"),
@@ -115,6 +114,6 @@ def test_what_cannot_be_is_refused_in_one_line(equations: dict[str, str], why: s
 
 
 def test_a_root_on_the_circle_that_stays_is_allowed_once() -> None:
-    assert recipe(VERLET | {"w": "0 x0 - w[0]"}).table
+    assert recipe(VERLET | {"w": "0 x0 - w[0]"}).table.size
     # leapfrog, Milne and Simpson: rho = z^2 - 1 has the root -1 once for positions, once for velocities
-    assert all(multistep("weak", "1 0 -1", sigma).scheme.second_order.table for sigma in ("0 2 0", "1/3 4/3 1/3"))
+    assert all(multistep("weak", "1 0 -1", sigma).scheme.second_order.table.size for sigma in ("0 2 0", "1/3 4/3 1/3"))
