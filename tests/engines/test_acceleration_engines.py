@@ -7,7 +7,7 @@ import pytest
 
 from bezstab.engines.acceleration_engines import MUJOCO
 from bezstab.engines.engine_list import ENGINES
-from tests.reference.engine_steps import State, matrix, two_gains
+from tests.reference.engine_steps import STEPS, State, matrix
 
 H = Fraction(2, 1000)
 
@@ -46,7 +46,7 @@ def test_a_run_of_mujoco_shows_the_point_that_is_applied(solref: str, solimp: st
     applied = MUJOCO.applied(values, H)
     for size, point in ((1e-9, applied.point), *((1.0, point) for _, point in applied.also)):
         alpha_hat, beta_hat = map(float, point)
-        ours = matrix(two_gains, 1.0, beta_hat, alpha_hat)  # in units of the step
+        ours = matrix(STEPS["pinocchio"], 1.0, beta_hat, alpha_hat)  # in units of the step
         theirs = matrix(mujocos_step(solref, solimp, size))
         # past the width 1 mm only where c is: a velocity alone meets the impedance of no error
         columns = [0] if size == 1.0 else [0, 1]
