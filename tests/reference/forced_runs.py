@@ -1,7 +1,7 @@
 """The test equation q'' = phi'' - alpha_hat (q' - phi') - beta_hat (q - phi), phi = e^(i omega t), h = 1, step by step.
 
-In fifty digits and more, from a method's equations as they stand. Time is carried as a second coordinate that nothing
-accelerates, as a driven mechanism's clock would be, so that each evaluation finds its own time.
+In sixty digits, from a method's equations as they stand. Each evaluation finds its own time as the position of a clock,
+a second coordinate that nothing accelerates.
 """
 
 from fractions import Fraction
@@ -10,8 +10,10 @@ from typing import Any
 import mpmath
 
 from bezstab.methods.schemes import Method
+from bezstab.methods.second_order import SecondOrder
 from bezstab.methods.steady_errors import ExponentialSum
 from bezstab.methods.step_equations import Evaluation, Quantity
+from tests.reference.second_order_steps import linear_step
 
 DIGITS = 60
 
@@ -36,69 +38,46 @@ def steady_errors(
     alpha_hat, beta_hat and omega are of the method's own step. What the start did must have died away by then.
     """
     with mpmath.workdps(DIGITS):
-        equations = method.scheme.second_order.equations
-        alpha_hat, beta_hat, theta = _number(alpha_hat), _number(beta_hat), 1j * _number(omega)
-        forcing = theta**2 + alpha_hat * theta + beta_hat
-        ticking = _StepByStep(equations, mpmath.mpf(0), mpmath.mpf(0), lambda _: mpmath.mpf(0))
-        moving = _StepByStep(equations, alpha_hat, beta_hat, lambda time: forcing * mpmath.exp(theta * time))
-        for step in range(-30, 3):  # before the first step, and beyond where a result may lie ahead of its step
-            ticking.start(step, x=mpmath.mpf(step), v=mpmath.mpf(1), a=mpmath.mpf(0))
-            phi = mpmath.exp(theta * step)
-            moving.start(step, x=phi, v=theta * phi, a=theta**2 * phi)
-        for step in range(count):
-            ticking.take(step, times=None)
-            moving.take(step, times=ticking)
+        scheme, theta = method.scheme.second_order, 1j * _number(omega)
+        forcing = theta**2 + _number(alpha_hat) * theta + _number(beta_hat)
+        clock, motion = _Run(scheme, Fraction(0), Fraction(0)), _Run(scheme, alpha_hat, beta_hat)
+        for each in clock.state:
+            clock.state[each] = {"x": each.step, "v": 1}.get(each.name, 0)
+            motion.state[each] = {"x": 1, "v": theta, "a": theta**2}.get(each.name, 0) * mpmath.exp(theta * each.step)
+        for _ in range(count):
+            known = clock.step([0] * len(scheme.equations))
+            motion.step(
+                [
+                    forcing * mpmath.exp(theta * sum(_number(c) * known[q] for c, q in each.position))
+                    if isinstance(each, Evaluation)
+                    else 0
+                    for each in scheme.equations
+                ]
+            )
         phi = mpmath.exp(theta * count)
-        return moving.known["x", count] / phi - 1, moving.known["v", count] / phi - theta
+        return motion.state[Quantity("x", 0)] / phi - 1, motion.state[Quantity("v", 0)] / phi - theta
 
 
-class _StepByStep:
-    """The values of one coordinate's quantities, by name and step."""
+class _Run:
+    """One coordinate: `state` has what a step starts from, by name and step, seen from the step that comes next."""
 
-    def __init__(self, equations: Any, alpha_hat: Any, beta_hat: Any, forced: Any) -> None:
-        self.equations, self.alpha_hat, self.beta_hat, self.forced = equations, alpha_hat, beta_hat, forced
-        self.results = [equation.result for equation in equations]
-        self.known: dict[tuple[str, int], Any] = {}
-        size = len(equations)
-        matrix = mpmath.eye(size)
-        for row, equation in enumerate(equations):
-            for coefficient, quantity in self._needs(equation):
-                if quantity in self.results:
-                    matrix[row, self.results.index(quantity)] -= coefficient
-        self.inverse = matrix**-1
+    def __init__(self, scheme: SecondOrder, alpha_hat: Fraction, beta_hat: Fraction) -> None:
+        found = linear_step(scheme, alpha_hat, beta_hat)
+        assert found
+        self.new = found.new
+        self.of_kept, self.of_forces = (
+            mpmath.matrix([list(map(_number, row)) for row in matrix.to_list()])
+            for matrix in (found.of_kept, found.of_forces)
+        )
+        self.state = dict.fromkeys(found.kept, mpmath.mpf(0))
 
-    def _needs(self, equation: Any) -> list[tuple[Any, Quantity]]:
-        """Return what a right-hand side needs, each with its coefficient."""
-        if not isinstance(equation, Evaluation):
-            return [(_number(c), quantity) for c, quantity in equation.value]
-        return [(-self.beta_hat * _number(c), quantity) for c, quantity in equation.position] + [
-            (-self.alpha_hat * _number(c), quantity) for c, quantity in equation.velocity
-        ]
-
-    def start(self, step: int, **values: Any) -> None:
-        """Give the state at a step; a helper has none to give, and begins with nothing."""
-        for result in self.results:
-            self.known[result.name, step] = values.get(result.name, mpmath.mpf(0))
-
-    def value(self, combination: Any, step: int) -> Any:
-        """Return a combination's value in the step that begins at `step`."""
-        return mpmath.fsum(_number(c) * self.known[quantity.name, step + quantity.step] for c, quantity in combination)
-
-    def take(self, step: int, times: "_StepByStep | None") -> None:
-        """Solve the equations of the step that begins at `step`, all together; `times`: the clock, already stepped."""
-        right = []
-        for equation in self.equations:
-            total = mpmath.mpf(0)
-            if isinstance(equation, Evaluation) and times is not None:
-                total += self.forced(times.value(equation.position, step))
-            for coefficient, quantity in self._needs(equation):
-                if quantity not in self.results:
-                    total += coefficient * self.known[quantity.name, step + quantity.step]
-            right.append(total)
-        found = self.inverse * mpmath.matrix(right)
-        for result, value in zip(self.results, found, strict=True):
-            self.known[result.name, step + result.step] = value
+    def step(self, forces: list[Any]) -> dict[Quantity, Any]:
+        """Return all values of the step that begins, under the forces of its evaluations."""
+        new = self.of_kept * mpmath.matrix(list(self.state.values())) + self.of_forces * mpmath.matrix(forces)
+        known = self.state | dict(zip(self.new, new, strict=True))
+        self.state = {q: known[Quantity(q.name, q.step + 1)] for q in self.state}
+        return known
 
 
 def _number(value: Fraction) -> Any:
-    return mpmath.mpf(value.numerator) / value.denominator
+    return mpmath.mpf(int(value.numerator)) / int(value.denominator)

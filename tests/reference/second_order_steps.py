@@ -1,23 +1,51 @@
 """Steps of second-order schemes from nothing but their equations: no order of them, no elimination, no determinant."""
 
 from fractions import Fraction
-from typing import Any
+from typing import Any, NamedTuple
 
-import sympy as sp
+from sympy import QQ
 from sympy.polys.matrices import DomainMatrix
 
 from bezstab.methods.second_order import SecondOrder
-from bezstab.methods.step_equations import Assignment, Evaluation, Quantity
+from bezstab.methods.step_equations import Assignment, Equation, Quantity
 
 
-def _kept(scheme: SecondOrder) -> list[Quantity]:
-    """Return what a step starts from: of each quantity the values before its newest, as far back as they are used."""
-    kept = []
-    for equation in scheme.equations:
-        newest = equation.result
+class LinearStep(NamedTuple):
+    """What a step gives, what it starts from, and exact matrices: new = of_kept kept + of_forces forces."""
+
+    new: list[Quantity]
+    kept: list[Quantity]
+    of_kept: DomainMatrix
+    of_forces: DomainMatrix
+
+
+def linear_step(scheme: SecondOrder, alpha_hat: Fraction, beta_hat: Fraction) -> LinearStep | None:
+    """Return the step of a feedback alone; None where the new values are not determined.
+
+    `kept` are of each quantity the values before its newest, as far back as they are used.
+    """
+    new, kept = [equation.result for equation in scheme.equations], []
+    for newest in new:
         used = [q.step for each in scheme.equations for q in each.used if q.name == newest.name]
         kept += [Quantity(newest.name, step) for step in range(newest.step - 1, min([newest.step, *used]) - 1, -1)]
-    return kept
+
+    def coefficient(equation: Equation, quantity: Quantity) -> Any:
+        """Return that of a quantity in an equation, its right side taken to the left."""
+        if isinstance(equation, Assignment):
+            right = [(Fraction(1), equation.value)]
+        else:
+            right = [(-beta_hat, equation.position), (-alpha_hat, equation.velocity)]
+        c = Fraction(quantity == equation.result) - sum(
+            f * c for f, terms in right for c, used in terms if used == quantity
+        )
+        return QQ(c.numerator, c.denominator)
+
+    left, right = (
+        DomainMatrix([[coefficient(each, q) for q in quantities] for each in scheme.equations], shape, QQ)
+        for quantities in (new, kept)
+        for shape in [(len(new), len(quantities))]
+    )
+    return LinearStep(new, kept, -left.inv() * right, left.inv()) if left.det() else None
 
 
 def step_polynomial(scheme: SecondOrder, alpha_hat: Fraction, beta_hat: Fraction) -> list[Fraction] | None:
@@ -25,31 +53,11 @@ def step_polynomial(scheme: SecondOrder, alpha_hat: Fraction, beta_hat: Fraction
 
     Ascending powers, monic, exact. None where the new values are not determined.
     """
-    new, kept = [equation.result for equation in scheme.equations], _kept(scheme)
-
-    def coefficients(equation: Assignment | Evaluation, quantities: list[Quantity]) -> list[Any]:
-        """Return those of quantities in an equation, its right side taken to the left."""
-        if isinstance(equation, Assignment):
-            right = list(equation.value)
-        else:
-            right = [(-beta_hat * c, q) for c, q in equation.position]
-            right += [(-alpha_hat * c, q) for c, q in equation.velocity]
-        of_each = (Fraction(q == equation.result) - sum(c for c, used in right if used == q) for q in quantities)
-        return [sp.QQ(c.numerator, c.denominator) for c in of_each]
-
-    left, right = (
-        DomainMatrix([coefficients(each, quantities) for each in scheme.equations], (len(new), len(quantities)), sp.QQ)
-        for quantities in (new, kept)
-    )
-    if not left.det():
+    step = linear_step(scheme, alpha_hat, beta_hat)
+    if step is None:
         return None
-    solution = (-left.lu_solve(right)).to_list()
-    rows = []
-    for quantity in kept:
-        later = Quantity(quantity.name, quantity.step + 1)
-        if later in new:
-            rows.append(solution[new.index(later)])
-        else:
-            rows.append([sp.QQ(int(q == later)) for q in kept])
-    polynomial = DomainMatrix(rows, (len(kept), len(kept)), sp.QQ).charpoly()
-    return [Fraction(int(c.numerator), int(c.denominator)) for c in reversed(polynomial)]
+    size = len(step.kept)
+    rows = dict(zip(step.kept, DomainMatrix.eye(size, QQ).to_list(), strict=True))
+    rows |= zip(step.new, step.of_kept.to_list(), strict=True)
+    matrix = DomainMatrix([rows[Quantity(q.name, q.step + 1)] for q in step.kept], (size, size), QQ)
+    return [Fraction(int(c.numerator), int(c.denominator)) for c in reversed(matrix.charpoly())]
