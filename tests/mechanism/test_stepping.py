@@ -16,8 +16,9 @@ from bezstab.mechanism.stepper import MOST_ITERATIONS, _inverses
 from bezstab.methods.registry import lookup
 from bezstab.methods.schemes import implicit
 from bezstab.stabilising import NOTHING, after_step
+from bezstab.stability.arrays import FloatArray
 from bezstab.units import feedback_gains
-from tests.reference.plain_runs import FloatArray, plain_run
+from tests.reference.plain_runs import plain_run
 
 H = 1e-3  # s
 EPS = np.finfo(float).eps

@@ -25,7 +25,8 @@ def last_gain(method: Method, point: tuple[Fraction, Fraction], theta: Fraction,
         def acceleration(q: NDArray[Any], v: NDArray[Any]) -> NDArray[Any]:
             square = abs(q[0]) ** 2
             along = mpmath.re(mpmath.conj(q[0]) * v[0])
-            return -q * (abs(v[0]) ** 2 + alpha_hat * along + beta_hat * (square - 1) / 2) / square
+            pull = (abs(v[0]) ** 2 + alpha_hat * along + beta_hat * (square - 1) / 2) / square
+            return np.array([-pull * q[0]])
 
         places = [mpmath.expj(step * turned) for step in range(steps(method))]
         starts = [np.array([place, 1j * turned * place]) for place in places]

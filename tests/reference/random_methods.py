@@ -124,3 +124,19 @@ def other_random_method(number: int) -> Method:
             return Method(name, recipe(random_recipe(rng)), "random")
         except InputError:  # equations that determine no step, or one whose evaluations do not wait in any order
             continue
+
+
+def random_implicit_runge_kutta(number: int) -> Method:
+    """Return method number 0, 1, 2, ... of a fixed sequence: two or three stages, small rationals."""
+    rng = random.Random(f"implicit Runge-Kutta {number}")
+
+    def small() -> Fraction:
+        denominator = rng.randint(1, 4)
+        return Fraction(rng.randint(-2 * denominator, 2 * denominator), denominator)
+
+    stages = 2 + number % 2
+    rows = [[small() if rng.random() < 0.8 else Fraction(0) for _ in range(stages)] for _ in range(stages)]
+    rows[0][stages - 1] += 1  # never explicit
+    weights = [small() for _ in range(stages - 1)]
+    weights.append(1 - sum(weights, Fraction(0)))
+    return Method(f"implicit RK {number}", RungeKutta(tuple(map(tuple, rows)), tuple(weights)), "random")

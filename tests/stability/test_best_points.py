@@ -13,9 +13,9 @@ from bezstab.stability.closed_loop import converges, poles, spectral_radius
 from bezstab.stability.regions import region, window
 from tests.methods.kinds import EXPLICIT, sampled
 from tests.reference.companion_poles import radius
-from tests.reference.least_by_descent import least_within, modulus_of, random_implicit_runge_kutta
+from tests.reference.least_by_descent import least_within
 from tests.reference.made_methods import multistep, runge_kutta
-from tests.reference.random_methods import other_random_method, random_method
+from tests.reference.random_methods import other_random_method, random_implicit_runge_kutta, random_method
 from tests.reference.second_order_methods import as_second_order
 
 F = Fraction
@@ -137,10 +137,10 @@ NO_ZERO = [
 @pytest.mark.parametrize("method", NO_ZERO, ids=str)
 def test_without_a_zero_of_r_where_mu_is_damped_the_least_value_is_on_the_edge(method: Method) -> None:
     """log|R| is harmonic there: it has no minimum inside. Both have |R| < 1 on a piece of the imaginary axis."""
-    found, modulus = best(method), modulus_of(method)
+    found = best(method)
     assert found.alpha_hat == 0
-    assert float(modulus(np.zeros(1), np.array([found.beta_hat]))[0]) == pytest.approx(found.z_abs, rel=1e-9)
-    on_edge = modulus(np.zeros(20001), np.linspace(1e-3, 20, 20001))
+    assert float(spectral_radius(method, 0, found.beta_hat)) == pytest.approx(found.z_abs, rel=1e-9)
+    on_edge = spectral_radius(method, np.zeros(20001), np.linspace(1e-3, 20, 20001))
     assert found.z_abs == pytest.approx(on_edge.min(), abs=1e-5)  # samples lie 1e-3 apart
 
 
@@ -194,18 +194,17 @@ def on_way(limit: FarLimit, t: float) -> tuple[float, float]:
 def test_the_least_value_of_random_methods(draw: Callable[[int], Method], number: int) -> None:
     """It is attained where it is said to be, or approached and not attained; nothing found by descent is lower."""
     method = draw(number)
-    modulus = modulus_of(method)
-    near, far = (least_within(modulus, furthest)[0] for furthest in (1e4, 1e12))
+    near, far = (least_within(method, furthest) for furthest in (1e4, 1e12))
     found, limit = best_point(method), falls_towards(method)
     if found:
         assert min(found.alpha_hat, found.beta_hat) >= 0
         assert limit is None
         assert found.z_abs <= min(near, far) * (1 + 1e-6) + 1e-9
         # a double pole at the rounded point is known to the root of rounding, a quadruple one to its fourth root
-        assert float(modulus(np.array([found.alpha_hat]), np.array([found.beta_hat]))[0]) - found.z_abs < 1e-3
+        assert float(spectral_radius(method, found.alpha_hat, found.beta_hat)) - found.z_abs < 1e-3
     elif limit:
         assert limit.z_abs * (1 - 1e-5) - 1e-9 <= far < near
-        on_the_way = [float(modulus(*(np.array([x]) for x in on_way(limit, t)))[0]) for t in (1e4, 1e8)]
+        on_the_way = [float(spectral_radius(method, *on_way(limit, t))) for t in (1e4, 1e8)]
         assert on_the_way[1] == pytest.approx(limit.z_abs, abs=1e-3)
         assert abs(on_the_way[1] - limit.z_abs) < abs(on_the_way[0] - limit.z_abs)
     else:
