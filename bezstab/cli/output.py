@@ -15,7 +15,7 @@ import click
 
 from bezstab.files import output_directory, write_whole
 from bezstab.show.columns import Column, row_of
-from bezstab.show.fields import MISSING, Row, visible
+from bezstab.show.fields import MISSING, visible
 from bezstab.show.tables import Format, fits, for_programs, lines_below, table, wrapped
 
 if TYPE_CHECKING:
@@ -51,47 +51,60 @@ def for_reading() -> bool:
     return chosen_format() in ("text", "markdown")
 
 
+Table = tuple[Sequence[Column[Any]], Sequence[Any]]
+"""Columns, and answers that have them."""
+
+
 def show_answers(
-    columns: Sequence[Column[Item]], answers: Sequence[Item], sentences: Sequence[str], *, in_blocks: bool = False
+    columns: Sequence[Column[Item]],
+    answers: Sequence[Item],
+    sentences: Sequence[str],
+    *,
+    in_blocks: bool = False,
+    below: Sequence[Table] = (),
 ) -> None:
     """Print answers on standard output: every column as JSON and CSV, else the brief ones, or with --all every one.
 
     As text each answer is its sentence, with a line for each column below; several are a table, if that is not wider
-    than the terminal, unless they are to be `in_blocks`. A command without --all shows every one.
+    than the terminal, unless they are to be `in_blocks`. A command without --all shows every one. Tables of another
+    kind follow `below`, as `show_tables` has them.
     """
     if not for_reading():
-        click.echo(_for_programs([row_of(columns, answer) for answer in answers]))
+        _show_for_programs([(columns, answers), *below])
         return
-    shown = _shown(columns, answers, click.get_current_context().params.get("every_column", True))
+    shown = _shown(columns, answers, _every_column())
     if in_blocks and chosen_format() == "text":
         click.echo(_blocks(shown, answers, sentences))
     else:
         click.echo(_table_or_blocks(shown, answers, sentences, table_of_one=False))
+    show_tables(below)
 
 
-def show_tables(
-    parts: Sequence[tuple[Sequence[Column[Any]], Sequence[Any]]], *, every_column: bool | None = None
-) -> None:
+def show_tables(tables: Sequence[Table], *, every_column: bool | None = None) -> None:
     """Print answers of several kinds: a table of each that there are, below an empty line; as JSON and CSV one list.
 
     There every row has the keys of all kinds. A command that has --all shows brief columns alone without it, unless
     told which.
     """
-    if every_column is None:
-        every_column = click.get_current_context().params.get("every_column", True)
     if not for_reading():
-        rows = [row_of(columns, answer) for columns, answers in parts for answer in answers]
-        click.echo(_for_programs(rows))
+        _show_for_programs(tables)
         return
-    for columns, answers in parts:
-        shown = _shown(columns, answers, every_column)
+    for columns, answers in tables:
+        shown = _shown(columns, answers, _every_column() if every_column is None else every_column)
         if answers and shown:
             click.echo(f"\n{_table_or_blocks(shown, answers, [''] * len(answers), table_of_one=True)}")
 
 
-def _for_programs(rows: Sequence[Row]) -> str:
-    """Return rows as JSON or CSV, as the running command's --format says."""
-    return for_programs(rows, "csv" if chosen_format() == "csv" else "json")
+def _every_column() -> bool:
+    """Return whether people want every column: --all, where a command has it."""
+    chosen: bool = click.get_current_context().params.get("every_column", True)
+    return chosen
+
+
+def _show_for_programs(tables: Sequence[Table]) -> None:
+    """Print all rows as JSON or CSV, as the running command's --format says."""
+    rows = [row_of(columns, answer) for columns, answers in tables for answer in answers]
+    click.echo(for_programs(rows, "csv" if chosen_format() == "csv" else "json"))
 
 
 def _shown(columns: Sequence[Column[Item]], answers: Sequence[Item], every_column: bool) -> list[Column[Item]]:
@@ -128,8 +141,8 @@ def _table_of(columns: Sequence[Column[Item]], answers: Sequence[Item]) -> str:
 
 
 def show_groups(columns: Sequence[Column[Item]], groups: Sequence[tuple[str, Sequence[Item]]]) -> None:
-    """Print one table of several groups for reading, each group below its heading."""
-    shown = [each for each in columns if each.heading]
+    """Print one table of the brief columns of several groups for reading, each group below its heading."""
+    shown = [each for each in columns if each.brief]
     head, *lines = _table_of(shown, [answer for _, answers in groups for answer in answers]).splitlines()
     click.echo(head)
     for heading, answers in groups:

@@ -13,6 +13,7 @@ WENT: Mapping[str, str] = {
     "choose --bandwidth": "see `bezstab drive`",
     "region --pd": "see `bezstab drive --figure png`",
     "poles --pd": "see `bezstab drive`",
+    "poles --omega": "see `bezstab check --omega`, which tells the errors on a motion",
     **dict.fromkeys(
         (f"{command} {option}" for command in ("check", "choose") for option in ("--h-min", "--hold")),
         "see `bezstab steps`",

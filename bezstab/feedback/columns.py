@@ -1,8 +1,7 @@
 """What is printed of a judged point: its columns; and the sentences below it."""
 
-import cmath
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from bezstab.feedback.checking import CheckAnswer, StepAnswer
@@ -15,7 +14,7 @@ from bezstab.methods.steady_errors import velocity_lag
 from bezstab.questions.chains import SweptAnswer
 from bezstab.questions.scene_runs import SceneRun
 from bezstab.rationals import rounded_down, typed_number
-from bezstab.show.cells import modulus_words
+from bezstab.show.cells import between, modulus_words, up_to
 from bezstab.show.columns import POLE, Column, of_part
 from bezstab.stability.feedback_costs import FeedbackCost
 from bezstab.stability.margins import Margins
@@ -26,15 +25,6 @@ GAIN = 0.95
 """Of an error: what is not below is called no gain."""
 
 UNLIMITED, ANY = "unlimited", "any"
-
-
-def _up_to(form: str, without: str) -> Callable[[float], str]:
-    """Return the form of a number that is infinite where there is no limit."""
-    return lambda number: without if math.isinf(number) else format(number, form)
-
-
-def _angle(z: complex) -> float:
-    return math.degrees(cmath.phase(z))
 
 
 POINT: Sequence[Column[Judgement]] = (
@@ -58,9 +48,6 @@ DECAY: Sequence[Column[Judgement]] = (
         apart=True,
     ),
     Column("|z_p|", "z_abs", lambda answer: abs(answer.pole), "a step multiplies errors by it", form=modulus_words),
-    Column(
-        "∠z (deg)", "z_angle_deg", lambda answer: _angle(answer.pole), "in a step errors turn by it", "degrees", ".3f"
-    ),
     Column("worst |z_p|", "worst", lambda answer: answer.worst, "the same with α and β off by the spread", form=".4f"),
     Column(
         "steps to 1/1000", "settle_steps", lambda answer: answer.settle_steps, "steps until an error is a thousandth"
@@ -84,10 +71,9 @@ ENDS: Sequence[Column[Judgement]] = (
         lambda answer: answer.h_limit,
         "largest stable step, of an engine's values as they are; null where there is none, or any is",
         "s",
-        _up_to(".4g", UNLIMITED),
+        up_to(".4g", UNLIMITED),
         brief=True,
     ),
-    Column("", "margins_reason", lambda answer: answer.margins_reason, "why these factors are not known"),
 )
 
 MARGINS: Sequence[Column[Margins]] = (
@@ -96,36 +82,22 @@ MARGINS: Sequence[Column[Margins]] = (
         "h_factor",
         lambda margins: margins.h,
         "factor on h up to which α and β are stable; null where any is",
-        form=_up_to(".4g", ANY),
+        form=up_to(".4g", ANY),
     ),
     Column(
-        "min α factor",
-        "alpha_factor_min",
-        lambda margins: margins.alpha[0],
-        "factor on α alone from which it is stable",
-        form=".3g",
-    ),
-    Column(
-        "max α factor",
-        "alpha_factor_max",
-        lambda margins: margins.alpha[1],
-        "factor on α alone up to which it is stable; null where any is",
-        form=_up_to(".3g", ANY),
+        "α times",
+        "alpha_factors",
+        lambda margins: margins.alpha,
+        "factors on α alone between which it is stable; null where any is",
+        form=between(".3g", ANY),
         brief=True,
     ),
     Column(
-        "min β factor",
-        "beta_factor_min",
-        lambda margins: margins.beta[0],
-        "factor on β alone from which it is stable",
-        form=".3g",
-    ),
-    Column(
-        "max β factor",
-        "beta_factor_max",
-        lambda margins: margins.beta[1],
-        "factor on β alone up to which it is stable; null where any is",
-        form=_up_to(".3g", ANY),
+        "β times",
+        "beta_factors",
+        lambda margins: margins.beta,
+        "factors on β alone between which it is stable; null where any is",
+        form=between(".3g", ANY),
         brief=True,
     ),
 )
@@ -176,13 +148,6 @@ COST: Sequence[Column[FeedbackCost]] = (
         "constraint error over that of the goal accurate; null where the motion's rate is not given",
         form=times_words,
     ),
-    Column(
-        "velocity error / least",
-        "times_least_velocity",
-        lambda cost: cost.times_least_velocity,
-        "the same of the velocity",
-        form=times_words,
-    ),
 )
 
 MOVING: Sequence[Column[MovingPole]] = (
@@ -199,7 +164,7 @@ MOVING: Sequence[Column[MovingPole]] = (
         "z_abs_at_most",
         lambda moving: moving.at_most,
         "what a step multiplies an error by over the motion, at most; null without a bound",
-        form=_up_to(".6f", "no bound"),
+        form=up_to(".6f", "no bound"),
     ),
     Column("moving verdict", "moving_verdict", lambda moving: moving.verdict, "what they do"),
     Column(
@@ -207,13 +172,13 @@ MOVING: Sequence[Column[MovingPole]] = (
         "safe_speed",
         lambda moving: moving.safe_speed,
         "factor on the scene's speed up to which errors shrink; null where nothing turns",
-        form=_up_to(".3g", ANY),
+        form=up_to(".3g", ANY),
     ),
 )
 
 RUN: Sequence[Column[SceneRun]] = (
-    Column("run (s)", "run_seconds", lambda run: run.duration, "how long it was run", "s"),
-    Column("|c| in the run", "run_c_max", lambda run: run.c_max, "largest |c|", "m or rad", ".1e"),
+    Column("run (s)", "time", lambda run: run.duration, "how long it was run", "s"),
+    Column("|c| in the run", "c_max", lambda run: run.c_max, "largest |c|", "m or rad", ".1e"),
     Column(
         "energy gained",
         "run_gained",
@@ -229,11 +194,11 @@ RUN: Sequence[Column[SceneRun]] = (
         "s",
         ".3g",
     ),
-    Column("", "run_failure", lambda run: run.failure, "why the run ended early"),
+    Column("", "failure", lambda run: run.failure, "why the run ended early"),
 )
 
 SWEPT: Sequence[Column[SweptAnswer]] = (
-    Column("sweeps", "swept_iterations", lambda swept: swept.iterations, "sweeps in a step"),
+    Column("sweeps", "iterations", lambda swept: swept.iterations, "sweeps in a step"),
     Column(
         "|z| swept",
         "swept_z_abs",
@@ -271,17 +236,16 @@ def _swept(answer: Judgement) -> SweptAnswer | None:
     return answer.swept
 
 
+def _remark(answer: Judgement) -> str | None:
+    searched = None if answer.searched is None else f"searched for αh, βh to {answer.searched:g}"
+    return "; ".join(filter(None, (answer.margins_reason, searched))) or None
+
+
 JUDGED: Sequence[Column[Judgement]] = (
     *POINT,
     *DECAY,
     *ENDS,
-    Column(
-        "searched",
-        "searched",
-        lambda answer: answer.searched,
-        "largest αh and βh that were searched; null where all were",
-        form="αh, βh to {:g}".format,
-    ),
+    Column("remark", "remark", _remark, "why margins are not known, and how far was searched"),
     *of_part(_margins, MARGINS),
     *MOTION,
     *of_part(_cost, COST),
@@ -329,19 +293,21 @@ def _z(answer: PoleAnswer) -> complex:
 
 
 WITH_A_POLE = {
-    *("method", "alpha_hat", "beta_hat", "verdict", "safe"),
-    *("omega_h", "total_error", "velocity_error", "order_left", "times_least", "times_least_velocity"),
-    *("kappa", "z_abs_at_most", "moving_verdict", "safe_speed", "swept"),
+    "method": False,
+    "alpha_hat": False,
+    "beta_hat": False,
+    "verdict": True,
+    "safe": False,
+    "kappa": False,
+    "z_abs_at_most": True,
+    "moving_verdict": True,
 }
-"""Keys of a judged point that are printed with its poles, ..."""
-
-SHOWN_WITH_A_POLE = {"verdict", "z_abs_at_most", "moving_verdict"}
-"""... and those that are printed without --all."""
+"""Keys of a judged point that are printed with its poles, and whether without --all, too."""
 
 POLES: Sequence[Column[PoleAnswer]] = (
     *of_part(
         _judged,
-        [replace(each, brief=each.key in SHOWN_WITH_A_POLE) for each in JUDGED if each.key in WITH_A_POLE],
+        [replace(each, brief=WITH_A_POLE[each.key]) for each in JUDGED if each.key in WITH_A_POLE],
     ),
     *of_part(_z, [replace(each, brief=True) for each in POLE]),
     Column("", "sentence", lambda answer: answer.sentence, "the answer in words"),

@@ -42,6 +42,7 @@ def poles_at(methods: Sequence[Method], given: Given, asked: Conditions, *, ever
             applied=made.words if asked.engine else None,
             as_typed=given.as_typed,
             margins=False,
+            cost=False,
         )
         if every:
             sentence = f"{method.name} {judged.verdict}. Each step multiplies this pole's part of the error by |z|."

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from bezstab.cli import shared_options as shared
-from bezstab.cli.asking import say_each, say_if_units_were_mistaken, show_sentences
+from bezstab.cli.asking import say_each, say_if_units_were_mistaken
 from bezstab.cli.grouped_help import GroupedCommand, grouped
 from bezstab.cli.options import A_METHOD, METHOD, SECONDS, EngineValues, TypedPoint, typed_options
 from bezstab.cli.output import for_reading, show_answers, worked_out
@@ -25,8 +25,7 @@ USUAL_METHODS = ("B2", "B3", "B4", "AB2", "AB3", "AB4", "RK4@5", "SIE")
 @grouped(
     "Your simulation",
     click.option("--method", "methods", type=METHOD, multiple=True, help=f"{A_METHOD} Repeatable [some usual ones]."),
-    click.option("--h", type=SECONDS, help="Step in s, for --physical, --engine, --scene and --omega."),
-    shared.omega,
+    click.option("--h", type=SECONDS, help="Step in s, for --physical, --engine and --scene."),
     shared.scene,
     shared.speed,
 )
@@ -44,7 +43,6 @@ def poles(
     h: Fraction | None,
     engine: EngineValues | None,
     as_typed: bool,
-    omega: Fraction | None,
     scene: str | None,
     speed: Fraction,
     all_poles: bool,
@@ -64,26 +62,23 @@ def poles(
     from bezstab.feedback.columns import POLES
     from bezstab.feedback.conditions import Setup, conditions
     from bezstab.feedback.poles import poles_at
-    from bezstab.feedback.sentences import motion_words
     from bezstab.methods.registry import lookup
     from bezstab.questions.methods import methods_for
+    from bezstab.stability.forced_errors import OMEGA_H
 
     named, values = engine or (None, None)
     typed = TypedPoint(alpha, beta, physical)
-    if "--h" in typed_options() and not (physical or engine or scene or omega):
-        raise click.UsageError("--h needs one of --physical, --engine, --scene, --omega: α̂ and β̂ have no unit")
+    if "--h" in typed_options() and not (physical or engine or scene):
+        raise click.UsageError("--h needs one of --physical, --engine, --scene: α̂ and β̂ have no unit")
     given = Given(point=typed.at(h), values=values, as_typed=as_typed)
     if not methods and named is None:
         methods = tuple(map(lookup, USUAL_METHODS))
-    setup = Setup(h=h, engine=named, omega=omega, scene=scene, speed=speed)
+    setup = Setup(h=h, engine=named, omega_h=OMEGA_H, scene=scene, speed=speed)  # no errors on a motion are told
     methods, asked = methods_for(methods, named), worked_out(lambda: conditions(setup), scene)
     say_each(asked.warnings)
     found = poles_at(methods, given, asked, every=all_poles)
     say_if_units_were_mistaken(methods, typed, h)
     show_point([each.judged for each in found])
     show_answers(POLES, found, [each.sentence for each in found])
-    if every_column and not asked.motion.assumed:
-        show_sentences([motion_words(asked.motion)])
-    say_each(each.judged.cost_reason for each in found)
     if for_reading():
         say_what_the_engine_did(given, asked)

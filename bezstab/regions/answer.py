@@ -4,7 +4,7 @@ levels, a window, an engine, a scene or a motion   →   map_conditions   →   
 a method, MapConditions                            →   map_answer       →   MapAnswer, with its Drawing if asked for
 """
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 from itertools import chain
@@ -14,6 +14,7 @@ import numpy as np
 from bezstab.arguments import Number, in_keywords, real_number
 from bezstab.engines.conversions import Engine
 from bezstab.errors import InputError, NumericalError
+from bezstab.goals import Goal
 from bezstab.mechanism.scene_files import load_scene
 from bezstab.methods.registry import method as method_named
 from bezstab.methods.schemes import Method
@@ -288,13 +289,40 @@ class Drawing:
     faster: tuple[Region, ...]
 
 
+@dataclass(frozen=True)
+class MotionPoint:
+    """A point that a goal of `choose` gives, and what it does to a motion that turns by omega_h rad a step.
+
+    `error`, and `growth` of energy in a revolution, if that is asked about, are shares of the motion.
+    """
+
+    method: Method
+    goal: Goal
+    omega_h: float
+    alpha_hat: float
+    beta_hat: float
+    z_abs: float
+    error: float
+    growth: float | None
+
+
+@dataclass(frozen=True)
+class MovingRegion:
+    """The area of a method's region in a scene at a multiple of its own speed, as it turns at kappa (1/s) at most."""
+
+    method: Method
+    speed: float
+    kappa: float
+    area: float
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class MapAnswer:
     """One method's answer: its stable region and those of the levels below 1.
 
-    `moving`: the regions of a scene as it moves, for every speed. On a motion `chosen` is the choice of the goal
-    accurate; without one, of the usual goal, if it is to be drawn. None if there is none, and `reason` says why. Errors
-    and growths of energy on a motion are shares of it, at the point of least |z_p| and at `chosen`.
+    `moving`: the regions of a scene as it moves, for every speed; `speeds` how large each is. On a motion `chosen` is
+    the choice of the goal accurate; without one, of the usual goal, if it is to be drawn. None if there is none, and
+    `reason` says why. `on_motion`: what that point and the one of least |z_p| do to a motion.
     """
 
     method: Method
@@ -303,10 +331,8 @@ class MapAnswer:
     moving: MovingRegions | None
     chosen: Choice | None
     reason: str | None
-    best_error: float | None
-    accurate_error: float | None
-    best_growth: float | None
-    accurate_growth: float | None
+    on_motion: tuple[MotionPoint, ...]
+    speeds: tuple[MovingRegion, ...]
     drawing: Drawing | None
 
 
@@ -323,22 +349,21 @@ def map_answer(
     """
     below = [level for level in asked.levels if level < 1]
     regions = tuple(region_answer(method, level) for level in (1.0, *below))
-    stable, motion = regions[0], asked.motion
+    stable, moving = regions[0], moving_regions(method) if asked.kappas else None
     chosen, reason = _chosen(method, asked, drawn)
-    points = (stable.best, chosen)
-    best_error, accurate_error = (_at(point, method, motion, _error) for point in points)
-    best_growth, accurate_growth = (_at(point, method, motion if asked.energy else None, _growth) for point in points)
     return MapAnswer(
         method=method,
         conditions=asked,
         regions=regions,
-        moving=moving_regions(method) if asked.kappas else None,
+        moving=moving,
         chosen=chosen,
         reason=reason,
-        best_error=best_error,
-        accurate_error=accurate_error,
-        best_growth=best_growth,
-        accurate_growth=accurate_growth,
+        on_motion=tuple(_on_motion(method, asked, stable.best, chosen)),
+        speeds=tuple(
+            MovingRegion(method, speed, kappa, moving.area(kappa * asked.h))
+            for speed, kappa in asked.kappas.items()
+            if moving and asked.h
+        ),
         drawing=_drawing(method, asked, stable, chosen, bar) if drawn else None,
     )
 
@@ -369,16 +394,29 @@ def _growth(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray, motion:
     return 2 * np.pi * motion_energy(method, alpha_hat, beta_hat, float(motion.omega_h)).growth()
 
 
-def _at(
-    point: BestPoint | Choice | None,
-    method: Method,
-    motion: ReferenceMotion | None,
-    share: Callable[[Method, FloatArray, FloatArray, ReferenceMotion], FloatArray],
-) -> float | None:
-    """Return a share of a motion at a point; None without either."""
-    if point is None or motion is None:
-        return None
-    return float(share(method, np.array(point.alpha_hat), np.array(point.beta_hat), motion))
+def _on_motion(
+    method: Method, asked: MapConditions, best: BestPoint | None, chosen: Choice | None
+) -> Iterator[MotionPoint]:
+    """Yield what the points that decay fastest and are most accurate do to the motion, if one is asked about."""
+    motion = asked.motion
+    points: list[tuple[Goal, float, BestPoint | Choice]] = []
+    if best:
+        points.append(("fastest", best.z_abs, best))
+    if chosen:
+        points.append(("accurate", abs(chosen.pole), chosen))
+    for goal, z_abs, point in points if motion else ():
+        assert motion
+        place = np.array(point.alpha_hat), np.array(point.beta_hat)
+        yield MotionPoint(
+            method=method,
+            goal=goal,
+            omega_h=float(motion.omega_h),
+            alpha_hat=point.alpha_hat,
+            beta_hat=point.beta_hat,
+            z_abs=z_abs,
+            error=float(_error(method, *place, motion)),
+            growth=float(_growth(method, *place, motion)) if asked.energy else None,
+        )
 
 
 def _drawing(

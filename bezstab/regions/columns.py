@@ -2,30 +2,29 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
 from itertools import chain, compress
-from typing import NamedTuple
 
-from bezstab.regions.answer import MapAnswer, RegionAnswer
+from bezstab.regions.answer import MotionPoint, MovingRegion, RegionAnswer
 from bezstab.regions.methods import Formulas, MethodAnswer, WholeMethod
-from bezstab.regions.sentences import best_point_words, falling_words, order_words
-from bezstab.show.columns import Answer, Column, of_part
-from bezstab.show.fields import MISSING, Value, formatted
+from bezstab.regions.sentences import (
+    best_point_words,
+    falling_words,
+    order_words,
+    region_sentence,
+    whole_method_sentence,
+)
+from bezstab.show.cells import between
+from bezstab.show.columns import Column, of_part
+from bezstab.show.fields import MISSING, formatted
+from bezstab.stability.best_points import BestPoint
 
-LIMITS = ("alpha_hat_min", "alpha_hat_max", "beta_hat_min", "beta_hat_max")
-"""The ends of a region's ranges."""
+LIMITS = ("α̂ from below", "α̂ from above", "β̂ from below", "β̂ from above")
+"""The ends of a region's ranges that no edge may attain."""
 
 NAMES_ROOM = 22
 """Letters of the longest name in the list of methods."""
 
-
-def _end(answer: RegionAnswer, axis: int, end: int) -> float | None:
-    """Return an end of a region, which may be infinite; None of an empty one."""
-    return answer.region.extent[axis][end] if answer.region.extent else None
-
-
-def _limit(number: float) -> str:
-    return "unbounded" if math.isinf(number) else format(number + 0.0, ".8g")
+ENDS = between(".8g", "unbounded")
 
 
 def _area_words(answer: RegionAnswer) -> str:
@@ -53,6 +52,35 @@ def _best_words(answer: RegionAnswer) -> str | None:
     return None
 
 
+def _approached(answer: RegionAnswer) -> str | None:
+    return ", ".join(compress(LIMITS, chain(*answer.region.approached))) or None
+
+
+def _critical_words(answer: RegionAnswer) -> str:
+    """Return up to where all of α = β is stable, and the rational number that this is, if it is known to be one."""
+    limit, exact = answer.critical_damping_limit, answer.critical_damping_limit_exact
+    if limit is None:
+        return "unlimited"
+    return f"{limit:.6g}" if exact is None else f"{limit:.6g} = {exact}"
+
+
+def _inside(answer: RegionAnswer) -> BestPoint | None:
+    return answer.inside
+
+
+BEST: Sequence[Column[BestPoint]] = (
+    Column(
+        "least |z_p|",
+        "z_abs",
+        lambda best: best.z_abs,
+        "smallest modulus of the dominant pole over the region; null where there is none",
+        form=".8f",
+        brief=True,
+    ),
+    Column("best α̂", "alpha_hat", lambda best: best.alpha_hat, "where that modulus is smallest", "", ".8f", True),
+    Column("best β̂", "beta_hat", lambda best: best.beta_hat, "where that modulus is smallest", "", ".8f", True),
+)
+
 REGION: Sequence[Column[RegionAnswer]] = (
     Column("method", "method", lambda answer: answer.region.method.name, "integration method", apart=True),
     Column(
@@ -66,68 +94,38 @@ REGION: Sequence[Column[RegionAnswer]] = (
     Column("", "area", lambda answer: answer.region.area, "area of the region in α̂ and β̂; null where it is infinite"),
     Column(
         "",
-        "area_error",
+        "uncertainty",
         lambda answer: None if answer.region.area is None else answer.region.area_error,
         "how far the area may be off; null where it is infinite",
     ),
-    Column("α̂ from", "alpha_hat_min", lambda answer: _end(answer, 0, 0), "smallest α̂ of the region", form=_limit),
-    Column("α̂ to", "alpha_hat_max", lambda answer: _end(answer, 0, 1), "largest α̂", form=_limit, brief=True),
-    Column("β̂ from", "beta_hat_min", lambda answer: _end(answer, 1, 0), "smallest β̂ of the region", form=_limit),
-    Column("β̂ to", "beta_hat_max", lambda answer: _end(answer, 1, 1), "largest β̂", form=_limit, brief=True),
     Column(
-        "approached",
-        "approached",
-        lambda answer: ", ".join(compress(LIMITS, chain(*answer.region.approached))) or None,
-        "those of the four limits that no edge attains: the region comes near them far out",
+        "α̂",
+        "alpha_hat_range",
+        lambda answer: answer.region.extent and answer.region.extent[0],
+        "from where to where the region reaches; null at an end without limit",
+        form=ENDS,
         brief=True,
     ),
+    Column(
+        "β̂",
+        "beta_hat_range",
+        lambda answer: answer.region.extent and answer.region.extent[1],
+        "the same in β̂",
+        form=ENDS,
+        brief=True,
+    ),
+    Column("approached far out", "", _approached, "", brief=True),
+    Column("βh to (α = β)", "", _critical_words, "", brief=True),
     Column(
         "",
-        "islands",
-        lambda answer: ", ".join(f"({a:.4g}, {b:.4g})" for a, b in answer.region.islands) or None,
-        "where else |z_p| is as small: a point of each island, (α̂, β̂)",
-    ),
-    Column(
-        "βh to (α = β)",
         "critical_damping_limit",
-        lambda answer: math.inf if answer.critical_damping_limit is None else answer.critical_damping_limit,
+        lambda answer: answer.critical_damping_limit,
         "largest βh on α = β up to which all are stable; null if all are",
-        form=lambda limit: "unlimited" if math.isinf(limit) else format(limit, ".6g"),
-        brief=True,
     ),
-    Column(
-        "exactly",
-        "critical_damping_limit_exact",
-        lambda answer: _text(answer.critical_damping_limit_exact),
-        "the same as a rational number; null if it is not known to be one",
-    ),
-    Column(
-        "least |z_p|",
-        "best_z_abs",
-        lambda answer: answer.inside.z_abs if answer.inside else None,
-        "smallest modulus of the dominant pole over the region; null where there is none",
-        form=".8f",
-        brief=True,
-    ),
-    Column(
-        "best α̂",
-        "best_alpha_hat",
-        lambda answer: answer.inside.alpha_hat if answer.inside else None,
-        "where that modulus is smallest, in α̂",
-        form=".8f",
-        brief=True,
-    ),
-    Column(
-        "best β̂",
-        "best_beta_hat",
-        lambda answer: answer.inside.beta_hat if answer.inside else None,
-        "where that modulus is smallest, in β̂",
-        form=".8f",
-        brief=True,
-    ),
+    *of_part(_inside, BEST),
     Column(
         "poles there",
-        "best_where",
+        "remark",
         _best_words,
         "that all poles are zero there, and where else, or why there is no such point",
         brief=True,
@@ -147,127 +145,48 @@ REGION: Sequence[Column[RegionAnswer]] = (
         lambda answer: answer.unconditional_damping_ratio,
         "damping ratio α/β above which every step is stable; null if there is none",
     ),
+    Column("", "sentence", region_sentence, "the answer in words"),
 )
 
 
-def _text(value: object) -> str | None:
-    return None if value is None else str(value)
-
-
-class MapRow(NamedTuple):
-    """A region of a method's map; of a scene that moves also at which times its own speed, and how fast it turns."""
-
-    region: RegionAnswer
-    answer: MapAnswer
-    speed: float | None = None
-    kappa: float | None = None
-
-
-def map_rows(answer: MapAnswer) -> list[MapRow]:
-    """Return a row for the stable region, or for it at each speed of the scene, and one for each level below 1."""
-    stable, *faster = answer.regions
-    at_speeds = [MapRow(stable, answer, speed, kappa) for speed, kappa in answer.conditions.kappas.items()]
-    return [*(at_speeds or [MapRow(stable, answer)]), *(MapRow(each, answer) for each in faster)]
-
-
-def _area_moving(row: MapRow) -> float | None:
-    moving, h = row.answer.moving, row.answer.conditions.h
-    return moving.area(row.kappa * h) if moving and row.kappa is not None and h else None
-
-
-def _region_of(row: MapRow) -> RegionAnswer | None:
-    return row.region
-
-
-def map_columns(answer: MapAnswer) -> Sequence[Column[MapRow]]:
-    """Return the columns of maps that ask what this one does."""
-    asked = answer.conditions
-    return [*MAP, *(ON_A_MOTION if asked.motion else ()), *(MOVING if asked.kappas else ())]
-
-
-MAP: Sequence[Column[MapRow]] = of_part(_region_of, REGION)
-
-ON_A_MOTION: Sequence[Column[MapRow]] = (
+ON_A_MOTION: Sequence[Column[MotionPoint]] = (
+    Column("method", "method", lambda point: point.method.name, "integration method", apart=True),
+    Column("point", "goal", lambda point: point.goal, "goal of `choose` whose point it is", brief=True),
+    Column("", "omega_h", lambda point: point.omega_h, "angle by which the motion turns in a step", "rad"),
+    Column("α̂", "alpha_hat", lambda point: point.alpha_hat, "2αh", brief=True),
+    Column("β̂", "beta_hat", lambda point: point.beta_hat, "β²h²", brief=True),
+    Column("|z_p|", "z_abs", lambda point: point.z_abs, "modulus of the dominant pole", form=".6f", brief=True),
     Column(
-        "",
-        "omega_h",
-        lambda row: float(row.answer.conditions.motion.omega_h) if row.answer.conditions.motion else None,
-        "angle by which the motion turns in a step",
-        "rad",
-    ),
-    Column(
-        "accurate α̂",
-        "accurate_alpha_hat",
-        lambda row: row.answer.chosen.alpha_hat if row.answer.chosen else None,
-        "where the goal accurate chooses to be, in α̂; null where no feedback decays so fast",
-        brief=True,
-    ),
-    Column(
-        "accurate β̂",
-        "accurate_beta_hat",
-        lambda row: row.answer.chosen.beta_hat if row.answer.chosen else None,
-        "the same in β̂",
-        brief=True,
-    ),
-    Column(
-        "|z_p| there",
-        "accurate_z_abs",
-        lambda row: abs(row.answer.chosen.pole) if row.answer.chosen else None,
-        "modulus of the dominant pole there",
-        form=".6f",
-    ),
-    Column(
-        "error forced there",
-        "accurate_error",
-        lambda row: row.answer.accurate_error,
-        "error that is forced there, of position and velocity added up, shares of the motion",
+        "error forced",
+        "combined_error",
+        lambda point: point.error,
+        "errors of position and velocity that are forced, added up, as shares of the motion",
         form=".2e",
         brief=True,
     ),
     Column(
-        "error forced at the least |z_p|",
-        "best_error",
-        lambda row: row.answer.best_error,
-        "the same where |z_p| is least",
-        form=".2e",
-        brief=True,
-    ),
-    Column(
-        "energy gained there",
-        "accurate_growth",
-        lambda row: row.answer.accurate_growth,
-        "growth of energy in a revolution, a share of it, where the goal accurate chooses to be; null without --motion",
-        form=".2e",
-        brief=True,
-    ),
-    Column(
-        "energy gained at the least |z_p|",
-        "best_growth",
-        lambda row: row.answer.best_growth,
-        "the same where |z_p| is least",
+        "energy gained",
+        "energy_growth",
+        lambda point: point.growth,
+        "growth of energy in a revolution, a share of it; null without --motion",
         form=".2e",
         brief=True,
     ),
 )
 
-MOVING: Sequence[Column[MapRow]] = (
-    Column(
-        "speed",
-        "speed",
-        lambda row: row.speed,
-        "times the scene's own speed; null in the row of a level below 1",
-        brief=True,
-    ),
+MOVING: Sequence[Column[MovingRegion]] = (
+    Column("method", "method", lambda moving: moving.method.name, "integration method", apart=True),
+    Column("speed", "speed", lambda moving: moving.speed, "times the scene's own speed", brief=True),
     Column(
         "κ (1/s)",
         "kappa",
-        lambda row: row.kappa,
+        lambda moving: moving.kappa,
         "how fast the directions of the constraints turn, at most",
         "1/s",
         ".4g",
         True,
     ),
-    Column("area moving", "area_moving", _area_moving, "area in α̂ and β̂ of the mechanism as it moves", brief=True),
+    Column("area moving", "area", lambda moving: moving.area, "area for the mechanism as it moves", brief=True),
 )
 
 
@@ -278,22 +197,24 @@ def _name_and_alias(about: MethodAnswer) -> str:
     return with_alias if shortest and len(with_alias) <= NAMES_ROOM else about.name
 
 
-def _exact(about: MethodAnswer) -> str | None:
-    """Return the error constant as a rational; None where the coefficients are irrational."""
-    return str(about.error_constant) if about.method.digits is None else None
+def _constant_words(about: MethodAnswer) -> str:
+    """Return the error constant as a rational, with ten digits where the coefficients are irrational."""
+    constant = about.error_constant
+    return str(constant) if about.method.digits is None else format(float(constant), ".10g")
 
 
 LISTED: Sequence[Column[MethodAnswer]] = (
-    Column("method", "", _name_and_alias, ""),
+    Column("method", "", _name_and_alias, "", brief=True),
     Column("", "method", lambda about: about.name, "integration method"),
-    Column("steps", "steps", lambda about: about.steps, "number of steps of the method"),
+    Column("steps", "steps", lambda about: about.steps, "number of steps of the method", brief=True),
     Column(
         "f calls",
         "evaluations",
         lambda about: about.evaluations,
         "evaluations of the right-hand side in a step, of an implicit method in an iteration",
+        brief=True,
     ),
-    Column("order", "", order_words, ""),
+    Column("order", "", order_words, "", brief=True),
     Column("", "order", lambda about: about.order, "order of accuracy, computed from the coefficients"),
     Column(
         "",
@@ -301,75 +222,48 @@ LISTED: Sequence[Column[MethodAnswer]] = (
         lambda about: about.order_position_forces,
         "order of accuracy where forces depend on positions alone",
     ),
-    Column(
-        "",
-        "order_velocity_forces",
-        lambda about: about.order_velocity_forces,
-        "order of accuracy where forces depend on velocities alone",
-    ),
-    Column("error constant", "", lambda about: _exact(about) or format(float(about.error_constant), ".10g"), ""),
+    Column("error constant", "", _constant_words, "", brief=True),
     Column("", "error_constant", lambda about: float(about.error_constant), "error constant of the method"),
-    Column(
-        "",
-        "error_constant_exact",
-        _exact,
-        "the error constant as a rational; null where the coefficients are irrational",
-    ),
     Column(
         "added damping",
         "added_damping",
         lambda about: about.added_damping,
         "damping ratio that the method adds to an oscillator without damping, negative where it drives: the first term "
         "in θ = ωh",
+        brief=True,
     ),
-    Column("", "source", lambda about: about.method.source, "where the method is from"),
-    Column("", "implicit", lambda about: about.implicit, "whether a step solves equations"),
+    Column("implicit", "implicit", lambda about: about.implicit, "whether a step solves equations"),
+    Column("digits", "", lambda about: about.method.digits, ""),
+    Column("source", "source", lambda about: about.method.source, "where the method is from"),
     Column(
-        "",
-        "digits",
-        lambda about: about.method.digits,
-        "digits to which rationals stand for irrational coefficients; null where none do",
+        "other names",
+        "other_names",
+        lambda about: about.other_names or None,
+        "what else it is called; null where nothing is",
     ),
-    Column("", "other_names", lambda about: about.other_names or None, "what else it is called; null where nothing is"),
-    Column("", "group", lambda about: about.group or None, "heading under which the method is listed"),
 )
 
 FORMULAS: Sequence[Column[Formulas]] = (
-    Column("", "recursion", lambda found: found.recursion, "the method's recursion"),
-    Column("", "mapping", lambda found: found.mapping, "the method's mapping from s to z"),
+    Column("recursion", "recursion", lambda found: found.recursion, "the method's recursion"),
+    Column("mapping", "", lambda found: found.mapping, ""),
     Column(
-        "",
+        "characteristic polynomial",
         "characteristic_polynomial",
         lambda found: found.characteristic_polynomial,
         "polynomial in z whose roots are the poles",
     ),
     Column(
-        "",
+        "steady error",
         "steady_error",
         lambda found: found.steady_error,
         "what the method forces on a constraint that moves as e^(iωt), as a share of that motion: the first term in "
         "θ = iωh where α̂ and β̂ are held",
     ),
+    Column("steady velocity error", "", lambda found: found.steady_velocity_error, ""),
+    Column("stage torque", "", lambda found: found.stage_torque, ""),
+    Column("multiplier law", "", lambda found: found.multiplier_law, ""),
     Column(
-        "",
-        "steady_velocity_error",
-        lambda found: found.steady_velocity_error,
-        "the same of the velocity, as a share of that of the motion",
-    ),
-    Column(
-        "",
-        "stage_torque",
-        lambda found: found.stage_torque,
-        "D, where a step multiplies the rate of a uniform rotation by 1 + D: the first term in θ = ωh",
-    ),
-    Column(
-        "",
-        "multiplier_law",
-        lambda found: found.multiplier_law,
-        "the constraint error c that a motion forces, on which the multipliers do the work -λ dc/dt",
-    ),
-    Column(
-        "",
+        "order left",
         "order_left",
         lambda found: found.order_left,
         "order in h of the forced error where α̂ and β̂ are held; null where it is not known",
@@ -389,22 +283,10 @@ def _region(whole: WholeMethod) -> RegionAnswer | None:
     return whole.region
 
 
-def _by_key(columns: Sequence[Column[Answer]]) -> list[Column[Answer]]:
-    """Return the columns that have a key, each headed by it, with ten digits."""
-    return [
-        replace(each, heading=each.key.replace("_", " "), form=_ten_digits)
-        for each in columns
-        if each.key not in ("", "group")
-    ]
-
-
-def _ten_digits(value: Value) -> str:
-    return formatted(value, ".10g" if isinstance(value, float) and math.isfinite(value) else "")
-
-
 WHOLE: Sequence[Column[WholeMethod]] = [
-    *of_part(_about, _by_key(LISTED)),
-    *of_part(_formulas, _by_key(FORMULAS)),
-    *of_part(_region, _by_key(REGION[1:])),
+    *of_part(_about, LISTED),
+    *of_part(_formulas, FORMULAS),
+    *of_part(_region, REGION[1:-1]),
+    Column("", "sentence", whole_method_sentence, "the answer in words"),
 ]
-"""All that is known of a method that is named, each below its key."""
+"""All that is known of a method that is named."""

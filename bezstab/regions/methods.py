@@ -10,22 +10,20 @@ from bezstab.regions.answer import RegionAnswer, region_answer
 
 @dataclass(frozen=True)
 class MethodAnswer:
-    """What a list says of a method, under the heading of its `group`; computed from its coefficients.
+    """What a list says of a method; computed from its coefficients.
 
-    `evaluations` of the right-hand side in a step, of an implicit method in an iteration. The last two orders are those
-    where forces depend on positions alone, and on velocities alone.
+    `evaluations` of the right-hand side in a step, of an implicit method in an iteration. The second order is that
+    where forces depend on positions alone.
     """
 
     method: Method
     name: str
-    group: str
     steps: int
     evaluations: int
     implicit: bool
     order: int
     error_constant: Fraction
     order_position_forces: int
-    order_velocity_forces: int
     other_names: str
     added_damping: str
 
@@ -57,24 +55,21 @@ class WholeMethod:
     region: RegionAnswer
 
 
-def method_answer(method: Method, name: str = "", group: str = "", *, latex: bool = False) -> MethodAnswer:
+def method_answer(method: Method, name: str = "", *, latex: bool = False) -> MethodAnswer:
     """Return what a list says of a method, called by its own name unless told another."""
     from bezstab.methods.formulas import added_damping_text
     from bezstab.methods.orders import accuracy, accuracy_by_force  # loads sympy
 
     order, constant = accuracy(method)
-    by_force = accuracy_by_force(method)
     return MethodAnswer(
         method=method,
         name=name or method.name,
-        group=group,
         steps=steps(method),
         evaluations=evaluations(method),
         implicit=implicit(method),
         order=order,
         error_constant=constant,
-        order_position_forces=by_force.position[0],
-        order_velocity_forces=by_force.velocity[0],
+        order_position_forces=accuracy_by_force(method).position[0],
         other_names=OTHER_NAMES.get(method.name, "").replace(" ", ", "),
         added_damping=added_damping_text(method, latex),
     )

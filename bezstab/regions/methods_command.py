@@ -40,7 +40,7 @@ def methods(methods: Sequence[Method], latex: bool, **_: object) -> None:
         show_answers(WHOLE, found, list(map(whole_method_sentence, found)), in_blocks=True)
         show_text("\nSteady errors are shares of a motion of ω rad/s, to leading order in θ = iωh.")
         return
-    listed = [(group, [method_answer(lookup(name), name, group.heading) for name in group.methods]) for group in GROUPS]
+    listed = [(group, [method_answer(lookup(name), name) for name in group.methods]) for group in GROUPS]
     if chosen_format() == "text":
         show_groups(
             LISTED, [("\n".join(filter(None, (group.heading, group.note))), answers) for group, answers in listed]

@@ -13,7 +13,7 @@ from bezstab.cli.asking import of_each, say_each
 from bezstab.cli.command_group import NUMERICAL_TROUBLE
 from bezstab.cli.grouped_help import GroupedCommand, grouped
 from bezstab.cli.options import ENGINE, METHOD, NUMBER, POSITIVE, SCENE, SECONDS, SPEED
-from bezstab.cli.output import Files, progress, show_answers, show_text, worked_out
+from bezstab.cli.output import Files, Table, progress, show_answers, show_text, worked_out
 from bezstab.engines.conversions import Engine
 from bezstab.methods.schemes import Method
 
@@ -97,7 +97,7 @@ def region(
     from bezstab.methods.registry import lookup
     from bezstab.questions.methods import methods_for
     from bezstab.regions.answer import map_conditions, region_answer
-    from bezstab.regions.columns import REGION, map_columns, map_rows
+    from bezstab.regions.columns import MOVING, ON_A_MOTION, REGION
     from bezstab.regions.sentences import region_sentence
     from bezstab.show.result_sentences import combined_words, energy_words
     from bezstab.stability.best_points import best_point_or_reason
@@ -132,8 +132,12 @@ def region(
     else:
         kind = "accuracy" if accuracy else "motion" if energy else scene
         answers, status = of_each(methods, lambda method: [_map(method, asked, files, kind)])
-        rows = [row for answer in answers for row in map_rows(answer)]
-        show_answers(map_columns(answers[0]), rows, [region_sentence(row.region) for row in rows])
+        regions = [region for answer in answers for region in answer.regions]
+        below: list[Table] = [
+            (ON_A_MOTION, [point for answer in answers for point in answer.on_motion]),
+            (MOVING, [moving for answer in answers for moving in answer.speeds]),
+        ]
+        show_answers(REGION, regions, list(map(region_sentence, regions)), below=below)
     if asked.motion:
         show_text((energy_words if energy else combined_words)(asked.motion))
     known = not any(best_point_or_reason(method)[1] for method in methods)

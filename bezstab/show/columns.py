@@ -4,7 +4,7 @@ import cmath
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Generic, SupportsFloat, TypeVar
+from typing import Any, Generic, SupportsFloat, TypeVar
 
 from bezstab.show.cells import modulus_words, pole_words
 from bezstab.show.fields import MISSING, Form, Row, Value, formatted, visible
@@ -59,14 +59,7 @@ POLE: Sequence[Column[complex]] = (
     Column("", "z_real", lambda z: z.real, "real part of the pole"),
     Column("", "z_imag", lambda z: z.imag, "imaginary part of the pole, that of the upper one of a pair"),
     Column("|z_p|", "z_abs", abs, "modulus of the pole: each step multiplies errors by it", form=modulus_words),
-    Column(
-        "∠z (deg)",
-        "z_angle_deg",
-        lambda z: math.degrees(cmath.phase(z)),
-        "angle of the pole: errors turn by it in each step",
-        "degrees",
-        ".3f",
-    ),
+    Column("∠z (deg)", "", lambda z: math.degrees(cmath.phase(z)), "", form=".3f"),
 )
 
 
@@ -94,9 +87,11 @@ def in_seconds(steps: int | None, h: SupportsFloat) -> float | None:
 
 
 def row_of(columns: Sequence[Column[Answer]], answer: Answer) -> Row:
-    """Return the values of an answer by key; None for what is not finite."""
+    """Return the values of an answer by key; None for what is not finite, also within a list."""
     return {column.key: _finite(column.value(answer)) for column in columns if column.key}
 
 
-def _finite(value: Value) -> Value:
+def _finite(value: Any) -> Any:
+    if isinstance(value, tuple | list):
+        return [_finite(each) for each in value]
     return None if isinstance(value, float) and not math.isfinite(value) else value

@@ -4,7 +4,7 @@ import unicodedata
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-Value = str | float | int | Sequence[float] | Sequence[Sequence[str]] | None
+Value = str | float | int | Sequence[float | None] | Sequence[Sequence[str]] | None
 Row = Mapping[str, Any]
 """A value by key."""
 

@@ -42,7 +42,7 @@ def test_the_example_in_the_help_runs(name: str) -> None:
 NUMBERS = ["0", "-0.1", "0.5", "1", "2", "1e-17", "-1e-30", "1e-300", "1e100", "1e300", "6/11", "nan", "1e999", "x"]
 ENGINES = ["mujoco=0.02,1", "mujoco=0,0", "bullet=0.2", "box2d=60,-2", "drake=1e300,1", "ode=", "x=1", "mujoco"]
 TYPED = {
-    "poles": ["--alpha", "--beta", "--h", "--physical", "--all-poles", "--omega"],
+    "poles": ["--alpha", "--beta", "--h", "--physical", "--all-poles"],
     "check": ["--alpha", "--beta", "--h", "--physical", "--omega", "--engine"],
     "engines": ["--alpha", "--beta", "--h", "--omega"],
     "methods": ["--latex"],

@@ -44,7 +44,7 @@ def test_without_margins_check_still_answers_and_claims_no_limit(monkeypatch: py
     assert f"not known: {REASON}" in " ".join(result.stdout.split())
     assert not {"unlimited", "without limit"} & set(result.stdout.split("  "))
     given = rows("check", POINT)[0]
-    assert (given["safe"], given["h_factor"], given["margins_reason"]) == (True, None, REASON)
+    assert (given["safe"], given["h_factor"], given["remark"]) == (True, None, REASON)
 
 
 def test_without_a_best_point_region_still_prints_the_area(monkeypatch: pytest.MonkeyPatch) -> None:

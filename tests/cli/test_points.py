@@ -24,7 +24,7 @@ def test_the_verdict_is_proven_on_the_numbers_as_typed(name: str, alpha: str, be
 
 
 def test_omega_times_h_is_taken_exactly_as_typed_and_h_alone_makes_no_unit() -> None:
-    point = "poles --method SYM --alpha 1 --beta 1/2"
+    point = "check --method SYM --alpha 1 --beta 1/2"
     (row,) = rows(point, "--h 1/240 --omega 12")
     assert row["omega_h"] == 1 / 20
     (usual,) = rows(point)

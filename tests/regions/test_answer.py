@@ -66,11 +66,10 @@ def test_the_most_accurate_point_forces_less_than_the_fastest() -> None:
     best = forced.regions[0].best
     assert best
     assert forced.drawing
-    assert forced.accurate_error
-    assert forced.best_error
-    assert forced.accurate_error < forced.best_error
-    fastest = best.alpha_hat, best.beta_hat
-    assert forced.best_error == float(combined_error(lookup("RK4"), *fastest, Fraction(1, 100)))
+    fastest, accurate = forced.on_motion
+    assert accurate.error < fastest.error
+    assert (fastest.alpha_hat, fastest.beta_hat) == (best.alpha_hat, best.beta_hat)
+    assert fastest.error == float(combined_error(lookup("RK4"), best.alpha_hat, best.beta_hat, Fraction(1, 100)))
     assert min(forced.drawing.alpha_hat[0], forced.drawing.beta_hat[0]) > 0
 
 

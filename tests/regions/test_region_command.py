@@ -45,13 +45,15 @@ def test_the_tables_of_a_map_and_of_compared_boundaries(tmp_path: Path) -> None:
 @pytest.mark.slow
 def test_the_map_of_errors_is_written_as_figure_and_table(tmp_path: Path) -> None:
     options = "--alpha-range 0.001 6 --beta-range 1e-5 9 --grid 20 --level 0.9 --table npz -o out"
-    region, level = rows("region --method RK4 --accuracy", options)
+    region, level, fastest, accurate = rows("region --method RK4 --accuracy", options)
     assert {path.name for path in (tmp_path / "out").iterdir()} == {
         "region_RK4_accuracy.png",
         "region_RK4_accuracy.npz",
     }
     assert (region["z_abs_below"], level["z_abs_below"]) == (1, 0.9)
-    assert region["accurate_error"] == level["accurate_error"]
+    assert (fastest["goal"], accurate["goal"]) == ("fastest", "accurate")
+    assert accurate["combined_error"] < fastest["combined_error"]
+    assert fastest["z_abs"] == region["z_abs"]
     table = arrays(tmp_path / "out" / "region_RK4_accuracy.npz")
     assert table["alpha_hat"][:20] == pytest.approx(np.geomspace(1e-3, 6, 20))
     expected = combined_error(lookup("RK4"), table["alpha_hat"], table["beta_hat"], Fraction(1, 100))

@@ -29,7 +29,7 @@ COLUMNS: Mapping[str, Sequence[Sequence[Column[Any]]]] = {
     "lint": [mujoco.STATES, mujoco.SUSPECTS, mujoco.REMEDIES, mujoco.ENERGIES, mujoco.SAGS, mujoco.SETTINGS],
     "methods": [regions.LISTED, regions.WHOLE],
     "probe": [probes.POLES, probes.COMPARED, probes.FOUND],
-    "region": [regions.MAP, regions.ON_A_MOTION, regions.MOVING],
+    "region": [regions.REGION, regions.ON_A_MOTION, regions.MOVING],
     "simulate": [runs.RUN],
     "steps": [step_sequences.COLUMNS],
     "tradeoff": [runs.COSTS, runs.FRONTS],
