@@ -4,8 +4,9 @@ from collections.abc import Sequence
 
 from bezstab.catalogue.answer import EngineFacts
 from bezstab.engines.conversions import Engine
+from bezstab.engines.sweeping import Sweeping
 from bezstab.rationals import rational
-from bezstab.show.columns import Column
+from bezstab.show.columns import Column, of_part
 from bezstab.show.fields import MISSING
 
 SPINNING = {
@@ -46,9 +47,28 @@ def _spinning_words(engine: Engine) -> str:
     return SPINNING[engine.energy_class]
 
 
-def _units(engine: Engine) -> str:
-    return ", ".join(engine.units.values())
+def _parameters(facts: EngineFacts) -> str | None:
+    """Return the parameters of an engine in their order with their units, optional ones in brackets."""
+    engine = facts.engine
+    named = {name: f"{name} ({unit})" if unit else name for name, unit in engine.units.items()}
+    return ", ".join(f"[{text}]" if name in engine.optional else text for name, text in named.items()) or None
 
+
+def _sweeping(facts: EngineFacts) -> Sweeping | None:
+    return facts.engine.sweeping
+
+
+SWEEPING: Sequence[Column[Sweeping]] = (
+    Column(
+        "sweeps in a step",
+        "iterations",
+        lambda sweeping: sweeping.iterations,
+        "its own number of sweeps; null where it does not sweep, or it is not known how",
+    ),
+    Column("called", "", lambda sweeping: sweeping.word, ""),
+    Column("left out of sweeps", "", lambda sweeping: sweeping.excludes, ""),
+    Column("source of sweeps", "", lambda sweeping: sweeping.source, ""),
+)
 
 COLUMNS: Sequence[Column[EngineFacts]] = (
     Column("engine", "engine", lambda facts: facts.engine.name, "name of the engine", brief=True),
@@ -74,35 +94,20 @@ COLUMNS: Sequence[Column[EngineFacts]] = (
         brief=True,
     ),
     Column("verified by", "", lambda facts: "a run" if facts.witness else "its source", "", brief=True),
-    Column(
-        "",
-        "witness",
-        lambda facts: facts.witness,
-        "test that runs the engine itself and holds the conversion; null where its source alone says it",
-    ),
-    Column(
-        "level",
-        "level",
-        lambda facts: facts.engine.level,
-        "where the feedback acts; at acceleration level the integrator decides what becomes of it",
-    ),
+    Column("level", "", lambda facts: facts.engine.level, ""),
     Column(
         "steps as",
         "method",
         lambda facts: facts.engine.method,
         "method whose step the engine's is; null where that is your integrator's",
     ),
-    Column("", "parameters", lambda facts: ", ".join(facts.engine.parameters) or None, "parameters of the feedback"),
-    Column("may follow", "optional", lambda facts: ", ".join(facts.engine.optional) or None, "those that may follow"),
-    Column("units", "units", lambda facts: _units(facts.engine) or None, "units of the parameters, in their order"),
-    Column("a spinning body", "", lambda facts: _spinning_words(facts.engine), ""),
     Column(
-        "",
-        "energy_class",
-        lambda facts: facts.engine.energy_class,
-        "how errors are taken back, which decides what a step does to the energy of a body that spins about a pin; "
-        "null where the integrator decides, or nothing spins",
+        "parameters",
+        "parameters",
+        _parameters,
+        "parameters of the feedback with their units, in brackets those that may follow",
     ),
+    Column("a spinning body", "", lambda facts: _spinning_words(facts.engine), ""),
     Column("left out", "excludes", lambda facts: facts.engine.excludes, "what the conversion leaves out"),
     Column("source", "source", lambda facts: facts.engine.source, "where the conversion is from"),
     Column(
@@ -111,28 +116,5 @@ COLUMNS: Sequence[Column[EngineFacts]] = (
         lambda facts: facts.engine.sweeps,
         "whether the engine solves one constraint after another, so that `bezstab chain` is asked about many",
     ),
-    Column(
-        "sweeps in a step",
-        "swept_iterations",
-        lambda facts: facts.engine.sweeping.iterations if facts.engine.sweeping else None,
-        "its own number of sweeps; null where it does not sweep, or it is not known how",
-    ),
-    Column(
-        "called",
-        "swept_word",
-        lambda facts: facts.engine.sweeping.word if facts.engine.sweeping else None,
-        "what the engine calls that number",
-    ),
-    Column(
-        "left out of sweeps",
-        "swept_excludes",
-        lambda facts: facts.engine.sweeping.excludes if facts.engine.sweeping else None,
-        "what is left out of how it sweeps",
-    ),
-    Column(
-        "source of sweeps",
-        "swept_source",
-        lambda facts: facts.engine.sweeping.source if facts.engine.sweeping else None,
-        "where it is from how the engine sweeps",
-    ),
+    *of_part(_sweeping, SWEEPING),
 )

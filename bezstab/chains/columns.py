@@ -1,7 +1,6 @@
 """What is printed of a chain: its columns."""
 
 from collections.abc import Sequence
-from fractions import Fraction
 
 from bezstab.chains.answer import ChainAnswer
 from bezstab.show.columns import Column, in_seconds
@@ -12,10 +11,10 @@ COLUMNS: Sequence[Column[ChainAnswer]] = (
     Column(
         "|z| a step", "z_abs", lambda answer: answer.z_abs, "a step multiplies errors by it", form=".6f", brief=True
     ),
-    Column("accuracy of |z|", "accuracy", lambda answer: answer.accuracy, "how far that may be off", form=".1g"),
+    Column("accuracy of |z|", "uncertainty", lambda answer: answer.accuracy, "how far that may be off", form=".1g"),
     Column(
         "|z| of one alone",
-        "alone_z_abs",
+        "z_abs_alone",
         lambda answer: answer.alone_z_abs,
         "the same for one constraint alone, with as many sweeps",
         form=".6f",
@@ -46,15 +45,8 @@ COLUMNS: Sequence[Column[ChainAnswer]] = (
         form=".4g",
         brief=True,
     ),
-    Column("bodies", "bodies", lambda answer: len(answer.links.masses), "bodies of the chain"),
-    Column("masses", "masses", lambda answer: [float(mass) for mass in answer.links.masses], "from the world on"),
-    Column("both ends", "both_ends", lambda answer: answer.links.both_ends, "whether both ends are pinned"),
-    Column(
-        "motor",
-        "motor",
-        lambda answer: answer.links.motor.words if answer.links.motor else None,
-        "in each joint; null: none",
-    ),
+    Column("masses", "", lambda answer: [float(mass) for mass in answer.links.masses], ""),
+    Column("motor", "", lambda answer: answer.links.motor.words if answer.links.motor else None, ""),
     Column("h", "h", lambda answer: float(answer.h), "step", unit="s"),
     Column("sweeps", "iterations", lambda answer: answer.iterations, "sweeps over all constraints in a step"),
     Column(
@@ -70,12 +62,6 @@ COLUMNS: Sequence[Column[ChainAnswer]] = (
         lambda answer: answer.setting,
         "strongest values that leave a tenth to spare; null where there are none, or nothing to set",
         brief=True,
-    ),
-    Column(
-        "load",
-        "load",
-        lambda answer: float(answer.load) if isinstance(answer.load, Fraction) else answer.load,
-        "steady force on the end of the chain in N, or gravity on all of it; null where none is given",
     ),
     Column(
         "sags by",

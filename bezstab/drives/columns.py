@@ -21,7 +21,7 @@ def _end(stretch: Stretch | None, place: int) -> float | None:
 
 
 KP, KD, KI = "N m/rad or N/m", "N m s/rad or N s/m", "N m/(rad s) or N/(m s)"
-INERTIA, LOAD = "kg m² or kg", "N m or N"
+INERTIA = "kg m² or kg"
 
 COLUMNS: Sequence[Column[DriveAnswer]] = (
     Column("method", "method", lambda answer: answer.method.name, "integration method", apart=True),
@@ -29,13 +29,6 @@ COLUMNS: Sequence[Column[DriveAnswer]] = (
     Column("verdict", "verdict", lambda answer: answer.verdict, "what errors do, proven; without kp the velocity"),
     Column("safe", "safe", lambda answer: answer.safe, "whether errors are proven to shrink", apart=True),
     Column("|z_p|", "z_abs", lambda answer: answer.z_abs, "a step multiplies errors by it", form=".6f", brief=True),
-    Column(
-        "|z_p| if fresh",
-        "fresh_z_abs",
-        lambda answer: answer.fresh_z_abs,
-        "the same if each step computes and applies the torque",
-        form=".6f",
-    ),
     Column(
         "damping ratio",
         "damping_ratio",
@@ -53,16 +46,10 @@ COLUMNS: Sequence[Column[DriveAnswer]] = (
         brief=True,
     ),
     Column(
-        "settles in (steps)",
-        "settle_steps",
-        lambda answer: answer.settle_steps,
-        "steps until an error is a thousandth; null where it does not fall",
-    ),
-    Column(
         "settles in (s)",
         "settle_seconds",
         lambda answer: in_seconds(answer.settle_steps, answer.h),
-        "the same in seconds",
+        "time until an error is a thousandth; null where it does not fall",
         unit="s",
         form=".4g",
         brief=True,
@@ -72,11 +59,8 @@ COLUMNS: Sequence[Column[DriveAnswer]] = (
     Column("kd", "kd", lambda answer: float(answer.drive.kd), "damping", unit=KD),
     Column("kd from", "kd_min", lambda answer: _end(answer.limits.kd, 0), "smallest stable kd", KD, ".4g", True),
     Column("kd to", "kd_max", lambda answer: _end(answer.limits.kd, 1), "largest stable kd", KD, ".4g", True),
-    Column("ki", "ki", lambda answer: float(answer.drive.ki), "integral gain", unit=KI),
     Column("ki to", "ki_max", lambda answer: _end(answer.limits.ki, 1), "largest stable ki", KI, ".4g", True),
-    Column("load", "load", lambda answer: None if answer.load is None else float(answer.load), "steady load", LOAD),
     Column("sag", "sag", lambda answer: answer.sag, "how far from its target it rests under the load", "rad or m"),
-    Column("inertia", "inertia", lambda answer: float(answer.drive.inertia), "inertia", unit=INERTIA),
     Column(
         "inertia from",
         "inertia_min",
@@ -87,18 +71,9 @@ COLUMNS: Sequence[Column[DriveAnswer]] = (
         True,
     ),
     Column("h", "h", lambda answer: float(answer.h), "step of the physics", unit="s"),
-    Column("h to (s)", "h_max", lambda answer: _end(answer.limits.h, 1), "largest stable step", "s", ".4g", True),
-    Column("every", "every", lambda answer: answer.timing.every, "steps from one torque to the next"),
+    Column("h to (s)", "h_limit", lambda answer: _end(answer.limits.h, 1), "largest stable step", "s", ".4g", True),
     Column("every to", "every_max", lambda answer: answer.limits.every, "steps that it may be held", brief=True),
-    Column("late", "late", lambda answer: float(answer.timing.late), "steps until a torque is applied"),
     Column("late to", "late_max", lambda answer: answer.limits.late, "whole steps that it may be late", brief=True),
-    Column(
-        "filter",
-        "filter",
-        lambda answer: float(answer.timing.filter_steps * answer.h),
-        "time constant of the filter of the velocity",
-        unit="s",
-    ),
     Column(
         "limited by",
         "used_up",

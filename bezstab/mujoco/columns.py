@@ -19,12 +19,18 @@ def _largest_step(judged: Judged) -> str | None:
     return "any" if math.isinf(judged.h_limit) else f"{judged.h_limit:.4g}"
 
 
+def _sag_words(sag: Sag) -> str | None:
+    if sag.angle is not None:
+        return f"{math.degrees(sag.angle):.3g}°"
+    return None if sag.length is None else f"{1000 * sag.length:.3g} mm"
+
+
 STATES: Sequence[Column[Judged]] = (
-    Column("", "row", lambda _: "state", "what the row is about"),
+    Column("", "role", lambda _: "state", "what the row is about"),
     Column("at", "at", lambda judged: judged.at, "qpos0, a keyframe, a row of a log"),
     Column(
         "errors",
-        "errors",
+        "verdict",
         lambda judged: judged.kind,
         "decays, neutral, moves on, falls by itself, unsafe, not smooth",
     ),
@@ -45,28 +51,29 @@ STATES: Sequence[Column[Judged]] = (
         "s",
         ".3g",
     ),
-    Column("falls (1/s)", "rate", lambda judged: judged.rate, "how fast it falls by itself", "1/s", ".3g"),
-    Column("safe up to h (s)", "largest_step", _largest_step, "largest safe step, also any or none", "s"),
+    Column("falls (1/s)", "", lambda judged: judged.rate, "", form=".3g"),
+    Column("safe up to h (s)", "", _largest_step, ""),
+    Column("", "h_limit", lambda judged: judged.h_limit, "largest safe step; null where there is none, or any is", "s"),
 )
 
 SUSPECTS: Sequence[Column[Suspect]] = (
-    Column("", "row", lambda _: "element", "what the row is about"),
+    Column("", "role", lambda _: "element", "what the row is about"),
     Column("element", "element", lambda suspect: suspect.element, "element of the model"),
     Column("kind", "kind", lambda suspect: suspect.kind, "what the element or the setting is"),
     Column("|z| alone", "z_abs_alone", lambda suspect: suspect.z_abs_alone, "|z| with this element alone"),
     Column("|z| without", "z_abs_without", lambda suspect: suspect.z_abs_without, "|z| without this element"),
-    Column("to blame", "blamed", lambda suspect: suspect.blamed, "errors grow with it alone, or not without it"),
+    Column("to blame", "", lambda suspect: suspect.blamed, ""),
 )
 
 REMEDIES: Sequence[Column[Remedy]] = (
-    Column("", "row", lambda _: "remedy", "what the row is about"),
-    Column("write", "write", lambda remedy: remedy.write, "what makes every unsafe state safe, checked by the step"),
+    Column("", "role", lambda _: "remedy", "what the row is about"),
+    Column("write", "setting", lambda remedy: remedy.write, "what makes every unsafe state safe, checked by the step"),
     Column("for", "element", lambda remedy: remedy.element, "element of the model"),
     Column("|z| then", "z_abs", lambda remedy: remedy.z_abs, "a step multiplies errors by it, at most"),
 )
 
 ENERGIES: Sequence[Column[Kept]] = (
-    Column("", "row", lambda _: "energy", "what the row is about"),
+    Column("", "role", lambda _: "energy", "what the row is about"),
     Column("from", "at", lambda kept: kept.at, "qpos0, a keyframe, a row of a log"),
     Column("with", "setting", lambda kept: kept.setting, "solref and solimp"),
     Column(
@@ -79,35 +86,26 @@ ENERGIES: Sequence[Column[Kept]] = (
 )
 
 SAGS: Sequence[Column[Sag]] = (
-    Column("", "row", lambda _: "sag", "what the row is about"),
+    Column("", "role", lambda _: "sag", "what the row is about"),
     Column("from", "at", lambda sag: sag.at, "qpos0, a keyframe, a row of a log"),
     Column("element", "element", lambda sag: sag.element, "element of the model"),
+    Column("off by", "", _sag_words, ""),
     Column(
-        "off by (mm)",
-        "sag_mm",
-        lambda sag: None if sag.length is None else 1000 * sag.length,
+        "",
+        "sag",
+        lambda sag: sag.length if sag.angle is None else sag.angle,
         "how far it is off where the model comes to rest; of a drive at its joint",
-        "mm",
-        ".3g",
-    ),
-    Column(
-        "off by (°)",
-        "sag_degrees",
-        lambda sag: None if sag.angle is None else math.degrees(sag.angle),
-        "the same of what turns",
-        "°",
-        ".3g",
+        "m or rad",
     ),
 )
 
 SETTINGS: Sequence[Column[Feedback]] = (
-    Column("", "row", lambda _: "setting", "what the row is about"),
+    Column("", "role", lambda _: "setting", "what the row is about"),
     Column("setting", "setting", lambda feedback: feedback.setting, "solref and solimp"),
     Column("of", "kind", lambda feedback: feedback.kinds, "what the element or the setting is"),
-    Column("", "count", lambda feedback: feedback.count, "how many constraints have the setting"),
     Column("α̂", "alpha_hat", lambda feedback: feedback.alpha_hat, "dimensionless damping"),
     Column("β̂", "beta_hat", lambda feedback: feedback.beta_hat, "dimensionless stiffness"),
     Column("|z|", "z_abs", lambda feedback: feedback.z_abs, "a step multiplies errors by it, at most"),
     Column("verdict", "verdict", lambda feedback: feedback.verdict, "what errors do, proven"),
-    Column("MuJoCo", "notes", lambda feedback: feedback.notes or None, "what MuJoCo makes of the setting"),
+    Column("MuJoCo", "remark", lambda feedback: feedback.notes or None, "what MuJoCo makes of the setting"),
 )

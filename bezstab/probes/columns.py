@@ -6,7 +6,8 @@ from typing import NamedTuple
 
 from bezstab.probes.answer import Probe
 from bezstab.probes.probed_poles import Likeness, LikePoint
-from bezstab.show.columns import POLE, Column, of_part, pole_columns
+from bezstab.show.cells import modulus_words
+from bezstab.show.columns import POLE, Column, of_part
 from bezstab.units import alpha_and_beta
 
 
@@ -29,8 +30,9 @@ def _pole(answer: Probe) -> complex | None:
     return answer.pole
 
 
-def _predicted(it: Compared) -> complex | None:
-    return it.one.predicted
+def _fits(it: Compared) -> bool | None:
+    told = it.one.method.name in it.answer.fitting
+    return None if it.one.fits and not told else it.one.fits
 
 
 def _rates(it: Found) -> tuple[float | None, float | None]:
@@ -47,22 +49,29 @@ POLES: Sequence[Column[Probe]] = (
         "how far the pole may be off; null without a pole",
         form=".1e",
     ),
-    Column("rows", "samples", lambda answer: answer.found.samples, "rows that the fit has used"),
-    Column("remark", "reason", lambda answer: answer.found.reason, "why there is no pole; empty where there is one"),
+    Column("rows", "", lambda answer: answer.found.samples, ""),
+    Column("remark", "remark", lambda answer: answer.found.reason, "why there is no pole; empty where there is one"),
 )
 
 COMPARED: Sequence[Column[Compared]] = (
     Column("column", "column", lambda it: it.answer.column, "column of the log", apart=True),
     Column("method", "method", lambda it: it.one.method.name, "integration method", brief=True),
-    *pole_columns(_predicted, "predicted", "of the method at the point", brief=True),
-    Column("distance", "distance", lambda it: it.one.distance, "distance of both poles", form=".1e", brief=True),
-    Column("allowed", "allowed", lambda it: it.one.allowed, "largest distance that still fits", form=".1e", brief=True),
-    Column("fits", "fits", lambda it: it.one.fits, "whether the log may be the method's", brief=True),
     Column(
-        "",
-        "told",
-        lambda it: it.one.method.name in it.answer.fitting,
-        "whether that is an answer: it is none where more is allowed than methods differ by",
+        "predicted |z_p|",
+        "predicted_z_abs",
+        lambda it: abs(it.one.predicted),
+        "modulus of the pole of the method at the point",
+        form=modulus_words,
+        brief=True,
+    ),
+    Column("distance", "distance", lambda it: it.one.distance, "distance of both poles", form=".1e", brief=True),
+    Column("allowed", "", lambda it: it.one.allowed, "", form=".1e", brief=True),
+    Column(
+        "fits",
+        "fits",
+        _fits,
+        "whether the log may be the method's; null where more distance is allowed than methods differ by",
+        brief=True,
     ),
 )
 

@@ -216,12 +216,6 @@ LISTED: Sequence[Column[MethodAnswer]] = (
     ),
     Column("order", "", order_words, "", brief=True),
     Column("", "order", lambda about: about.order, "order of accuracy, computed from the coefficients"),
-    Column(
-        "",
-        "order_position_forces",
-        lambda about: about.order_position_forces,
-        "order of accuracy where forces depend on positions alone",
-    ),
     Column("error constant", "", _constant_words, "", brief=True),
     Column("", "error_constant", lambda about: float(about.error_constant), "error constant of the method"),
     Column(

@@ -1,6 +1,7 @@
 """What is printed of runs: the columns of simulate, verify and tradeoff."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from fractions import Fraction
 from typing import NamedTuple
 
@@ -9,13 +10,12 @@ from bezstab.runs.accuracy_costs import Run, SweptRuns
 from bezstab.runs.measured_poles import Measurement, MeasurementSummary
 from bezstab.runs.verdict_maps import VerdictMap
 from bezstab.show.cells import modulus_words
-from bezstab.show.columns import Column, pole_columns
+from bezstab.show.columns import POLE, Column, of_part
 from bezstab.show.fields import formatted
 from bezstab.stability.error_fronts import FrontPoint
 from bezstab.units import alpha_and_beta
 
 RUN: Sequence[Column[Simulation]] = (
-    Column("scene", "scene", lambda run: run.mechanism.scene.name, "name of the scene"),
     Column("method", "method", lambda run: run.method.name, "integration method"),
     Column("held by", "stabilise", lambda run: run.stabilise, "what holds the constraints"),
     Column("α̂", "alpha_hat", lambda run: run.alpha_hat, "2αh"),
@@ -50,17 +50,7 @@ RUN: Sequence[Column[Simulation]] = (
         ".2e",
         True,
     ),
-    Column(
-        "work of drivers (J)", "driver_work", lambda run: float(run.driver_work[-1]), "work of the drivers", "J", ".3e"
-    ),
-    Column("work of forces (J)", "force_work", lambda run: float(run.force_work[-1]), "of applied forces", "J", ".3e"),
-    Column("evaluations", "run_evaluations", lambda run: run.evaluations, "evaluations of the right-hand side"),
-    Column(
-        "factorizations",
-        "factorizations",
-        lambda run: run.factorizations,
-        "factorizations of C_q M⁻¹ C_qᵀ: one for each evaluation, and those of projections",
-    ),
+    Column("evaluations", "evaluations", lambda run: run.evaluations, "evaluations of the right-hand side"),
     Column(
         "least pivot",
         "least_pivot",
@@ -68,87 +58,62 @@ RUN: Sequence[Column[Simulation]] = (
         "least relative pivot of C_q M⁻¹ C_qᵀ; small near a singular configuration",
         form=".1e",
     ),
-    Column("least pivot at (s)", "pivot_time", lambda run: run.pivot_time, "when that pivot was least", "s"),
     Column(
         "Newton's iterations", "iterations", lambda run: run.iterations, "in the whole run; null for an explicit method"
-    ),
-    Column(
-        "singular passages",
-        "singular_passages",
-        lambda run: int(run.singular_times.size),
-        "singular configurations that the run went through",
     ),
     Column("failure", "failure", lambda run: run.failure, "why the run ended early; null if it did not", brief=True),
 )
 
 
-class Measured(NamedTuple):
-    """A measured pole of a scene's run."""
-
-    scene: str
-    found: Measurement
+def _measured(found: Measurement) -> complex | None:
+    return found.measured
 
 
-def _predicted(it: Measured) -> complex | None:
-    return it.found.predicted
-
-
-def _measured(it: Measured) -> complex | None:
-    return it.found.measured
-
-
-MEASURED: Sequence[Column[Measured]] = (
-    Column("", "scene", lambda it: it.scene, "name of the scene"),
-    Column("method", "method", lambda it: it.found.method.name, "integration method", apart=True),
-    Column("α̂", "alpha_hat", lambda it: it.found.alpha_hat, "2αh", apart=True),
-    Column("β̂", "beta_hat", lambda it: it.found.beta_hat, "β²h²", apart=True),
-    *pole_columns(_predicted, "predicted", "predicted for the mechanism at rest", brief=True),
+MEASURED: Sequence[Column[Measurement]] = (
+    Column("method", "method", lambda found: found.method.name, "integration method", apart=True),
+    Column("α̂", "alpha_hat", lambda found: found.alpha_hat, "2αh", apart=True),
+    Column("β̂", "beta_hat", lambda found: found.beta_hat, "β²h²", apart=True),
+    Column(
+        "predicted |z_p|",
+        "predicted_z_abs",
+        lambda found: abs(found.predicted),
+        "modulus of the pole predicted for the mechanism at rest",
+        form=modulus_words,
+        brief=True,
+    ),
     Column(
         "|z| at most",
         "z_abs_at_most",
-        lambda it: it.found.moving.at_most,
+        lambda found: found.moving.at_most,
         "what a step multiplies an error by over the motion, at most; null where two poles nearly meet",
         form=".6f",
     ),
-    Column("", "moving_verdict", lambda it: it.found.moving.verdict, "what errors do on the moving mechanism"),
+    Column("", "moving_verdict", lambda found: found.moving.verdict, "what errors do on the moving mechanism"),
     Column(
         "|z| over the motion",
         "floquet_z_abs",
-        lambda it: it.found.floquet_abs,
+        lambda found: found.floquet_abs,
         "modulus per step of the linearised steps over the motion that the method makes: exact where that begins anew, "
         "else a growth over the run; null without --floquet",
         form=".6f",
         brief=True,
     ),
-    *pole_columns(_measured, "measured", "measured in the simulation", brief=True),
-    Column(
-        "difference of |z|",
-        "difference_z_abs",
-        lambda it: it.found.difference_abs,
-        "modulus measured less that predicted; null where nothing was measured",
-        form="+.1e",
-        brief=True,
-    ),
-    Column("predicted verdict", "predicted_verdict", lambda it: it.found.predicted_verdict, "of the mechanism at rest"),
-    Column("measured verdict", "measured_verdict", lambda it: it.found.measured_verdict, "of the run", apart=True),
+    *of_part(_measured, [replace(each, brief=each.key == "z_abs") for each in POLE]),
+    Column("predicted verdict", "", lambda found: found.predicted_verdict, ""),
+    Column("measured verdict", "verdict", lambda found: found.measured_verdict, "of the run", apart=True),
     Column(
         "verdicts agree",
         "verdicts_agree",
-        lambda it: it.found.verdicts_agree,
+        lambda found: found.verdicts_agree,
         "whether predicted and measured verdict agree; null where either is not settled",
         form="NO",
         apart=True,
     ),
-    Column(
-        "whose verdict was right",
-        "right",
-        lambda it: it.found.right,
-        "which predictions have the measured verdict: at rest, in motion, exact (or over the run)",
-    ),
+    Column("whose verdict was right", "", lambda found: found.right, ""),
     Column(
         "remark",
-        "reason",
-        lambda it: it.found.reason,
+        "remark",
+        lambda found: found.reason,
         "why nothing could be measured, or what disturbs it; empty where nothing does",
         apart=True,
     ),
@@ -166,32 +131,11 @@ SUMMARY: Sequence[Column[MeasurementSummary]] = (
 """How well the measured poles of a method agree with the predicted ones: for people, who read several points."""
 
 VERDICT_MAP: Sequence[Column[VerdictMap]] = (
-    Column("scene", "scene", lambda found: found.scene.name, "name of the scene"),
     Column("method", "method", lambda found: found.method.name, "integration method", apart=True),
     Column("h (s)", "h", lambda found: found.h, "step", "s"),
     Column("runs", "runs", lambda found: found.undecided.size, "number of runs", brief=True),
-    Column("steps of the run", "run_steps", lambda found: found.run, "steps of each run"),
-    Column("gave a verdict", "judged_runs", lambda found: found.judged, "runs that gave a verdict", brief=True),
+    Column("gave a verdict", "", lambda found: found.judged, "", brief=True),
     Column("as predicted", "agreeing", lambda found: found.agreeing, "runs with the predicted verdict", brief=True),
-    Column(
-        "too close to call: | |z_p| - 1 | below",
-        "band",
-        lambda found: found.band,
-        "distance of the modulus from one below which a verdict is too close to call",
-    ),
-    Column(
-        "too close, or moved by so much",
-        "too_close",
-        lambda found: found.close_runs,
-        "runs so close to one, or closer than the motion moves the predicted pole",
-    ),
-    Column(
-        "largest | |z_p| - 1 | that disagrees",
-        "farthest",
-        lambda found: found.farthest_disagreement,
-        "largest distance of the modulus from one of a run that disagrees; null if none does",
-        form=".2e",
-    ),
     Column(
         "disagreeing, not too close",
         "disagreeing",
@@ -222,7 +166,12 @@ def ranked_rows(swept: SweptRuns) -> list[Ranked]:
 COSTS: Sequence[Column[Ranked]] = (
     Column("method", "method", lambda it: it.run.method.name, "integration method", brief=True),
     Column("held by", "stabilise", lambda it: it.run.stabilise, "what holds the constraints"),
-    Column("advised", "advised", lambda it: it.run.advised, "whether the point is the choice of the goal accurate"),
+    Column(
+        "goal",
+        "goal",
+        lambda it: "accurate" if it.run.advised else None,
+        "that of `choose` that gave the point; null where it was given",
+    ),
     Column("h (s)", "h", lambda it: it.run.h, "step", "s", brief=True),
     Column("α̂", "alpha_hat", lambda it: it.run.alpha_hat, "2αh", brief=True),
     Column("β̂", "beta_hat", lambda it: it.run.beta_hat, "β²h²", brief=True),
@@ -243,64 +192,39 @@ COSTS: Sequence[Column[Ranked]] = (
     ),
     Column(
         "order seen",
-        "observed_order",
+        "order",
         lambda it: it.run.order,
         "order of accuracy between this and the next larger step; null where none can be told",
         form=".2f",
     ),
     Column("largest |c| (m, rad)", "c_max", lambda it: it.run.c_max, "of the run", "m or rad", ".2e", True),
-    Column(
-        "measured |c|",
-        "measured_error",
-        lambda it: it.run.measured_error,
-        "largest constraint error in the later half of the run; null if it failed",
-        "m or rad",
-        ".2e",
-    ),
+    Column("measured |c|", "", lambda it: it.run.measured_error, "", form=".2e"),
     Column(
         "predicted |c|",
         "predicted_error",
         lambda it: it.run.predicted_error,
-        "the same as predicted, with nothing fitted; null where errors do not decay, or the motion cannot be followed",
+        "largest |c| in the later half of the run as predicted, with nothing fitted; null where errors do not decay "
+        "or the motion cannot be followed",
         "m or rad",
         ".2e",
     ),
-    Column(
-        "measured work (J)",
-        "measured_work",
-        lambda it: it.run.measured_work,
-        "work of the multipliers on constraint errors in the later half of the run, which its energy gains",
-        "J",
-        ".2e",
-    ),
+    Column("measured work (J)", "", lambda it: it.run.measured_work, "", form=".2e"),
     Column(
         "predicted work (J)",
         "predicted_work",
         lambda it: it.run.predicted_work,
-        "that work as predicted to leading order; null where predicted_error is",
+        "work of the multipliers there, which the energy gains, to leading order; null where predicted_error is",
         "J",
         ".2e",
     ),
-    Column(
-        "measured trajectory",
-        "measured_trajectory",
-        lambda it: it.run.measured_trajectory,
-        "largest error of the coordinates in the later half of the run; null if it failed",
-        "m or rad",
-        ".2e",
-    ),
+    Column("measured trajectory", "", lambda it: it.run.measured_trajectory, "", form=".2e"),
     Column(
         "predicted trajectory",
         "predicted_trajectory",
         lambda it: it.run.predicted_trajectory,
-        "the same as predicted, of a mechanism that drivers move entirely; else null, and where predicted_error is",
+        "largest error of the coordinates there, of a mechanism that drivers move entirely; else null",
         "m or rad",
         ".2e",
-    ),
-    Column("rms c (m, rad)", "c_rms", lambda it: it.run.c_rms, "root mean square of the error", "m or rad", ".1e"),
-    Column("largest |ċ| (m/s, rad/s)", "cdot_max", lambda it: it.run.cdot_max, "of the run", "m/s or rad/s", ".2e"),
-    Column(
-        "rms ċ (m/s, rad/s)", "cdot_rms", lambda it: it.run.cdot_rms, "root mean square of ċ", "m/s or rad/s", ".1e"
     ),
     Column(
         "energy drift (J)",
@@ -311,11 +235,9 @@ COSTS: Sequence[Column[Ranked]] = (
         ".2e",
         True,
     ),
-    Column("evaluations", "run_evaluations", lambda it: it.run.evaluations, "of the right-hand side", brief=True),
+    Column("evaluations", "evaluations", lambda it: it.run.evaluations, "of the right-hand side", brief=True),
     Column("factorizations", "factorizations", lambda it: it.run.factorizations, "of C_q M⁻¹ C_qᵀ"),
     Column("time (s)", "seconds", lambda it: it.run.seconds, "processor time, median of repeats", "s", ".3g", True),
-    Column("least time (s)", "seconds_min", lambda it: it.run.seconds_min, "least of the repeats", "s", ".3g"),
-    Column("largest time (s)", "seconds_max", lambda it: it.run.seconds_max, "largest of the repeats", "s", ".3g"),
     Column(
         "front",
         "front",
@@ -370,7 +292,6 @@ FRONTS: Sequence[Column[Placed]] = (
         form=".2e",
         brief=True,
     ),
-    Column("both", "combined_error", lambda it: it.point.combined_error, "both, added up", form=".2e"),
     Column(
         "energy gained",
         "energy_growth",

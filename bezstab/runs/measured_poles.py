@@ -60,7 +60,9 @@ class Measurement:
 
     `predicted` and its verdict are those of the mechanism at rest, `moving` has bounds for the motion. `floquet_abs` is
     the exact rate over the motion, not a number unless asked for. Where the motion is not `periodic` that is no exact
-    rate, but a growth over the run. `measured` is what the first steps after the kick show.
+    rate, but a growth over the run. `measured` is what the first steps after the kick show; `difference_abs` is its
+    modulus less that predicted. `verdicts_agree`: whether the verdict for the motion is the measured one; None where
+    either is not settled. `right`: which predictions have it: at rest, in motion, exact.
     """
 
     method: Method
@@ -74,53 +76,14 @@ class Measurement:
     measured: complex | None
     measured_verdict: MeasuredVerdict
     reason: str
+    difference_abs: float | None
+    verdicts_agree: bool | None
+    right: str
 
     def __repr__(self) -> str:
         point = point_words(self.alpha_hat, self.beta_hat, None)
         measured = "none measured" if self.measured is None else f"measured {abs(self.measured):.6g}"
         return f"Measurement({point}, {self.method.name}: |z_p| = {abs(self.predicted):.6g}, {measured})"
-
-    @property
-    def measurable(self) -> bool:
-        """Whether a pole could be measured."""
-        return self.measured is not None
-
-    @property
-    def difference(self) -> complex | None:
-        """The measured pole less the predicted one; None where none was measured."""
-        return None if self.measured is None else self.measured - self.predicted
-
-    @property
-    def difference_abs(self) -> float | None:
-        """The modulus measured less that predicted."""
-        return None if self.measured is None else abs(self.measured) - abs(self.predicted)
-
-    @property
-    def difference_angle_deg(self) -> float | None:
-        """The angle measured less that predicted, in degrees."""
-        if self.measured is None:
-            return None
-        return float(np.angle(self.measured, deg=True) - np.angle(self.predicted, deg=True))
-
-    @property
-    def verdicts_agree(self) -> bool | None:
-        """Whether the verdict for the motion is the measured one; None where either is not settled."""
-        if self.measured_verdict == "too close to call" or self.moving.verdict == "not settled":
-            return None
-        return self.moving.verdict == self.measured_verdict
-
-    @property
-    def right(self) -> str:
-        """Which predictions have the measured verdict: those at rest, in motion, and the exact one; "" if none."""
-        if self.measured_verdict == "too close to call":
-            return ""
-        diverges = {"at rest": self.predicted_verdict == "diverges"}
-        if self.moving.verdict != "not settled":
-            diverges["in motion"] = self.moving.verdict == "diverges"
-        if math.isfinite(self.floquet_abs):
-            diverges["exact" if self.periodic else "over the run"] = self.floquet_abs > 1
-        seen = self.measured_verdict == "diverges"
-        return ", ".join(name for name, predicted in diverges.items() if predicted == seen) or "none"
 
 
 @dataclass(frozen=True)
@@ -194,19 +157,25 @@ def measure_poles(
         moving = moving_pole(method, turning.kappa, h, a, b)
         close = max(CLOSE, moving.z_abs - moving.at_least)
         unclear = bool(undecided[i]) or abs(abs(predicted) - 1) < TOO_CLOSE / RUN
+        at_rest, rate = verdict(method, exact(a), exact(b)), float(rates[i])
+        seen = _measured_verdict(measured, bool(grows[i]), unclear, close)
+        settled = seen != "too close to call" and moving.verdict != "not settled"
         found.append(
             Measurement(
                 method=method,
                 alpha_hat=a,
                 beta_hat=b,
                 predicted=predicted,
-                predicted_verdict=verdict(method, exact(a), exact(b)),
+                predicted_verdict=at_rest,
                 moving=moving,
-                floquet_abs=float(rates[i]),
+                floquet_abs=rate,
                 periodic=turning.closed,
                 measured=measured,
-                measured_verdict=_measured_verdict(measured, bool(grows[i]), unclear, close),
+                measured_verdict=seen,
                 reason=reason,
+                difference_abs=None if measured is None else abs(measured) - abs(predicted),
+                verdicts_agree=moving.verdict == seen if settled else None,
+                right=_right(seen, at_rest, moving, rate, periodic=turning.closed),
             )
         )
     return found
@@ -252,3 +221,15 @@ def _measured_verdict(measured: complex | None, grows: bool, undecided: bool, cl
     if undecided if measured is None else abs(abs(measured) - 1) < close:
         return "too close to call"
     return "diverges" if (grows if measured is None else abs(measured) > 1) else "converges"
+
+
+def _right(seen: MeasuredVerdict, at_rest: Verdict, moving: MovingPole, rate: float, *, periodic: bool) -> str:
+    """Return which predictions have the measured verdict; "none" if none has, "" where nothing is measured."""
+    if seen == "too close to call":
+        return ""
+    diverges = {"at rest": at_rest == "diverges"}
+    if moving.verdict != "not settled":
+        diverges["in motion"] = moving.verdict == "diverges"
+    if math.isfinite(rate):
+        diverges["exact" if periodic else "over the run"] = rate > 1
+    return ", ".join(name for name, predicted in diverges.items() if predicted == (seen == "diverges")) or "none"

@@ -33,6 +33,12 @@ class VerdictMap(ReadOnlyArrays):
 
     `undecided` is where a run gave no verdict, as where the mechanism itself left the linear range. `moved` says
     how much more than |z_p| the motion can make of any pole's modulus; same shape.
+
+    `disagrees`: where simulated and predicted verdict differ. `band`: how far |z_p| must be from one for a run of this
+    length to show it. `too_close`: where it is nearer, or nearer than the motion moves it. `judged`: the number of runs
+    with a verdict; `agreeing`: with the predicted one; `disagreements_beyond_band`: of those that disagree and are not
+    too close. `farthest_disagreement`: the largest | |z_p| - 1 | at which the verdicts differ; None where they nowhere
+    do. Made by `compared`.
     """
 
     scene: Scene
@@ -45,47 +51,39 @@ class VerdictMap(ReadOnlyArrays):
     diverges: BoolArray
     undecided: BoolArray
     moved: FloatArray
+    disagrees: BoolArray
+    band: float
+    too_close: BoolArray
+    judged: int
+    agreeing: int
+    disagreements_beyond_band: int
+    farthest_disagreement: float | None
 
-    @property
-    def disagrees(self) -> BoolArray:
-        """Where simulated and predicted verdict differ; shape (beta_hat.size, alpha_hat.size)."""
-        differs: BoolArray = (self.diverges != (self.z_abs >= 1)) & ~self.undecided
-        return differs
 
-    @property
-    def judged(self) -> int:
-        """The number of runs with a verdict."""
-        return self.undecided.size - int(self.undecided.sum())
-
-    @property
-    def agreeing(self) -> int:
-        """The number of runs whose verdict is the predicted one."""
-        return self.judged - int(self.disagrees.sum())
-
-    @property
-    def band(self) -> float:
-        """How far |z_p| must be from one for a run of this length to show it."""
-        return TOO_CLOSE / self.run
-
-    @property
-    def farthest_disagreement(self) -> float | None:
-        """The largest | |z_p| - 1 | at which the verdicts differ; None where they nowhere do."""
-        return max(np.abs(self.z_abs - 1)[self.disagrees].tolist(), default=None)
-
-    @property
-    def disagreements_beyond_band(self) -> int:
-        """The number of runs that disagree although |z_p| is farther from one than the band, and than it is moved."""
-        return int((self.disagrees & ~self.too_close).sum())
-
-    @property
-    def too_close(self) -> BoolArray:
-        """Where |z_p| is nearer to one than the band, or than the motion moves it; shape (beta_hat, alpha_hat)."""
-        return ~(np.abs(self.z_abs - 1) > np.maximum(self.band, self.moved))
-
-    @property
-    def close_runs(self) -> int:
-        """The number of runs where |z_p| is so near to one."""
-        return int(self.too_close.sum())
+def compared(
+    *, run: int, z_abs: FloatArray, diverges: BoolArray, undecided: BoolArray, moved: FloatArray, **of_map: Any
+) -> VerdictMap:
+    """Return a map of simulated verdicts, held against the predicted ones; the arguments are fields of VerdictMap."""
+    off = np.abs(z_abs - 1)
+    disagrees: BoolArray = (diverges != (z_abs >= 1)) & ~undecided
+    band = TOO_CLOSE / run
+    too_close: BoolArray = ~(off > np.maximum(band, moved))
+    judged = int((~undecided).sum())
+    return VerdictMap(
+        **of_map,
+        run=run,
+        z_abs=z_abs,
+        diverges=diverges,
+        undecided=undecided,
+        moved=moved,
+        disagrees=disagrees,
+        band=band,
+        too_close=too_close,
+        judged=judged,
+        agreeing=judged - int(disagrees.sum()),
+        disagreements_beyond_band=int((disagrees & ~too_close).sum()),
+        farthest_disagreement=max(off[disagrees].tolist(), default=None),
+    )
 
 
 @dataclass(frozen=True)
@@ -142,7 +140,7 @@ def verdict_map(chunks: Sequence[MapRows], found: Sequence[Mapping[str, NDArray[
     Dimensionless, arrays of shape (rows of all chunks, columns).
     """
     first = chunks[0]
-    return VerdictMap(
+    return compared(
         scene=first.scene,
         method=first.method,
         h=first.h,

@@ -74,7 +74,7 @@ def verify(
     """
     from bezstab.mechanism.equations import compiled_mechanism
     from bezstab.questions.motions import scene_at_speed
-    from bezstab.runs.columns import MEASURED, SUMMARY, VERDICT_MAP, Measured
+    from bezstab.runs.columns import MEASURED, SUMMARY, VERDICT_MAP
     from bezstab.runs.measured_poles import measurement_summary
     from bezstab.runs.sentences import exact_rate_words, measurement_sentence, verdict_map_sentence
     from bezstab.runs.verifying import check_points, measurements
@@ -93,8 +93,8 @@ def verify(
     of_methods = [
         measurements(mechanism, method, h, point, points, floquet=floquet) for method in progress(methods, "verify")
     ]
-    measured = [Measured(moving.name, found) for of_method in of_methods for found in of_method]
-    show_answers(MEASURED, measured, [measurement_sentence(each.found, float(h)) for each in measured])
+    measured = [found for of_method in of_methods for found in of_method]
+    show_answers(MEASURED, measured, [measurement_sentence(found, float(h)) for found in measured])
     if for_reading():
         for of_method in of_methods if floquet else ():
             show_text(f"\n{exact_rate_words(of_method[0])}")

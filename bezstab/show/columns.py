@@ -3,7 +3,7 @@
 import cmath
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, Generic, SupportsFloat, TypeVar
 
 from bezstab.show.cells import modulus_words, pole_words
@@ -61,24 +61,6 @@ POLE: Sequence[Column[complex]] = (
     Column("|z_p|", "z_abs", abs, "modulus of the pole: each step multiplies errors by it", form=modulus_words),
     Column("∠z (deg)", "", lambda z: math.degrees(cmath.phase(z)), "", form=".3f"),
 )
-
-
-def pole_columns(
-    pole: Callable[[Answer], complex | None], name: str, which: str, *, brief: bool = False
-) -> list[Column[Answer]]:
-    """Return the columns of one pole of several, called by its name; people read its modulus, and its angle."""
-    named = [
-        replace(
-            each,
-            heading=each.heading and f"{name} {each.heading}",
-            key=f"{name}_{each.key}",
-            meaning=each.meaning.replace("the pole", f"the pole {which}"),
-            brief=brief and each.key == "z_abs",
-        )
-        for each in POLE
-        if each.key
-    ]
-    return of_part(pole, named)
 
 
 def in_seconds(steps: int | None, h: SupportsFloat) -> float | None:

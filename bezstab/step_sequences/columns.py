@@ -43,10 +43,7 @@ COLUMNS: Sequence[Column[StepsAnswer]] = (
         "goal of `choose` that gave them, or as given, or which of the points that an engine makes of its values",
         apart=True,
     ),
-    Column("hold", "hold", lambda answer: answer.steps.hold, "whether α̂ and β̂ stay constant while the step varies"),
-    Column("h from (s)", "h_min", lambda answer: float(answer.steps.h_min), "shortest step", "s"),
-    Column("h to (s)", "h_max", lambda answer: float(answer.steps.h_max), "longest step", "s"),
-    Column("proof", "certificate_kind", lambda answer: answer.found.kind, "quadratic or commuting; null without proof"),
+    Column("proof", "", lambda answer: answer.found.kind, ""),
     Column(
         "form",
         "certificate",

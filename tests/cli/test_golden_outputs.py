@@ -31,7 +31,7 @@ class Tolerance:
 TOLERANCES = (
     Tolerance(
         "verify",
-        "measured_z_.*|difference_z_.*",
+        "z_.*",
         1e-6,
         1e-5,
         "simulated, then fitted: libm and BLAS differ between machines, by less than fits are off what is predicted",
@@ -45,7 +45,7 @@ TOLERANCES = (
     ),
     Tolerance(
         "simulate|tradeoff",
-        "c_max|c_rms|cdot_max|cdot_rms|least_pivot|trajectory_error",
+        "c_max|cdot_max|least_pivot|trajectory_error",
         1e-6,
         1e-13,
         "simulated: libm differs between machines, and 1e-13 (SI) is rounding over a run of thousands of steps",
@@ -53,7 +53,7 @@ TOLERANCES = (
     Tolerance(
         "simulate|tradeoff", "energy_drift", 1e-6, 1e-10, "the difference of two energies of some 10 J, each rounded"
     ),
-    Tolerance("tradeoff", "observed_order", 1e-6, 1e-5, "the logarithm of a ratio of simulated errors"),
+    Tolerance("tradeoff", "order", 1e-6, 1e-5, "the logarithm of a ratio of simulated errors"),
     Tolerance(
         "choose --method (RK4|B4 --method SYM)",
         "alpha.*|beta.*|worst|h_.*|.*error|z_(real|imag|abs)",

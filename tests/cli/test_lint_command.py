@@ -39,9 +39,9 @@ def test_rows_for_programs_have_all_keys() -> None:
     result = run("lint", str(DATA / "two_joints.xml"), "--format json")
     found = json.loads(result.stdout)
     assert result.exit_code == 1
-    assert {row["row"] for row in found} == {"state", "element", "remedy", "setting"}
+    assert {row["role"] for row in found} == {"state", "element", "remedy", "setting"}
     assert len({tuple(row) for row in found}) == 1
-    (blamed,) = [row["element"] for row in found if row["blamed"]]
+    (blamed,) = [row["element"] for row in found if row["role"] == "element" and row["z_abs_without"] < 1]
     assert blamed == "actuator 'servo'"
 
 
@@ -70,7 +70,7 @@ def test_the_least_armature_is_that_of_drive_to_its_two_digits(tmp_path: Path) -
     body = '<body><joint name="j"/><inertial pos="0 0 0" mass="1" diaginertia="1 1 .001"/></body>'
     text = f'<mujoco><worldbody>{body}</worldbody><actuator><motor name="m" joint="j"/></actuator></mujoco>'
     model.write_text(text, encoding="utf-8")
-    written = [row["write"] for row in rows("lint", str(model), "--pd m=20,5", status=1) if row["row"] == "remedy"]
+    written = [row["setting"] for row in rows("lint", str(model), "--pd m=20,5", status=1) if row["role"] == "remedy"]
     (lints,) = [float(text.split('"')[1]) for text in written if text.startswith("armature")]
     (answer,) = rows("drive --kp 20 --kd 5 --inertia 0.001 --h 0.002 --method SYM", status=1)
     least = answer["inertia_min"] - 0.001

@@ -1,6 +1,6 @@
 """Figures of runs that are made up: each error and each front is drawn where it is."""
 
-from dataclasses import fields, replace
+from dataclasses import fields
 from typing import Any
 
 import numpy as np
@@ -13,7 +13,7 @@ from bezstab.methods.registry import lookup
 from bezstab.runs.accuracy_costs import Cost, ErrorOf, Run, ranked_runs
 from bezstab.runs.figures import FRONT, history_figure, projection_figure, verdict_figure, work_precision_figure
 from bezstab.runs.tables import history_arrays
-from bezstab.runs.verdict_maps import map_rows, simulated_verdicts, verdict_map
+from bezstab.runs.verdict_maps import compared, map_rows, simulated_verdicts, verdict_map
 from bezstab.stability.regions import region
 from tests.show.drawn import lines_of
 
@@ -132,7 +132,9 @@ def test_the_verdict_figure_shows_cells_boundary_and_disagreement() -> None:
     wrong[2, 3] ^= True
     undecided = np.zeros_like(wrong)
     undecided[0, 5] = True
-    (axes,) = verdict_figure(replace(cells, diverges=wrong, undecided=undecided), region(method)).axes
+    same = ("scene", "method", "h", "run", "alpha_hat", "beta_hat", "z_abs", "moved")
+    made_up = compared(**{name: getattr(cells, name) for name in same}, diverges=wrong, undecided=undecided)
+    (axes,) = verdict_figure(made_up, region(method)).axes
     shown = np.ma.masked_array(axes.images[0].get_array())
     assert (np.ma.getmaskarray(shown) == undecided).all()
     assert (np.asarray(shown)[~undecided] == wrong[~undecided]).all()

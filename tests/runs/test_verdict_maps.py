@@ -1,14 +1,12 @@
 """Simulated verdicts over the plane against the exact region, and how their agreement is counted."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
 from bezstab.mechanism.scene_files import load_scene
 from bezstab.methods.registry import lookup
 from bezstab.runs.exact_rates import exact_rates
-from bezstab.runs.verdict_maps import VerdictMap, map_rows, simulated_verdicts, verdict_map
+from bezstab.runs.verdict_maps import VerdictMap, compared, map_rows, simulated_verdicts, verdict_map
 from bezstab.stability.regions import region
 from tests.runs.driven_four_bar import four_bar
 
@@ -67,22 +65,25 @@ def test_free_mechanisms_at_coarse_steps_give_no_wrong_verdict(scene: str, name:
 
 
 def test_agreement_is_of_what_was_judged_and_beyond_the_band_of_what_the_motion_does_not_move() -> None:
-    made_up = VerdictMap(
-        scene=load_scene("pendulum"),
-        method=lookup("SYM"),
-        h=H,
-        run=2000,
-        alpha_hat=np.arange(6.0),
-        beta_hat=np.ones(1),
-        z_abs=np.array([[0.9, 0.9, 1.1, 1.1, 1.004, 1.02]]),
-        diverges=np.array([[False, True, True, False, False, False]]),
-        undecided=np.array([[False, False, False, True, False, False]]),
-        moved=np.array([[0, 0, 0, 0, 0, 0.03]]),
+    undecided = np.array([[False, False, False, True, False, False]])
+    made_up, nothing = (
+        compared(
+            scene=load_scene("pendulum"),
+            method=lookup("SYM"),
+            h=H,
+            run=2000,
+            alpha_hat=np.arange(6.0),
+            beta_hat=np.ones(1),
+            z_abs=np.array([[0.9, 0.9, 1.1, 1.1, 1.004, 1.02]]),
+            diverges=np.array([[False, True, True, False, False, False]]),
+            undecided=of_runs,
+            moved=np.array([[0, 0, 0, 0, 0, 0.03]]),
+        )
+        for of_runs in (undecided, np.ones_like(undecided))
     )
     assert (made_up.judged, made_up.agreeing) == (5, 2)
     assert made_up.farthest_disagreement == pytest.approx(0.1)
-    assert (made_up.band, made_up.close_runs, made_up.disagreements_beyond_band) == (0.005, 2, 1)
-    nothing = replace(made_up, undecided=np.ones_like(made_up.undecided))
+    assert (made_up.band, made_up.too_close.sum(), made_up.disagreements_beyond_band) == (0.005, 2, 1)
     assert (nothing.judged, nothing.farthest_disagreement) == (0, None)
 
 
