@@ -50,7 +50,7 @@ def _spinning_words(engine: Engine) -> str:
 def _parameters(facts: EngineFacts) -> str | None:
     """Return the parameters of an engine in their order with their units, optional ones in brackets."""
     engine = facts.engine
-    named = {name: f"{name} ({unit})" if unit else name for name, unit in engine.units.items()}
+    named = {name: f"{name}: {unit}" for name, unit in engine.units.items()}
     return ", ".join(f"[{text}]" if name in engine.optional else text for name, text in named.items()) or None
 
 
