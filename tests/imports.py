@@ -5,6 +5,8 @@ from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 
+from bezstab.cli.command_group import COMMANDS
+
 ROOT = Path(__file__).parent.parent
 PACKAGE = ROOT / "bezstab"
 ROOMS = (
@@ -28,6 +30,14 @@ ROOMS = (
     "paper",
 )
 """From data upwards: a room imports only from rooms before it."""
+
+SUBJECTS = {
+    module.split(".")[1]: name
+    for listed in COMMANDS.values()
+    for name, module in listed.items()
+    if module.endswith(".command")
+}
+"""Folders of one question each, with the command that it is asked by: nobody imports them."""
 
 
 @cache

@@ -36,7 +36,7 @@ import tomllib
 from graphlib import TopologicalSorter
 from pathlib import Path
 
-from tests.imports import PACKAGE, ROOMS, imports, own_imports, tree_of
+from tests.imports import PACKAGE, ROOMS, SUBJECTS, imports, own_imports, tree_of
 
 FOUNDATIONS = (
     *("stopping", "errors", "rationals", "files", "toml_tables", "units", "compiling", "read_only", "goals"),
@@ -54,9 +54,6 @@ STRANGERS = {
 
 SHARED_WITH_EXTENSIONS = {"cli.options", "cli.output", "cli.shared_options"}
 """What a command outside the room `cli`, such as the paper's, is written with."""
-
-SUBJECTS = {"catalogue", "chains", "drives", "mujoco", "probes", "step_sequences"}
-"""Folders of one question each, with its command and its figure: each name is imported from where it is defined."""
 
 APPOINTED = {
     "sympy": {

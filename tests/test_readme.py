@@ -4,6 +4,7 @@ import shutil
 from pathlib import Path
 from typing import Any
 
+import click
 import numpy as np
 import pytest
 from click.testing import CliRunner
@@ -123,6 +124,11 @@ def test_every_picture_and_link_is_there(page: str) -> None:
     for target in re.findall(r"\]\(([^)#]+)\)", (ROOT / page).read_text(encoding="utf-8")):
         if not target.startswith("https://"):
             assert ((ROOT / page).parent / target).exists(), target
+
+
+def test_the_readme_names_every_command() -> None:
+    named = re.findall(r"`(?:bezstab )?(\w+)", (ROOT / "README.md").read_text(encoding="utf-8"))
+    assert set(main.list_commands(click.Context(main))) <= set(named)
 
 
 def test_every_promise_names_a_test_that_is_there() -> None:

@@ -8,18 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.imports import PACKAGE
-
-COMMANDS = {
-    "catalogue": "engines",
-    "chains": "chain",
-    "drives": "drive",
-    "mujoco": "lint",
-    "paper": "paper",
-    "probes": "probe",
-    "step_sequences": "steps",
-}
-"""Of each folder the command."""
+from tests.imports import PACKAGE, SUBJECTS
 
 LISTS = ("__init__.py", "cli/command_group.py")
 """Files of the package that have a line for each command, or for its function in Python."""
@@ -42,19 +31,19 @@ def answer(root: Path, *command: str) -> str:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("folder", COMMANDS)
+@pytest.mark.parametrize("folder", SUBJECTS)
 def test_without_its_folder_a_command_is_gone_and_the_others_answer(folder: str, tmp_path: Path) -> None:
     root = without({folder}, tmp_path)
     listed = re.findall(r"^  (\w+)  ", answer(root, "--help"), re.MULTILINE)
-    assert COMMANDS[folder] not in listed
-    assert {*COMMANDS.values(), "region", "check"} - set(listed) == {COMMANDS[folder]}
+    assert SUBJECTS[folder] not in listed
+    assert {*SUBJECTS.values(), "region", "check"} - set(listed) == {SUBJECTS[folder]}
     assert answer(root, "region", "--method", "B4", "--figure", "none").startswith("B4")
     assert ": safe." in answer(root, *["check", "--method", "SYM", "--alpha", "0.5", "--beta", "0.1"])
 
 
 @pytest.mark.slow
 def test_without_these_folders_types_are_right(tmp_path: Path) -> None:
-    root = without(set(COMMANDS), tmp_path)
+    root = without(set(SUBJECTS), tmp_path)
     shutil.copy(PACKAGE.parent / "pyproject.toml", root)
     mypy = [sys.executable, "-m", "mypy", "bezstab"]
     found = subprocess.run(mypy, cwd=root, capture_output=True, text=True, check=False)

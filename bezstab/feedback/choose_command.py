@@ -12,18 +12,22 @@ from bezstab.cli.asking import say_each, say_what_is_left_out, show_sentences
 from bezstab.cli.grouped_help import GroupedCommand, grouped
 from bezstab.cli.options import ENGINE, POSITIVE, SECONDS, SHARE
 from bezstab.cli.output import for_reading, progress, show_answers, worked_out
-from bezstab.goals import GOALS, Goal
+from bezstab.goals import GOALS, SETTLING, UP_TO_LONGEST, Goal, one_of
 
 if TYPE_CHECKING:
     from bezstab.engines.conversions import Engine
     from bezstab.methods.schemes import Method
 
 
-@click.command(cls=GroupedCommand)
+GOALS_IN_LINES = "\b\nGoals:\n" + "\n".join(f"  {goal:<9} {asked}" for goal, asked in GOALS.items())
+"""Each goal with what it asks for, below the help."""
+
+
+@click.command(cls=GroupedCommand, epilog=GOALS_IN_LINES)
 @grouped(
     "What is chosen",
     click.option("--goal", type=click.Choice(list(GOALS)), help="What for [accurate; robust in most engines]."),
-    click.option("--settle", type=SECONDS, help="Accurate and gentle: errors fall to a thousandth in so many s."),
+    click.option("--settle", type=SECONDS, help=f"{one_of(SETTLING)}: errors fall to a thousandth in so many s."),
     click.option("--spread", type=SHARE, default="0.1", help="The share by which α and β may be wrong."),
     click.option("--keep", "equal", type=click.Choice(["alpha=beta"]), help="Only points with α = β."),
     click.option("--engine", type=ENGINE, help="Only what this engine can express, with the line to paste."),
@@ -33,7 +37,7 @@ if TYPE_CHECKING:
     "Your simulation",
     shared.methods,
     click.option("--h", type=SECONDS, help="Step in s. Not needed with --omega where α and β are multiples of ω."),
-    click.option("--h-max", type=SECONDS, help="Accurate and robust: the largest step in s that can occur [--h]."),
+    click.option("--h-max", type=SECONDS, help=f"{one_of(UP_TO_LONGEST)}: the largest step, s, that can occur [--h]."),
     shared.omega,
     shared.scene,
     shared.speed,
@@ -62,13 +66,6 @@ def choose(
     """Recommend α and β for an integrator and its step size.
 
     The answer is proven stable. With --scene it must also be safe as that mechanism moves: exit status 1 if it is not.
-
-    \b
-    accurate  the least error on the motion
-    robust    the fastest decay with smaller steps, and α, β off by --spread
-    fastest   the least |z_p|
-    critical  the fastest without oscillation
-    gentle    the mildest α = β that settles in time
 
     Most Runge-Kutta methods need --omega or --scene for accurate: α and β are multiples of that rate. Others assume
     ωh = 0.01 without it. bezstab/feedback/README.md explains the goals and the numbers.

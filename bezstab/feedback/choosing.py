@@ -14,7 +14,7 @@ from bezstab.errors import InputError, NumericalError
 from bezstab.feedback.conditions import Conditions, Setup, at_step, conditions, for_choosing
 from bezstab.feedback.judgement import Judgement, Role, judge
 from bezstab.feedback.sentences import judgement_sentence
-from bezstab.goals import SETTLING, UP_TO_LONGEST, Goal
+from bezstab.goals import SETTLING, UP_TO_LONGEST, Goal, one_of
 from bezstab.mechanism.scene_files import scene as scene_named
 from bezstab.mechanism.scenes import Scene
 from bezstab.methods.registry import method as method_named
@@ -238,7 +238,7 @@ def _check_wish(wish: Wish, h: Fraction | None, h_max: Fraction | None, engine: 
         if goal == "gentle":
             raise InputError("--goal gentle needs --settle: the time in s in which c falls a thousandfold")
     elif goal not in SETTLING:
-        raise InputError(f"--settle works only with --goal gentle or accurate, not {goal}")
+        raise InputError(f"--settle works only with --goal {one_of(SETTLING)}, not {goal}")
     elif settle <= 0:
         raise InputError(f"--settle {float(settle):g} s: expected a positive time")
     if h is None:
@@ -246,7 +246,9 @@ def _check_wish(wish: Wish, h: Fraction | None, h_max: Fraction | None, engine: 
             raise InputError("--h-max, --settle and --engine need --h: the step in s")
         return
     if h_max is not None and (goal not in UP_TO_LONGEST or h_max < h):
-        raise InputError(f"--h-max {float(h_max):g}: only for --goal accurate or robust, and at least --h {float(h):g}")
+        raise InputError(
+            f"--h-max {float(h_max):g}: only for --goal {one_of(UP_TO_LONGEST)}, and at least --h {float(h):g}"
+        )
     if engine and engine.level != "acceleration" and h_max:
         raise InputError(
             f"choose cannot combine {engine.name} with --h-max; run `bezstab check --engine {engine.name}=... --h STEP`"

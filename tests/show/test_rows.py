@@ -7,7 +7,7 @@ import math
 import re
 from dataclasses import replace
 from fractions import Fraction
-from typing import Literal
+from importlib import import_module
 
 import numpy as np
 import pytest
@@ -22,7 +22,9 @@ from bezstab.show.arrays import write_arrays
 from bezstab.show.cells import pole_words
 from bezstab.show.columns import Column, row_of
 from bezstab.show.fields import formatted
+from bezstab.show.file_forms import TABLE_FORMS
 from bezstab.show.tables import for_programs
+from tests.imports import PACKAGE
 from tests.show.keys_page import COLUMNS, PAGE, page
 
 
@@ -34,6 +36,21 @@ def test_a_key_is_a_plain_word_and_each_kind_of_row_has_it_once(command: str) ->
         for column in columns:
             assert re.fullmatch(r"([a-z][a-z_]*)?", column.key), column.key
             assert not column.key or re.fullmatch(r"(?s)\S.*[^.]", column.meaning), column.key
+
+
+def test_every_list_of_columns_is_in_the_table_of_keys() -> None:
+    """A list that was forgotten would print keys that no page explains."""
+    explained = {column.key for tables in COLUMNS.values() for table in tables for column in table}
+    for path in PACKAGE.glob("*/columns.py"):
+        lists = vars(import_module(f"bezstab.{path.parent.name}.columns"))
+        columns = [
+            column
+            for name, each in lists.items()
+            if name.isupper() and isinstance(each, list | tuple)
+            for column in each
+            if isinstance(column, Column) and column.key
+        ]
+        assert {column.key for column in columns} <= explained, path
 
 
 def test_the_table_of_keys_has_every_key() -> None:
@@ -66,8 +83,8 @@ def test_json_and_csv_keep_every_digit_and_text_rounds() -> None:
     assert row_of(POLES, replace(ANSWER, z=complex(math.inf)))["z_abs"] is None
 
 
-@pytest.mark.parametrize("form", ["csv", "npz"])
-def test_written_arrays_come_back_exactly(form: Literal["csv", "npz"]) -> None:
+@pytest.mark.parametrize("form", TABLE_FORMS)
+def test_written_arrays_come_back_exactly(form: str) -> None:
     texts = np.array(["B4", "newmark(1/4,1/2)", 'said "so"', "two\nlines", "", "α̂"])
     arrays = {"z_abs": np.linspace(0, 1, 6) / np.pi, "curve": np.arange(6), "a,b": texts}
     files = [io.BytesIO(), io.BytesIO()]
