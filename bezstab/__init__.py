@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from bezstab.probes.answer import probe_step as probe_step
     from bezstab.regions.answer import region as region
     from bezstab.runs.simulating import simulate as simulate
+    from bezstab.runs.trades import tradeoff as tradeoff
     from bezstab.runs.verifying import verify as verify
     from bezstab.show import plot as plot
     from bezstab.step_sequences.answer import steps as steps
@@ -64,6 +65,7 @@ HOMES = {
     "simulate": "bezstab.runs.simulating",
     "steps": "bezstab.step_sequences.answer",
     "to_dimensionless": "bezstab.units",
+    "tradeoff": "bezstab.runs.trades",
     "verify": "bezstab.runs.verifying",
 }
 """The module of each public name, which type checkers read above."""

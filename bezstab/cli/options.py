@@ -127,9 +127,6 @@ def choose_compiled(_context: click.Context, _option: click.Parameter, choice: s
     os.environ[COMPILED_CHOICE] = choice
 
 
-A_METHOD = "A method's name, as `bezstab methods` lists it, or a .toml file; NAME@m takes steps of m h."
-
-
 def typed_options() -> dict[str, Any]:
     """Return the values that the user gave the running command, each by the long name of its option."""
     context = click.get_current_context()

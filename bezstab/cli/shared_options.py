@@ -8,7 +8,6 @@ from typing import Any, TypeVar, get_args
 import click
 
 from bezstab.cli.options import (
-    A_METHOD,
     ENGINE_VALUES,
     METHOD,
     NUMBER,
@@ -28,8 +27,8 @@ from bezstab.units import GRAVITY
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
-alpha = click.option("--alpha", type=NUMBER, help="α̂, or with --physical α in 1/s; a decimal or a fraction.")
-beta = click.option("--beta", type=NUMBER, help="β̂, or with --physical β in 1/s; a decimal or a fraction.")
+alpha = click.option("--alpha", type=NUMBER, help="α̂, or with --physical α in 1/s.")
+beta = click.option("--beta", type=NUMBER, help="β̂, or with --physical β in 1/s.")
 physical = click.option("--physical", is_flag=True, help="--alpha and --beta are α and β in 1/s; needs --h.")
 
 
@@ -57,7 +56,7 @@ METHOD_HELP, FIGURE_HELP, TABLE_HELP = (
 )
 
 h = click.option("--h", type=SECONDS, required=True, help="Step size in s.")
-methods = click.option("--method", "methods", type=METHOD, multiple=True, help=f"{A_METHOD} Repeatable.")
+methods = click.option("--method", "methods", type=METHOD, multiple=True, help=f"{METHOD_HELP} Repeatable.")
 engine_values = click.option(
     "--engine",
     type=ENGINE_VALUES,
@@ -69,8 +68,8 @@ as_typed = click.option(
 omega = click.option(
     "--omega", type=POSITIVE, help="Rate of the motion in 1/s; needs --h [that of --scene, or ωh = 0.01]."
 )
-scene = click.option("--scene", type=SCENE, help="A shipped scene's name, or a .toml file: the mechanism that moves.")
-speed = click.option("--speed", type=SPEED, default="1", help="With --scene: it moves so many times as fast.")
+scene = click.option("--scene", type=SCENE, help="A mechanism that moves: a shipped scene, or a .toml file.")
+speed = click.option("--speed", type=SPEED, default="1", help="With --scene: so many times as fast.")
 time = click.option(
     "--time", "duration", type=SECONDS, help="With --scene: run it so many s [10 s, at most 10,000 steps]."
 )
@@ -82,7 +81,8 @@ compiled = click.option(
     expose_value=False,
     callback=choose_compiled,
     metavar="WORD",
-    help="auto, yes, no: long runs as machine code, by numba.",
+    show_default=False,
+    help="auto, yes, no: runs as machine code, by numba [auto].",
 )
 table = click.option("--table", type=click.Choice(TABLES), default="none", metavar="FORM", help=TABLE_HELP)
 figure = click.option("--figure", type=click.Choice(FIGURES), default="none", help="Format of the figure.")

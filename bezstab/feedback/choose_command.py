@@ -26,7 +26,9 @@ GOALS_IN_LINES = "\b\nGoals:\n" + "\n".join(f"  {goal:<9} {asked}" for goal, ask
 @click.command(cls=GroupedCommand, epilog=GOALS_IN_LINES)
 @grouped(
     "What is chosen",
-    click.option("--goal", type=click.Choice(list(GOALS)), help="What for [accurate; robust in most engines]."),
+    click.option(
+        "--goal", type=click.Choice(list(GOALS)), metavar="GOAL", help="What for [accurate; robust in most engines]."
+    ),
     click.option("--settle", type=SECONDS, help=f"{one_of(SETTLING)}: errors fall to a thousandth in so many s."),
     click.option("--spread", type=SHARE, default="0.1", help="The share by which α and β may be wrong."),
     click.option("--keep", "equal", type=click.Choice(["alpha=beta"]), help="Only points with α = β."),

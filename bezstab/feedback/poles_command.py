@@ -10,7 +10,7 @@ import click
 from bezstab.cli import shared_options as shared
 from bezstab.cli.asking import say_each, say_if_units_were_mistaken
 from bezstab.cli.grouped_help import GroupedCommand, grouped
-from bezstab.cli.options import A_METHOD, METHOD, SECONDS, EngineValues, TypedPoint, typed_options
+from bezstab.cli.options import METHOD, SECONDS, EngineValues, TypedPoint, typed_options
 from bezstab.cli.output import for_reading, show_answers, worked_out
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ USUAL_METHODS = ("B2", "B3", "B4", "AB2", "AB3", "AB4", "RK4@5", "SIE")
 @grouped("What is judged", shared.alpha, shared.beta, shared.physical, shared.engine_values, shared.as_typed)
 @grouped(
     "Your simulation",
-    click.option("--method", "methods", type=METHOD, multiple=True, help=f"{A_METHOD} Repeatable [some usual ones]."),
+    click.option("--method", "methods", type=METHOD, multiple=True, help=f"{shared.METHOD_HELP} Repeatable [eight]."),
     click.option("--h", type=SECONDS, help="Step in s, for --physical, --engine and --scene."),
     shared.scene,
     shared.speed,

@@ -18,9 +18,10 @@ from bezstab.methods.schemes import Method
 def methods(methods: Sequence[Method], latex: bool, **_: object) -> None:
     """List the methods, or show all about those you name.
 
-    Prints the number of steps, the evaluations of f in a step (of an implicit method in an iteration), the order of
-    accuracy, the error constant, and the added damping: the damping ratio of an oscillator that has none itself, to
-    leading order in θ = ωh; a negative one drives it. In parentheses is the order if forces depend on positions alone.
+    NAME@m takes steps of m h. Prints the number of steps, the evaluations of f in a step (of an implicit method in an
+    iteration), the order of accuracy, the error constant, and the added damping: the damping ratio of an oscillator
+    that has none itself, to leading order in θ = ωh; a negative one drives it. In parentheses is the order if forces
+    depend on positions alone.
 
     For a method that you name it also prints the recursion, s→z mapping, characteristic polynomial and stability region
     (the paper's Tables 1 and 2), the source, and the error that the method makes on a constraint that moves, as a share

@@ -17,7 +17,7 @@ stabilise = click.option(
     "--stabilise",
     type=click.Choice(list(STABILISE)),
     metavar="WORD",
-    help="baumgarte, projection or none: what holds the constraints [baumgarte].",
+    help="baumgarte, projection or none [baumgarte].",
 )
 iterations = click.option("--iterations", type=int, help="With projection: Newton iterations in a step, at most.")
 
@@ -34,9 +34,9 @@ class Work:
 def shared_work(command: Command) -> Command:
     """Add what says who computes: --workers, --scheduler and --resume."""
     for option in (
-        click.option("--resume", is_flag=True, help="Continue a run with the same options that was stopped."),
-        click.option("--scheduler", help="A Dask scheduler, tcp://host:port, in place of --workers."),
-        click.option("--workers", type=click.IntRange(1, 1000), help="Number of processes [one for each core]."),
+        click.option("--resume", is_flag=True, help="Continue a run that was stopped."),
+        click.option("--scheduler", help="Instead a Dask scheduler, tcp://host:port."),
+        click.option("--workers", type=click.IntRange(1, 1000), metavar="N", help="Processes [one for each core]."),
     ):
         command = option(command)
     return command

@@ -30,7 +30,7 @@ USUAL_SCENE = "slider_crank_light"
 @click.command(cls=GroupedCommand)
 @grouped(
     "What is run",
-    click.option("--scene", type=SCENE, help=f"Name of a shipped scene, or a .toml file [{USUAL_SCENE}]."),
+    click.option("--scene", type=SCENE, help=f"A shipped scene, or a .toml file [{USUAL_SCENE}]."),
     shared.speed,
     click.option("--method", "methods", type=METHOD, multiple=True, help=f"{shared.METHOD_HELP} Repeatable [nine]."),
     click.option("--h", "steps", type=SECONDS, multiple=True, help="Step in s. Repeatable [ten, 0.0001 to 0.02]."),
@@ -46,7 +46,7 @@ USUAL_SCENE = "slider_crank_light"
         "--against",
         type=click.Choice(["evaluations", "time", "projection"]),
         metavar="COST",
-        help="evaluations, time of this processor, or projection [evaluations].",
+        help="evaluations, time or projection [evaluations].",
     ),
     click.option("--tolerance", type=POSITIVE, help="The error that is good enough, m and rad [1e-6]."),
     click.option("--repeats", type=int, help="How often each run is timed [3]."),
@@ -92,13 +92,13 @@ def tradeoff(
     """Measure what accuracy costs, by method and step.
 
     Each run is compared with a reference of known accuracy. Writes the table, without times, and figures of errors
-    against cost. Without --alpha and --beta each step has its own point: that of `choose --goal accurate`. --against
-    projection makes each run with feedback and with projection. What is seen: bezstab/runs/README.md.
+    against cost. Without --alpha and --beta each step has the point of `choose --goal accurate`. --against projection
+    makes each run with feedback and with projection. What is seen: bezstab/runs/README.md.
 
     --predicted prints the least error that a method's feedback makes on a motion, for each |z_p|, and what that does to
     the motion's energy. The motion is --omega, or a --scene with one --h; else it turns by ωh = 0.01.
 
-    Example: bezstab tradeoff --method B4 --method AB4 --h 0.002 --h 0.004 --time 2
+    Example: bezstab tradeoff --method B4 --method AB4 --h 0.002 --h 0.004
     """
     from bezstab.methods.registry import lookup
     from bezstab.runs.accuracy_costs import measured_runs

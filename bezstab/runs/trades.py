@@ -12,10 +12,13 @@ from itertools import chain
 import numpy as np
 from numpy.typing import NDArray
 
+from bezstab.arguments import Number, exact_number, exact_or_none, in_keywords, point_if_given
 from bezstab.engines.conversions import Point
 from bezstab.errors import InputError
 from bezstab.mechanism.compiled_stepping import runs_compiled
+from bezstab.mechanism.scene_files import scene as scene_named
 from bezstab.mechanism.scenes import Scene
+from bezstab.methods.registry import method as method_named
 from bezstab.methods.schemes import Method
 from bezstab.questions.motions import ReferenceMotion, motion_of, scene_at_speed
 from bezstab.rationals import exact
@@ -25,6 +28,7 @@ from bezstab.runs.accuracy_costs import (
     Cost,
     Sweep,
     SweptRuns,
+    measured_runs,
     ranked_runs,
     reference_run,
     swept_runs,
@@ -111,6 +115,71 @@ def trade(
     ]
     asked = (tuple(methods), sizes, duration, treatments, physical, rate, repeats, against)
     return Trade(moving.name, sweeps, reference.error, rate, tolerance, against, f"tradeoff {asked} {moving}")
+
+
+@in_keywords()
+def tradeoff(
+    scene: str | Scene,
+    methods: Sequence[str | Method],
+    *,
+    steps: Sequence[Number] = (),
+    duration: Number = 2,
+    alpha_hat: Number | None = None,
+    beta_hat: Number | None = None,
+    omega: Number | None = None,
+    stabilise: Stabilise | None = None,
+    against: Cost = "evaluations",
+    tolerance: Number = "1e-6",
+) -> SweptRuns:
+    """Return what errors methods make on a mechanism at each of some steps, and what the runs cost.
+
+    Parameters
+    ----------
+    scene : str or Scene
+        The mechanism.
+    methods : sequence of str or Method
+        The integration methods.
+    steps : sequence of number
+        Steps (s); by default ten from 0.0001 to 0.02.
+    duration : number
+        Of each run (s).
+    alpha_hat, beta_hat : number or str, optional
+        The feedback, dimensionless; by default at each step the choice of the goal accurate.
+    omega : number, optional
+        Rate of the motion (1/s) for which points are chosen; by default the scene's own.
+    stabilise : {"baumgarte", "projection", "none"}, optional
+        What holds the constraints.
+    against : {"evaluations", "time", "projection"}
+        What costs are counted in.
+    tolerance : number
+        The trajectory error (m, rad) that is good enough.
+
+    Returns
+    -------
+    SweptRuns
+        `runs`, with errors in SI units; `fronts`, indices of runs that no other beats; `cheapest` that is good enough.
+
+    Raises
+    ------
+    InputError
+        What does not go together, or a duration that is no step, or too many.
+
+    References
+    ----------
+    Work-precision diagrams: Hairer, Norsett & Wanner, Solving Ordinary Differential Equations I.
+    """
+    asked = trade(
+        scene_named(scene),
+        [method_named(each) for each in methods],
+        [exact_number(step, "steps") for step in steps],
+        duration=exact_number(duration, "duration"),
+        numbers=point_if_given(alpha_hat, beta_hat, None, None, None),
+        omega=exact_or_none(omega, "omega"),
+        stabilise=stabilise,
+        against=against,
+        tolerance=exact_number(tolerance, "tolerance"),
+    )
+    return ranked(asked, [measured_runs(sweep) for sweep in asked.sweeps])
 
 
 def ranked(asked: Trade, measured: Sequence[Mapping[str, NDArray[np.generic]]]) -> SweptRuns:

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import bezstab
 from tests.cli.running import DATA, arrays, rows, run
 
 NOTHING = "--figure none --table none"
@@ -60,6 +61,14 @@ def test_tradeoff_writes_a_table_without_times_and_two_figures_and_the_same_agai
     assert all(float(str(row["seconds"])) > 0 for row in found)
     assert run(command, "1").exit_code == 0
     assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == written
+
+
+def test_tradeoff_in_python_runs_what_the_command_runs() -> None:
+    answer = bezstab.tradeoff("pendulum", ["SYM"], steps=["0.01", "0.02"], duration="0.1", alpha_hat=1, beta_hat=1)
+    found = rows(f"tradeoff --scene pendulum --method SYM --h 0.01 --h 0.02 --time 0.1 --alpha 1 --beta 1 {NOTHING}")
+    assert [(run.h, run.trajectory_error, run.c_max) for run in answer.runs] == [
+        (row["h"], row["trajectory_error"], row["c_max"]) for row in found
+    ]
 
 
 MAP = "verify --scene pendulum --method SYM --map 3 --figure none"
