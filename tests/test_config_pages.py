@@ -29,9 +29,8 @@ def examples(page: str) -> list[str]:
 
 
 def documented_keys(text: str) -> set[str]:
-    """Return the keys that begin a row of a table with the head `key`."""
-    tables = re.findall(r"^\| key \|.*\n((?:\|.*\n)+)", text, re.MULTILINE)
-    return set(re.findall(r"^\| `(\w+)` \|", "".join(tables), re.MULTILINE))
+    """Return the keys that begin an item of a list."""
+    return set(re.findall(r"^- `(\w+)`: ", text, re.MULTILINE))
 
 
 def section(page: str, heading: str) -> str:
@@ -93,6 +92,6 @@ def test_the_page_of_scenes_has_every_key_of_every_table_and_no_other(asked_keys
 
 
 def test_the_example_of_a_scene_has_every_kind_of_joint() -> None:
-    page_kinds = set(re.findall(r'^\| `"([\w-]+)"` \|', section(SCENES_PAGE, "joint"), re.MULTILINE))
+    page_kinds = set(re.findall(r'^- `"([\w-]+)"`: ', section(SCENES_PAGE, "joint"), re.MULTILINE))
     example_kinds = {joint["type"] for joint in tomllib.loads(examples(SCENES_PAGE)[0])["joint"]}
     assert page_kinds == example_kinds == {getattr(kind, "kind", "driver") for kind in get_args(Joint)}

@@ -121,12 +121,10 @@ def poles_table() -> str:
                 "method": name,
                 "dominant pole": pole_words(complex(z)),
                 "|z_p|": f"{abs(z):.4f}",
-                "∠z_p (deg)": f"{numbers[-1]:.3f}",
                 "as printed (*: not ours)": " ".join(
                     text if match else f"{text}*" for text, match in zip(printed, matches, strict=True)
                 ),
-                "largest |c₁| of 6 to 8 s (m)": f"{before:.0e}",
-                "of 8 to 10 s": f"{after:.0e}",
+                "largest |c₁| of 6 to 8 s, of 8 to 10 s (m)": f"{before:.0e}, {after:.0e}",
             }
         )
     caption = (
