@@ -1,5 +1,7 @@
 """Is a chain of bodies stable in an engine that sweeps over its constraints, with how many sweeps, and what to set?"""
 
+import cmath
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
@@ -15,6 +17,7 @@ from bezstab.errors import InputError
 from bezstab.questions.chains import SweptConstraints
 from bezstab.stability.arrays import FloatArray
 from bezstab.stability.choices import TENTH, steps_to_settle
+from bezstab.stability.sweeps import SlowestMotion
 from bezstab.units import check_step
 from bezstab.words import change_words, counted, decay_words
 
@@ -37,7 +40,8 @@ class ChainAnswer:
     thousandth; None where it does not fall. `stable_iterations`: from how many sweeps errors decay; None if
     from none that is tried. `setting`: the strongest values with which this chain is stable even if they were SPREAD
     stronger; None where there are none, or where the engine has nothing to set. `sag`: how far (m) some body rests from
-    its place, at most, under a `load`; None without a load, and if not safe.
+    its place, at most, under a `load`; None without a load, and if not safe. `jitter`: the root mean square of the
+    worst joint's error (m) where growth ends, if the chain hangs from one end under the load, or gravity: `_jitter`.
     `sentence`: the answer in words.
     """
 
@@ -57,6 +61,7 @@ class ChainAnswer:
     setting: str | None
     load: Load | None
     sag: float | None
+    jitter: float | None
     sentence: str = field(compare=False)
 
     def __repr__(self) -> str:
@@ -140,7 +145,7 @@ def judge_chain(
 ) -> ChainAnswer:
     """Return what a step of h (s) does to the errors of a chain; errors as `chain`."""
     swept = swept_links(engine, h, chained, iterations)
-    found = swept.answer(values)
+    found, motion = swept.answer(values), swept.slowest_motion(values)
     safe = found.growth.decays
     answer = ChainAnswer(
         engine=engine,
@@ -152,13 +157,14 @@ def judge_chain(
         z_abs=found.growth.factor,
         accuracy=found.growth.accuracy,
         alone_z_abs=found.alone,
-        growing=chained.gaps(swept.slowest_errors(values)),
+        growing=chained.gaps(motion.errors),
         tenth_steps=steps_to_settle(found.growth.factor, TENTH) if safe else None,
         settle_steps=steps_to_settle(found.growth.factor) if safe else None,
         stable_iterations=found.stable_iterations,
         setting=_setting(swept),
         load=load,
         sag=None if load is None or not safe else _sag(swept, values, chained, load),
+        jitter=None if safe else _jitter(swept, motion, chained, load or "gravity"),
         sentence="",
     )
     return replace(answer, sentence=_sentence(answer))
@@ -187,6 +193,29 @@ def _sag(swept: SweptConstraints, values: tuple[Fraction, ...], chained: Links, 
     return sag if sag > NO_SAG else 0.0
 
 
+JITTER = 2.5
+"""Times the law of `_jitter`: the median of 271 runs of pymunk with random chains, from 0.01 % to 15 % of a link.
+
+Of these 84 % are within a factor of two, 96 % within three. Of 270 runs of bepu's springs in two dimensions, by loops
+over links, 93 % are within three.
+"""
+
+
+def _jitter(swept: SweptConstraints, motion: SlowestMotion, chained: Links, load: Load) -> float | None:
+    """Return the error (m) of the worst joint at which growth ends; None for arms, two pinned ends, and no swing.
+
+    Growth ends when impulses swing as far as those that hold the load: then links also push, and the chain buckles.
+    The faster it grows in the time of a swing, the further it gets: by the root of that, as runs show. The law is for
+    links that are far longer than the jitter. Else the chain comes apart.
+    """
+    turn = abs(cmath.phase(motion.pole))
+    if chained.motor or chained.both_ends or not 0 < turn < math.pi:
+        return None
+    holding = np.linalg.solve(swept.constraints.inverse_masses, float(swept.h) ** 2 * chained.pull(load))
+    swing = np.linalg.norm(holding) / np.linalg.norm(motion.impulses)
+    return float(JITTER * motion.errors.max() * swing * math.sqrt(abs(motion.pole) - 1) / turn)
+
+
 def _setting(swept: SweptConstraints) -> str | None:
     """Return the line to paste of the strongest feedback that a chain allows; None if there is none, or none to set."""
     if not (swept.engine.curve and swept.engine.parameters):
@@ -209,15 +238,21 @@ def _sentence(answer: ChainAnswer) -> str:
     sentence = f"{judged}: {'safe' if answer.safe else 'not safe'}. {change[0].upper()}{change[1:]}. {enough}."
     if answer.sag is not None:
         sags = f"sags by {_length_words(answer.sag)}" if answer.sag else "does not sag"
-        pull = "gravity" if answer.load == "gravity" else f"{float(answer.load or 0):g} N at its end"
-        sentence += f" Under {pull} {'across' if answer.links.motor else 'along'} it, it {sags}."
+        sentence += f" Under {_load_words(answer.load)} {'across' if answer.links.motor else 'along'} it, it {sags}."
+    if answer.jitter is not None:
+        hangs = f"Hanging under {_load_words(answer.load)} it jitters, if links are far longer: joints are off by about"
+        sentence += f" {hangs} {_length_words(answer.jitter, 2)}, within a factor of three."
     if answer.setting and not answer.safe:
         sentence += f" With these sweeps {answer.setting} is stable, with {SPREAD:.0%} to spare."
     return sentence
 
 
-def _length_words(metres: float) -> str:
-    return f"{metres:.3g} m" if metres >= 1 else f"{1000 * metres:.3g} mm"
+def _load_words(load: Load | None) -> str:
+    return f"{float(load):g} N at its end" if isinstance(load, Fraction) else "gravity"
+
+
+def _length_words(metres: float, digits: int = 3) -> str:
+    return f"{metres:.{digits}g} m" if metres >= 1 else f"{1000 * metres:.{digits}g} mm"
 
 
 def chain_map(engine: Engine, values: tuple[Fraction, ...], h: Fraction, longest: Links) -> FloatArray:

@@ -71,5 +71,14 @@ COLUMNS: Sequence[Column[ChainAnswer]] = (
         unit="m",
         form=".3g",
     ),
+    Column(
+        "jitters by",
+        "jitter",
+        lambda answer: answer.jitter,
+        "error of the worst joint at which growth ends where the chain hangs, within a factor of three; else null",
+        unit="m",
+        form=".2g",
+        brief=True,
+    ),
     Column("", "sentence", lambda answer: answer.sentence, "the answer in words"),
 )

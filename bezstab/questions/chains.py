@@ -19,10 +19,11 @@ from bezstab.stability.arrays import FloatArray
 from bezstab.stability.searches import first_where
 from bezstab.stability.sweeps import (
     Growth,
+    SlowestMotion,
     chain,
     fewest_sweeps,
     inverse_effective_masses,
-    slowest_errors,
+    slowest_motion,
     swept_growth,
     swept_rest,
 )
@@ -102,9 +103,9 @@ class SweptConstraints:
         """Return the factor by which a step multiplies their errors, with another number of sweeps if one is given."""
         return swept_growth(self.constraints.inverse_masses, *self._step(values, sweeps))
 
-    def slowest_errors(self, values: Sequence[Fraction]) -> FloatArray:
-        """Return the sizes of their errors that decay last, or grow, as shares of the largest; shape (constraints,)."""
-        return slowest_errors(self.constraints.inverse_masses, *self._step(values))
+    def slowest_motion(self, values: Sequence[Fraction]) -> SlowestMotion:
+        """Return their motion that decays last, or grows."""
+        return slowest_motion(self.constraints.inverse_masses, *self._step(values))
 
     def rest(self, values: Sequence[Fraction], pull: FloatArray) -> FloatArray:
         """Return the errors at which they rest, for what a steady acceleration adds to their rates times h."""

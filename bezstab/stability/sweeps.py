@@ -78,16 +78,32 @@ def swept_growth(inverse_masses: FloatArray, step: SweptStep, joints: Sequence[i
     return _spectral_radius(_matrix(_scaled_step(inverse_masses, step, joints)))
 
 
-def slowest_errors(inverse_masses: FloatArray, step: SweptStep, joints: Sequence[int] | None = None) -> FloatArray:
-    """Return the sizes of the errors at the end of a step that decay last, or grow, over the largest; shape (m,).
+@dataclass(frozen=True)
+class SlowestMotion:
+    """What decays last, or grows: its pole, and sizes of errors and impulses at the end of a step, shape (m,) each.
 
-    Those of the eigenvector of the factor that `swept_growth` has; arguments and errors as there.
+    Both are of one motion of some size; impulses are times h.
+    """
+
+    pole: complex
+    errors: FloatArray
+    impulses: FloatArray
+
+
+def slowest_motion(inverse_masses: FloatArray, step: SweptStep, joints: Sequence[int] | None = None) -> SlowestMotion:
+    """Return the motion that grows by the factor that `swept_growth` has; arguments and errors as there.
+
+    Where one constraint follows from others their impulses are the least ones.
     """
     swept = _scaled_step(inverse_masses, step, joints)
     values, vectors = np.linalg.eig(_matrix(swept))
-    errors = swept.seen @ vectors[: swept.seen.shape[1], int(np.argmax(np.abs(values)))]
-    sizes = np.abs(swept.root.T @ errors / swept.scale)
-    return np.asarray(sizes / (sizes.max() or 1.0))
+    largest = int(np.argmax(np.abs(values)))
+    errors, _, impulses = np.split(vectors[:, largest], [swept.seen.shape[1], -len(swept.root)])
+    return SlowestMotion(
+        complex(values[largest]),
+        np.abs(swept.root.T @ swept.seen @ errors / swept.scale),
+        np.abs(np.linalg.lstsq(swept.root, impulses, rcond=None)[0] * swept.scale),
+    )
 
 
 def swept_rest(

@@ -14,7 +14,7 @@ from bezstab.engines.engine_list import ENGINES, engine_and_values
 from bezstab.errors import InputError
 from bezstab.stability.arrays import FloatArray
 from tests.reference.engine_steps import STEPS
-from tests.reference.swept_chains import arm_step, columns, hard_step
+from tests.reference.swept_chains import arm_step, columns, hanging_errors, hard_step
 
 H = Fraction(1, 60)
 
@@ -183,7 +183,22 @@ def test_an_arm_droops_as_loops_over_its_pins_and_motors_do(
     assert answer.sag == pytest.approx(state[3] + 2.0 / 2 * state[7], rel=1e-7)
 
 
-def test_a_chain_that_comes_apart_has_no_place_to_rest() -> None:
-    answer = chain("chipmunk", h=Fraction(1, 60), mass_ratio=10, load="gravity")
-    assert not answer.safe
-    assert answer.sag is None
+@pytest.mark.slow
+@pytest.mark.parametrize("length", [0.2, 5])
+@pytest.mark.parametrize(
+    ("masses", "sweeps"), [([1] * 9 + [10], 10), ([1] * 9 + [20], 10), ([1] * 5 + [20], 4), ([1] * 12, 3)]
+)
+def test_a_hanging_chain_jitters_as_far_as_said(masses: list[int], sweeps: int, length: float) -> None:
+    """Within a factor of three, over more than a decade; whatever the length of its links, in mm."""
+    answer = chain("chipmunk", h=H, masses=masses, iterations=sweeps, load="gravity")
+    assert answer.jitter
+    assert (answer.safe, answer.sag) == (False, None)
+    errors = hanging_errors(masses, sweeps, 0.1, pull=9.81 / 3600, length=length, angle=0.2, steps=3000)
+    measured = np.sqrt(np.mean(np.square(errors[1500:]), axis=0)).max()
+    assert 1 / 3 < measured / answer.jitter < 3
+    assert f"joints are off by about {1e3 * answer.jitter:.2g} mm" in answer.sentence
+
+
+def test_only_a_chain_that_swings_ever_further_jitters() -> None:
+    for engine, motor in (("chipmunk", None), ("bullet=2.1", None), ("chipmunk", "angle")):
+        assert chain(engine, h=H, bodies=5, motor=motor).jitter is None

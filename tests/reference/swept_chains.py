@@ -3,6 +3,7 @@
 Link i ties body i to body i - 1, the first to the world. h = 1; numbers of any kind. No matrices.
 """
 
+from cmath import rect
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -169,3 +170,31 @@ def arm_step(
         return y + angle + v + turn + forces + torques
 
     return step
+
+
+def hanging_errors(
+    masses: Sequence[float], sweeps: int, share: float, *, pull: float, length: float, angle: float, steps: int
+) -> list[list[float]]:
+    """Return by how much each link is too long, step by step, of a chain let go at an angle that hangs in a plane.
+
+    Impulse by impulse along the links where they are, with a bias in the velocity and kept impulses. `pull` is what
+    gravity adds to velocities in a step, h = 1. Places and velocities are complex; gravity is along the real axis.
+    """
+    inverse = [1 / mass for mass in masses]
+    places = [length * (number + 1) * rect(1, angle) for number in range(len(masses))]
+    velocities, impulses, seen = [0j] * len(masses), [0.0] * len(masses), []
+    for _ in range(steps):
+        links = [error(places, link) for link in range(len(masses))]
+        errors, along = [abs(link) - length for link in links], [link / abs(link) for link in links]
+        velocities = [velocity + pull for velocity in velocities]
+        for link, impulse in enumerate(impulses):
+            push(velocities, inverse, link, impulse * along[link])
+        for _ in range(sweeps):
+            for link, direction in enumerate(along):
+                rate = (error(velocities, link) * direction.conjugate()).real
+                added = -(rate + share * errors[link]) / (inverse[link] + (inverse[link - 1] if link else 0))
+                push(velocities, inverse, link, added * direction)
+                impulses[link] += added
+        places = moved(places, velocities)
+        seen.append(errors)
+    return seen

@@ -137,6 +137,27 @@ def test_hanging_chains_do_not_sag_where_impulses_are_kept(bodies: int, ratio: f
     assert -chained[-1].position.y - LINK * bodies == pytest.approx(0, abs=LINK * bodies / 1000)
 
 
+@pytest.mark.parametrize(
+    ("bodies", "ratio", "sweeps"), [(10, 10, 10), (10, 20, 10), (6, 20, 4), (20, 1, 10), (16, 0.6, 6), (9, 8.8, 8)]
+)
+@pytest.mark.parametrize("gravity", [100, 981])
+def test_a_chain_that_hangs_and_grows_jitters_as_far_as_said(
+    bodies: int, ratio: float, sweeps: int, gravity: float
+) -> None:
+    """Within a factor of three of what is said of its joints, root mean square of the worst."""
+    answer = judge("chipmunk", h="1/60", bodies=bodies, mass_ratio=ratio, iterations=sweeps)
+    assert answer.jitter
+    space, chained = hung_chain(bodies, ratio, sweeps, 0.1)
+    space.gravity = (0.2 * gravity, -gravity)
+    errors = []
+    for _ in range(2400):
+        space.step(H)
+        places = [(0.0, 0.0), *((body.position.x, body.position.y) for body in chained)]
+        errors.append([np.hypot(x - u, y - v) - LINK for (u, v), (x, y) in pairwise(places)])
+    measured = np.sqrt(np.mean(np.square(errors[1200:]), axis=0)).max()
+    assert 1 / 3 < measured / (answer.jitter * gravity / 9.81) < 3
+
+
 def arm(bodies: int, ratio: float, sweeps: int, motor: str) -> tuple[Any, list[Any]]:
     """Return a space and rods of length 2 in it, each held by a pin and a motor, out from the world, without weight."""
     space = pymunk.Space()
