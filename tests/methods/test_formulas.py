@@ -17,21 +17,17 @@ from bezstab.methods.formulas import (
     stage_torque_text,
     steady_error_text,
 )
-from bezstab.methods.registry import REGISTRY, lookup
+from bezstab.methods.registry import lookup
 from bezstab.methods.steady_errors import Part, leading_error
 from tests.methods.exact_lists import plane_value
-from tests.methods.kinds import FEW, SAMPLE, SOLVED, sampled
-
-NAMES = [*REGISTRY, "RK4@5", "B3@5/2", "hht@1/3"]
-ROUNDED = [name for name in REGISTRY if lookup(name).digits]
+from tests.methods.kinds import FEW, SOLVED
 
 RECURSIONS = {
     "B2": "y_{k+1} = y_k + h/2 (3 f_k - f_{k-1})",  # paper, Eq. 12
-    "B1": "y_{k+1} = y_k + h f_k",
+    "bdf2": "y_{k+1} = (4 y_k - y_{k-1})/3 + h/3 (2 f_{k+1})",
     "ABM2": "p = y_k + h/2 (3 f_k - f_{k-1}); y_{k+1} = y_k + h/2 (f(p) + f_k)",
     "SIE": "K_1 = f(y_k); K_2 = f(y_k + h K_1); y_{k+1} = y_k + h K_2",
     "RK1@5": "K_1 = f(y_k); y_{k+1} = y_k + h (5 K_1)",
-    "SYM": "a_k = a(x_k, v_k); v_{k+1} = v_k + h a_k; x_{k+1} = x_k + h v_{k+1}",
     "verlet-half": (
         "x_{k+1} = x_k + h v_k + h^2/2 a_k; vh = v_k + h/2 a_k; a_{k+1} = a(x_{k+1}, vh); v_{k+1} = vh + h/2 a_{k+1}"
     ),
@@ -40,22 +36,14 @@ RECURSIONS = {
 
 def test_every_kind_of_recursion() -> None:
     assert {name: recursion_text(lookup(name)) for name in RECURSIONS} == RECURSIONS
-
-
-def test_paper_equations_14_and_17_as_text() -> None:
-    assert mapping_text(lookup("B2")) == "s = 2 z (z - 1)/(h (3 z - 1))"
-    shown = "4 z^4 + (6 α̂ - 8) z^3 + (-8 α̂ + 9 β̂ + 4) z^2 + (2 α̂ - 6 β̂) z + β̂ = 0"
-    assert characteristic_text(lookup("B2")) == shown
-
-
-def test_a_second_order_scheme_has_no_mapping_and_its_powers_of_h() -> None:
-    assert mapping_text(lookup("verlet-half")) == "none: positions and velocities have a formula each"
     assert recursion_text(lookup("imex-euler@1/2"), latex=True) == (
         r"a_{k+1} = a(x_k, v_{k+1}); v_{k+1} = v_k + \frac{h}{2} a_{k+1}; x_{k+1} = x_k + \frac{h}{2} v_{k+1}"
     )
 
 
-def test_decimals_of_irrational_coefficients_are_those_of_the_method() -> None:
+def test_mappings_and_the_decimals_of_irrational_coefficients() -> None:
+    assert mapping_text(lookup("B2")) == "s = 2 z (z - 1)/(h (3 z - 1))"  # paper, Eq. 14
+    assert mapping_text(lookup("verlet-half")) == "none: positions and velocities have a formula each"
     gamma = 1 - math.sqrt(0.5)
     assert f"K_1 = f(y_k + h ({gamma:.10g} K_1))" in recursion_text(lookup("sdirk2"))
     assert f"{gamma**2:.10g} h^2 s^2 - {2 * gamma:.10g} h s + 1" in mapping_text(lookup("sdirk2"))
@@ -68,18 +56,17 @@ def read_back(text: str, **values: sp.Expr) -> sp.Expr:
     return sp.sympify(re.sub(r"(?<=[\w)]) (?=[\w(])", " * ", plain), locals=values)
 
 
-@pytest.mark.parametrize("name", sampled([name for name in NAMES if name not in ROUNDED], quick=[*SAMPLE, *SOLVED]))
+@pytest.mark.parametrize("name", [*FEW, "bdf2", "SYM", "verlet-implicit", "rkn4", "RK4@5", "B3@5/2"])
 def test_the_printed_polynomial_is_the_derived_one_in_whole_numbers(name: str) -> None:
     a, b = sp.symbols("a b")
     printed = sp.Poly(read_back(characteristic_text(lookup(name)).removesuffix(" = 0"), a=a, b=b, z=Z), Z, a, b)
-    derived = sp.Poly(closed_loop_polynomial(lookup(name)).as_expr().subs({ALPHA_HAT: a, BETA_HAT: b}), Z, a, b)
-    scale = printed.coeff_monomial(Z ** printed.degree(Z)) / derived.coeff_monomial(Z ** derived.degree(Z))
-    assert (printed - derived * scale).is_zero
+    derived = closed_loop_polynomial(lookup(name)).as_expr().subs({ALPHA_HAT: a, BETA_HAT: b})
+    assert sp.cancel(printed.as_expr() / derived).is_number
     assert all(c.is_Integer for c in printed.coeffs())
     assert sp.igcd(*printed.coeffs(), 0) == 1
 
 
-@pytest.mark.parametrize("name", [*FEW, *SOLVED, "tsit5", "B6", "RK4@5", "B3@5/2", "hht@1/3"])
+@pytest.mark.parametrize("name", [*FEW, *SOLVED, "tsit5", "RK4@5", "B3@5/2", "hht@1/3"])
 @pytest.mark.slow
 def test_latex_can_be_typeset(name: str) -> None:
     method = lookup(name)
@@ -89,15 +76,12 @@ def test_latex_can_be_typeset(name: str) -> None:
             MathTextParser("path").parse(f"${typeset}$")
 
 
-PRINTED = {  # theory.md, section 14, and by hand; a share of the motion, of the velocity's motion
-    "RK4": (
-        "θ^2 β̂ (α̂ β̂ - 4 β̂ + 24)/(4 (24 α̂^3 - 12 α̂^2 β̂ - 96 α̂^2 + 4 α̂ β̂^2 - 24 α̂ β̂ + 288 α̂ - β̂^3 + 8 β̂^2 + 48 β̂ - 576))",
-        None,
-    ),
+PRINTED = {  # by hand; a share of the motion, of the velocity's motion
     "RK2": ("θ^2 (α̂ - 2)/(4 (2 α̂ - β̂ - 4))", None),
     "SYM": ("θ^2 α̂/(2 β̂)", "-θ/2"),
     "B4": ("-11 θ^3 α̂/(36 β̂)", "11 θ^2/36"),
     "gauss4": ("θ^4 (0.003472222222 - 0.0001929012346 β̂)", "-0.002314814815 θ^2 β̂"),  # (18 - b)/5184, -b/432
+    "tsit5": ("θ^2 times 9 terms over 21, too long to be read; as LaTeX it is written out", None),
 }
 
 
@@ -110,9 +94,7 @@ def test_a_steady_error_is_written_as_by_hand_and_stays_made_of_fractions(name: 
         assert all(isinstance(c, Fraction) for terms in (error.numerator, error.denominator) for c in terms.values())
 
 
-@pytest.mark.parametrize(
-    "name", sampled([name for name in NAMES if name != "tsit5"], quick=[*SAMPLE, *SOLVED, "gauss4"])
-)
+@pytest.mark.parametrize("name", [*FEW, "sdirk2", "gauss4", "verlet-half", "hht@1/3"])
 @pytest.mark.parametrize("part", get_args(Part))
 def test_a_written_steady_error_is_that_of_the_method(name: str, part: Part) -> None:
     error = leading_error(lookup(name), part)
@@ -140,9 +122,3 @@ def test_the_law_of_the_multipliers_work_is_written_where_it_is_known() -> None:
     by_kappa = "c'' + 2α c' + β² c = -α h κ + h/2 κ'ᵥ, κ = q'ᵀ C_qq q'"
     assert multiplier_law_text(lookup("SYM")) == multiplier_law_text(lookup("verlet-half")) == by_kappa
     assert multiplier_law_text(lookup("RK4")).startswith("no closed form is known")
-
-
-def test_a_steady_error_too_long_to_be_read_says_so_and_is_written_out_as_latex() -> None:
-    said = "θ^2 times 9 terms over 21, too long to be read; as LaTeX it is written out"
-    assert steady_error_text(lookup("tsit5")) == said
-    assert steady_error_text(lookup("tsit5"), latex=True).count(r"\hat{\beta}") > 20

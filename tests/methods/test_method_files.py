@@ -1,6 +1,5 @@
 """Method files: read exactly, or refused in one line."""
 
-from collections.abc import Sequence
 from fractions import Fraction
 from pathlib import Path
 
@@ -13,12 +12,11 @@ from bezstab.errors import InputError
 from bezstab.methods.method_files import read_method
 from bezstab.methods.orders import accuracy
 from bezstab.methods.registry import lookup
-from bezstab.methods.schemes import LinearMultistep, Method, RungeKutta, steps
-from tests.methods import kinds
+from bezstab.methods.schemes import Method, RungeKutta, steps
 from tests.methods.random_recipes import VERLET
 
-EBDF2 = 'rho = ["1", "-4/3", "1/3"]\nsigma = ["0", "4/3", "-2/3"]\n'
-HEUN = 'A = [["0", "0"], ["1", "0"]]\nb = ["1/2", "1/2"]\n'
+AB2 = 'rho = ["1", "-1", 0]\nsigma = [0, "3/2", "-0.5"]\n'
+HEUN = 'A = [[0, "0"], [1, "0"]]\nb = ["1/2", "1/2"]\n'
 UPDATE = "\n[update]\n" + "".join(f'{result} = "{text}"\n' for result, text in VERLET.items())
 
 
@@ -28,45 +26,13 @@ def written(folder: Path, content: str | bytes, name: str = "own.toml") -> Path:
     return path
 
 
-def test_a_file_of_equations_is_read_exactly(tmp_path: Path) -> None:
-    method = read_method(written(tmp_path, 'name = "mine"\nsource = "me, 2020"\n' + UPDATE))
-    assert method == Method("mine", lookup("verlet-half").scheme, "me, 2020")
-
-
-def test_a_file_without_name_and_source_takes_both_from_its_path(tmp_path: Path) -> None:
-    for content in (HEUN, EBDF2):
+def test_a_file_is_read_exactly_whatever_it_is_called(tmp_path: Path) -> None:
+    """Whole numbers may be bare; name and source are the path's where the file has none."""
+    for content, name in ((AB2, "AB2"), (HEUN, "heun"), (UPDATE, "verlet-half")):
         path = written(tmp_path, content)
-        method = read_method(path)
-        assert (method.name, method.source) == ("own", str(path))
-
-
-def listed(coefficients: Sequence[Fraction]) -> str:
-    return "[" + ", ".join(f'"{c}"' for c in coefficients) + "]"
-
-
-def file_content(scheme: LinearMultistep | RungeKutta) -> str:
-    match scheme:
-        case LinearMultistep(rho, sigma):
-            return f"rho = {listed(rho)}\nsigma = {listed(sigma)}\n"
-        case RungeKutta(tableau, b):
-            return f"A = [{', '.join(listed(row) for row in tableau)}]\nb = {listed(b)}\n"
-
-
-@pytest.mark.parametrize("name", [*kinds.MULTISTEP, *kinds.RUNGE_KUTTA])
-def test_a_file_has_the_scheme_of_its_coefficients_whatever_it_is_called(name: str, tmp_path: Path) -> None:
-    scheme = lookup(name).scheme
-    assert isinstance(scheme, LinearMultistep | RungeKutta)
-    path = written(tmp_path, f'name = "AB4"\nsource = "me"\n{file_content(scheme)}')
-    assert read_method(path) == Method("AB4", scheme, "me")
-
-
-def test_bare_whole_numbers_are_coefficients(tmp_path: Path) -> None:
-    for content in (HEUN, EBDF2):
-        bare = content
-        for number in ("0", "1"):
-            bare = bare.replace(f'"{number}"', number)
-        assert bare != content
-        assert read_method(written(tmp_path, bare)) == read_method(written(tmp_path, content))
+        assert read_method(path) == Method("own", lookup(name).scheme, str(path))
+        named = written(tmp_path, f'name = "AB4"\nsource = "me, 2020"\n{content}')
+        assert read_method(named) == Method("AB4", lookup(name).scheme, "me, 2020")
 
 
 DIGITS = "1" * 5000
@@ -80,13 +46,11 @@ REFUSED: dict[str, tuple[str | bytes, str]] = {
     "deep nesting": ("rho = " + "[" * 20000 + "]" * 20000 + "\nsigma = []", "brackets nested too deeply"),
     "stages": (f"A = {[['0'] * 21] * 21}\nb = {['1', *['0'] * 20]}", "21 stages: expected at most 20"),
     "steps": (f"rho = {['1', '-1', *['0'] * 100]}\nsigma = {['0', '1', *['0'] * 100]}", "expected at most 100"),
-    "unknown key": (EBDF2 + 'order = "2"', "order"),
-    "both kinds": (EBDF2 + HEUN, "found A, b, rho, sigma"),
+    "both kinds": (AB2 + HEUN, "found A, b, rho, sigma"),
     "no keys": ("", "found none"),
     "update: number": ("[update]\nx1 = 3", "update: 'x1' = 3: expected a text like 'x0"),
     "update: empty": ("[update]", "no equation"),
     "update: line breaks in a key": ('[update]\n"a\\nb\\u2028" = "x0"', ""),
-    "update: long equation": (f'[update]\nx1 = "{"x0 + " * 50_000}x0"', ""),
     "update: 20000 equations": ("[update]\n" + "\n".join(f'w{i} = "x0"' for i in range(20_000)), "20000 equations"),
 }
 """Contents, and a part of what is said of each. What a text cannot say is in test_recipes and test_second_order."""
@@ -97,16 +61,14 @@ def refusal(path: Path) -> str:
         read_method(path)
     message = str(caught.value)
     assert len(message.splitlines()) == 1
+    assert str(path) in message or "\n" in str(path) or "\0" in str(path)
     return message
 
 
 @pytest.mark.parametrize("case", REFUSED)
 def test_a_bad_file_is_refused_in_one_line_that_names_it_and_what_is_wrong(case: str, tmp_path: Path) -> None:
     content, why = REFUSED[case]
-    path = written(tmp_path, content)
-    message = refusal(path)
-    assert str(path) in message
-    assert why in message
+    assert why in refusal(written(tmp_path, content))
 
 
 RADAU = """
@@ -125,8 +87,7 @@ def test_coefficients_with_roots_are_those_of_the_book(tmp_path: Path) -> None:
     own, built_in = read_method(written(tmp_path, RADAU)), lookup("radau5")
     assert isinstance(own.scheme, RungeKutta)
     assert isinstance(built_in.scheme, RungeKutta)
-    for mine, theirs in zip(own.scheme.tableau, built_in.scheme.tableau, strict=True):
-        assert all(abs(a - b) < Fraction(1, 10**38) for a, b in zip(mine, theirs, strict=True))
+    assert np.abs(np.array(own.scheme.tableau) - np.array(built_in.scheme.tableau)).max() < Fraction(1, 10**38)
     assert own.digits == built_in.digits == 40
     assert accuracy(own)[0] == 5
 
@@ -141,9 +102,7 @@ def test_equations_with_roots_are_reckoned_exactly(tmp_path: Path) -> None:
 def test_a_path_that_leads_to_no_file_is_refused_in_one_line(tmp_path: Path) -> None:
     (folder := tmp_path / "folder.toml").mkdir()
     below_a_file = written(tmp_path, HEUN) / "below.toml"
-    for path in (tmp_path / "missing.toml", folder, below_a_file, tmp_path / ("x" * 300 + ".toml")):
-        assert str(path) in refusal(path)
-    for name in ("a\nb.toml", "a\0b.toml"):
+    for name in ("missing.toml", "x" * 300 + ".toml", "a\nb.toml", "a\0b.toml", folder, below_a_file):
         refusal(tmp_path / name)
 
 
@@ -157,6 +116,6 @@ def test_any_bytes_are_a_method_or_one_line_of_refusal(
     try:
         method = read_method(path)
     except InputError:
-        assert str(path) in refusal(path)
+        refusal(path)
     else:
         assert steps(method) >= 1

@@ -26,23 +26,19 @@ def test_a_method_is_frozen_exact_data() -> None:
 
 
 STEPS_AND_EVALUATIONS = {
-    **{f"{family}{n}": (n, 1) for family in ("B", "AB") for n in range(1, 9)},
-    "ABM4": (4, 2),
-    "bdf4": (4, 1),
-    "am4": (3, 1),
-    "sdirk2": (1, 2),
-    "SYM": (1, 1),
-    "verlet-half": (1, 1),
-    "verlet-kdk": (1, 2),
-    "forest-ruth": (1, 3),
-    "rkn4": (1, 4),
-    "hht": (1, 1),
+    (4, 1): "B4 AB4 bdf4",
+    (4, 2): "ABM4",
+    (3, 1): "am4",
+    (1, 1): "SYM verlet-half hht",
+    (1, 2): "sdirk2 verlet-kdk",
+    (1, 3): "forest-ruth",
+    (1, 4): "rkn4",
 }
 
 
 def test_steps_and_evaluations_count_what_one_step_needs() -> None:
-    methods = map(lookup, STEPS_AND_EVALUATIONS)
-    assert {each.name.partition("(")[0]: (steps(each), evaluations(each)) for each in methods} == STEPS_AND_EVALUATIONS
+    for expected, names in STEPS_AND_EVALUATIONS.items():
+        assert {(steps(lookup(name)), evaluations(lookup(name))) for name in names.split()} == {expected}
 
 
 def test_stages_are_evaluated_at_the_sums_of_their_rows() -> None:
@@ -58,11 +54,10 @@ def test_stages_are_evaluated_at_the_sums_of_their_rows() -> None:
         ("1 -1", "0 1 0", "same number"),
         ("1", "1", "at least two"),
         ("0 1 -1", "0 0 1", "leading coefficient of rho"),
-        ("1 -1", "0 2", r"inconsistent: sigma\(1\) = 2, but rho'\(1\) = 1"),
-        ("1 -1", f"0 {1 + Fraction(1, 10**20)}", "inconsistent"),
-        ("1 -3 2", "0 0 -1", "zero-unstable"),  # the root 2
+        ("1 -1", f"0 {1 + Fraction(1, 10**20)}", r"inconsistent: sigma\(1\) = 1.*, but rho'\(1\) = 1"),
         ("1 4 -5", "0 4 2", "zero-unstable"),  # of order three, the classical example: the root -5
         ("1 -2 1", "0 0 0", "zero-unstable"),  # the double root 1
+        ("1 -3/2 1/2", "1 -1/2 0", "share the factor z − 1/2: cancel it"),
     ],
 )
 def test_a_multistep_method_is_consistent_and_zero_stable(rho: str, sigma: str, why: str) -> None:
@@ -86,7 +81,7 @@ def test_a_runge_kutta_method_is_square_and_consistent(tableau: list[str], b: st
 # The same step as equations for x, v and a
 
 
-@pytest.mark.parametrize("name", kinds.MU_METHODS)
+@pytest.mark.parametrize("name", kinds.sampled(kinds.MU_METHODS, [*kinds.SAMPLE, *kinds.SOLVED, "radau5"]))
 def test_p_of_the_form_is_the_product_of_pi_over_both_mu_of_the_feedback(name: str) -> None:
     """The resultant of pi and mu^2 + alpha_hat mu + beta_hat, whose roots are mu_1 and mu_2."""
     pi = characteristic_polynomial(lookup(name))
@@ -99,5 +94,5 @@ def test_p_of_the_form_is_the_product_of_pi_over_both_mu_of_the_feedback(name: s
 
 
 def test_an_implicit_form_has_one_group_to_solve_and_a_diagonally_implicit_one_for_each_stage() -> None:
-    for name, groups in {"bdf3": 1, "am4": 1, "gauss4": 1, "dirk3": 3, "RK4": 0}.items():
+    for name, groups in {"bdf3": 1, "gauss4": 1, "dirk3": 3, "RK4": 0}.items():
         assert sum(len(group) > 1 for group in lookup(name).scheme.second_order.groups) == groups

@@ -11,7 +11,7 @@ from bezstab.errors import InputError
 from bezstab.methods.derivation import closed_loop_at
 from bezstab.methods.recipes import recipe
 from bezstab.methods.registry import lookup
-from bezstab.methods.schemes import Method, steps
+from bezstab.methods.schemes import Method
 from bezstab.methods.second_order import SecondOrder
 from tests.methods import kinds
 from tests.methods.random_recipes import RECIPES, VERLET
@@ -29,12 +29,12 @@ def is_shifted(longer: list[Fraction], shorter: list[Fraction]) -> bool:
 
 
 @pytest.mark.parametrize("name", [*kinds.SECOND_ORDER, *kinds.IMPLICIT, "RK4", "dopri5", "ABM3"])
-@pytest.mark.parametrize(("alpha_hat", "beta_hat"), POINTS[:2])
-def test_p_is_the_characteristic_polynomial_of_the_step(name: str, alpha_hat: Fraction, beta_hat: Fraction) -> None:
+def test_p_is_the_characteristic_polynomial_of_the_step(name: str) -> None:
     form = lookup(name).scheme.second_order
-    polynomial = step_polynomial(form, alpha_hat, beta_hat)
-    assert polynomial is not None
-    assert is_shifted(polynomial, closed_loop_at(Method("form", form, ""), alpha_hat, beta_hat))
+    for point in POINTS[:2]:
+        polynomial = step_polynomial(form, *point)
+        assert polynomial is not None
+        assert is_shifted(polynomial, closed_loop_at(Method("form", form, ""), *point))
 
 
 def has_a_circle(scheme: SecondOrder) -> bool:
@@ -64,27 +64,8 @@ def test_p_of_a_random_recipe_is_that_of_its_own_step(
     assert is_shifted(polynomial, p)
 
 
-@settings(deadline=None, max_examples=15)
-@given(RECIPES, st.sampled_from(["x0", "v0", "x[-1]"]))
-def test_a_motion_that_is_not_followed_or_an_acceleration_that_does_not_act_in_full_is_refused(
-    equations: dict[str, str], quantity: str
-) -> None:
-    with pytest.raises(InputError, match="inconsistent"):
-        recipe(equations | {"v1": f"{equations['v1']} + 1/100 a1"})
-    with pytest.raises(InputError):
-        recipe(equations | {"x1": f"{equations['x1']} + 1/9 {quantity}"})
-
-
-def test_a_value_of_earlier_steps_counts_as_a_step() -> None:
-    beeman = recipe(VERLET | {"x1": "x0 + v0 + 2/3 a0 - 1/6 a[-1]"})
-    assert (steps(Method("own", beeman, "")), len(beeman.evaluated)) == (2, 1)
-
-
 DOUBLED = {"x1": "x0 + 1/2 v0", "v1": "v0 + 2 a0", "a0": "acceleration(x0, 1/2 v0)"}
 """A velocity in other units: its P is right."""
-WITHOUT_X = {"v1": "v0 + a0", "a0": "acceleration(x0, v0)"}
-WITHOUT_V = {"x1": "x0 + a0", "a0": "acceleration(x0, x0)"}
-WITHOUT_FORCE = {"x1": "x0 + v0", "v1": "v0"}
 
 
 @pytest.mark.parametrize(
@@ -99,12 +80,10 @@ WITHOUT_FORCE = {"x1": "x0 + v0", "v1": "v0"}
         (VERLET | {"v1": "vh"}, "an acceleration does not act in full"),
         (VERLET | {"a1": "acceleration(x1, 2 vh)"}, "feedback not as feedback"),
         (VERLET | {"x1": "3 x0 - 2 x[-1] - v0 + 1/2 a0"}, "zero-unstable: .* outside the unit circle"),
-        (VERLET | {"w": "w[0] + 0 x0"}, "zero-unstable"),  # a third root z = 1
         (VERLET | {"w": "0 x0 - w[0] + u[0]", "u": "0 x0 - u[0]"}, "zero-unstable"),  # -1 twice; once it is allowed
         (DOUBLED, "v1 is not the velocity of x1"),
-        (WITHOUT_X, "no equation gives x1"),
-        (WITHOUT_V, "no equation gives v1"),
-        (WITHOUT_FORCE, "no equation evaluates the acceleration"),
+        ({"v1": "v0 + a0", "a0": "acceleration(x0, v0)"}, "no equation gives x1"),
+        ({"x1": "x0 + v0", "v1": "v0"}, "no equation evaluates the acceleration"),
     ],
 )
 def test_what_cannot_be_is_refused_in_one_line(equations: dict[str, str], why: str) -> None:
