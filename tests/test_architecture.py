@@ -58,7 +58,7 @@ SHARED_WITH_EXTENSIONS = {"cli.options", "cli.output", "cli.shared_options"}
 APPOINTED = {
     "sympy": {
         *("methods/added_damping.py", "methods/determinants.py", "methods/derivation.py", "methods/formulas.py"),
-        "methods/step_matrices.py",
+        *("methods/step_matrices.py", "step_sequences/positive_polynomials.py"),
         *("methods/recipes.py", "methods/steady_errors.py", "methods/rotation_torque.py"),
         "stability/quadrant_proofs.py",
         *("mechanism/equations.py", "mechanism/generated_code.py", "mechanism/start.py", "mechanism/observation.py"),
