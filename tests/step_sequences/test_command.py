@@ -27,8 +27,6 @@ def test_steps_that_are_refuted_together_may_be_typed_or_stand_in_a_file(
     Path("steps.txt").write_text(steps.replace(",", "\n"), encoding="utf-8")
     typed, from_file = (rows(at, each)[0]["c_max"] for each in (steps, "steps.txt"))
     assert typed == from_file > 1e-2
-    longer_than_the_name_of_a_file = ",".join([steps] * 20)
-    assert rows(at, longer_than_the_name_of_a_file)[0]["c_max"] == typed
 
 
 @pytest.mark.parametrize(
@@ -37,7 +35,6 @@ def test_steps_that_are_refuted_together_may_be_typed_or_stand_in_a_file(
         f"{EXAMPLE} {STEPS}",
         "--method SYM --alpha 0.4 --beta 1 --h-max 2 --h-min 0.2 --hold",
         "--method RK4 --alpha 30000 --beta 14000 --h-max 1e-4 --h-min 5e-5",  # 1e-4 s alone grows
-        "--method verlet-old --alpha 0.2 --beta 1 --h-max 0.01 --h-min 0.002 --hold",
         "--method newmark(1/4,1/2) --alpha 0.1 --beta 1 --h-max 0.01 --h-min 0.002 --hold",
         "--method generalized-alpha --alpha 1 --beta 632 --h-max 0.01 --h-min 0.0005",
     ],
@@ -57,16 +54,11 @@ def test_the_line_that_shows_errors_grow_does_as_typed(arguments: str, monkeypat
     assert shlex.split(shown.replace("\\\n", "")) == shlex.split(given["shown_by"])
 
 
-@pytest.mark.parametrize(
-    "arguments",
-    [
-        "--method SYM --alpha 1 --beta 2 --hold --h-max 0.01 --h-min 0.001",  # each step alone is marginal
-        f"--method {DATA}/euler.toml --alpha 150 --beta 200 --h-max 0.01 --h-min 0.001",  # it has no name to type
-    ],
-)
-def test_no_line_is_given_that_would_show_nothing(arguments: str) -> None:
-    given = rows("steps", arguments, status=1)[0]
-    assert (given["verdict"], given["shown_by"]) == ("refuted", None)
+def test_no_line_is_given_that_would_show_nothing() -> None:
+    marginal, without_a_name = "SYM --alpha 1 --beta 2 --hold", f"{DATA}/euler.toml --alpha 150 --beta 200"
+    for method in (marginal, without_a_name):
+        given = rows("steps --h-max 0.01 --h-min 0.001 --method", method, status=1)[0]
+        assert (given["verdict"], given["shown_by"]) == ("refuted", None)
 
 
 def test_anyone_can_verify_the_certificate_that_is_printed() -> None:
