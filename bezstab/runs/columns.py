@@ -69,6 +69,10 @@ def _measured(found: Measurement) -> complex | None:
     return found.measured
 
 
+MEASURED_POLE = [
+    replace(each, heading=each.heading and f"measured {each.heading}", brief=each.key == "z_abs") for each in POLE
+]
+
 MEASURED: Sequence[Column[Measurement]] = (
     Column("method", "method", lambda found: found.method.name, "integration method", apart=True),
     Column("α̂", "alpha_hat", lambda found: found.alpha_hat, "2αh", apart=True),
@@ -98,7 +102,7 @@ MEASURED: Sequence[Column[Measurement]] = (
         form=".6f",
         brief=True,
     ),
-    *of_part(_measured, [replace(each, brief=each.key == "z_abs") for each in POLE]),
+    *of_part(_measured, MEASURED_POLE),
     Column("predicted verdict", "", lambda found: found.predicted_verdict, ""),
     Column("measured verdict", "verdict", lambda found: found.measured_verdict, "of the run", apart=True),
     Column(
