@@ -54,10 +54,6 @@ def _parameters(facts: EngineFacts) -> str | None:
     return ", ".join(f"[{text}]" if name in engine.optional else text for name, text in named.items()) or None
 
 
-def _sweeping(facts: EngineFacts) -> Sweeping | None:
-    return facts.engine.sweeping
-
-
 SWEEPING: Sequence[Column[Sweeping]] = (
     Column(
         "sweeps in a step",
@@ -116,5 +112,5 @@ COLUMNS: Sequence[Column[EngineFacts]] = (
         lambda facts: facts.engine.sweeps,
         "whether the engine solves one constraint after another, so that `bezstab chain` is asked about many",
     ),
-    *of_part(_sweeping, SWEEPING),
+    *of_part(EngineFacts, lambda facts: facts.engine.sweeping, SWEEPING),
 )

@@ -216,26 +216,6 @@ SWEPT: Sequence[Column[SweptAnswer]] = (
 )
 
 
-def _margins(answer: Judgement) -> Margins | None:
-    return answer.margins
-
-
-def _cost(answer: Judgement) -> FeedbackCost | None:
-    return answer.cost
-
-
-def _moving(answer: Judgement) -> MovingPole | None:
-    return answer.moving
-
-
-def _run(answer: Judgement) -> SceneRun | None:
-    return answer.run
-
-
-def _swept(answer: Judgement) -> SweptAnswer | None:
-    return answer.swept
-
-
 def _remark(answer: Judgement) -> str | None:
     searched = None if answer.searched is None else f"searched for αh, βh to {answer.searched:g}"
     return "; ".join(filter(None, (answer.margins_reason, searched))) or None
@@ -246,18 +226,18 @@ JUDGED: Sequence[Column[Judgement]] = (
     *DECAY,
     *ENDS,
     Column("remark", "remark", _remark, "why margins are not known, and how far was searched"),
-    *of_part(_margins, MARGINS),
+    *of_part(Judgement, lambda answer: answer.margins, MARGINS),
     *MOTION,
-    *of_part(_cost, COST),
-    *of_part(_moving, MOVING),
-    *of_part(_run, RUN),
+    *of_part(Judgement, lambda answer: answer.cost, COST),
+    *of_part(Judgement, lambda answer: answer.moving, MOVING),
+    *of_part(Judgement, lambda answer: answer.run, RUN),
     Column(
         "holds for",
         "swept",
         lambda answer: answer.swept_over,
         "for which constraints `safe` holds in an engine that sweeps",
     ),
-    *of_part(_swept, SWEPT),
+    *of_part(Judgement, lambda answer: answer.swept, SWEPT),
     Column(
         "sag",
         "sag",
@@ -284,14 +264,6 @@ CHOSEN: Sequence[Column[ChooseAnswer]] = (
 )
 
 
-def _judged(answer: PoleAnswer) -> Judgement:
-    return answer.judged
-
-
-def _z(answer: PoleAnswer) -> complex:
-    return answer.z
-
-
 WITH_A_POLE = {
     "method": False,
     "alpha_hat": False,
@@ -306,10 +278,11 @@ WITH_A_POLE = {
 
 POLES: Sequence[Column[PoleAnswer]] = (
     *of_part(
-        _judged,
+        PoleAnswer,
+        lambda answer: answer.judged,
         [replace(each, brief=WITH_A_POLE[each.key]) for each in JUDGED if each.key in WITH_A_POLE],
     ),
-    *of_part(_z, [replace(each, brief=True) for each in POLE]),
+    *of_part(PoleAnswer, lambda answer: answer.z, [replace(each, brief=True) for each in POLE]),
     Column("", "sentence", lambda answer: answer.sentence, "the answer in words"),
 )
 

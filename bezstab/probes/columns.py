@@ -26,10 +26,6 @@ class Found(NamedTuple):
     h: Fraction | None
 
 
-def _pole(answer: Probe) -> complex | None:
-    return answer.pole
-
-
 def _fits(it: Compared) -> bool | None:
     told = it.one.method.name in it.answer.fitting
     return None if it.one.fits and not told else it.one.fits
@@ -41,7 +37,7 @@ def _rates(it: Found) -> tuple[float | None, float | None]:
 
 POLES: Sequence[Column[Probe]] = (
     Column("column", "column", lambda answer: answer.column, "column of the log"),
-    *of_part(_pole, POLE),
+    *of_part(Probe, lambda answer: answer.pole, POLE),
     Column(
         "± of z",
         "uncertainty",

@@ -64,10 +64,6 @@ def _critical_words(answer: RegionAnswer) -> str:
     return f"{limit:.6g}" if exact is None else f"{limit:.6g} = {exact}"
 
 
-def _inside(answer: RegionAnswer) -> BestPoint | None:
-    return answer.inside
-
-
 BEST: Sequence[Column[BestPoint]] = (
     Column(
         "least |z_p|",
@@ -122,7 +118,7 @@ REGION: Sequence[Column[RegionAnswer]] = (
         lambda answer: answer.critical_damping_limit,
         "largest βh on α = β up to which all are stable; null if all are",
     ),
-    *of_part(_inside, BEST),
+    *of_part(RegionAnswer, lambda answer: answer.inside, BEST),
     Column(
         "poles there",
         "remark",
@@ -265,22 +261,10 @@ FORMULAS: Sequence[Column[Formulas]] = (
 )
 
 
-def _about(whole: WholeMethod) -> MethodAnswer | None:
-    return whole.about
-
-
-def _formulas(whole: WholeMethod) -> Formulas | None:
-    return whole.formulas
-
-
-def _region(whole: WholeMethod) -> RegionAnswer | None:
-    return whole.region
-
-
 WHOLE: Sequence[Column[WholeMethod]] = [
-    *of_part(_about, LISTED),
-    *of_part(_formulas, FORMULAS),
-    *of_part(_region, REGION[1:-1]),
+    *of_part(WholeMethod, lambda whole: whole.about, LISTED),
+    *of_part(WholeMethod, lambda whole: whole.formulas, FORMULAS),
+    *of_part(WholeMethod, lambda whole: whole.region, REGION[1:-1]),
     Column("", "sentence", whole_method_sentence, "the answer in words"),
 ]
 """All that is known of a method that is named."""

@@ -65,10 +65,6 @@ RUN: Sequence[Column[Simulation]] = (
 )
 
 
-def _measured(found: Measurement) -> complex | None:
-    return found.measured
-
-
 MEASURED_POLE = [
     replace(each, heading=each.heading and f"measured {each.heading}", brief=each.key == "z_abs") for each in POLE
 ]
@@ -102,7 +98,7 @@ MEASURED: Sequence[Column[Measurement]] = (
         form=".6f",
         brief=True,
     ),
-    *of_part(_measured, MEASURED_POLE),
+    *of_part(Measurement, lambda found: found.measured, MEASURED_POLE),
     Column("predicted verdict", "", lambda found: found.predicted_verdict, ""),
     Column("measured verdict", "verdict", lambda found: found.measured_verdict, "of the run", apart=True),
     Column(

@@ -38,8 +38,10 @@ class Column(Generic[Answer_contra]):
         return MISSING if isinstance(value, float) and math.isnan(value) else visible(formatted(value, self.form))
 
 
-def of_part(part: Callable[[Answer], Part | None], columns: Sequence[Column[Part]]) -> list[Column[Answer]]:
-    """Return the columns of a part of an answer as columns of the answer, without a value where it has no such part."""
+def of_part(
+    _: type[Answer], part: Callable[[Answer], Part | None], columns: Sequence[Column[Part]]
+) -> list[Column[Answer]]:
+    """Return columns of a part of such an answer as columns of the answer, without a value where it has no part."""
 
     def lifted(column: Column[Part]) -> Callable[[Answer], Value]:
         def value(answer: Answer) -> Value:
