@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from bezstab.chains.answer import ChainAnswer
-from bezstab.show.columns import Column, in_seconds
+from bezstab.show.columns import SENTENCE, Column, in_seconds
 
 COLUMNS: Sequence[Column[ChainAnswer]] = (
     Column("engine", "engine", lambda answer: answer.engine.name, "engine that sweeps over its constraints"),
@@ -80,5 +80,5 @@ COLUMNS: Sequence[Column[ChainAnswer]] = (
         form=".2g",
         brief=True,
     ),
-    Column("", "sentence", lambda answer: answer.sentence, "the answer in words"),
+    SENTENCE,
 )

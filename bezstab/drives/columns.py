@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from bezstab.drives.answer import DriveAnswer
 from bezstab.drives.limits import Stretch
 from bezstab.engines.drives import Timing
-from bezstab.show.columns import Column, in_seconds
+from bezstab.show.columns import METHOD, SENTENCE, Column, in_seconds
 from bezstab.words import seconds_words
 
 NOT_JUDGED = (
@@ -24,7 +24,7 @@ KP, KD, KI = "N m/rad or N/m", "N m s/rad or N s/m", "N m/(rad s) or N/(m s)"
 INERTIA = "kg m² or kg"
 
 COLUMNS: Sequence[Column[DriveAnswer]] = (
-    Column("method", "method", lambda answer: answer.method.name, "integration method", apart=True),
+    METHOD,
     Column("applied", "applied", lambda answer: answer.applied, "how the drive is applied", apart=True),
     Column("verdict", "verdict", lambda answer: answer.verdict, "what errors do, proven; without kp the velocity"),
     Column("safe", "safe", lambda answer: answer.safe, "whether errors are proven to shrink", apart=True),
@@ -81,7 +81,7 @@ COLUMNS: Sequence[Column[DriveAnswer]] = (
         "what an unstable drive would be stable without, or the number of a stable one that is nearest to its limit",
         brief=True,
     ),
-    Column("", "sentence", lambda answer: answer.sentence, "the answer in words"),
+    SENTENCE,
 )
 
 

@@ -29,17 +29,17 @@ GOALS_IN_LINES = "\b\nGoals:\n" + "\n".join(f"  {goal:<9} {asked}" for goal, ask
     click.option(
         "--goal", type=click.Choice(list(GOALS)), metavar="GOAL", help="What for [accurate; robust in most engines]."
     ),
-    click.option("--settle", type=SECONDS, help=f"{one_of(SETTLING)}: errors fall to a thousandth in so many s."),
+    click.option("--settle", type=SECONDS, help=f"{one_of(SETTLING)}: time to a thousandth."),
     click.option("--spread", type=SHARE, default="0.1", help="The share by which α and β may be wrong."),
     click.option("--keep", "equal", type=click.Choice(["alpha=beta"]), help="Only points with α = β."),
-    click.option("--engine", type=ENGINE, help="Only what this engine can express, with the line to paste."),
-    click.option("--sag", type=POSITIVE, help="In place of a goal: the weakest that sags by at most so many m."),
+    click.option("--engine", type=ENGINE, help="Only what this engine can express."),
+    click.option("--sag", type=POSITIVE, help="Instead: the weakest that sags by so many m."),
 )
 @grouped(
     "Your simulation",
     shared.methods,
-    click.option("--h", type=SECONDS, help="Step in s. Not needed with --omega where α and β are multiples of ω."),
-    click.option("--h-max", type=SECONDS, help=f"{one_of(UP_TO_LONGEST)}: the largest step, s, that can occur [--h]."),
+    click.option("--h", type=SECONDS, help="Step in s; some need none with --omega."),
+    click.option("--h-max", type=SECONDS, help=f"{one_of(UP_TO_LONGEST)}: the longest step [--h]."),
     shared.omega,
     shared.scene,
     shared.speed,

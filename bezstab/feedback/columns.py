@@ -15,7 +15,7 @@ from bezstab.questions.chains import SweptAnswer
 from bezstab.questions.scene_runs import SceneRun
 from bezstab.rationals import rounded_down, typed_number
 from bezstab.show.cells import between, modulus_words, up_to
-from bezstab.show.columns import POLE, Column, of_part
+from bezstab.show.columns import METHOD, POINT, POLE, RATES, SENTENCE, Column, of_part
 from bezstab.stability.feedback_costs import FeedbackCost
 from bezstab.stability.margins import Margins
 from bezstab.stability.turning import MovingPole
@@ -27,14 +27,12 @@ GAIN = 0.95
 UNLIMITED, ANY = "unlimited", "any"
 
 
-POINT: Sequence[Column[Judgement]] = (
+ASKED: Sequence[Column[Judgement]] = (
     Column("", "role", lambda answer: answer.role, "whether the point is given, chosen, or to be taken instead"),
-    Column("method", "method", lambda answer: answer.method.name, "integration method", apart=True),
+    METHOD,
     Column("goal", "goal", lambda answer: answer.goal, "what the point is chosen for, or that it is given", apart=True),
-    Column("α̂", "alpha_hat", lambda answer: answer.alpha_hat, "damping of the feedback, 2αh"),
-    Column("β̂", "beta_hat", lambda answer: answer.beta_hat, "stiffness of the feedback, β²h²"),
-    Column("α (1/s)", "alpha", lambda answer: answer.alpha, "damping of the feedback", "1/s", brief=True),
-    Column("β (1/s)", "beta", lambda answer: answer.beta, "its stiffness as a rate; null if β̂ < 0", "1/s", brief=True),
+    *POINT,
+    *RATES,
     Column("h (s)", "h", lambda answer: answer.conditions.seconds, "step", "s"),
 )
 
@@ -222,7 +220,7 @@ def _remark(answer: Judgement) -> str | None:
 
 
 JUDGED: Sequence[Column[Judgement]] = (
-    *POINT,
+    *ASKED,
     *DECAY,
     *ENDS,
     Column("remark", "remark", _remark, "why margins are not known, and how far was searched"),
@@ -254,13 +252,13 @@ JUDGED: Sequence[Column[Judgement]] = (
 CHECKED: Sequence[Column[CheckAnswer | ChooseAnswer]] = (
     *JUDGED,
     Column("", "applied", lambda answer: answer.applied, "what the engine does to its values before it uses them"),
-    Column("", "sentence", lambda answer: answer.sentence, "the answer in words"),
+    SENTENCE,
 )
 
 CHOSEN: Sequence[Column[ChooseAnswer]] = (
     *JUDGED,
     Column("", "safe_with", lambda answer: answer.safe_with, "the option with which an unsafe choice is safe"),
-    Column("", "sentence", lambda answer: answer.sentence, "the answer in words"),
+    SENTENCE,
 )
 
 
@@ -283,13 +281,12 @@ POLES: Sequence[Column[PoleAnswer]] = (
         [replace(each, brief=WITH_A_POLE[each.key]) for each in JUDGED if each.key in WITH_A_POLE],
     ),
     *of_part(PoleAnswer, lambda answer: answer.z, [replace(each, brief=True) for each in POLE]),
-    Column("", "sentence", lambda answer: answer.sentence, "the answer in words"),
+    SENTENCE,
 )
 
 STEPS: Sequence[Column[StepAnswer]] = (
-    Column("method", "method", lambda answer: answer.method.name, "integration method", apart=True),
-    Column("α (1/s)", "alpha", lambda answer: answer.alpha, "damping of the feedback", "1/s", brief=True),
-    Column("β (1/s)", "beta", lambda answer: answer.beta, "its stiffness as a rate", "1/s", brief=True),
+    METHOD,
+    *RATES,
     Column("safe", "safe", lambda answer: answer.safe, "whether small steps are stable", apart=True),
     Column(
         "largest stable h (s)",
@@ -300,7 +297,7 @@ STEPS: Sequence[Column[StepAnswer]] = (
         lambda limit: UNLIMITED if math.isinf(limit) else rounded_down(limit, 4) if limit else "none",
         brief=True,
     ),
-    Column("", "sentence", lambda answer: answer.sentence, "the answer in words"),
+    SENTENCE,
 )
 
 

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import chain, compress
 
 from bezstab.regions.answer import MotionPoint, MovingRegion, RegionAnswer
@@ -14,7 +15,7 @@ from bezstab.regions.sentences import (
     whole_method_sentence,
 )
 from bezstab.show.cells import between
-from bezstab.show.columns import Column, of_part
+from bezstab.show.columns import METHOD, POINT, Column, of_part
 from bezstab.show.fields import MISSING, formatted
 from bezstab.stability.best_points import BestPoint
 
@@ -146,11 +147,10 @@ REGION: Sequence[Column[RegionAnswer]] = (
 
 
 ON_A_MOTION: Sequence[Column[MotionPoint]] = (
-    Column("method", "method", lambda point: point.method.name, "integration method", apart=True),
+    METHOD,
     Column("point", "goal", lambda point: point.goal, "goal of `choose` whose point it is", brief=True),
     Column("", "omega_h", lambda point: point.omega_h, "angle by which the motion turns in a step", "rad"),
-    Column("α̂", "alpha_hat", lambda point: point.alpha_hat, "2αh", brief=True),
-    Column("β̂", "beta_hat", lambda point: point.beta_hat, "β²h²", brief=True),
+    *(replace(each, brief=True) for each in POINT),
     Column("|z_p|", "z_abs", lambda point: point.z_abs, "modulus of the dominant pole", form=".6f", brief=True),
     Column(
         "error forced",
@@ -171,7 +171,7 @@ ON_A_MOTION: Sequence[Column[MotionPoint]] = (
 )
 
 MOVING: Sequence[Column[MovingRegion]] = (
-    Column("method", "method", lambda moving: moving.method.name, "integration method", apart=True),
+    METHOD,
     Column("speed", "speed", lambda moving: moving.speed, "times the scene's own speed", brief=True),
     Column(
         "κ (1/s)",

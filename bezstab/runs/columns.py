@@ -10,16 +10,15 @@ from bezstab.runs.accuracy_costs import Run, SweptRuns
 from bezstab.runs.measured_poles import Measurement, MeasurementSummary
 from bezstab.runs.verdict_maps import VerdictMap
 from bezstab.show.cells import modulus_words
-from bezstab.show.columns import POLE, Column, of_part
+from bezstab.show.columns import METHOD, POINT, POLE, Column, of_part
 from bezstab.show.fields import formatted
 from bezstab.stability.error_fronts import FrontPoint
 from bezstab.units import alpha_and_beta
 
 RUN: Sequence[Column[Simulation]] = (
-    Column("method", "method", lambda run: run.method.name, "integration method"),
+    METHOD,
     Column("held by", "stabilise", lambda run: run.stabilise, "what holds the constraints"),
-    Column("α̂", "alpha_hat", lambda run: run.alpha_hat, "2αh"),
-    Column("β̂", "beta_hat", lambda run: run.beta_hat, "β²h²"),
+    *POINT,
     Column("h (s)", "h", lambda run: run.h, "step", "s"),
     Column("until (s)", "time", lambda run: float(run.t[-1]), "when the run ended", "s"),
     Column("largest |c| (m, rad)", "c_max", lambda run: run.c_max, "largest constraint error", "m or rad", ".2e"),
@@ -70,9 +69,8 @@ MEASURED_POLE = [
 ]
 
 MEASURED: Sequence[Column[Measurement]] = (
-    Column("method", "method", lambda found: found.method.name, "integration method", apart=True),
-    Column("α̂", "alpha_hat", lambda found: found.alpha_hat, "2αh", apart=True),
-    Column("β̂", "beta_hat", lambda found: found.beta_hat, "β²h²", apart=True),
+    METHOD,
+    *(replace(each, apart=True) for each in POINT),
     Column(
         "predicted |z_p|",
         "predicted_z_abs",
@@ -131,7 +129,7 @@ SUMMARY: Sequence[Column[MeasurementSummary]] = (
 """How well the measured poles of a method agree with the predicted ones: for people, who read several points."""
 
 VERDICT_MAP: Sequence[Column[VerdictMap]] = (
-    Column("method", "method", lambda found: found.method.name, "integration method", apart=True),
+    METHOD,
     Column("h (s)", "h", lambda found: found.h, "step", "s"),
     Column("runs", "runs", lambda found: found.undecided.size, "number of runs", brief=True),
     Column("gave a verdict", "", lambda found: found.judged, "", brief=True),

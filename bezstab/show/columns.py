@@ -4,8 +4,9 @@ import cmath
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any, Generic, SupportsFloat, TypeVar
+from typing import Any, Generic, Protocol, SupportsFloat, TypeVar
 
+from bezstab.methods.schemes import Method
 from bezstab.show.cells import modulus_words, pole_words
 from bezstab.show.fields import MISSING, Form, Row, Value, formatted, visible
 
@@ -55,6 +56,52 @@ def of_part(
         for each in columns
     ]
 
+
+class _OfAMethod(Protocol):
+    """An answer about a method."""
+
+    @property
+    def method(self) -> Method: ...
+
+
+class _AtAPoint(Protocol):
+    """An answer about a point of the plane."""
+
+    @property
+    def alpha_hat(self) -> float: ...
+    @property
+    def beta_hat(self) -> float: ...
+
+
+class _WithRates(Protocol):
+    """An answer about a point in 1/s."""
+
+    @property
+    def alpha(self) -> float | None: ...
+    @property
+    def beta(self) -> float | None: ...
+
+
+class _InWords(Protocol):
+    """An answer that has a sentence."""
+
+    @property
+    def sentence(self) -> str: ...
+
+
+METHOD = Column[_OfAMethod]("method", "method", lambda it: it.method.name, "integration method", apart=True)
+
+POINT: Sequence[Column[_AtAPoint]] = (
+    Column("α̂", "alpha_hat", lambda it: it.alpha_hat, "damping of the feedback, 2αh"),
+    Column("β̂", "beta_hat", lambda it: it.beta_hat, "stiffness of the feedback, β²h²"),
+)
+
+RATES: Sequence[Column[_WithRates]] = (
+    Column("α (1/s)", "alpha", lambda it: it.alpha, "damping of the feedback; null without a step", "1/s", brief=True),
+    Column("β (1/s)", "beta", lambda it: it.beta, "its stiffness as a rate; null if β̂ < 0, too", "1/s", brief=True),
+)
+
+SENTENCE = Column[_InWords]("", "sentence", lambda it: it.sentence, "the answer in words")
 
 POLE: Sequence[Column[complex]] = (
     Column("pole z", "", pole_words, "the pole and its conjugate"),

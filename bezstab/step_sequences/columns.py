@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from bezstab.show.columns import Column
+from bezstab.show.columns import METHOD, SENTENCE, Column
 from bezstab.step_sequences.answer import StepsAnswer
 from bezstab.units import alpha_and_beta
 
@@ -13,7 +13,7 @@ def _rates(answer: StepsAnswer) -> tuple[float | None, float | None]:
 
 
 COLUMNS: Sequence[Column[StepsAnswer]] = (
-    Column("method", "method", lambda answer: answer.method.name, "integration method", apart=True),
+    METHOD,
     Column("verdict", "verdict", lambda answer: answer.verdict, "proven, refuted or not known", brief=True),
     Column("safe", "safe", lambda answer: answer.safe, "whether errors are proven to decay in every sequence of steps"),
     Column(
@@ -66,5 +66,5 @@ COLUMNS: Sequence[Column[StepsAnswer]] = (
         brief=True,
     ),
     Column("", "shown_by", lambda answer: answer.shown_by, "line of `simulate` that shows errors grow; null if none"),
-    Column("", "sentence", lambda answer: answer.sentence, "the answer in words"),
+    SENTENCE,
 )
