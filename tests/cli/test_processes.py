@@ -156,17 +156,6 @@ def test_a_signal_ends_a_run_at_any_moment_and_resume_goes_on(
     assert_resumes_to(whole, tmp_path)
 
 
-def test_a_signal_ends_every_command_at_any_moment(tmp_path: Path) -> None:
-    moments = random.Random(1)
-    for number in SIGNALS:
-        with started("region", "--method", "B2", cwd=tmp_path) as running:
-            wait_until(lambda: catches(signal.SIGHUP, running.pid), running)
-            time.sleep(moments.uniform(0, 0.5))
-            if running.poll() is None:
-                running.send_signal(number)
-            check_stopped(number, running, tmp_path, kept=set())
-
-
 @pytest.mark.slow
 def test_an_interrupt_stops_what_computes_in_one_call(tmp_path: Path) -> None:
     with started(*["simulate", "--time", "100000", "--method", "RK4", "--compiled", "yes"], cwd=tmp_path) as running:

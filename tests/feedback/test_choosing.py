@@ -26,12 +26,6 @@ from bezstab.stability.sweeps import chain, swept_growth
 ASKED = r"RK4: α = 0\.56 ω, β = 0\.83 ω, ω the rate of your motion in rad/s: give omega or scene"
 
 
-def test_an_engine_brings_its_method_and_its_line_to_paste() -> None:
-    chosen = choose(engine="mujoco", h="1/240")
-    assert chosen.method.name == "SYM"
-    assert str(chosen.setting).startswith("solref=")
-
-
 def test_the_usual_goal_is_accurate_and_in_an_engine_robust_unless_feedback_follows_the_motion() -> None:
     mujoco = ENGINES["mujoco"]
     goals = [usual_goal(None), usual_goal(ENGINES["box2d"]), usual_goal(mujoco), usual_goal(mujoco, (lookup("RK4"),))]
