@@ -1,4 +1,4 @@
-"""Names for the arrays of this room, how exact their numbers are, even points, and how arrays of others are read."""
+"""Names for the arrays of this room, how exact their numbers are, and how arrays of others are read."""
 
 from collections.abc import Mapping
 from typing import SupportsFloat
@@ -34,9 +34,6 @@ DOUBLE = 1e-6
 SLOW = 4096 * EPS
 """1 - |z_p| of which rounding leaves three digits: such a decay takes 1e13 steps, and counts as none."""
 
-PLASTIC = float(np.cbrt((9 + np.sqrt(69)) / 18) + np.cbrt((9 - np.sqrt(69)) / 18))
-"""The number with x^3 = x + 1: multiples of 1/x and 1/x^2 fill a square evenly (M. Roberts, 2018)."""
-
 
 def real_array(values: ArrayLike | None, name: str) -> FloatArray:
     """Return numbers, so called, as an array of float64.
@@ -70,9 +67,3 @@ def plane_arrays(alpha_hat: ArrayLike, beta_hat: ArrayLike) -> tuple[FloatArray,
             "calls it"
         ) from None
     return first, second
-
-
-def even_points(count: int) -> tuple[FloatArray, FloatArray]:
-    """Return so many points that fill the unit square evenly: both coordinates, each of shape (count,)."""
-    k = np.arange(1, count + 1)
-    return (0.5 + k / PLASTIC) % 1, (0.5 + k / PLASTIC**2) % 1

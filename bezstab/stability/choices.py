@@ -22,10 +22,8 @@ from bezstab.stability.curve_choices import Curve, least_along, mildest_along, o
 from bezstab.stability.forced_errors import OMEGA_H
 from bezstab.stability.margins import Margins, stability_margins
 from bezstab.stability.regions import Region, region
-from bezstab.stability.root_finding import TOLD
 from bezstab.stability.searches import lowest_minima
 
-SCOUTS = 64  # of the points one in so many is looked at first, for a value that the others must be below
 USUAL_SPREAD = 0.1  # the share by which alpha and beta may be off
 THOUSANDFOLD = 1e-3  # what "settled" means for the constraint error
 TENTH = 10.0  # falls tenfold: as quick as an eye sees it
@@ -33,8 +31,9 @@ TENTH = 10.0  # falls tenfold: as quick as an eye sees it
 FIRST_GRID = 52  # points per axis of the first grid over the region's box: every valley is seen
 GRID = 49  # points per axis of a zoom: few fine grids take less time than many coarse ones, and lose no valley
 ZOOM = 0.32  # from one grid to the next: eight spacings to either side of its best point
-ZOOMS = 21  # after the first grid: 0.32^21 = 4e-11 of the region, where Schur's recursion tells values apart no more
-SHARES = 8  # of the largest step, and of the spread, among which the worst is looked for: in practice it is an end
+ZOOMS = 21  # after the first grid: 0.32^21 = 4e-11 of the region, where rounding tells values apart no more
+SHARES: FloatArray = np.array([8, 4, 7, 6, 5, 3, 2, 1]) / 8  # of the largest step: most points fail with the first two
+OFFSETS: FloatArray = np.linspace(-1, 1, 9)  # of the spread
 SEARCHED = 4.0  # alpha h and beta h: there e^-4, a fiftieth, is left after a step, and nobody asks for faster decay
 
 
@@ -163,7 +162,7 @@ def choose(
     elif goal == "critical":
         point = critical_point(method, min(box[0][1] / 2, math.sqrt(box[1][1])))
     elif goal == "robust" or goal == "fastest":  # noqa: PLR1714 (what the type checker follows)
-        objective = _slowest(method, z_abs, within, spread) if goal == "robust" else z_abs
+        objective = _slowest(method, z_abs, spread) if goal == "robust" else z_abs
         # without a curve of the fastest where |z_p| falls on as the feedback grows, or for a mechanism that moves
         point = least_along(curve, objective) if curve else _least(box, objective, cut)
     else:
@@ -243,7 +242,7 @@ def describe_point(
     a, b = float(alpha_hat), float(beta_hat)
     pole_at = partial(largest_pole, method)
     proven = verdict(method, alpha_hat, beta_hat)
-    offsets = 1 + spread * np.linspace(-1, 1, SHARES + 1)
+    offsets = 1 + spread * OFFSETS
     near_a, near_b = np.meshgrid(a * offsets, b * offsets**2)
     found, trouble = None, None
     if margins and proven == "converges":
@@ -263,46 +262,27 @@ def describe_point(
     )
 
 
-def _slowest(method: Method, modulus: Modulus, within: Within, spread: float) -> Modulus:
+def _slowest(method: Method, modulus: Modulus, spread: float) -> Modulus:
     """Return the objective of `robust`: the largest decay factor per largest step, over smaller steps and the spread.
 
     A step of share s of the largest turns (alpha_hat, beta_hat) into (s alpha_hat, s^2 beta_hat) and takes 1/s steps;
     in the limit of small steps what remains is exp(Re mu), the continuous decay. Of the spread the corners and the
-    centre are taken. The least of all values is exact. A point that is slower than some other with small, half or whole
-    steps alone, which takes no poles to tell, has infinity. Poles of smaller steps are solved for only where these
-    are not within what the whole step and the limit have.
+    centre are taken. The least of all values is exact; of a point at which some step is slower than the best one so
+    far no other is looked at.
     """
-    smaller = np.linspace(1, 0, SHARES + 1)[1:-1, np.newaxis, np.newaxis]
-    multiple = float(method.step_multiple)
-
-    def of_small_steps(a: FloatArray, b: FloatArray) -> FloatArray:
-        slower_mu = -a / 2 + np.sqrt(np.maximum(0, a**2 / 4 - b))
-        return np.asarray(np.exp(multiple * slower_mu).max(axis=0))
-
-    def of_all_steps(a: FloatArray, b: FloatArray) -> FloatArray:
-        worst = np.maximum(of_small_steps(a, b), modulus(a, b).max(axis=0))
-        some_a, some_b = smaller * a, smaller**2 * b
-        slower = ~within(some_a, some_b, (worst * (1 - TOLD)) ** smaller)
-        z_abs = np.zeros(some_a.shape)
-        z_abs[slower] = modulus(some_a[slower], some_b[slower])
-        return np.asarray(np.maximum(worst, (z_abs ** (1 / smaller)).max(axis=(0, 1))))
-
-    reached = math.inf  # by any point so far
+    multiple, reached = float(method.step_multiple), math.inf
 
     def objective(alpha_hat: FloatArray, beta_hat: FloatArray) -> FloatArray:
         nonlocal reached
         a, b = off_by(spread, alpha_hat, beta_hat)
-        if math.isinf(reached):
-            reached = float(of_all_steps(a[:, ::SCOUTS], b[:, ::SCOUTS]).min())
-        left = kept = np.flatnonzero(of_small_steps(a, b) <= reached)
-        for share in (1.0, 0.5):  # most points fail with whole or half steps
-            level = (reached * (1 + TOLD)) ** share
-            kept = kept[within(share * a[:, kept], share**2 * b[:, kept], level).all(axis=0)]
-        left = kept if kept.size else left  # next to a double pole even the point that was reached may seem larger
-        worst = np.full(alpha_hat.shape, np.inf)
-        worst[left] = of_all_steps(a[:, left], b[:, left])
+        slower_mu = -a / 2 + np.sqrt(np.maximum(0, a**2 / 4 - b))
+        worst = np.exp(multiple * slower_mu).max(axis=0)
+        for share in SHARES:
+            left = np.flatnonzero(worst <= reached)
+            z_abs = modulus(share * a[:, left], share**2 * b[:, left])
+            worst[left] = np.maximum(worst[left], (z_abs ** (1 / share)).max(axis=0))
         reached = min(reached, float(worst.min()))
-        return worst
+        return np.asarray(worst)
 
     return objective
 

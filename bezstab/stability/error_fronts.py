@@ -15,17 +15,16 @@ from functools import partial
 
 import numpy as np
 
-from bezstab.errors import InputError, NumericalError
+from bezstab.errors import InputError
 from bezstab.methods.schemes import Method
 from bezstab.motion.modulated_circle import motion_energy
-from bezstab.stability.accurate_points import BETTER
 from bezstab.stability.arrays import FloatArray
-from bezstab.stability.best_points import BestPoint, best_point_or_reason
+from bezstab.stability.best_points import best_point_or_reason
 from bezstab.stability.choices import search_box
 from bezstab.stability.closed_loop import spectral_radius
 from bezstab.stability.forced_errors import OMEGA_H, combined_error, forced_error
 from bezstab.stability.regions import region
-from bezstab.stability.searches import checked, grid_of, lowest_minima
+from bezstab.stability.searches import lowest_minima
 
 RATES = (0.999, 0.998, 0.995, 0.99, 0.98, 0.95, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3, 0.2, 0.1)
 """|z_p|: what was there has fallen a thousandfold after 6900 steps, ..., 3."""
@@ -34,17 +33,14 @@ WEAKEST = 0.25
 """Times -ln r of the slowest r: alpha h and beta h. No pole e^mu decays by more than either of them a step; a quarter
 leaves room for what methods make of that."""
 
-FIRST_GRID = 301
-"""Points per axis of the first grid, over some four decades: errors change by a thirtieth from one to the next."""
+FIRST_GRID = 121
+"""Points per axis of the first grid, over some four decades: errors change by a thirteenth from one to the next."""
 
 STARTS = 6
 """Of its minima, for each rate: there may be islands and valleys in which N vanishes."""
 
-GRID, ROUNDS = 21, 22
-"""Points per axis of a zoom, and how many: thirteen would stall in narrow corners."""
-
-CHECKED = 230
-"""Points per axis of another grid, which no point may have a lesser error on, by more than BETTER."""
+GRID, SHRINK, ROUNDS = 31, 0.7, 40
+"""Of a zoom: points per axis, how much smaller each next grid is, and how many: larger steps would stall in corners."""
 
 AS_FAST = 1e-7
 """Of |z_p| at the edge: where two poles meet they keep half of their digits, and differ among arrays by so much."""
@@ -79,23 +75,52 @@ def error_front(method: Method, rates: Sequence[float] = RATES, omega_h: Fractio
     """Return the front at those of the rates that the method reaches, the slowest first, and last at its least |z_p|.
 
     All points with alpha, beta > 0 compete; of a region without end those that `choose` looks at. InputError for a rate
-    outside 0 to 1, for omega h outside 1e-6 to 1, and where nothing is stable; NumericalError where a point of another
-    grid is better, after a finer search, too. The test equation is that of methods/steady_errors.py; the front is this
-    package's.
+    outside 0 to 1, for omega h outside 1e-6 to 1, and where nothing is stable. The test equation is that of
+    methods/steady_errors.py; the front is this package's.
     """
     if wrong := [rate for rate in rates if not 0 < rate < 1]:
         raise InputError(f"|z_p| of {wrong[0]:g} at most: expected a number between 0 and 1")
     (_, alpha_hat_max), (_, beta_hat_max) = search_box(region(method))[0]
-    best, _ = best_point_or_reason(method)
-    reached = sorted({rate for rate in rates if best is None or rate > best.z_abs}, reverse=True)
-    points: list[tuple[float, float, float]] = []  # a rate, and alpha_hat and beta_hat
-    if reached:
-        high = np.log([alpha_hat_max / 2, np.sqrt(beta_hat_max)])
-        low = np.minimum(np.log(-WEAKEST * np.log(reached[0])), high - 1)
-        points = checked(partial(_front, method, omega_h, low, high, reached, best))
-    if best:
-        points.append((best.z_abs, best.alpha_hat, best.beta_hat))
-    return [_front_point(method, omega_h, *point) for point in points]
+    high = np.log([alpha_hat_max / 2, np.sqrt(beta_hat_max)])
+    low = np.minimum(np.log(-WEAKEST * np.log(max(rates))), high - 1)
+    fastest, _ = best_point_or_reason(method)
+    best = np.empty((0, 2))  # places: the logarithms of alpha h and beta h
+    front: list[tuple[float, float, float]] = []
+    if fastest:
+        front = [(fastest.z_abs, fastest.alpha_hat, fastest.beta_hat)]
+        best = np.log(np.maximum([[fastest.alpha_hat / 2, np.sqrt(fastest.beta_hat)]], np.exp(low)))  # not zero
+    for rate in sorted({rate for rate in rates if not fastest or rate > fastest.z_abs}):
+        error = partial(_error, method, omega_h, rate)
+        axes = list(np.linspace(low, high, FIRST_GRID, axis=1))
+        found, _ = lowest_minima(
+            error,
+            axes,
+            STARTS,
+            points=GRID,
+            shrink=SHRINK,
+            rounds=ROUNDS,
+            fold=lambda places: np.clip(places, low, high),
+        )
+        places = np.concatenate([found, best])  # what decays faster competes
+        errors = _error(method, omega_h, rate * (1 + AS_FAST), places)
+        if errors.min() < TOO_SLOW:
+            best = places[np.argmin(errors)][np.newaxis]
+            alpha_hat, beta_hat = _plane(best[0])
+            front.append((rate, float(alpha_hat), float(beta_hat)))
+    return [_front_point(method, omega_h, *point) for point in reversed(front)]
+
+
+def _error(method: Method, omega_h: Fraction, rate: float, places: FloatArray) -> FloatArray:
+    """Return the logarithm of the error where it decays so fast, elsewhere what stands in for it."""
+    alpha_hat, beta_hat = _plane(places)
+    z_abs = spectral_radius(method, alpha_hat, beta_hat)
+    error = np.log(combined_error(method, alpha_hat, beta_hat, omega_h))
+    return np.where(z_abs <= rate, error, TOO_SLOW + np.minimum(z_abs, SLOWEST))
+
+
+def _plane(places: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return alpha_hat and beta_hat of places, shape (..., 2)."""
+    return 2 * np.exp(places[..., 0]), np.exp(2 * places[..., 1])
 
 
 def _front_point(method: Method, omega_h: Fraction, rate: float, alpha_hat: float, beta_hat: float) -> FrontPoint:
@@ -114,56 +139,3 @@ def _front_point(method: Method, omega_h: Fraction, rate: float, alpha_hat: floa
         combined_error=float(combined_error(method, alpha_hat, beta_hat, omega_h)),
         energy_growth=2 * np.pi * float(motion_energy(method, alpha_hat, beta_hat, float(omega_h)).growth()),
     )
-
-
-def _plane(points: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return alpha_hat and beta_hat of points given by the logarithms of alpha h and beta h, shape (..., 2)."""
-    return 2 * np.exp(points[..., 0]), np.exp(2 * points[..., 1])
-
-
-def _front(
-    method: Method,
-    omega_h: Fraction,
-    low: FloatArray,
-    high: FloatArray,
-    rates: Sequence[float],
-    fastest: BestPoint | None,
-    finer: int,
-) -> list[tuple[float, float, float]]:
-    """Return each of the rates, which descend, with alpha_hat and beta_hat of its best point in a box of logarithms.
-
-    That of least |z_p| decays fast enough for each of them, where there is one, and competes, as does what is best at a
-    faster rate. The last rates have none where nothing there decays so fast. NumericalError where the check finds a
-    better point.
-    """
-
-    def objective(points: FloatArray, rate: float) -> FloatArray:
-        """Return the logarithm of the error where it decays so fast, elsewhere what stands in for it."""
-        alpha_hat, beta_hat = _plane(points)
-        z_abs = spectral_radius(method, alpha_hat, beta_hat)
-        error = np.log(combined_error(method, alpha_hat, beta_hat, omega_h))
-        return np.where(z_abs <= rate, error, TOO_SLOW + np.minimum(z_abs, SLOWEST))
-
-    best = np.empty((0, 2))
-    if fastest:
-        best = np.log(np.maximum([[fastest.alpha_hat / 2, np.sqrt(fastest.beta_hat)]], np.exp(low)))  # not zero
-    front = []
-    for rate in reversed(rates):
-        at_rate = partial(objective, rate=rate)
-        found, _ = lowest_minima(
-            at_rate,
-            list(np.linspace(low, high, finer * FIRST_GRID, axis=1)),
-            STARTS,
-            points=GRID,
-            rounds=ROUNDS,
-            fold=lambda points: np.clip(points, low, high),
-        )
-        points = np.concatenate([found, best])
-        values = objective(points, rate * (1 + AS_FAST))
-        best = points[np.argmin(values)][np.newaxis]
-        if at_rate(grid_of(list(np.linspace(low, high, CHECKED, axis=1)))).min() < values.min() + np.log1p(-BETTER):
-            raise NumericalError(f"{method.name}: on the front with |z_p| of {rate:g} at most another point is better")
-        if values.min() < TOO_SLOW:
-            alpha_hat, beta_hat = _plane(best[0])
-            front.append((rate, float(alpha_hat), float(beta_hat)))
-    return front[::-1]

@@ -7,36 +7,21 @@ package for a few short functions. Bisecting until the ends are neighbours keeps
 """
 
 from collections.abc import Callable, Sequence
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 
-from bezstab.errors import NumericalError
 from bezstab.stability.arrays import BoolArray, FloatArray
 
 BISECTIONS = np.finfo(float).nmant + 8  # halves a bracket to neighbours, but for one that begins at zero
 ZOOM_POINTS = 13  # points of a zoom's grids along each axis
 SHRINK = 0.5  # from one of them to the next
 ROUNDS = 18  # of them, to 8e-6 of the first: a smooth valley is flat to rounding there, and Newton's method starts
-FINER = 3  # times the points of a search whose first answer failed its check
 WELL_INSIDE = 0.8  # of the reach: a best point further out says that the valley may lead on
 GRID = 33  # points of a bracket in which a least value is looked for, and then of its best two gaps
 ZOOMS = 8  # such grids, each narrower by 1/16: to where a smooth least value is flat to rounding
 GOLDEN_ANGLE = 2.4  # rad, about pi (3 - sqrt 5): grids turned by it from one to the next never line up again
 TURN = np.array([[np.cos(GOLDEN_ANGLE), -np.sin(GOLDEN_ANGLE)], [np.sin(GOLDEN_ANGLE), np.cos(GOLDEN_ANGLE)]])
-
-Found = TypeVar("Found")
-
-
-def checked(search: Callable[[int], Found]) -> Found:
-    """Return what a search finds, which takes a factor on its points; with more where its check refuses the first.
-
-    NumericalError where the second fails, too.
-    """
-    try:
-        return search(1)
-    except NumericalError:
-        return search(FINER)
 
 
 def bisected(

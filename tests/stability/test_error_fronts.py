@@ -3,20 +3,17 @@
 from collections.abc import Sequence
 from fractions import Fraction
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 import pytest
 
-from bezstab.errors import InputError, NumericalError
+from bezstab.errors import InputError
 from bezstab.methods.registry import lookup
 from bezstab.motion.modulated_circle import motion_energy
-from bezstab.stability import error_fronts
 from bezstab.stability.best_points import best_point
 from bezstab.stability.closed_loop import spectral_radius
 from bezstab.stability.error_fronts import FrontPoint, error_front
 from bezstab.stability.forced_errors import combined_error, forced_error
-from bezstab.stability.searches import lowest_minima
 
 OMEGA_H = Fraction(1, 100)
 
@@ -104,13 +101,3 @@ def test_what_strong_feedback_does_depends_on_the_kind_of_method(
 def test_a_rate_at_which_nothing_decays_is_refused(rate: float) -> None:
     with pytest.raises(InputError, match="expected a number between 0 and 1"):
         error_front(lookup("SYM"), [0.5, rate])
-
-
-def test_a_search_that_ends_elsewhere_is_no_answer(monkeypatch: pytest.MonkeyPatch) -> None:
-    def off(*arguments: Any, **options: Any) -> Any:
-        points, values = lowest_minima(*arguments, **options)
-        return points - 0.1, values
-
-    monkeypatch.setattr(error_fronts, "lowest_minima", off)
-    with pytest.raises(NumericalError, match="another point is better"):
-        error_front(lookup("SYM"), [0.9])
