@@ -3,7 +3,7 @@ import pytest
 
 from bezstab.methods.registry import lookup
 from bezstab.paper import figures
-from bezstab.paper.experiments import experiment, kicked_runs, unstabilized_runs
+from bezstab.paper.experiments import START_NAMES, experiment, kicked_runs, unstabilized_runs
 from bezstab.paper.printed import COMPARED, TABLE_5
 from bezstab.stability.regions import region
 
@@ -16,32 +16,23 @@ def test_a_panel_of_fig_1_has_the_regions_s_and_h() -> None:
         assert lines[label][:-1] == pytest.approx(boundary)
 
 
-def test_fig_3_is_in_units_of_a_step_of_1_ms() -> None:
-    axes = figures.compared_regions_figure("B4", "RK4@5", h=1e-3).axes[0]
-    assert [line.get_label() for line in axes.lines] == ["B4", "RK4@5"]
-    assert "1/s" in axes.get_xlabel()
-
-
-def test_figs_5_and_6_show_the_largest_error_so_far_by_start_and_step() -> None:
-    runs = unstabilized_runs((0.05, 0.1), 100.0)
-    panels = dict(zip(("euler", "rk4"), figures.drift_figure(runs).axes, strict=True))
-    assert "Euler" in panels["euler"].get_title()
+@pytest.mark.parametrize(("step", "duration", "collapses"), [(0.1, 100.0, True), (0.05, 1.0, False)])
+def test_figs_5_and_6_show_the_largest_error_so_far_and_a_cross_where_a_run_collapses(
+    step: float, duration: float, collapses: bool
+) -> None:
+    runs = unstabilized_runs((step,), duration)
+    figure = figures.drift_figure(runs)
     for (start, name, h), run in runs.items():
-        lines = {str(line.get_label()): np.array(line.get_xydata()) for line in panels[start].lines}
-        drawn = lines[f"{name}, {1e3 * h:g} ms"]
+        axes = figure.axes[list(START_NAMES).index(start)]
+        (line,) = (line for line in axes.lines if line.get_label() == f"{name}, {1e3 * h:g} ms")
+        t, drawn = np.transpose(line.get_xydata())
         so_far = np.maximum.accumulate(np.abs(run.c[:, 0]))
-        assert drawn[:, 1] == pytest.approx(np.interp(drawn[:, 0], run.t, so_far))
-        assert drawn[-1, 1] == so_far[-1]
-        crossed = [line for line in panels[start].lines if line.get_marker() == "x"]
-        assert len(crossed) == sum(other.failure is not None for (of, *_), other in runs.items() if of == start)
-
-
-def test_figs_5_and_6_name_their_crosses_where_there_are_any() -> None:
-    for steps, duration, collapses in ((0.1,), 100.0, True), ((0.05,), 1.0, False):
-        runs = unstabilized_runs(steps, duration)
-        assert any(run.failure for run in runs.values()) == collapses
-        (legend,) = figures.drift_figure(runs).legends
-        assert (figures.COLLAPSED in {text.get_text() for text in legend.get_texts()}) == collapses
+        assert drawn == pytest.approx(np.interp(t, run.t, so_far))
+        assert drawn[-1] == so_far[-1]
+    crosses = sum(line.get_marker() == "x" for axes in figure.axes for line in axes.lines)
+    assert crosses == sum(run.failure is not None for run in runs.values())
+    (legend,) = figure.legends
+    assert (figures.COLLAPSED in {text.get_text() for text in legend.get_texts()}) == collapses == (crosses > 0)
 
 
 @pytest.mark.parametrize("derivative", [False, True])

@@ -1,14 +1,12 @@
 """Logs of runs at points that were chosen at random, kicked up and down, as a user's simulator would write them."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
-from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
-from bezstab.mechanism.constraint_normals import turning_normals
 from bezstab.mechanism.equations import Mechanism, compiled_mechanism
 from bezstab.mechanism.motions import motion
 from bezstab.mechanism.scene_files import load_scene
@@ -25,23 +23,16 @@ H = 1e-3  # s
 LARGEST = 1.0  # m: beyond it a simulator has long stopped
 KICK, SMALL_KICK = 1e-4, 1e-8  # m: the smaller one where it grows
 ROWS = 250
-LASTS = ROWS * H  # s
 POINTS = 5
 SCENES = ("pendulum", "four_bar", "driven_four_bar", "slider_crank_300rpm")
 
 
-@dataclass(frozen=True)
-class KickedLog:
-    """A method, a point and a scene, and c_1 of its runs, kicked up and down, in m, shape (rows,).
+class KickedLog(NamedTuple):
+    """A point, by how much the constraints of the scene turn in a step at most (rad), and c_1 of both runs (m)."""
 
-    `turning` is how fast the directions of the constraints turn in that scene, at most, in 1/s.
-    """
-
-    method: str
-    scene: str
     alpha_hat: Fraction
     beta_hat: Fraction
-    turning: float
+    turned: float
     up: FloatArray
     down: FloatArray
 
@@ -64,37 +55,26 @@ def kicked_logs(name: str) -> Iterator[KickedLog]:
         a, b = np.round(random.uniform(low - margin, high + margin, (POINTS, 2)), 6).T
         a[0] = round(random.uniform(0.02, 0.3), 6)
         b[0] = a[0] ** 2 / 4
+        mechanism = compiled_mechanism(load_scene(scene))
         with np.errstate(all="ignore"):
-            blocks = kicked_motions(_mechanism(scene), method, H, a, b, (KICK, SMALL_KICK), ROWS - 1)
+            blocks = kicked_motions(mechanism, method, H, a, b, (KICK, SMALL_KICK), ROWS - 1)
             c = np.concatenate([c[:, 0] for c, _ in blocks])
-        for k, point in enumerate(zip(a.tolist(), b.tolist(), strict=True)):
-            grows = float(spectral_radius(method, *point)) >= 1
-            runs = c[:, :, int(grows), k]
+        grows = spectral_radius(method, a, b) >= 1
+        for k, point in enumerate(zip(map(exact, a.tolist()), map(exact, b.tolist()), strict=True)):
+            runs = c[:, :, int(grows[k]), k]
             usable = np.logical_and.accumulate((np.abs(runs) < LARGEST).all(axis=1))
-            up, down = runs[usable].T
-            yield KickedLog(name, scene, exact(point[0]), exact(point[1]), _turning(scene), up, down)
+            yield KickedLog(*point, H * turning(mechanism), *runs[usable].T)
 
 
 @cache
-def _mechanism(scene: str) -> Mechanism:
-    return compiled_mechanism(load_scene(scene))
+def turning(mechanism: Mechanism) -> float:
+    """Return how fast the constraints turn while a log is written, at most (1/s).
 
-
-@cache
-def _turning(scene: str) -> float:
-    """Return how fast the constraints turn while a log is written: against each other, or at all, the faster of both.
-
-    With A = C_q M^-1/2 and its rate B along the motion the latter is the norm of B, in units in which A A' = 1: of a
-    pendulum it is the angular speed, while K is zero.
+    With A = C_q M^-1/2 and its rate B along the motion it is the norm of B, in units in which A A' = 1: of a pendulum
+    the angular speed.
     """
-    mechanism = _mechanism(scene)
-    along = motion(mechanism, LASTS)
-    root = np.sqrt(mechanism.mass)
-    jacobians = [constraint_jacobian(mechanism, t, q) / root for t, q in zip(along.t.tolist(), along.q, strict=True)]
-    against_each_other = turning_normals(mechanism, LASTS).rates
-    size = np.linalg.norm(jacobians[0], axis=1)  # each constraint's error in units of its own size at the start
-    rates = [float(np.linalg.norm(against_each_other / size[:, np.newaxis] * size, ord=2, axis=(1, 2)).max())]
-    for (before, after), passed in zip(pairwise(jacobians), np.diff(along.t), strict=True):
-        own_units = np.linalg.inv(np.linalg.cholesky(before @ before.T))
-        rates.append(float(np.linalg.norm(own_units @ (after - before) / passed, ord=2)))
-    return max(rates)
+    along, root = motion(mechanism, ROWS * H), np.sqrt(mechanism.mass)
+    a = np.array([constraint_jacobian(mechanism, t, q) / root for t, q in zip(along.t.tolist(), along.q, strict=True)])
+    own_units = np.linalg.inv(np.linalg.cholesky(a @ a.transpose(0, 2, 1)))[:-1]
+    rates = own_units @ np.diff(a, axis=0) / np.diff(along.t)[:, np.newaxis, np.newaxis]
+    return float(np.linalg.norm(rates, ord=2, axis=(1, 2)).max())

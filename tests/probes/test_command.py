@@ -9,8 +9,9 @@ from click.testing import CliRunner
 from numpy.typing import NDArray
 
 from bezstab.cli.command_group import main
+from bezstab.errors import InputError
 from bezstab.methods.registry import lookup
-from bezstab.probes.answer import MOST_USED
+from bezstab.probes.answer import MOST_USED, compared_with
 from bezstab.stability.arrays import FloatArray
 from bezstab.stability.closed_loop import poles
 from tests.cli.running import rows, run
@@ -39,14 +40,6 @@ def test_a_row_for_each_column_and_for_each_method_in_order() -> None:
         assert [row["method"] for row in methods if row["fits"]] == ([true] if true else [])
 
 
-def test_of_several_methods_that_are_named_only_those_are_compared() -> None:
-    write("log.csv", c=response("SYM", 0.5, 0.1))
-    compared = rows("probe log.csv --alpha 0.5 --beta 0.1 --method SYM --method B4 --h 0.01 --turning 0")
-    assert [row["method"] for row in compared if row["method"]] == ["SYM", "B4"]
-    said = run("probe log.csv --alpha 0.5 --beta 0.1 --method SYM --method B4 --h 0.01 --turning 0").stdout
-    assert "as SYM has it at α̂ = 0.5, β̂ = 0.1" in said
-
-
 def test_standard_input_is_read_for_a_dash() -> None:
     text = "c\n" + "\n".join(f"{value:.9g}" for value in response("B4", 0.5, 0.1))
     (row,) = json.loads(CliRunner().invoke(main, ["probe", "-", "--format", "json"], input=text).stdout)
@@ -72,15 +65,18 @@ def test_what_tells_no_pole_or_has_no_method_is_status_three_with_its_reason() -
 
 def test_there_is_no_answer_where_more_is_allowed_than_methods_differ_by() -> None:
     write("log.csv", c=response("SYM", 0.05, 0.001))
-    fast = run("probe log.csv --minus log.csv --alpha 0.05 --beta 0.001")
-    assert fast.exit_code == 3
     write("zero.csv", c=np.zeros(300))
-    fast = run("probe log.csv --minus zero.csv --alpha 0.05 --beta 0.001 --h 0.01 --turning 30")
-    assert fast.exit_code == 3
+    asked = "probe log.csv --minus zero.csv --alpha 0.05 --beta 0.001 --h 0.01 --method SYM --method B4 --turning"
+    fast, at_rest = run(asked, "30"), run(asked, "0")
+    assert (fast.exit_code, at_rest.exit_code) == (3, 0)
     assert "cannot be told from others: " in fast.stderr
-    assert "is allowed to the pole, and theirs differ by less" in fast.stderr
-    at_rest = run("probe log.csv --minus zero.csv --alpha 0.05 --beta 0.001 --h 0.01 --turning 0")
-    assert at_rest.exit_code == 0
+    assert "as SYM has it at α̂ = 0.05, β̂ = 0.001" in at_rest.stdout
+
+
+def test_rows_are_a_whole_number_of_a_methods_own_steps_apart() -> None:
+    assert compared_with(every=10, methods=(lookup("RK4@5"),)).methods
+    with pytest.raises(InputError, match="--every 6: expected a multiple of 5"):
+        compared_with(every=6, methods=(lookup("RK4@5"),))
 
 
 def test_a_point_is_given_for_each_method_or_it_is_said_that_there_is_none() -> None:

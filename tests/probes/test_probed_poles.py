@@ -2,6 +2,7 @@
 
 import re
 from collections import Counter
+from collections.abc import Iterator
 from fractions import Fraction
 
 import numpy as np
@@ -25,8 +26,7 @@ from bezstab.probes.probed_poles import (
 )
 from bezstab.stability.arrays import FloatArray
 from bezstab.stability.closed_loop import dominant_pole, poles
-from bezstab.stability.regions import region, window
-from tests.probes.random_logs import H, kicked_logs, rounded
+from tests.probes.random_logs import kicked_logs, rounded
 from tests.reference.sampled_responses import geometric, of_poles, two_poles
 from tests.runs.samples import of_campaign
 
@@ -68,6 +68,8 @@ def test_there_is_no_answer_where_more_is_allowed_than_methods_differ_by() -> No
     apart = abs(z["RK3"] - z["RK4"])
     assert names_told(with_pole(z["RK4"], 0.9 * apart), ["RK3", "RK4"]) == ["RK4"]
     assert names_told(with_pole(z["RK4"], 1.1 * apart), ["RK3", "RK4"]) == []
+    beyond = z["RK4"] + 0.5 * (z["RK4"] - z["RK3"])  # RK3 does not fit, but is too near to RK4
+    assert names_told(with_pole(beyond, 1.1 * apart), ["RK3", "RK4"]) == []
     between = (z["RK3"] + z["RK4"]) / 2  # both fit, though they differ by more than is allowed
     assert names_told(with_pole(between, 0.6 * apart), ["RK3", "RK4"]) == []
 
@@ -98,45 +100,20 @@ def test_poles_that_meet_vanish_or_overflow_are_no_answer(alpha_hat: str) -> Non
     assert not told(found)
 
 
-def random_point(name: str) -> tuple[float, float]:
-    """Return a point in or around the region of a method where mu and the pole are complex."""
-    method, random = lookup(name), np.random.default_rng(11)
-    low, high = np.transpose(window(region(method)))
-    while True:
-        alpha_hat, beta_hat = random.uniform(low, high).tolist()
-        z = dominant_pole(method, alpha_hat, beta_hat)
-        if alpha_hat**2 < 4 * beta_hat and z.imag != 0 and abs(z) < 1.2:
-            return alpha_hat, beta_hat
-
-
 @pytest.mark.parametrize(
     ("name", "point"),
-    [
-        *((name, (0.3, 0.09)) for name in ("SYM", "B2", "RK2", "verlet-kdk", "hht")),
-        ("implicit-euler", (1.7, 4.3)),  # far out
-        *(pytest.param(name, None, marks=pytest.mark.slow) for name in list(REGISTRY)[:: of_campaign(1, 8)]),
-    ],
+    [*((name, (0.3, 0.09)) for name in ("SYM", "B2", "RK2", "verlet-kdk", "hht")), ("implicit-euler", (1.7, 4.3))],
 )
-def test_a_point_that_is_found_has_the_pole_and_none_is_nearer_than_the_one_that_was_set(
-    name: str, point: tuple[float, float] | None
+def test_a_point_that_is_found_is_the_one_that_was_set_to_what_an_error_of_the_pole_comes_to(
+    name: str, point: tuple[float, float]
 ) -> None:
-    """Its errors are what an error of the pole comes to."""
-    method, at, error = lookup(name), point or random_point(name), 1e-9
-    z = complex(dominant_pole(method, *at))
-    found = point_like(with_pole(z, error), method)
-    assert found
-    place = found.alpha_hat, found.beta_hat
-    there = complex(dominant_pole(method, *place))
-    assert complex(there.real, abs(there.imag)) == pytest.approx(complex(z.real, abs(z.imag)), abs=1e-6)
-    mu = np.log(z)
-    exact = np.array([-2 * mu.real, abs(mu) ** 2])
-    assert np.abs(place - exact).sum() <= np.abs(at - exact).sum() + 1e-6
-    if point:
-        assert place == pytest.approx(at, abs=1e-6)
-    off = point_like(with_pole(z + error * np.exp(0.7j), error), method)
-    assert off
-    assert abs(off.alpha_hat - found.alpha_hat) < 1.01 * off.alpha_hat_error < 1e-4
-    assert abs(off.beta_hat - found.beta_hat) < 1.01 * off.beta_hat_error < 1e-4
+    method, error = lookup(name), 1e-9
+    z = complex(dominant_pole(method, *point))
+    for off in (0, np.exp(0.7j), -1):
+        found = point_like(with_pole(z + error * off, error), method)
+        assert found
+        assert abs(found.alpha_hat - point[0]) < 1.01 * found.alpha_hat_error < 1e-4
+        assert abs(found.beta_hat - point[1]) < 1.01 * found.beta_hat_error < 1e-4
 
 
 def test_two_real_poles_give_a_point_and_one_or_two_of_one_mu_leave_a_curve() -> None:
@@ -214,15 +191,12 @@ def test_two_close_poles_widen_the_error(distance: float, digits: int) -> None:
     ("c", "minus", "said"),
     [
         (geometric(FEWEST - 1, 0.5), None, "11 rows"),
-        (np.full(100, 0.25), None, "neither decays nor grows"),
         (ON_THE_CIRCLE, None, "neither decays nor grows.*--minus"),
         (ON_THE_CIRCLE, 0 * ON_THE_CIRCLE, "neither decays nor grows.*circle$"),
         (1e-3 * geometric(600, 0.99), None, "hardly changes from row to row.*--minus"),
         (0.3 + 1e-3 * RESPONSE, None, "neither decays nor grows.*--minus"),
         (np.round(1e-3 * RESPONSE, 5), None, "log more digits, or kick harder"),
         (RESPONSE + 1e-2 * np.random.default_rng(1).normal(size=300), None, "log more digits, or kick harder"),
-        (np.append([1.0, -0.5], np.zeros(98)), None, "log more digits, or kick harder"),
-        (np.append(geometric(5, 0.5), np.full(95, np.nan)), None, "log more digits, or kick harder"),
         (np.abs(np.cos(0.7 * ROWS) * 0.9**ROWS), None, "log more digits, or kick harder"),
         (PARTING, np.zeros(300), "all through the log"),
     ],
@@ -282,33 +256,28 @@ def test_arrays_of_other_shapes_are_refused() -> None:
 CASES = of_campaign(list(REGISTRY), ["RK1", *list(REGISTRY)[::12]])
 
 
-def outcomes(name: str, digits: int) -> Counter[str]:
-    """Return what came of the logs of a method: those told must have a pole of its own, and no other method's name."""
-    counts: Counter[str] = Counter()
+def outcomes(name: str, digits: int) -> Iterator[str]:
+    """Yield what came of the logs of a method: those told must have a pole of its own, and no other method's name."""
     for log in kicked_logs(name):
         found = probed_pole(rounded(log.up, digits), rounded(log.down, digits))
         if found.pole is None:
             assert found.reason
-            counts["no pole"] += 1
+            yield "no pole"
             continue
-        like = likenesses(found, ALL, 1, log.alpha_hat, log.beta_hat, log.turning * H)
+        like = likenesses(found, ALL, 1, log.alpha_hat, log.beta_hat, log.turned)
         (own,) = [one for one in like if one.method == lookup(name)]
         assert own.fits, (log, found, own)
-        if named := told(like):
-            assert own in named, (log, found, named)
-        counts["told" if named else "not told from others"] += 1
-        used = told([one for one in like if one.method in map(lookup, MOST_USED)])
+        named, used = told(like), told([one for one in like if one.method in map(lookup, MOST_USED)])
+        assert not named or own in named, (log, found, named)
         assert all(abs(one.predicted - own.predicted) < own.allowed + one.allowed for one in used), (log, used)
-        if used and name in MOST_USED:
-            assert any(abs(one.predicted - own.predicted) < SAME for one in used)
-    return counts
+        assert not used or name not in MOST_USED or any(abs(one.predicted - own.predicted) < SAME for one in used)
+        yield "told" if named else "not told from others"
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("digits", [6, 9, 15])
 def test_no_other_method_is_named_and_no_pole_is_off_by_more_than_is_stated(digits: int) -> None:
     """Half of the logs or more tell a pole; the others have next to nothing but forcing, or are in pieces at once."""
-    counts = sum((outcomes(name, digits) for name in CASES), Counter[str]())
-    print(f"{digits} digits: {dict(counts)}")
+    counts = Counter(outcome for name in CASES for outcome in outcomes(name, digits))
     assert counts["told"] > 0.2 * counts.total()
     assert counts["no pole"] < 0.5 * counts.total()
