@@ -18,41 +18,16 @@ def mjcf(
     </option><worldbody>{world}</worldbody>{more}</mujoco>"""
 
 
-def random_arm(rng: np.random.Generator, integrator: str) -> str:
-    """Return a chain of links with springs, dampers, drives, a tendon and equalities of any strength."""
-    links = int(rng.integers(2, 5))
-    names = [f"j{number}" for number in range(links)]
-    world = ""
-    for name in reversed(names):
-        axis = " ".join(f"{value:.3f}" for value in rng.normal(size=3))
-        passive = f'damping="{_size(rng, -4, 0)}" stiffness="{_size(rng, -2, 1)}" armature="{_size(rng, -4, -2)}"'
-        joint = f'<joint name="{name}" type="{rng.choice(["hinge", "slide"])}" axis="{axis}" {passive}/>'
-        shape = f'<geom type="capsule" fromto="0 0 0 .3 0 0" size=".02" {WEIGHTLESS}/>'
-        world = f'<body pos=".3 0 0">{joint}{shape}{world}</body>'
-    first, second = (str(name) for name in rng.choice(names, 2, replace=False))
-    coupled = f'<joint joint="{first}" coef="2"/><joint joint="{second}" coef="-1"/>'
-    strengths = f'stiffness="{_size(rng, -1, 2)}" damping="{_size(rng, -2, 0)}"'
-    tendon = f'<tendon><fixed name="t" {strengths}>{coupled}</fixed></tendon>'
-    drives = "".join(
-        f'<position joint="{name}" kp="{_size(rng, 0, 3)}" kv="{_size(rng, -2, 1)}" gear="{_size(rng, -0.5, 0.5)}"/>'
-        for name in names
-        if rng.random() < 0.7
-    )
-    solref = f'solref="{_size(rng, -2.5, -1)} {_size(rng, -0.3, 0.3)}" {FLAT}'
-    equalities = f'<joint joint1="{first}" joint2="{second}" {solref}/>' if rng.random() < 0.5 else ""
-    flags = str(rng.choice(["", UNSAFE, 'eulerdamp="disable"']))
-    more = f"{tendon}<actuator>{drives}</actuator><equality>{equalities}</equality>"
-    return mjcf(world, more, integrator=integrator, flags=flags)
-
-
 def random_model(rng: np.random.Generator) -> str:
     """Return free bodies and arms of ball and hinge joints, closed by connects and welds of any solref, with drives."""
     bodies = ""
     names = [f"b{number}" for number in range(int(rng.integers(2, 5)))]
     for number, name in enumerate(names):
-        joint = ("<freejoint/>", '<joint type="ball" damping=".01"/>', f'<joint name="h{number}" axis="0 1 .3"/>')[
-            int(rng.integers(3))
-        ]
+        joint = (
+            "<freejoint/>",
+            '<joint type="ball" damping=".01"/>',
+            f'<joint name="h{number}" axis="0 1 .3" damping="{_size(rng, -4, 0)}" stiffness="{_size(rng, -2, 1)}"/>',
+        )[int(rng.integers(3))]
         mass = f'mass="{_size(rng, -1, 1)}"'
         bodies += (
             f'<body name="{name}" pos="{number} 0 0">{joint}'

@@ -37,6 +37,14 @@ def test_a_spun_joint_turns_the_whole_loop() -> None:
     assert state.velocities == pytest.approx([20, -20, 10], rel=1e-6)
 
 
+def test_what_is_not_spun_has_no_impulse() -> None:
+    """Of an open arm: least energy makes M v zero at all other joints."""
+    robot = robot_of(model_of(mjcf(FOUR_BAR)))
+    state = spun(robot, at_qpos0(robot), {"crank": 20.0})
+    momentum = robot.mass_at(robot.data_at(state)) @ np.array(state.velocities)
+    assert momentum[1:] == pytest.approx([0, 0], abs=1e-9)
+
+
 @pytest.mark.parametrize("integrator", ["Euler", "RK4"])
 def test_a_soft_solimp_brakes_a_closed_loop_and_a_hard_one_under_rk4_keeps_its_energy(integrator: str) -> None:
     """Drives and dampers are left out; the share of the model as it is is that of a plain run."""

@@ -8,9 +8,10 @@ import pytest
 
 from bezstab.errors import InputError
 from bezstab.mujoco.linting import lint
+from bezstab.mujoco.robots import State
 from bezstab.mujoco.states import chosen_states
 from tests.mujoco.models import mjcf
-from tests.mujoco.test_steps import model_of
+from tests.mujoco.test_steps import model_of, robot_of
 
 mujoco: Any = pytest.importorskip("mujoco")
 
@@ -44,6 +45,14 @@ def test_all_keyframes_are_looked_at_and_those_that_are_chosen() -> None:
     assert np.abs(ends[1] - ends[0]).max() > 1e-9 * 30.0**4
     assert [each.at for each in lint(model, at=["qpos0"]).judged] == ["qpos0"]
     assert lint(model, at=["qpos0"]).status == 0
+
+
+def test_a_pose_is_held_with_drives_that_aim_at_it_or_where_a_keyframe_has_them() -> None:
+    robot = robot_of(model_of(ARM))
+    for controls in (None, np.ones(2)):
+        data = robot.data_at(State("pose", np.array([0.3, 1.0]), controls=controls))
+        assert data.qacc == pytest.approx(np.zeros(2), abs=1e-9)
+        assert data.actuator_force == pytest.approx([20 * 0.7, 0] if controls is not None else [0, 0], abs=1e-9)
 
 
 def test_the_worst_row_of_a_log_is_named_with_its_time(tmp_path: Path) -> None:

@@ -14,7 +14,7 @@ from bezstab.mujoco.growth import growth_at
 from bezstab.mujoco.reading import loaded_model
 from bezstab.mujoco.robots import Robot, State
 from bezstab.mujoco.steps import step_at
-from tests.mujoco.models import INTEGRATORS, mjcf, random_arm, random_model
+from tests.mujoco.models import mjcf, random_model
 from tests.reference.mujoco_steps import grown, step_moduli
 
 mujoco: Any = pytest.importorskip("mujoco")
@@ -57,18 +57,8 @@ def agrees(model: Any) -> str:
     return found.kind
 
 
-@pytest.mark.parametrize(
-    "integrator", ["Euler", *(pytest.param(each, marks=pytest.mark.slow) for each in INTEGRATORS[1:])]
-)
-def test_thirty_random_arms_of_each_integrator(integrator: str) -> None:
-    """The seeds and arms on which lint's older derivation of MuJoCo's step and these differences agreed to 2e-9."""
-    rng = np.random.default_rng(16)
-    kinds = {agrees(model_of(random_arm(rng, integrator))) for _ in range(30)}
-    assert kinds == {"decays", "unsafe"}
-
-
 def test_forty_five_random_models() -> None:
-    """Free bodies, balls and arms, connected and welded; the older derivation agreed to 2e-11."""
+    """Free bodies, balls and arms, of every integrator, connected and welded."""
     rng = np.random.default_rng(45)
     assert {agrees(model_of(random_model(rng))) for _ in range(45)} == {"decays", "unsafe"}
 
@@ -130,23 +120,15 @@ def test_controllers_that_are_held_and_late_are_mujocos_own_steps_with_them(inte
 
 
 def test_mujocos_own_delay_of_a_motor_adds_to_what_is_late() -> None:
-    """Against a run: a motor with MuJoCo's own delay of three steps is one that is three steps late."""
+    """A motor with MuJoCo's own delay of three steps is one that is three steps late."""
     if not hasattr(mujoco.MjModel, "actuator_delay"):
         pytest.skip("this version of MuJoCo knows no delay")
-    gains = Gains(".*", Fraction(2), Fraction("0.05"))
-    delayed = robot_of(model_of(ARM.format(integrator="Euler", delay='delay="0.006" nsample="10"')), gains)
-    found = step_at(delayed, at_qpos0(delayed)).moduli()[0]
-    model = model_of(ARM.format(integrator="Euler", delay='delay="0.006" nsample="10"'))
-    data = mujoco.MjData(model)
-    data.qvel[:] = 1e-6
-    sizes = []
-    for _ in range(6000):
-        mujoco.mj_forward(model, data)
-        data.ctrl[:] = -2 * data.actuator_length - 0.05 * data.actuator_velocity
-        mujoco.mj_step(model, data)
-        sizes.append(np.abs(data.qpos).max())
-    later, earlier = (max(sizes[end - 1000 : end]) for end in (6000, 3000))
-    assert (later / earlier) ** (1 / 3000) == pytest.approx(found, rel=1e-4)
+    gains = Gains("knee_motor", Fraction(2), Fraction("0.05"))
+    moduli = []
+    for delay, timing in (('delay="0.006" nsample="10"', Timing()), ("", Timing(1, Fraction(3)))):
+        robot = robot_of(model_of(ARM.format(integrator="Euler", delay=delay)), gains, timing=timing)
+        moduli.append(step_at(robot, at_qpos0(robot)).moduli())
+    assert moduli[0] == pytest.approx(moduli[1], abs=1e-6)  # some are next to zero, and double
 
 
 def test_a_joint_of_a_urdf_is_driven_by_its_name() -> None:
@@ -157,7 +139,7 @@ def test_a_joint_of_a_urdf_is_driven_by_its_name() -> None:
       <limit lower="-2" upper="2" effort="30" velocity="20"/></joint></robot>"""
     model = model_of(urdf)
     model.opt.gravity[:] = 0
-    for timing in (Timing(), Timing(4, Fraction(1)), Timing(3, Fraction("0.5"))):
+    for timing in (Timing(), Timing(4, Fraction(1)), Timing(3, Fraction("0.5")), Timing(1, Fraction("1.5"))):
         robot = robot_of(model, Gains("knee", Fraction(20), Fraction("0.5")), timing=timing)
         alpha_hat, beta_hat = 0.5 * 0.002 / 0.003, 20 * 0.002**2 / 0.003
         expected = float(spectral_radius(held_method("SYM", timing), alpha_hat, beta_hat))

@@ -8,17 +8,6 @@ from numpy.typing import NDArray
 FloatArray = NDArray[np.float64]
 
 NUDGE = 1e-7  # of positions, and of velocities times the step: the steps here are linear, but for solimp's d(r)
-SMALL_STEP = 2e-4  # s, at which everything settles
-
-
-def settled(mujoco: Any, model: Any, steps: int) -> Any:
-    """Return data of a model at rest after so many small steps from qpos0; none for a model that is at rest there."""
-    data = mujoco.MjData(model)
-    h, model.opt.timestep = model.opt.timestep, SMALL_STEP
-    for _ in range(steps):
-        mujoco.mj_step(model, data)
-    model.opt.timestep = h
-    return data
 
 
 def step_moduli(mujoco: Any, model: Any, data: Any) -> FloatArray:
