@@ -105,7 +105,6 @@ class _Differenced:
         timings = [drive.timing(robot.timing, self.h) for drive in robot.drives]
         self.shares = [[timing.applied(number) for timing in timings] for number in range(self.every)]
         self.pending = max((ceil(timing.late / self.every) for timing in timings), default=0)
-        self.pending += any(timing.late % 1 for timing in timings)  # one more, of which a step keeps its share
         self.kp, self.kd = np.array([(drive.kp, drive.kd) for drive in robot.drives]).reshape(-1, 2).T
         self.force_units = np.abs(self.kp) + np.abs(self.kd) / self.h  # what a position off by one makes
         self.force_units[self.force_units == 0] = 1.0

@@ -53,7 +53,7 @@ def measured_order(
         h = duration / step_count
         run = simulate(mechanism, lookup(name), h, duration, gains(h), after=after)
         assert not run.failure
-        errors.append(distance(run.q[:, 0].tolist(), reference))
+        errors.append(distance(run.q[:, 0], reference))
     return shown_order(errors)
 
 
@@ -259,8 +259,7 @@ def test_a02_the_four_bars_go_through_their_singular_positions(count: int, durat
     mechanism = compiled_mechanism(four_bars(count))
     run = simulated(mechanism, lookup("RK4"), h=CLEAR_STEP, duration=duration, alpha_hat=0.02, beta_hat=1e-4)
     times = run.t[::100]  # close: the quadrature has a sharp peak where the rods turn over
-    passed = motion(four_bar_chain_energies(count), np.pi / 2, -1.0, times.tolist(), digits=20)
-    reference = [float(passed[time].angle) for time in times.tolist()]
+    reference = motion(four_bar_chain_energies(count), np.pi / 2, -1.0, times.tolist(), digits=20)
     assert run.q[::100, 0] == pytest.approx(reference, abs=1e-6)  # rad, on rods of 1 m; measured 5e-8
     assert np.ptp(run.q[:, : count + 1], axis=1).max() < 1e-8  # rad: no four-bar has branched
     assert np.abs(run.energy_drift).max() < 1e-6  # J, of hundreds; measured 1.5e-7

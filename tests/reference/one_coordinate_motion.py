@@ -8,6 +8,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
+from itertools import pairwise
 from typing import Any
 
 import mpmath as mp
@@ -19,7 +20,6 @@ FloatArray = NDArray[np.float64]
 
 DIGITS = 30  # of the references: more than float64 has, so that they are exact beside runs
 SHARED = 10  # times, evenly spread over a run, at which it is compared with the reference
-NEWTON_STEPS = 50  # quadratic: a handful
 ANGLE, RATE = sp.symbols("theta omega")
 GRAVITY = sp.Rational("9.81")  # m/s^2
 CRANK, ROD = sp.Rational("0.2"), sp.Rational("0.35")  # m
@@ -33,14 +33,6 @@ class Energies:
 
     inertia: sp.Expr
     potential: sp.Expr
-
-
-@dataclass(frozen=True)
-class Passage:
-    """The angle (rad) and its rate (rad/s) at one time, as numbers of mpmath."""
-
-    angle: Any
-    rate: Any
 
 
 def slider_crank_coordinates() -> sp.Matrix:
@@ -63,54 +55,41 @@ def four_bar_chain_energies(count: int) -> Energies:
     return Energies(inertia, (sp.Rational(count + 1, 2) + count) * GRAVITY * sp.sin(ANGLE))
 
 
-def motion(
-    energies: Energies, angle: float, rate: float, times: Sequence[Any], digits: int = DIGITS
-) -> dict[Any, Passage]:
-    """Return angle and rate at each time (s), from those at t = 0; the rate must keep its sign."""
+def motion(energies: Energies, angle: float, rate: float, times: Sequence[Any], digits: int = DIGITS) -> list[float]:
+    """Return the angle at each time (s), ascending, from its value and rate at t = 0; the rate must keep its sign."""
     with mp.workdps(digits):
         both = sp.lambdify(ANGLE, (energies.inertia, energies.potential), "mpmath", cse=True)
         first_inertia, first_potential = both(mp.mpf(angle))
-        sign = mp.sign(rate)
         energy = first_inertia * mp.mpf(rate) ** 2 / 2 + first_potential
 
         def rate_at(angle: Any) -> Any:
             inertia, potential = both(angle)
-            return sign * mp.sqrt(2 * (energy - potential) / inertia)
+            return mp.sign(rate) * mp.sqrt(2 * (energy - potential) / inertia)
 
-        passages = {}
-        old_time, old_angle = mp.mpf(0), mp.mpf(angle)
-        for time in sorted(times):
-            new_angle = old_angle + (time - old_time) * rate_at(old_angle)
-            for _ in range(NEWTON_STEPS):
+        def after(angle: Any, time: Any) -> Any:
+            """Return the angle a time later."""
+
+            def late(new: Any) -> Any:
                 # between two times the rate is smooth, where Gauss's nodes are fewer than those of tanh-sinh
-                passed = mp.quad(lambda angle: 1 / rate_at(angle), [old_angle, new_angle], method="gauss-legendre")
-                late = passed - (time - old_time)
-                new_angle -= late * rate_at(new_angle)
-                if abs(late) < mp.mpf(10) ** (4 - digits):
-                    break
-            else:
-                raise ArithmeticError(f"no angle at t = {float(time):g} s: take times closer together")
-            old_time, old_angle = time, new_angle
-            passages[time] = Passage(new_angle, rate_at(new_angle))
-        return passages
+                return mp.quad(lambda angle: 1 / rate_at(angle), [angle, new], method="gauss-legendre") - time
 
+            return mp.findroot(late, angle + time * rate_at(angle), solver="newton", df=lambda new: 1 / rate_at(new))
 
-def shared_times(duration: float) -> list[Any]:
-    """Return the times (s) at which runs of a duration are compared with the reference."""
-    with mp.workdps(DIGITS):
-        return [duration * mp.mpf(k) / SHARED for k in range(SHARED + 1)]
+        angles = [mp.mpf(angle)]
+        for before, time in pairwise([0, *times]):
+            angles.append(after(angles[-1], time - before))
+        return list(map(float, angles[1:]))
 
 
 @cache
-def shared_angles(energies: Energies, angle: float, rate: float, duration: float) -> list[Any]:
-    """Return the angle (rad) at the shared times, from its value and rate at t = 0."""
-    return [passage.angle for passage in motion(energies, angle, rate, shared_times(duration)).values()]
+def shared_angles(energies: Energies, angle: float, rate: float, duration: float) -> list[float]:
+    """Return the angle (rad) at the shared times."""
+    return motion(energies, angle, rate, [duration * mp.mpf(k) / SHARED for k in range(SHARED + 1)])
 
 
-def distance(angles: Sequence[Any], reference: Sequence[Any]) -> float:
-    """Return the root of the mean square difference at the shared times, which changes sign nowhere as h shrinks."""
-    stride = (len(angles) - 1) // SHARED
-    return math.sqrt(sum(float(a - b) ** 2 for a, b in zip(angles[::stride], reference, strict=True)))
+def distance(angles: FloatArray, reference: Sequence[float]) -> float:
+    """Return the root of the sum of squares of the differences at the shared times."""
+    return float(np.linalg.norm(angles[:: (len(angles) - 1) // SHARED] - reference))
 
 
 def shown_order(errors: Sequence[float]) -> float:

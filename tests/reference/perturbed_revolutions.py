@@ -7,14 +7,13 @@ import numpy as np
 from bezstab.mechanism.equations import Mechanism
 from bezstab.mechanism.motions import motion
 from bezstab.mechanism.programs import even_steps
-from bezstab.mechanism.runner import resume, simulate
+from bezstab.mechanism.runner import resume
 from bezstab.methods.schemes import Method, steps
 from bezstab.stability.arrays import FloatArray
 from bezstab.units import feedback_gains
 
 CORRECTIONS = 12  # of Newton's method
 PERIODIC = 1e-10  # m, rad: what a revolution may leave
-REVOLUTIONS, SETTLED = 30, 1e-9  # m, rad: what the last of so many may still change
 REACH = 1e-5  # m, rad and per s: cubic terms leave 1e-10, rounding 1e-11
 
 
@@ -23,8 +22,8 @@ def runner_motion(
 ) -> tuple[FloatArray, float] | None:
     """Return where a run of `count` steps comes back to itself after a revolution, and |z| per step there.
 
-    That is the states from which the run goes on, oldest first. For explicit methods, of which none carries
-    accelerations of its own. None if Newton's method does not find it.
+    That is the states from which the run goes on, oldest first. For methods that carry no accelerations of their own.
+    None if Newton's method does not find it.
     """
     start = _on_the_motion(mechanism, method, count)
     along = motion(mechanism, 1.0)
@@ -40,30 +39,6 @@ def runner_motion(
                 return start, float(np.abs(np.linalg.eigvals(linearized)).max() ** (1 / count))
             start = start + np.linalg.solve(np.eye(start.size) - linearized, missing)
     return None
-
-
-def settled_multiplier(mechanism: Mechanism, method: Method, count: int, alpha_hat: float, beta_hat: float) -> float:
-    """Return |z| per step of the motion to which runs of a one-step method settle, by differences of whole revolutions.
-
-    For any method whose step starts from position and velocity alone, implicit ones too, where errors decay.
-    """
-    h = motion(mechanism, 1.0).duration / count
-    gains = feedback_gains(alpha_hat, beta_hat, h / float(method.step_multiple))
-
-    def after_a_revolution(state: FloatArray) -> FloatArray:
-        q, v = np.split(state, 2)
-        run = simulate(mechanism, method, h, count * h, gains, (q, v))
-        return np.concatenate([run.q[-1], run.v[-1]])
-
-    along = motion(mechanism, 1.0)
-    whole_turn = np.concatenate([along.q[-1] - along.q[0], np.zeros(mechanism.size)])
-    state = np.concatenate([along.q[0], along.v[0]])
-    for _ in range(REVOLUTIONS):
-        before, state = state, after_a_revolution(state) - whole_turn
-    assert np.abs(state - before).max() < SETTLED
-    shifts = REACH * np.eye(state.size)
-    columns = [(after_a_revolution(state + each) - after_a_revolution(state - each)) / (2 * REACH) for each in shifts]
-    return float(np.abs(np.linalg.eigvals(np.transpose(columns))).max() ** (1 / count))
 
 
 def _on_the_motion(mechanism: Mechanism, method: Method, count: int) -> FloatArray:
