@@ -36,10 +36,11 @@ def point_words(alpha_hat: float, beta_hat: float, h: Fraction | float | None) -
     return f"{place} ({in_seconds} at h = {float(h):.6g} s)"
 
 
-def gains_words(kp: Number, kd: Number, inertia: Number, h: Number, applied: str | None) -> str:
+def gains_words(kp: Number, kd: Number, ki: Number, inertia: Number, h: Number, applied: str) -> str:
     """Return a drive (SI units) as it is judged: kp = 1000, kd = 80 (explicit, inertia 0.1, h = 0.002 s)."""
-    how = f"{applied}, " if applied else ""
-    return f"kp = {float(kp):.6g}, kd = {float(kd):.6g} ({how}inertia {float(inertia):.6g}, h = {float(h):.6g} s)"
+    integral = f", ki = {float(ki):.6g}" if ki else ""
+    judged = f"{applied}, inertia {float(inertia):.6g}, h = {float(h):.6g} s"
+    return f"kp = {float(kp):.6g}, kd = {float(kd):.6g}{integral} ({judged})"
 
 
 def seconds_words(seconds: float) -> str:

@@ -272,7 +272,7 @@ def _sentence(answer: DriveAnswer) -> str:
     torque every 19 steps, at most 6 steps late; kp is nearest to its limit.
     """
     drive, h = answer.drive, float(answer.h)
-    judged = gains_words(drive.kp, drive.kd, drive.inertia, h, answer.applied or answer.method.name)
+    judged = gains_words(drive.kp, drive.kd, drive.ki, drive.inertia, h, answer.applied or answer.method.name)
     what = "error" if drive.kp else "velocity"
     change = change_words(answer.z_abs, answer.verdict, what)
     if answer.settle_steps:

@@ -6,7 +6,7 @@ from math import atan, inf, log, pi
 
 import pytest
 
-from bezstab.drives.answer import DriveAnswer, drive, gains_for, judge_drive, rates
+from bezstab.drives.answer import DriveAnswer, drive, gains_for, judge_drive
 from bezstab.drives.columns import ways_words
 from bezstab.drives.held_torque import verdict
 from bezstab.engines.drives import Drive, Timing
@@ -88,6 +88,7 @@ def test_what_cannot_be_reached_is_refused_with_what_can() -> None:
     [
         (500, 5, 0, 2, "rests 0.229° (of a slider 4 mm) from its target"),  # 2 / 500 rad
         (500, 5, 2000, 2, "rests at its target"),
+        (500, 5, 2000, None, "kp = 500, kd = 5, ki = 2000 (explicit, inertia 0.1, h = 0.001 s)"),
         (1000, 0, 0, None, "a spring, and the integrator neither damps nor drives it"),
         (0, 1, 0, None, "nothing holds the position, so the velocity is judged"),
     ],
@@ -96,26 +97,15 @@ def test_the_sentence_says_what_is_special(kp: int, kd: int, ki: int, load: int 
     assert part in drive(kp, kd, 0.1, h=0.001, ki=ki, load=load, method="SYM").sentence
 
 
-def test_an_integrator_adds_its_damping_to_a_spring_and_symplectic_euler_none() -> None:
-    """That of implicit Euler is ωh / 2 to leading order."""
-    implicit = drive(1, 0, 1, h=0.01, method="implicit-euler")
-    assert implicit.damping_ratio == pytest.approx(0.005, rel=1e-4)
-    assert "nothing but the integrator damps: its damping ratio is 0.005" in implicit.sentence
-    assert drive(1000, 0, 1, h=0.01, method="SYM").damping_ratio == 0
-
-
 LIMITS = [
     ("SYM", "1", "1/4", 2 - 1 / 8, 2),  # 2 kd + kp < 4
     ("SYM", "1/10", "3", 1 / 2, 4 - 1 / 5),
     ("SYM", "19/10", "1/2", 7 / 4, 1 / 5),  # unstable: each is lowered until it is stable
     ("SYM", "3", "1/4", 2 - 1 / 8, None),  # where one alone is too much the other does not help
     ("SYM", "1/10", "5", None, 4 - 1 / 5),
-    ("SYM", "3", "5", None, None),
     ("SYM", "0", "1/100", 2 - 1 / 200, None),  # rounding on the circle is no decay: only more kd helps
     ("SYM", "1", "0", 2, 2),  # a damper: its velocity is judged
-    ("SYM", "4", "0", 2, None),
     ("imex-euler", "1", "8", inf, 6),
-    ("imex-euler", "1", "1", inf, 6),
     ("implicit-euler", "1", "1", inf, inf),
 ]
 
@@ -135,30 +125,16 @@ def test_an_undamped_spring_shows_what_the_integrator_adds() -> None:
     answer = drive(omega**2, 0, 1, h="1/60", method="implicit-euler")
     exponent = complex(log(1 + (omega * h) ** 2) / 2, atan(omega * h))  # z = 1 / (1 - i omega h)
     assert answer.damping_ratio == pytest.approx(exponent.real / abs(exponent), rel=1e-9)
+    assert f"nothing but the integrator damps: its damping ratio is {answer.damping_ratio:.4g}" in answer.sentence
     assert drive(omega**2, -2 * 0.2617 * omega, 1, h="1/60", method="implicit-euler").safe
     assert not drive(omega**2, -2 * 0.2619 * omega, 1, h="1/60", method="implicit-euler").safe
 
 
-def test_a_load_sags_by_its_share_of_the_stiffness_and_an_integral_takes_it_back() -> None:
-    assert drive(200, 5, "0.1", h="0.002", load=3).sag == pytest.approx(0.015)
-    assert drive(200, 5, "0.1", ki=10, h="0.002", load=3).sag == 0
-    with pytest.raises(InputError, match="load needs kp"):
-        drive(0, 5, "0.1", h="0.002", load=3)
-
-
-def test_least_inertia_and_largest_integral_gain_are_where_the_verdict_turns() -> None:
-    """kd = 5 at 2 ms, explicit: 2 kd h + kp h^2 < 4 inertia."""
-    assert drive(0, 5, 1, h="0.002").limits.inertia == pytest.approx((0.005, inf))
+def test_the_largest_integral_gain_is_where_the_verdict_turns() -> None:
     found = drive(200, 5, "0.1", ki=1000, h="0.002").limits.ki
     assert found
     for factor, safe in ((0.999, True), (1.001, False)):
         assert drive(200, 5, "0.1", ki=found[1] * factor, h="0.002").safe is safe
-
-
-def test_rates_are_steps() -> None:
-    assert rates(None, Fraction(1000), None, Fraction(200)) == (Fraction(1, 1000), 5)
-    with pytest.raises(InputError, match="no multiple"):
-        rates(None, Fraction(1000), None, Fraction(300))
 
 
 @pytest.mark.parametrize(("kp", "kd", "inertia", "h"), [(20, 5, "0.001", "0.002"), (1000, 80, "0.1", "1/240")])

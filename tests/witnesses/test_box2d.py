@@ -54,13 +54,6 @@ def predicted(bodies: int, ratio: float, sweeps: int, position_sweeps: int) -> G
     return swept_growth(chain(bodies, ratio), SweptStep(1.0, (Pass("velocity", sweeps), Move(), positions)))
 
 
-def test_three_position_sweeps_are_the_engines_row() -> None:
-    sweeping = ENGINES["box2d-v2"].sweeping
-    assert sweeping
-    of_row = swept_growth(chain(10, 10), sweeping.step(8, H))
-    assert of_row == predicted(10, 10, 8, 3)
-
-
 @pytest.mark.parametrize(
     ("bodies", "ratio", "sweeps"), [(5, 1, 4), (10, 1, 4), (10, 1, 8), (10, 10, 8), (10, 100, 8), (20, 1, 8), (5, 1, 1)]
 )
@@ -112,15 +105,6 @@ def test_a_soft_joint_sags_as_the_spring_that_jolt_has_too(frequency: float, dam
     values = Fraction(frequency), Fraction(damping_ratio)
     offset = offset_at_rest(ENGINES["jolt-spring"], values, Fraction(1, 60), Fraction("9.81"))
     assert body.position[0] - 1 == pytest.approx(offset, rel=0.01)
-
-
-def test_its_hard_joint_does_not_sag() -> None:
-    world, (body,) = chained(1, 1, gravity=9.81)
-    start = body.position[0]
-    for _ in range(1200):
-        world.Step(H, 8, 3)
-    assert body.position[0] - start == pytest.approx(0, abs=1e-6)
-    assert offset_at_rest(ENGINES["box2d-v2"], (), Fraction(1, 60), Fraction("9.81")) == 0
 
 
 def arm(bodies: int, motor: str, gravity: float = 0.0) -> tuple[Any, list[Any]]:
