@@ -16,8 +16,8 @@ from bezstab.chains.answer import chain as judge
 from bezstab.engines.engine_list import ENGINES
 from bezstab.engines.sweeping import Move, Pass, SweptStep
 from bezstab.stability.rest_offsets import offset_at_rest
-from bezstab.stability.sweeps import Growth, chain, swept_growth
-from tests.witnesses.growths import growth
+from bezstab.stability.sweeps import chain, swept_growth
+from tests.witnesses.growths import grown, predicted
 
 box2d: Any = pytest.importorskip("Box2D")
 
@@ -49,11 +49,6 @@ def worst_link(links: list[Any]) -> float:
     return float(max(abs(abs(x - u) - 1) for u, x in pairwise(places)))
 
 
-def predicted(bodies: int, ratio: float, sweeps: int, position_sweeps: int) -> Growth:
-    positions = Pass("position", position_sweeps, 1.0)
-    return swept_growth(chain(bodies, ratio), SweptStep(1.0, (Pass("velocity", sweeps), Move(), positions)))
-
-
 @pytest.mark.parametrize(
     ("bodies", "ratio", "sweeps"), [(5, 1, 4), (10, 1, 4), (10, 1, 8), (10, 10, 8), (10, 100, 8), (20, 1, 8), (5, 1, 1)]
 )
@@ -64,11 +59,9 @@ def test_errors_of_a_chain_shrink_as_predicted(bodies: int, ratio: float, sweeps
     for body in links:
         body.position = (body.position[0] + float(rng.uniform(-0.1, 0.1)), 0)
         body.linearVelocity = (float(rng.uniform(-1, 1)), 0)
-    errors = [worst_link(links)]
-    while len(errors) < 2000 and (len(errors) < 30 or max(errors[-10:]) > NO_MORE):
-        world.Step(H, sweeps, 1)
-        errors.append(worst_link(links))
-    assert growth(errors, 10) == pytest.approx(predicted(bodies, ratio, sweeps, 1).factor, abs=2e-3)
+    of_step = SweptStep(1.0, (Pass("velocity", sweeps), Move(), Pass("position", 1, 1.0)))
+    found = grown(lambda: world.Step(H, sweeps, 1), lambda: worst_link(links), 15, 2000, NO_MORE, np.inf)
+    assert found == pytest.approx(swept_growth(chain(bodies, ratio), of_step).factor, abs=2e-3)
 
 
 @pytest.mark.parametrize(("bodies", "ratio"), [(20, 10), (20, 30), (10, 100)])
@@ -77,11 +70,8 @@ def test_so_they_do_with_three_position_sweeps_while_they_are_above_the_slop(bod
     world, links = chained(bodies, ratio)
     for number, body in enumerate(links, start=1):
         body.position = (body.position[0] + 0.1 * number, 0)
-    errors = [worst_link(links)]
-    while errors[-1] > 2 * SLOP:
-        world.Step(H, 8, 3)
-        errors.append(worst_link(links))
-    assert growth(errors, 10) == pytest.approx(predicted(bodies, ratio, 8, 3).factor, abs=2e-3)
+    found = grown(lambda: world.Step(H, 8, 3), lambda: worst_link(links), 10, 2000, 2 * SLOP, np.inf)
+    assert found == pytest.approx(predicted("box2d-v2", "1/60", bodies, ratio, 8).factor, abs=2e-3)
 
 
 @pytest.mark.parametrize("frequency", [2, 5, 12])
@@ -137,11 +127,9 @@ def test_a_kicked_arm_turns_as_predicted(bodies: int, motor: str) -> None:
     for rod in rods:
         rod.linearVelocity = (0, kick * float(rng.standard_normal()))
         rod.angularVelocity = kick * float(rng.standard_normal())
-    rates: list[float] = []
-    while len(rates) < 60 or (len(rates) < 2000 and NO_MORE < max(rates[-10:]) < 1):
-        world.Step(H, 8, 3)
-        rates.append(max(abs(rod.angularVelocity) for rod in rods))
-    assert growth(rates, 20) == pytest.approx(answer.z_abs, abs=2e-3)
+    fastest = lambda: max(abs(rod.angularVelocity) for rod in rods)  # noqa: E731
+    found = grown(lambda: world.Step(H, 8, 3), fastest, 20, 2000, NO_MORE, 1)
+    assert found == pytest.approx(answer.z_abs, abs=2e-3)
 
 
 @pytest.mark.parametrize(("bodies", "motor"), [(3, "5,0.7"), (6, "20,1")])
