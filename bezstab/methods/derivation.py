@@ -11,7 +11,7 @@ import sympy as sp
 from numpy.polynomial.polynomial import polyval2d
 from sympy.polys.rings import PolyElement
 
-from bezstab.methods.determinants import ExactArray
+from bezstab.methods.determinants import ExactArray, as_fraction
 from bezstab.methods.schemes import Method, RungeKutta
 
 Z, MU, ALPHA_HAT, BETA_HAT, S, H = sp.symbols("z mu alpha_hat beta_hat s h")
@@ -64,7 +64,7 @@ def closed_loop_at(method: Method, alpha_hat: Fraction, beta_hat: Fraction) -> l
 
 def rational_feedback_roots(method: Method, z: int) -> list[Fraction]:
     """Return the rational mu at which pi(., mu) has a root at z, exact; none of a second-order scheme."""
-    return [Fraction(int(mu.p), int(mu.q)) for mu in characteristic_polynomial(method).eval(Z, z).ground_roots()]
+    return [as_fraction(mu) for mu in characteristic_polynomial(method).eval(Z, z).ground_roots()]
 
 
 def mapping_equation(method: Method) -> sp.Equality | None:

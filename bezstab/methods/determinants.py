@@ -113,8 +113,7 @@ def plane_tables(*polynomials: PolyElement) -> list[ExactArray]:
 
 def characteristic(matrix: Sequence[Sequence[Fraction]]) -> list[Fraction]:
     """Return the coefficients of det(z - matrix) in ascending powers of z, exact."""
-    rows = [[sp.QQ.convert(c) for c in row] for row in matrix]
-    return [as_fraction(c) for c in reversed(DomainMatrix(rows, (len(rows), len(rows)), sp.QQ).charpoly())]
+    return [as_fraction(c) for c in reversed(sp.Matrix(matrix).charpoly().all_coeffs())]
 
 
 def in_words(polynomial: Sequence[Fraction]) -> str:

@@ -41,7 +41,6 @@ LONGEST = 2000  # characters of one text
 LONGEST_NAME = 30  # characters of a quantity's name
 LARGEST_ROOT = 10**8  # numerator times denominator of what a root is taken of: so that its squares are found at once
 MOST_TERMS = 40  # of a number, one for each root
-MOST_BELOW = 4  # terms of a divisor: sympy takes the roots of no more out of it
 
 Sum = dict[Quantity | None, sp.Expr]
 """Numbers by what they multiply; None for one that stands alone."""
@@ -157,7 +156,10 @@ def _sum(tree: ast.expr) -> Sum:
             total, other = _sum(left), _sum(right)
             total = _times(other, total[None]) if total.keys() == {None} else _times(total, _number(right))
         case ast.BinOp(left, ast.Div(), right):
-            total = _times(_sum(left), _inverse(_number(right)))
+            divisor = _number(right)
+            if not divisor.is_Rational or divisor == 0:
+                raise InputError("expected to divide by a fraction other than 0, as in sqrt(2)/2")
+            total = _times(_sum(left), 1 / divisor)
         case _:
             raise InputError(EXPECTED)
     return total
@@ -174,13 +176,6 @@ def _root(of: sp.Expr) -> sp.Expr:
     if not of.is_Rational or of < 0 or of.p * of.q > LARGEST_ROOT:
         raise InputError(f"a root is taken of a fraction p/q from 0, p q at most {LARGEST_ROOT:g}")
     return sp.sqrt(of)
-
-
-def _inverse(of: sp.Expr) -> sp.Expr:
-    """Return one over a number, its roots in the numerator."""
-    if of == 0 or len(of.args) > MOST_BELOW:
-        raise InputError(f"expected to divide by a number other than 0, of at most {MOST_BELOW} terms")
-    return sp.expand(sp.radsimp(1 / of, max_terms=MOST_BELOW))
 
 
 def _quantity(word: str) -> Quantity:

@@ -267,19 +267,11 @@ def evaluations(method: Method) -> int:
 
 def check_one_step(method: Method) -> None:
     """Raise InputError unless the state at the end of a step follows from x, v and a at its start alone."""
-    scheme = method.scheme.second_order
-    latest = {equation.result.name: equation.result.step for equation in scheme.equations}
-    if steps(method) > 1 or latest[POSITION] != 1 or latest[VELOCITY] != 1:
+    equations = method.scheme.second_order.equations
+    results = {equation.result for equation in equations}
+    carried = {quantity for equation in equations for quantity in equation.used} - results
+    if any(quantity.name not in STATE or quantity.step != 0 for quantity in carried):
         raise InputError(
             f"{method.name} uses values of several steps, and its coefficients assume that these are of equal length: "
             "steps that vary cannot be judged"
         )
-    results = {equation.result for equation in scheme.equations}
-    for equation in scheme.equations:
-        for quantity in equation.used:
-            carried = quantity not in results
-            if carried and (quantity.name not in STATE or quantity.step != 0):
-                raise InputError(
-                    f"{method.name} carries {quantity} from step to step: nothing is known of how it changes when the "
-                    "step does"
-                )

@@ -93,7 +93,7 @@ def test_coefficients_with_roots_are_those_of_the_book(tmp_path: Path) -> None:
 
 
 def test_equations_with_roots_are_reckoned_exactly(tmp_path: Path) -> None:
-    update = "[update]\na0 = 'acceleration(x0, v0)'\nv1 = 'v0 + sqrt(2)/2 a0 + (a0 - a0/sqrt(2))'\nx1 = 'x0 + v1'\n"
+    update = "[update]\na0 = 'acceleration(x0, v0)'\nv1 = 'v0 + sqrt(2)/2 a0 + (a0 - sqrt(0.5) a0)'\nx1 = 'x0 + v1'\n"
     own = read_method(written(tmp_path, update))
     assert np.array_equal(own.scheme.second_order.table, lookup("SYM").scheme.second_order.table)
     assert own.digits == 40

@@ -17,10 +17,10 @@ F = Fraction
 SAME = {
     "-0.5e-1": "-1/20",
     "sqrt(72)": "6*sqrt(2)",
-    "1/sqrt(2)": "sqrt(0.5)",
+    "sqrt(2)/2": "sqrt(0.5)",
     "sqrt(2)*sqrt(3)": "sqrt(6)",
     "sqrt(sqrt(81/16))": "1.5",
-    "1/(1 + sqrt(2) + sqrt(3))": "(2 + sqrt(2) - sqrt(6))/4",
+    "(1 + sqrt(2))*(sqrt(2) - 1)": "1",
     "sqrt(2) - sqrt(8)/2": "0",
     "2 - 3 - -4": "3",
     "8/4/-2": "-1",
@@ -44,7 +44,7 @@ SUMS = {
     "x0 / -2 - 3 (-v0) / (1 - 3)": {"x0": F(-1, 2), "v0": F(-3, 2)},
     "1/2 (x0 - 1/3 (v0 + a0))": {"x0": F(1, 2), "v0": F(-1, 6), "a0": F(-1, 6)},
     "x0 - x0 + vh + vh[0] + vh[ -1 ]": {"vh": 1, "vh[0]": 1, "vh[-1]": 1},
-    "1e-3 x0 + sqrt(4) (v0 - sqrt(2)/sqrt(8) a0)": {"x0": F(1, 1000), "v0": 2, "a0": -1},
+    "1e-3 x0 + sqrt(4) (v0 - sqrt(2)*sqrt(8)/8 a0)": {"x0": F(1, 1000), "v0": 2, "a0": -1},
     "0.3333333333333333333333333333333333333333 a0": {"a0": F(int("3" * 40), 10**40)},
 }
 
@@ -64,13 +64,13 @@ SUM = "expected a number such as (16 - sqrt(6))/36 or, in an equation, a sum suc
 STEP = "expected one step with it, such as x0, x1 or x[-1]"
 WORDS = "expected numbers, names, + - * / and parentheses"
 ROOT = "a root is taken of a fraction p/q from 0, p q at most 1e+08"
-DIVISOR = "expected to divide by a number other than 0, of at most 4 terms"
+DIVISOR = "expected to divide by a fraction other than 0, as in sqrt(2)/2"
 REFUSED = {
     "x": f"'x': {STEP}",
     "x0[1]": f"'x0[1]': {STEP}",
     "__import__('os')": WORDS,
     "٢ x0": WORDS,
-    **dict.fromkeys(("1/0 x0", "x0/(sqrt(2) - 2/sqrt(2))", "x0/(1+sqrt(2)+sqrt(3)+sqrt(5)+sqrt(7))"), DIVISOR),
+    **dict.fromkeys(("1/0 x0", "x0/(sqrt(2) - sqrt(2))", "x0/sqrt(2)"), DIVISOR),
     **dict.fromkeys(("sqrt(-1) x0", "sqrt(sqrt(2)) x0", "sqrt(1e9) x0"), ROOT),
     **dict.fromkeys(("", "x0 v0", "x0 * v0", "x0 + 1", "x0 (v0 + 1)", "x0 / v0", "x0 1", "1 2 x0", "(x0", "x0)"), SUM),
     **dict.fromkeys(("x0 // 2", "x0 ** 2", "lambda", "acceleration(x0)", "acceleration(x0, v0) + x0", "sqrt(x0)"), SUM),
