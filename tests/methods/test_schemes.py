@@ -10,7 +10,6 @@ import sympy as sp
 from bezstab.errors import InputError
 from bezstab.methods.derivation import ALPHA_HAT, BETA_HAT, MU, Z, characteristic_polynomial, closed_loop_polynomial
 from bezstab.methods.registry import REGISTRY, lookup
-from bezstab.methods.scheme_motions import evaluation_times
 from bezstab.methods.schemes import LinearMultistep, RungeKutta, evaluations, steps
 from tests.methods import kinds
 from tests.methods.exact_lists import fractions
@@ -39,13 +38,6 @@ STEPS_AND_EVALUATIONS = {
 def test_steps_and_evaluations_count_what_one_step_needs() -> None:
     for expected, names in STEPS_AND_EVALUATIONS.items():
         assert {(steps(lookup(name)), evaluations(lookup(name))) for name in names.split()} == {expected}
-
-
-def test_stages_are_evaluated_at_the_sums_of_their_rows() -> None:
-    for name in kinds.RUNGE_KUTTA:
-        scheme = lookup(name).scheme
-        assert isinstance(scheme, RungeKutta)
-        assert list(evaluation_times(scheme.second_order).values()) == [sum(row) for row in scheme.tableau]
 
 
 @pytest.mark.parametrize(

@@ -32,11 +32,6 @@ def test_of_a_multistep_method_it_is_its_error_constant_times_the_ratio_of_the_p
     assert abs(sp.simplify(of_velocity)) == sp.Rational(abs(constant).numerator, constant.denominator)
 
 
-def test_with_feedback_held_methods_with_stages_lose_order() -> None:
-    left = {"RK4": 2, "dopri5": 2, "radau3": 3, "gauss4": 4, "AB4": 5}
-    assert {name: leading_error(lookup(name)).power for name in left} == left
-
-
 OMEGA = Fraction(1, 10)
 POINT = (Fraction(9, 50), Fraction(1, 50))
 """Where errors of these methods decay 0.93-fold a step or faster."""
