@@ -57,7 +57,7 @@ test-oldest:  ## the same tests with the oldest versions that pyproject.toml all
 witnesses: .venv/tested  ## engines that are not ours, run: PyBullet, pymunk, Box2D, Exudyn, MuJoCo, three in JavaScript
 	$(BIN)/pip install --quiet --editable '.[witnesses]'
 	-npm install --silent --no-save --ignore-scripts --prefix .venv/javascript matter-js@0.20 cannon-es@0.20 p2@0.7
-	$(BIN)/python -m pytest tests/witnesses tests/runs/test_mujoco_maps.py tests/runs/test_mujoco_models.py
+	$(BIN)/python -m pytest tests/witnesses tests/runs/test_mujoco_maps.py tests/runs/test_mujoco_energy.py
 
 extremes: .venv/tested  ## what holds at the extremes, in minutes, into figures/extremes.md
 	$(BIN)/python -m tests.extremes.write_page

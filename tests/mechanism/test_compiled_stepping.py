@@ -12,11 +12,8 @@ from bezstab.compiling import COMPILED_CHOICE
 from bezstab.errors import InputError
 from bezstab.mechanism import compiled_stepping as module
 from bezstab.mechanism.compiled_stepping import runs_compiled
-from bezstab.mechanism.equations import compiled_mechanism
-from bezstab.mechanism.scene_files import load_scene
 from bezstab.methods.registry import lookup
 from bezstab.stabilising import after_step
-from tests.mechanism.test_stepping import both
 
 
 def test_runs_are_compiled_where_that_pays_or_is_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -75,11 +72,3 @@ def test_code_is_kept_only_where_nobody_but_the_user_can_write(tmp_path: Path) -
     assert module._keep(file)
     file.parent.chmod(0o777)
     assert not module._keep(file)
-
-
-def test_a_further_method_on_a_compiled_scene_compiles_nothing() -> None:
-    mechanism = compiled_mechanism(load_scene("pendulum"))
-    for name in ("B2", "dopri5"):
-        both(mechanism, name, 20, (20.0, 100.0))
-    steps = module.machine_steps(mechanism, 1)
-    assert len(steps.signatures) == 1  # type: ignore[attr-defined]

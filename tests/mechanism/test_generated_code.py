@@ -1,28 +1,14 @@
 """Generated accelerations: their text, and functions of it for runs alone and side by side."""
 
-import math
-
-import numpy as np
 import pytest
 import sympy as sp
 
 from bezstab.mechanism.equations import compiled_mechanism
-from bezstab.mechanism.generated_code import code_of, machine_source, state_function
-from bezstab.mechanism.scene_files import load_scene, parse_scene
+from bezstab.mechanism.generated_code import code_of, machine_source
+from bezstab.mechanism.scene_files import parse_scene
 from bezstab.mechanism.start import initial_state
 from tests.mechanism.four_bar_chains import four_bars
 from tests.mechanism.test_scenes import pendulum
-
-
-def test_pivots_are_those_of_the_factored_matrix() -> None:
-    mechanism = compiled_mechanism(load_scene("slider_crank"))
-    q, v = initial_state(mechanism)
-    symbols = dict(zip(mechanism.q, q, strict=True))
-    jacobian = np.array(mechanism.jacobian.subs(symbols), float)
-    effective = jacobian @ np.diag(1 / mechanism.mass) @ jacobian.T
-    pivots = np.diag(np.linalg.cholesky(effective)) ** 2
-    found = state_function(mechanism, "accelerations", math)([0.0, 0.0, 0.0, *q.tolist(), *v.tolist()])
-    assert found[mechanism.size :] == pytest.approx(pivots / np.diag(effective), rel=1e-13)
 
 
 def test_names_never_reach_the_generated_code() -> None:

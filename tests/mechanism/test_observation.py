@@ -43,16 +43,8 @@ def test_every_passage_through_a_singular_configuration_is_seen_whatever_the_ste
     assert found == pytest.approx(expected, abs=h)
 
 
-@pytest.mark.parametrize("name", ["slider_crank", "slider_crank_300rpm", "four_bar", "driven_four_bar", "pendulum"])
+@pytest.mark.parametrize("name", ["four_bar", "pendulum"])
 def test_where_nothing_is_singular_no_passage_is_seen(name: str) -> None:
     mechanism, gains = compiled_mechanism(load_scene(name)), (20.0, 100.0)
     run = simulate(mechanism, lookup("RK4"), 1e-2, 10.0, gains)
     assert not len(singular_passages(observe(mechanism, run.t, run.q, run.v, *gains).pivots))
-
-
-def test_the_pivots_are_those_that_the_run_has_met() -> None:
-    mechanism = compiled_mechanism(load_scene("slider_crank"))
-    run = simulate(mechanism, lookup("RK1"), 1e-3, 3.0, (20.0, 100.0))
-    pivots = observe(mechanism, run.t, run.q, run.v, 20.0, 100.0).pivots[:-1]  # the last state takes no step
-    assert pivots.min() == pytest.approx(run.least_pivot, rel=1e-13)
-    assert run.t[pivots.argmin()] == run.pivot_time

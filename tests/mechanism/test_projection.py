@@ -6,7 +6,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from bezstab.errors import InputError
 from bezstab.mechanism.equations import Mechanism, compiled_mechanism
 from bezstab.mechanism.generated_code import state_function
 from bezstab.mechanism.observation import observe
@@ -18,10 +17,8 @@ from bezstab.methods.registry import lookup
 from bezstab.methods.schemes import Method, evaluations, implicit
 from bezstab.stabilising import AfterStep, after_step
 from tests.mechanism.test_runner import measured_order
-from tests.mechanism.test_second_order_memory import LEAPFROG
 from tests.mechanism.test_stepping import KINDS, step_for
 from tests.reference.literal_equation_9 import literal_equation_9
-from tests.reference.one_coordinate_motion import shown_order
 
 H = 1e-3  # s
 PROJECTED, ONCE, TWICE = (after_step("projection", iterations) for iterations in (None, 1, 2))
@@ -65,19 +62,7 @@ def test_the_order_of_accuracy_stays(name: str, order: int) -> None:
         assert measured_order(name, count, lambda _: (0.0, 0.0), after) == pytest.approx(order, abs=0.1)
 
 
-def test_what_is_carried_of_a_velocity_is_projected_with_it() -> None:
-    """The leapfrog scheme carries the velocity half a step back, and that only; its order is two."""
-    method = Method("leapfrog", LEAPFROG, source="")
-    mechanism, errors = scene("slider_crank_light"), []
-    fine = simulate(mechanism, lookup("RK4"), 1e-4, 0.2, (0.0, 0.0))
-    for h in (2e-3, 1e-3):
-        run = projected(mechanism, method, h, 0.2)
-        assert max(abs(run.c).max(), abs(run.cdot).max()) <= 1e-11
-        errors.append(abs(run.q[-1] - fine.q[-1]).max())
-    assert shown_order(errors) == pytest.approx(2, abs=0.1)
-
-
-@pytest.mark.parametrize("name", ["slider_crank", "driven_four_bar", "andrews", "driven_slider_crank"])
+@pytest.mark.parametrize("name", ["driven_four_bar", "andrews"])
 def test_corrections_are_the_least_ones_in_the_metric_of_the_masses(name: str) -> None:
     mechanism, t, generator = scene(name), 0.3, np.random.default_rng(1)
     n = mechanism.size
@@ -91,45 +76,22 @@ def test_corrections_are_the_least_ones_in_the_metric_of_the_masses(name: str) -
         assert correction == pytest.approx(expected, rel=1e-9, abs=1e-11 * abs(expected).max())
 
 
-def test_the_cost_is_counted() -> None:
+@pytest.mark.parametrize("name", ["RK2", "hht"])
+def test_the_cost_is_counted(name: str) -> None:
     """A projection that moves the state computes a correction twice: the second says that it is enough."""
-    mechanism, count = scene("driven_four_bar"), 40
-    for name in ("SYM", "RK2", "hht"):
-        run = projected(mechanism, lookup(name), H, count * H, ONCE)
-        assert run.projections == 2 * count
-        assert run.factorizations == run.evaluations + 2 * count
-        if name in ("SYM", "RK2"):
-            assert run.evaluations == count * evaluations(lookup(name))
-    plain = simulate(mechanism, lookup("SYM"), H, count * H, (0.0, 0.0))
-    assert (plain.projections, plain.factorizations) == (0, plain.evaluations)
-    ab4 = projected(mechanism, lookup("AB4"), H, count * H)
-    assert 2 * (count - 3) <= ab4.projections <= 2 * count  # those of its start are counted, too
+    method, count = lookup(name), 40
+    run = projected(scene("driven_four_bar"), method, H, count * H, ONCE)
+    assert run.projections == 2 * count
+    assert run.factorizations == run.evaluations + 2 * count
+    assert implicit(method) or run.evaluations == count * evaluations(method)
 
 
 def test_more_iterations_come_closer() -> None:
     """Each iteration of Newton's method squares what is left."""
-    first, second, third = (
-        abs(projected(scene("driven_four_bar"), lookup("SYM"), 0.02, 1.0, after_step("projection", iterations)).c).max()
-        for iterations in (1, 2, 3)
-    )
-    assert first > 1e-7
-    assert second < first**1.5
-    assert third <= WITHIN
-
-
-def test_steps_of_different_lengths_are_projected_too() -> None:
-    run = simulated(
-        scene("driven_four_bar"),
-        lookup("hht"),
-        sequence=(1e-3, 3e-3),
-        h=1e-3,
-        duration=0.2,
-        alpha_hat=0.0,
-        beta_hat=0.0,
-        after=PROJECTED,
-    )
-    assert run.stabilise == "projection"
-    assert max(abs(run.c).max(), abs(run.cdot).max() / 10) <= WITHIN
+    at = scene("driven_four_bar"), lookup("SYM"), 0.02, 1.0
+    once, twice = (abs(projected(*at, after).c).max() for after in (ONCE, TWICE))
+    assert once > 1e-7
+    assert twice < once**1.5
 
 
 def test_a_singular_configuration_ends_a_run_and_says_when() -> None:
@@ -156,8 +118,3 @@ def test_a_position_from_which_newtons_method_finds_none_ends_a_run() -> None:
     given_up = projected(mechanism, lookup("RK1"), 0.5, 1.5, TWICE)
     assert given_up.failure is None
     assert abs(given_up.c).max() > 1e-3
-
-
-def test_bad_input_is_refused() -> None:
-    with pytest.raises(InputError, match="iterations 0: expected at least 1"):
-        after_step("projection", 0)

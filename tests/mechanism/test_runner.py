@@ -3,20 +3,18 @@
 from collections.abc import Callable
 from dataclasses import replace
 
-import mpmath as mp
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
 from bezstab.mechanism.equations import compiled_mechanism
 from bezstab.mechanism.observation import observe
-from bezstab.mechanism.runner import Start, _starters, simulate
+from bezstab.mechanism.runner import Start, simulate
 from bezstab.mechanism.scene_files import load_scene
 from bezstab.mechanism.simulation import simulated
 from bezstab.mechanism.start import constraint_errors, perturbed_state
 from bezstab.methods.orders import accuracy
 from bezstab.methods.registry import lookup
-from bezstab.methods.schemes import Method, evaluations, steps
 from bezstab.stabilising import NOTHING, AfterStep
 from bezstab.units import feedback_gains
 from tests.mechanism.four_bar_chains import four_bars
@@ -99,18 +97,6 @@ def test_a_run_that_ends_says_when_and_why(
     assert len(run.t) == len(run.q) == len(run.v)
 
 
-@pytest.mark.parametrize("start", STARTS)
-def test_the_start_provides_the_first_values(start: Start) -> None:
-    method = lookup("B4")
-    run = simulate(MECHANISM, method, H, 0.01, (0.0, 0.0), start=start)
-    first = {"rk4": 4, "ramp": 1, "euler": 1}[start] * (steps(method) - 1)
-    assert run.evaluations == first + (10 - (steps(method) - 1)) * evaluations(method)
-    assert len(run.t) == 11
-    if start == "rk4":  # a run shorter than its start counts what it took
-        short = simulate(MECHANISM, method, H, 2 * H, (0.0, 0.0))
-        assert short.evaluations == 2 * 4
-
-
 def test_strong_feedback_does_not_answer_the_steps_of_the_start() -> None:
     """RK4 with the feedback of ABM4 (alpha = 159, beta = 319) left 9e-8 m at its third step, 500 times what follows."""
     mechanism = compiled_mechanism(load_scene("driven_four_bar"))
@@ -131,15 +117,14 @@ def test_from_a_state_off_the_constraints_the_feedback_acts_at_once() -> None:
         assert np.abs(constraint_errors(MECHANISM, run.t, run.q.T)).max(axis=0)[3] < most
 
 
-def test_a_ramp_follows_the_family_whatever_the_method_is_called() -> None:
-    def angles(method: Method) -> list[float]:
-        run = simulate(MECHANISM, method, H, 0.1, (20.0, 100.0), start="ramp")
-        return [float(angle) for angle in run.q[:, 0]]
-
-    assert angles(replace(lookup("AB4"), name="B4")) == angles(lookup("AB4"))
-    assert angles(Method("B4", lookup("AB4").scheme, "a user's file")) == angles(lookup("AB4"))
-    assert angles(replace(lookup("B4"), name="AB4")) == angles(lookup("B4"))
-    assert [member.name for member, _ in _starters(lookup("B4"), "ramp")] == ["B1", "B2", "B3"]
+@pytest.mark.parametrize("family", ["B", "AB"])
+def test_a_ramp_takes_its_familys_members_whatever_the_method_is_called(family: str) -> None:
+    of_four, of_two = (
+        simulate(MECHANISM, replace(lookup(f"{family}{n}"), name="mine"), H, 0.01, (20.0, 100.0), start="ramp")
+        for n in (4, 2)
+    )
+    assert np.array_equal(of_four.q[:3], of_two.q[:3])
+    assert not np.array_equal(of_four.q[4], of_two.q[4])
 
 
 ANDREWS = np.array([
@@ -155,19 +140,15 @@ ANDREWS = np.array([
 ANDREWS_DIGITS = 1e-9  # relative: what these are good to, seven of the sixteen digits printed being the solver's
 
 
-def andrews_angles(name: str, h: float) -> FloatArray:
-    """Return the seven angles of the test set, at 0.03 s; three of them are relative to another body."""
-    mechanism = compiled_mechanism(load_scene("andrews"))
-    run = simulate(mechanism, lookup(name), h, 0.03, feedback_gains(0.1, 0.01, h))
+@pytest.mark.slow
+def test_andrews_squeezing_mechanism_ends_where_the_test_set_says() -> None:
+    """Three of its seven angles are relative to another body."""
+    mechanism, h = compiled_mechanism(load_scene("andrews")), 2e-6
+    run = simulate(mechanism, lookup("ABM4"), h, 0.03, feedback_gains(0.1, 0.01, h))
     last = dict(zip(mechanism.scene.coordinates, run.q[-1].tolist(), strict=True))
     k1, k2, k3, k4, k5, k6, k7 = (last[f"K{number}.theta"] for number in range(1, 8))
-    return np.array([k1, k2 - k1, k3, k4 - k5, k5, k6 - k7, k7])
-
-
-@pytest.mark.parametrize(("name", "h"), [("ABM4", 2e-6)])
-@pytest.mark.slow
-def test_andrews_squeezing_mechanism_ends_where_the_test_set_says(name: str, h: float) -> None:
-    assert andrews_angles(name, h) == pytest.approx(ANDREWS, rel=ANDREWS_DIGITS, abs=0)
+    angles = np.array([k1, k2 - k1, k3, k4 - k5, k5, k6 - k7, k7])
+    assert angles == pytest.approx(ANDREWS, rel=ANDREWS_DIGITS, abs=0)
 
 
 def test_iterations_and_evaluations_of_an_implicit_run_are_counted() -> None:
@@ -189,21 +170,6 @@ def test_an_implicit_method_bears_strong_feedback_from_its_first_steps_on(start:
     assert np.abs(c).max() < 1e-6  # m; the steps of RK4 multiply an error by 400^2 / 24 each
 
 
-@pytest.mark.parametrize("name", ["implicit-midpoint", "gauss4"])
-def test_gauss_methods_keep_what_is_quadratic(name: str) -> None:
-    """Without feedback cdot = q v / l of the pendulum is constant, and quadratic in the state: Gauss methods keep it.
-
-    Hairer, Lubich & Wanner, Geometric Numerical Integration, Theorem IV.2.1.
-    """
-    mechanism = compiled_mechanism(load_scene("pendulum"))
-    drifts = {}
-    for method in (name, "trapezoid", "bdf2"):
-        run = simulate(mechanism, lookup(method), 1e-2, 3.0, (0.0, 0.0))
-        drifts[method] = float(np.abs(observe(mechanism, run.t, run.q, run.v, 0.0, 0.0).cdot).max())
-    assert drifts[name] < 1e-10  # 300 steps, each solved within 1e-13, and a velocity is that over h
-    assert min(drifts["trapezoid"], drifts["bdf2"]) > 1e-6
-
-
 def test_a_coarse_step_does_not_fail_by_an_earlier_steps_jacobian() -> None:
     """Those of the step before lead astray here: runs that trust them end after a third of a second."""
     mechanism, h = compiled_mechanism(load_scene("four_bar")), 0.02
@@ -216,31 +182,11 @@ A01_AT_10_S = (0.275087462576, -0.961419205099)
 """Where the benchmark's pendulum is, in m; published with the other sign of x, for a start at x = -1."""
 
 
-def exact_pendulum(t: float) -> tuple[float, float]:
-    """Return x and y (m) of the pendulum released from the horizontal: sin(phi / 2) = k sn(K - w t), k^2 = 1/2."""
-    with mp.workdps(30):
-        modulus = mp.mpf(1) / 2
-        sine = mp.ellipfun("sn", mp.ellipk(modulus) - mp.sqrt(mp.mpf("9.81")) * t, m=modulus) * mp.sqrt(modulus)
-        cosine = mp.sqrt(1 - sine**2)
-        return float(2 * sine * cosine), float(sine**2 - cosine**2)
-
-
-def test_the_exact_pendulum_is_that_of_the_benchmark() -> None:
-    assert exact_pendulum(0.0) == pytest.approx((1, 0), abs=1e-15)
-    assert exact_pendulum(10.0) == pytest.approx(A01_AT_10_S, abs=1e-12)  # as printed
-
-
-@pytest.mark.parametrize(
-    ("duration", "error", "energy"),
-    [(10.0, 1e-8, 1e-8), pytest.param(2000.0, 1e-3, 1e-5, marks=pytest.mark.slow)],
-)
-def test_a01_the_pendulum_keeps_its_energy_and_its_place(duration: float, error: float, energy: float) -> None:
-    """The benchmark runs for 2000 s and allows errors of 1e-3 m at most."""
-    run = simulated(
-        compiled_mechanism(load_scene("pendulum")), lookup("ABM4"), h=H, duration=duration, alpha_hat=0.1, beta_hat=0.01
-    )
-    assert run.q[-1] == pytest.approx(exact_pendulum(duration), abs=error)
-    assert np.abs(run.energy_drift).max() < energy
+def test_a01_the_pendulum_keeps_its_energy_and_its_place() -> None:
+    pendulum = compiled_mechanism(load_scene("pendulum"))
+    run = simulated(pendulum, lookup("ABM4"), h=H, duration=10.0, alpha_hat=0.1, beta_hat=0.01)
+    assert run.q[-1] == pytest.approx(A01_AT_10_S, abs=1e-8)
+    assert np.abs(run.energy_drift).max() < 1e-8
 
 
 CLEAR_STEP = 9e-4
@@ -252,16 +198,17 @@ energy is off by 2e-4 J on one processor and by half a joule on another. At 9e-4
 """
 
 
-@pytest.mark.parametrize(("count", "duration", "passages"), [(5, 1.5, 2)])
 @pytest.mark.slow
-def test_a02_the_four_bars_go_through_their_singular_positions(count: int, duration: float, passages: int) -> None:
+def test_a02_the_four_bars_go_through_their_singular_positions() -> None:
     """The benchmark has N = 40, runs for 20 s and allows errors of 1e-3 at most; its exact motion by quadrature."""
-    mechanism = compiled_mechanism(four_bars(count))
-    run = simulated(mechanism, lookup("RK4"), h=CLEAR_STEP, duration=duration, alpha_hat=0.02, beta_hat=1e-4)
+    count = 5
+    run = simulated(
+        compiled_mechanism(four_bars(count)), lookup("RK4"), h=CLEAR_STEP, duration=1.5, alpha_hat=0.02, beta_hat=1e-4
+    )
     times = run.t[::100]  # close: the quadrature has a sharp peak where the rods turn over
     reference = motion(four_bar_chain_energies(count), np.pi / 2, -1.0, times.tolist(), digits=20)
     assert run.q[::100, 0] == pytest.approx(reference, abs=1e-6)  # rad, on rods of 1 m; measured 5e-8
     assert np.ptp(run.q[:, : count + 1], axis=1).max() < 1e-8  # rad: no four-bar has branched
     assert np.abs(run.energy_drift).max() < 1e-6  # J, of hundreds; measured 1.5e-7
-    assert len(run.singular_times) == passages
+    assert len(run.singular_times) == 2
     assert run.least_pivot < 1e-5

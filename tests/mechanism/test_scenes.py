@@ -3,7 +3,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from bezstab.errors import InputError
 from bezstab.mechanism.equations import compiled_mechanism
 from bezstab.mechanism.runner import simulate
 from bezstab.mechanism.scene_files import load_scene, parse_scene
@@ -69,16 +68,3 @@ def test_a_faster_driver_takes_the_same_course_in_less_time() -> None:
     expected = 0.5 + 2 * whole.t - whole.t**2 / 2 + 0.3 * np.sin(7 * whole.t + 0.4)
     for run in (whole, quarter):
         assert run.q[:, 0] == pytest.approx(expected, abs=1e-11)  # RK4's
-
-
-def test_a_scene_at_another_speed_says_so_and_at_its_own_is_the_same() -> None:
-    four_bar = load_scene("four_bar")
-    assert at_speed(four_bar, 1.0) == four_bar == load_scene("four_bar")
-    assert hash(four_bar) == hash(load_scene("four_bar"))
-    assert at_speed(four_bar, 0.5).name == "four-bar, 0.5 times as fast"
-
-
-@pytest.mark.parametrize("factor", [0.0, -1.0, float("nan"), 1e101])
-def test_a_speed_that_is_none_is_refused(factor: float) -> None:
-    with pytest.raises(InputError, match=r"speed .*: expected 1e-100 to 1e\+100"):
-        at_speed(load_scene("four_bar"), factor)

@@ -5,21 +5,28 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
+from bezstab.errors import InputError
 from bezstab.mechanism.equations import Mechanism, compiled_mechanism
 from bezstab.mechanism.runner import simulate, states_needed
 from bezstab.mechanism.scene_files import parse_scene
+from bezstab.mechanism.second_order_memory import memory
 from bezstab.mechanism.start import perturbed_state
 from bezstab.methods.derivation import closed_loop_at
+from bezstab.methods.recipes import recipe
 from bezstab.methods.registry import lookup
 from bezstab.methods.schemes import Method
+from bezstab.stability.arrays import FloatArray
 from bezstab.units import feedback_gains
 from tests.mechanism.test_scenes import pendulum
-from tests.mechanism.test_second_order_memory import LEAPFROG
 from tests.methods.kinds import IMPLICIT, SECOND_ORDER
-from tests.reference.plain_second_order import FloatArray
 
 H = 1e-3  # s
 RUN_HERE = [*SECOND_ORDER, *IMPLICIT]
+LEAPFROG = recipe({"w": "w[0] + a0", "x1": "x0 + w", "a1": "acceleration(x1, w)", "v1": "w + 1/2 a1"})
+"""The velocity half a step back is what it carries."""
+
+STOERMER = recipe({"x2": "2 x1 - x0 + a1", "v1": "1/2 x2 - 1/2 x0", "a1": "acceleration(x1, v1)"})
+"""Central differences: the position is one step ahead of the velocity, so that no run can take it."""
 
 
 def straight_line() -> Mechanism:
@@ -80,9 +87,15 @@ def test_a_step_knows_the_times_of_its_evaluations() -> None:
         (("verlet-half", "verlet-old", "average-acceleration", "trapezoid"), (f(0) + f(1)) / 2),
         (("implicit-midpoint",), f(1 / 2)),
         (("stable-pd",), f(1)),
+        (("imex-euler",), f(0)),
         (("RK4",), (f(0) + 4 * f(1 / 2) + f(1)) / 6),
         (("radau3",), 0.75 * f(1 / 3) + 0.25 * f(1)),
     ):
         for name in names:
             run = simulate(mechanism, lookup(name), h, 1.0, (0.0, 0.0))
             assert np.diff(run.v[:, 0]) / h == pytest.approx(expected, abs=1e-12)
+
+
+def test_a_scheme_whose_step_ends_with_no_state_is_refused() -> None:
+    with pytest.raises(InputError, match="x2: a step that a run can take ends with x1 and v1, none later"):
+        memory(STOERMER)

@@ -1,24 +1,16 @@
 """Loops that take steps, numpy's and machine code's, alone and in batches: against plain steps; how runs end."""
 
-from collections.abc import Iterable
-from typing import Any
-
 import numpy as np
 import pytest
 
 from bezstab.mechanism import programs
 from bezstab.mechanism.equations import Mechanism, compiled_mechanism
 from bezstab.mechanism.programs import even_steps
-from bezstab.mechanism.runner import Block, Trajectory, march, resume, simulate, states_needed
+from bezstab.mechanism.runner import Trajectory, march, simulate
 from bezstab.mechanism.scene_files import load_scene
 from bezstab.mechanism.start import initial_state
-from bezstab.mechanism.stepper import MOST_ITERATIONS, _inverses
 from bezstab.methods.registry import lookup
-from bezstab.methods.schemes import implicit
-from bezstab.stabilising import NOTHING, after_step
-from bezstab.stability.arrays import FloatArray
 from bezstab.units import feedback_gains
-from tests.reference.plain_runs import plain_run
 
 H = 1e-3  # s
 EPS = np.finfo(float).eps
@@ -60,52 +52,10 @@ def both(mechanism: Mechanism, name: str, count: int, gains: tuple[float, float]
     return compiled
 
 
-@pytest.mark.parametrize("name", KINDS)
+@pytest.mark.parametrize("name", EXPLICIT_KINDS)
 @pytest.mark.slow
-def test_many_steps_are_the_plain_ones(name: str) -> None:
-    """By numpy and, of explicit methods, compiled."""
-    method, gains = lookup(name), feedback_gains(0.2, 0.02, H)
-    solving = implicit(method)
-    mechanism = compiled_mechanism(load_scene("pendulum" if solving else "slider_crank"))
-    count = 100 if solving else 2000  # the plain steps of implicit methods take long
-    run = simulate(mechanism, method, H, count * H, gains) if solving else both(mechanism, name, count, gains)
-    states = np.concatenate([run.q, run.v], axis=1)
-    first = states_needed(method)
-    expected = plain_run(mechanism, method, H, gains, states[:first], count + 1 - first)
-    n, tolerance = mechanism.size, 1e-10 if solving else 1e-12  # of velocities: rounding of positions over h
-    assert states[first:, :n] == pytest.approx(expected[:, :n], abs=1e-12 * abs(states).max())
-    assert states[first:, n:] == pytest.approx(expected[:, n:], abs=tolerance * abs(states).max())
-
-
-@pytest.mark.parametrize("point", [{"name": "bdf2"}, {"name": "RK4", "after": after_step("projection")}])
-def test_what_solves_equations_or_projects_is_not_compiled(point: dict[str, Any]) -> None:
-    """Also where that is asked for."""
-    mechanism, method = compiled_mechanism(load_scene("pendulum")), lookup(point["name"])
-    after = point.get("after", NOTHING)
-    gains = (0.0, 0.0) if after.projecting else (20.0, 100.0)
-    plain, asked = (
-        simulate(mechanism, method, H, 20 * H, gains, after=after, compiled=compiled) for compiled in (False, True)
-    )
-    assert_alike(plain, asked, tolerance=0.0)
-
-
-def test_newtons_method_ends_runs_and_keeps_its_jacobian_across_blocks(monkeypatch: pytest.MonkeyPatch) -> None:
-    mechanism = compiled_mechanism(load_scene("pendulum"))
-
-    def bdf2(count: int, gains: tuple[float, float], h: float = H) -> Trajectory:
-        return simulate(mechanism, lookup("bdf2"), h, count * h, gains)
-
-    run = bdf2(500, feedback_gains(0.3, 0.04, H))
-    assert run.failure is None
-    assert run.iterations is not None
-    assert run.iterations + 20 >= 3 * 500
-    assert run.evaluations < 1.2 * run.iterations  # Jacobians are kept as long as they serve
-    assert "blow-up" in str(bdf2(100, feedback_gains(-1.0, 0.1, 0.3), 0.3).failure)
-    monkeypatch.setattr(programs, "NUMBERS_OF_A_BLOCK", 7 * 2 * mechanism.size)
-    assert_alike(bdf2(500, feedback_gains(0.3, 0.04, H)), run, tolerance=0.0)
-    ended = bdf2(400, (0.0, 0.0), 0.1)
-    assert len(ended.t) > 10
-    assert f"Newton's method did not converge in {MOST_ITERATIONS} iterations (last correction " in str(ended.failure)
+def test_machine_code_takes_the_steps_of_numpy(name: str) -> None:
+    both(compiled_mechanism(load_scene("slider_crank")), name, 2000, feedback_gains(0.2, 0.02, H))
 
 
 def test_a_blow_up_comes_at_the_same_step_in_the_same_words() -> None:
@@ -114,56 +64,30 @@ def test_a_blow_up_comes_at_the_same_step_in_the_same_words() -> None:
     assert 1 < len(run.t) < 3001
 
 
-@pytest.mark.parametrize("compiled", [False, True])
-def test_a_singular_configuration_ends_a_run(compiled: bool) -> None:
+def test_a_singular_configuration_ends_a_compiled_run() -> None:
     mechanism = compiled_mechanism(load_scene("pendulum"))
     state = (np.array([1e-160, 0.0]), np.array([0.0, 0.0]))  # the square of its length is no normal number
-    run = simulate(mechanism, lookup("AB3"), H, 0.1, (0.0, 0.0), state, "euler", compiled=compiled)
-    assert run.failure
+    assert simulate(mechanism, lookup("AB3"), H, 0.1, (0.0, 0.0), state, "euler", compiled=True).failure
 
 
-@pytest.mark.parametrize("name", ["SYM", "gauss4"])
+def test_a_run_is_the_same_whatever_its_blocks(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Jacobians are kept from one to the next."""
+    mechanism = compiled_mechanism(load_scene("pendulum"))
+    asked = mechanism, lookup("bdf2"), H, 0.1, feedback_gains(0.3, 0.04, H)
+    whole = simulate(*asked)
+    monkeypatch.setattr(programs, "NUMBERS_OF_A_BLOCK", 7 * 2 * mechanism.size)
+    assert_alike(simulate(*asked), whole, tolerance=0.0)
+
+
+@pytest.mark.parametrize(("name", "compiled"), [("SYM", False), ("SYM", True), ("gauss4", False)])
 @pytest.mark.slow
-def test_kicked_runs_are_the_same_in_a_batch_compiled_and_alone(name: str) -> None:
-    """With SYM on a scene that is driven: where the time matters. Some diverge, and are no numbers alike."""
-    scene = "driven_slider_crank" if name == "SYM" else "slider_crank"
-    mechanism, method, points = compiled_mechanism(load_scene(scene)), lookup(name), 70
-    gains = feedback_gains(np.linspace(0.05, 3.0, points), np.linspace(0.01, 2.0, points), H)
-    start = np.concatenate(initial_state(mechanism))
-    together_at_first = np.repeat(start[:, np.newaxis], points, axis=1)
-    blocks = march(mechanism, method, even_steps(H, states_needed(method), gains, (points,)), together_at_first)
-    history = [together_at_first, *(state for block in blocks for state in block.states)]
-    undisturbed = history[-1]
-    history[-1] = undisturbed[:, np.newaxis] + np.array([[1e-6], [-1e-6]])
-    count, first = 300, len(history) - 1
-    after = even_steps(H, count, gains, (2, points), first)
-    together = states_of(resume(mechanism, method, after, history, undisturbed=undisturbed))
-    assert together.shape == (count, 2 * mechanism.size, 2, points)
-    compiled = states_of(resume(mechanism, method, after, history, True, undisturbed))
-    with np.errstate(invalid="ignore"):  # of what is infinite
-        calm = (np.abs(together[:, :, 0] - together[:, :, 1]) < 1e-2).all(axis=(0, 1))
-    assert calm.any()
-    assert compiled[..., calm] == pytest.approx(together[..., calm], abs=1e-9)
-    for point in np.flatnonzero(calm)[:2]:
-        alone = states_of(
-            resume(
-                mechanism,
-                method,
-                even_steps(H, count, (gains[0][point], gains[1][point]), first=first),
-                [*(state[:, point] for state in history[:-1]), history[-1][:, 0, point]],
-                undisturbed=undisturbed[:, point],
-            )
-        )
-        assert alone == pytest.approx(together[:, :, 0, point], abs=1e-9)
-
-
-def states_of(blocks: Iterable[Block]) -> FloatArray:
-    """Return all states of blocks."""
-    return np.concatenate([block.states for block in blocks])
-
-
-def test_a_matrix_without_inverse_spoils_no_other() -> None:
-    found = _inverses(np.stack([np.eye(2), np.ones((2, 2)), np.array([[0.0, 2.0], [4.0, 0.0]])]))
-    assert not np.isfinite(found[1]).all()
-    assert np.array_equal(found[0], np.eye(2))
-    assert np.array_equal(found[2], [[0.0, 0.25], [0.5, 0.0]])
+def test_runs_side_by_side_are_those_of_each_alone(name: str, compiled: bool) -> None:
+    """On a scene that is driven: where the time matters."""
+    mechanism, method, count = compiled_mechanism(load_scene("driven_slider_crank")), lookup(name), 300
+    gains = feedback_gains(np.array([0.05, 0.5, 1.0]), np.array([0.01, 0.2, 0.5]), H)
+    start = np.repeat(np.concatenate(initial_state(mechanism))[:, np.newaxis], 3, axis=1)
+    blocks = march(mechanism, method, even_steps(H, count, gains, (3,)), start, compiled=compiled)
+    together = np.concatenate([block.states for block in blocks])
+    for point in range(3):
+        alone = simulate(mechanism, method, H, count * H, (gains[0][point], gains[1][point]))
+        assert together[:, : mechanism.size, point] == pytest.approx(alone.q[1:], abs=1e-11)

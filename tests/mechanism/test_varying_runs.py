@@ -6,39 +6,19 @@ import pytest
 
 from bezstab.compiling import COMPILED_CHOICE
 from bezstab.mechanism.equations import compiled_mechanism
-from bezstab.mechanism.observation import observe
 from bezstab.mechanism.scene_files import load_scene
 from bezstab.mechanism.scenes import at_speed
-from bezstab.mechanism.simulation import Simulation, simulated
+from bezstab.mechanism.simulation import simulated
 from bezstab.methods.registry import lookup
 from bezstab.methods.step_matrices import step_matrix
-from bezstab.units import feedback_gains
 from tests.mechanism.test_stepping import assert_alike
 
-MECHANISM = compiled_mechanism(load_scene("slider_crank"))
 AT_REST = compiled_mechanism(at_speed(load_scene("driven_slider_crank"), 1e-9))
-H = 1 / 60
-ALPHA_HAT, BETA_HAT = 4 * H, (100 * H) ** 2  # alpha = 2, beta = 100 for a step of H
 ONE_STEP = (
     *("SYM", "RK4", "RK4@2", "ruth3", "rkn4", "verlet-half", "verlet-predicted", "verlet-old", "verlet-kdk"),
     *("verlet-implicit", "average-acceleration", "average-acceleration@2", "hht", "generalized-alpha", "imex-euler"),
     *("stable-pd", "implicit-euler", "trapezoid", "sdirk2", "gauss4"),
 )
-
-
-def run_with(sequence: list[float], duration: float, method: str = "SYM", hold: bool = False) -> Simulation:
-    """Return the run that starts a thousandth of a millimetre off."""
-    return simulated(
-        MECHANISM,
-        lookup(method),
-        sequence=sequence,
-        h=H,
-        duration=duration,
-        alpha_hat=ALPHA_HAT,
-        beta_hat=BETA_HAT,
-        hold=hold,
-        perturb=1e-6,
-    )
 
 
 @pytest.mark.parametrize("name", ONE_STEP)
@@ -71,36 +51,17 @@ def test_errors_follow_the_product_of_the_step_matrices(name: str, hold: bool) -
     assert abs(left_over).max() < 1e-7 * abs(errors).max()
 
 
-def test_the_times_are_sums_of_the_steps() -> None:
-    assert run_with([0.01, 0.02], 0.045, "RK4").t == pytest.approx([0, 0.01, 0.03, 0.04, 0.06])
-
-
-def test_multipliers_are_those_of_the_step_that_begins() -> None:
-    run = run_with([2 * H, H], 5 * H, hold=True)
-    gains = feedback_gains(ALPHA_HAT, BETA_HAT, H)
-    seen = observe(MECHANISM, run.t[1:2], run.q[1:2], run.v[1:2], *gains)
-    assert run.multipliers[1] == pytest.approx(seen.multipliers[0], rel=1e-12)
-
-
-def compiled_and_not(name: str, monkeypatch: pytest.MonkeyPatch, **point: Any) -> Simulation:
-    """Return a run of the pendulum, the same by Python and compiled, to rounding and in all that is said of it."""
-    pendulum, runs = compiled_mechanism(load_scene("pendulum")), []
-    for choice in ("no", "yes"):
-        monkeypatch.setenv(COMPILED_CHOICE, choice)
-        runs.append(simulated(pendulum, lookup(name), perturb=1e-6, **point))
-    assert_alike(runs[0], runs[1])
-    return runs[1]
-
-
 @pytest.mark.slow
 def test_compiled_runs_are_those_of_python(monkeypatch: pytest.MonkeyPatch) -> None:
     """Those that last, their gains held and not, and those that end."""
-    sequence, h = [1e-3, 2.5e-3, 1e-3, 2e-3], 1e-3
-    for hold in (False, True):
-        point = {"alpha_hat": 0.3, "beta_hat": 0.04, "hold": hold}
-        run = compiled_and_not("verlet-half", monkeypatch, sequence=sequence, h=h, duration=1.0, **point)
-        assert run.failure is None
-        assert len(run.t) > 300
-    coarse = {"sequence": [0.1, 0.2], "h": 0.1, "duration": 200.0}
-    run = compiled_and_not("verlet-half", monkeypatch, alpha_hat=-1.0, beta_hat=0.1, **coarse)
-    assert run.failure
+    pendulum = compiled_mechanism(load_scene("pendulum"))
+    lasting = {"sequence": [1e-3, 2.5e-3, 1e-3, 2e-3], "h": 1e-3, "duration": 1.0, "alpha_hat": 0.3, "beta_hat": 0.04}
+    ending = {"sequence": [0.1, 0.2], "h": 0.1, "duration": 200.0, "alpha_hat": -1.0, "beta_hat": 0.1}
+    points: list[dict[str, Any]] = [{**lasting, "hold": False}, {**lasting, "hold": True}, ending]
+    for point in points:
+        monkeypatch.setenv(COMPILED_CHOICE, "no")
+        by_python = simulated(pendulum, lookup("verlet-half"), perturb=1e-6, **point)
+        monkeypatch.setenv(COMPILED_CHOICE, "yes")
+        compiled = simulated(pendulum, lookup("verlet-half"), perturb=1e-6, **point)
+        assert_alike(by_python, compiled)
+        assert bool(compiled.failure) is (point is ending)

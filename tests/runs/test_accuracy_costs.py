@@ -94,12 +94,6 @@ def test_b4_costs_17_times_as_much_as_ab4_and_rk4_as_much_as_ab4() -> None:
     assert 0.5 < same / cheap < 2
 
 
-@pytest.mark.parametrize(("name", "order"), [("RK4", 2), ("AB4", 5)])
-def test_at_one_point_of_the_plane_while_h_shrinks_stages_lose_order(name: str, order: int) -> None:
-    fine, coarse = (run.measured_error or np.nan for run in swept(name, (5e-4, 1e-3), (0.5, 0.1))[::-1])
-    assert np.log2(coarse / fine) == pytest.approx(order, abs=0.1)
-
-
 @pytest.mark.parametrize(("name", "times"), [("RK4", 1.2), ("SYM", 4.4)])
 def test_projection_costs_what_the_front_page_says_for_the_same_trajectory(name: str, times: float) -> None:
     """In factorizations, on a free mechanism; at equal steps it is nearer to the constraints by far."""

@@ -36,26 +36,12 @@ def test_methods_that_solve_equations_have_the_rate_of_the_motion_to_which_they_
     assert rate(name, 1 / 60, 0.03, 0.03) == pytest.approx(found[1], abs=apart)
 
 
-def test_a_batch_gives_what_single_points_give() -> None:
-    """Of an explicit method, and of one whose equations share Jacobians at a point."""
-    alpha_hat, beta_hat = np.array([0.3, 0.05, 1.5]), np.array([0.115, 0.01, 2.0])
-    for name in ("AB4", "sdirk2"):
-        together = exact_rates(four_bar(), lookup(name), 1 / 30, alpha_hat, beta_hat, 1.0)
-        alone = [rate(name, 1 / 30, *point) for point in zip(alpha_hat, beta_hat, strict=True)]
-        assert together == pytest.approx(alone, rel=1e-12)
-
-
 @pytest.mark.parametrize(("name", "count"), [("B8", 1), ("AB4", 3), ("SYM", 7), ("RK4", 30), ("ABM4", 30)])
 def test_no_point_and_no_step_is_too_extreme_for_a_number(name: str, count: int) -> None:
     """No feedback, hardly any, and so much that a step multiplies errors by 1e38; fewer steps than are carried."""
-    gains = np.array([0.0, 1e-8, 0.3, 1e3, 1e10])
-    assert np.isfinite(exact_rates(four_bar(), lookup(name), 1 / count, gains, gains, 1.0)).all()
-
-
-def test_a_step_that_leaves_all_numbers_has_no_rate() -> None:
-    gains = np.array([0.3, 1e100])
-    rates = exact_rates(four_bar(), lookup("RK4"), 1 / 30, gains, gains, 1.0)
-    assert np.isfinite(rates).tolist() == [True, False]
+    gains = np.array([0.0, 1e-8, 0.3, 1e3, 1e10, 1e200])
+    rates = exact_rates(four_bar(), lookup(name), 1 / count, gains, gains, 1.0)
+    assert np.isfinite(rates).tolist() == [True] * 5 + [False]  # the last one leaves all numbers
 
 
 @pytest.mark.parametrize("name", ["B4", "RK4", "SYM", "ABM3", "trapezoid", "verlet-half", "newmark(1/4,1/2)"])

@@ -8,14 +8,11 @@ import pytest
 
 from bezstab.mechanism.equations import compiled_mechanism
 from bezstab.mechanism.motions import motion
-from bezstab.mechanism.runner import simulate
 from bezstab.mechanism.scene_files import load_scene
 from bezstab.mechanism.simulation import simulated
 from bezstab.methods.registry import lookup
-from bezstab.methods.schemes import RungeKutta
 from bezstab.runs.forced_runs import predicted_errors, settled_error
 from bezstab.stability.choices import choose
-from bezstab.units import feedback_gains
 from tests.runs.gain_grids import METHODS
 from tests.runs.samples import of_campaign
 
@@ -73,52 +70,3 @@ def test_the_trajectory_of_a_driven_mechanism_is_off_as_its_constraints_say(name
     exactly, _, _ = motion(mechanism, duration).at(run.t)
     later = run.t >= duration / 2
     assert np.abs(run.q - exactly)[later].max() == pytest.approx(forced.trajectory, rel=0.03)
-
-
-def test_the_trajectory_of_a_free_mechanism_is_not_predicted() -> None:
-    mechanism = compiled_mechanism(load_scene("slider_crank_light"))
-    (forced,) = predicted_errors(mechanism, lookup("B4"), 0.002, [robust_point("B4")], 0.5)
-    assert forced.trajectory is None
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", of_campaign(["bs3", "hht", "SYM", "ABM4"], ["bs3", "SYM"]))
-def test_what_is_left_of_the_quotient_vanishes_with_the_step(name: str) -> None:
-    """Where it is off the most, at the weakest gains: what it lacks is of the next order in h."""
-    off = []
-    for h in (0.004, 0.002, 0.001):
-        ((predicted, measured),) = errors(name, "slider_crank_light", h, [0.2], 2.0)
-        off.append(abs(measured / predicted - 1))
-    coarse, middle, fine = off
-    assert fine < 0.7 * middle < 0.49 * coarse
-
-
-def satisfies_d1(name: str) -> bool:
-    """Return whether sum_i b_i a_ij = b_j (1 - c_j), Butcher's D(1)."""
-    scheme = lookup(name).scheme
-    assert isinstance(scheme, RungeKutta)
-    b = np.array(scheme.weights, float)
-    a = np.array([[*row, *(0,) * (len(b) - len(row))] for row in scheme.tableau], float)
-    return bool(np.abs(b @ a - b * (1 - a.sum(axis=1))).max() < 1e-9)
-
-
-@pytest.mark.parametrize(
-    "name",
-    of_campaign(
-        ["RK2", "heun", "RK3", "ssprk3", "bs3", "RK4", "dopri5", "tsit5", "SIE", "sdirk2", "radau3", "gauss4"],
-        ["heun", "RK4", "bs3"],
-    ),
-)
-@pytest.mark.slow
-def test_a_free_motion_drifts_in_proportion_to_the_step_unless_velocities_and_positions_are_weighted_alike(
-    name: str,
-) -> None:
-    """With alpha_hat and beta_hat held: order 1 without D(1), 2 or more with it, whatever order constraints keep."""
-    crank, end = compiled_mechanism(load_scene("slider_crank_light")), 2.0
-    exact = motion(crank, end).q[-1]
-    coarse, fine = (
-        np.abs(simulate(crank, lookup(name), h, end, feedback_gains(*robust_point(name), h)).q[-1] - exact).max()
-        for h in (0.002, 0.001)
-    )
-    order = np.log2(coarse / fine)
-    assert order > 1.85 if satisfies_d1(name) else order == pytest.approx(1, abs=0.15)

@@ -6,7 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bezstab.runs.kicks import LINEAR
-from bezstab.runs.linear_prediction import SAMPLES, SPREAD, fit_dominant_pole, fit_window
+from bezstab.runs.linear_prediction import fit_dominant_pole, fit_window
+from bezstab.stability.arrays import FloatArray
 from tests.reference.sampled_responses import for_every_kick, two_poles
 
 root = st.tuples(st.floats(0.4, 0.999), st.floats(0, np.pi))
@@ -23,16 +24,6 @@ def test_a_recursion_gives_back_its_dominant_pole(dominant: tuple[float, float],
     assert abs(fit.pole) == pytest.approx(modulus, abs=2e-3)
 
 
-@pytest.mark.parametrize(("modulus", "angle"), [(0.97, 0.4), (0.99, 3.0), (1.02, 0.2)])
-def test_one_response_alone_gives_its_pole_and_how_well_it_is_known(modulus: float, angle: float) -> None:
-    response = two_poles(300, modulus, angle, 1.0, 0.5)[:, np.newaxis]
-    fit, _ = fit_dominant_pole(response, order=4)
-    assert fit
-    assert fit.pole == pytest.approx(modulus * np.exp(1j * angle), abs=1e-6)
-    assert fit.samples <= SAMPLES
-    assert fit.uncertainty < SPREAD
-
-
 def test_what_cannot_be_measured_is_said() -> None:
     k = np.arange(1001)
     noise = np.random.default_rng(1).normal(0, 1, k.size)
@@ -47,6 +38,6 @@ def test_what_cannot_be_measured_is_said() -> None:
         assert "fit" in reason
 
 
-@pytest.mark.parametrize("response", [np.zeros(50), np.full(50, np.nan), np.ones(2), np.zeros(0)])
-def test_silence_gaps_and_too_few_samples_are_refused(response: np.ndarray[tuple[int], np.dtype[np.float64]]) -> None:
+@pytest.mark.parametrize("response", [np.zeros(50), np.full(50, np.nan), np.zeros(0)])
+def test_silence_gaps_and_too_few_samples_are_refused(response: FloatArray) -> None:
     assert fit_dominant_pole(response[:, np.newaxis], order=2)[0] is None

@@ -85,31 +85,3 @@ def test_where_both_mu_are_one_the_motion_mixes_their_poles() -> None:
     pole = moving_pole(method, turning().kappa, h, alpha_hat, beta_hat)
     assert (z_abs + shift * pole.turned).max() < 1 < exact < pole.at_most
     assert pole.at_most == pytest.approx((z_abs + 2 * shift * pole.turned).max(), rel=1e-12)
-
-
-def test_at_rest_poles_stay_where_they_are_however_large_chi_is() -> None:
-    """SYM at (1, 1/2): the pole 0 has no finite chi."""
-    pole = moving_pole(lookup("SYM"), 0.0, 0.01, 1.0, 0.5)
-    assert (pole.verdict, pole.at_least, pole.at_most, pole.safe_speed) == ("converges", 0.5, 0.5, np.inf)
-
-
-def test_nothing_converges_beyond_first_order() -> None:
-    """At kappa h = 0.19: an error of AB4 grows, where |z_p| is 0.93 and hardly moves, chi being 1e-4."""
-    step, at = 0.06, (0.15, 0.006)
-    (exact,) = exact_rates(four_bar(), lookup("AB4"), step, np.array([0.15]), np.array([0.006]), 1.0)
-    of_ab4 = moving_pole(lookup("AB4"), turning().kappa, step, *at)
-    of_rk4 = moving_pole(lookup("RK4"), turning().kappa, step, 0.5, 0.3)
-    assert of_ab4.z_abs - of_ab4.at_least < 1e-4
-    assert exact > 1.05
-    assert of_rk4.at_most < 0.95
-    assert of_ab4.verdict == of_rk4.verdict == "not settled"
-
-
-def test_two_poles_of_one_mu_that_meet_are_not_settled() -> None:
-    """Symplectic Euler's, both 1/2: they move like the root of kappa h."""
-    pole = moving_pole(lookup("SYM"), 1.0, 1e-3, 0.75, 0.25)
-    assert (pole.verdict, pole.at_most) == ("not settled", np.inf)
-
-
-def test_where_a_pole_has_no_bound_a_number_stands_that_can_be_raised_to_a_power() -> None:
-    assert moving_modulus(lookup("SYM"), 1e-3)(np.array([0.75, 1e9]), np.array([0.25, 1e9])).tolist() == [1e4, 1e4]

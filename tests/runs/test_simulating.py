@@ -26,12 +26,6 @@ def test_a_sequence_of_equal_steps_is_the_run_with_that_step() -> None:
     assert even.stabilise == by_sequence.stabilise == "baumgarte"
 
 
-def test_projection_and_nothing_hold_the_constraints_without_a_point() -> None:
-    projected = run(point=None, stabilise="projection", iterations=1)
-    assert (projected.stabilise, projected.alpha_hat, projected.beta_hat) == ("projection", 0, 0)
-    assert run(point=None, stabilise="none").stabilise == "none"
-
-
 def test_feedback_alone_has_a_point() -> None:
     for point, held in ((POINT, "projection"), (POINT, "none"), (None, "baumgarte")):
         with pytest.raises(InputError, match="--stabilise baumgarte"):
