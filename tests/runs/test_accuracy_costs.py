@@ -46,7 +46,8 @@ def test_a_run_knows_its_error_its_cost_and_its_order(name: str) -> None:
         assert least <= run.evaluations / round(DURATION / run.h) <= most
 
 
-@pytest.mark.parametrize("name", [pytest.param("RK4", marks=pytest.mark.slow), "B4"])
+@pytest.mark.parametrize("name", ["RK4", "B4"])
+@pytest.mark.slow
 def test_its_own_choice_at_each_step_costs_no_order(name: str) -> None:
     *_, fine = swept(name, (8e-4, 1.6e-3))
     assert fine.order == pytest.approx(accuracy(lookup(name))[0], abs=0.2)
@@ -95,6 +96,7 @@ def test_b4_costs_17_times_as_much_as_ab4_and_rk4_as_much_as_ab4() -> None:
 
 
 @pytest.mark.parametrize(("name", "times"), [("RK4", 1.2), ("SYM", 4.4)])
+@pytest.mark.slow
 def test_projection_costs_what_the_front_page_says_for_the_same_trajectory(name: str, times: float) -> None:
     """In factorizations, on a free mechanism; at equal steps it is nearer to the constraints by far."""
     sweep = small_sweep(name, (8e-4, 1.6e-3))

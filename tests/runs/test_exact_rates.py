@@ -41,10 +41,16 @@ def test_no_point_and_no_step_is_too_extreme_for_a_number(name: str, count: int)
     """No feedback, hardly any, and so much that a step multiplies errors by 1e38; fewer steps than are carried."""
     gains = np.array([0.0, 1e-8, 0.3, 1e3, 1e10, 1e200])
     rates = exact_rates(four_bar(), lookup(name), 1 / count, gains, gains, 1.0)
-    assert np.isfinite(rates).tolist() == [True] * 5 + [False]  # the last one leaves all numbers
+    assert np.isfinite(rates).tolist() == [True] * 5 + [name not in ("RK4", "ABM4")]  # whose stages leave all numbers
 
 
-@pytest.mark.parametrize("name", ["B4", "RK4", "SYM", "ABM3", "trapezoid", "verlet-half", "newmark(1/4,1/2)"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        *("B4", "RK4", "SYM", "ABM3", "verlet-half"),
+        *(pytest.param(name, marks=pytest.mark.slow) for name in ("trapezoid", "newmark(1/4,1/2)")),
+    ],
+)
 def test_a_mechanism_that_hardly_moves_has_the_poles_at_rest(name: str) -> None:
     """What the motion does to a pole falls with omega h, like it or like its square: here from 0.13 to 0.013."""
     method = lookup(name)

@@ -82,6 +82,7 @@ def test_what_a_worker_raises_is_raised_here_at_once_and_no_worker_is_left(tmp_p
     assert not multiprocessing.active_children()
 
 
+@pytest.mark.slow
 def test_a_scheduler_that_does_not_answer_is_one_line(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="--scheduler nonsense"):
         arrived([Job(1)], tmp_path, scheduler="nonsense://x")
