@@ -61,7 +61,7 @@ def prompted(session: str) -> str:
     return session.partition("\n")[0].removeprefix("$ bezstab ")
 
 
-QUICK = ("check --method SYM", "check --engine bullet", "choose --method SYM", "chain", "methods own", "poles", "lint")
+QUICK = ("check --method SYM", "check --engine bullet", "choose --method SYM", "methods own", "poles", "lint")
 SESSIONS = [session for page in PAGES for session in sessions(page)]
 GOLDEN = ("paper -o figures",)
 """Commands of pages that others run: tests/paper."""

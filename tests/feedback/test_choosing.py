@@ -22,6 +22,7 @@ from bezstab.questions.scene_runs import SceneRun, scene_run
 from bezstab.rationals import exact
 from bezstab.stability.choices import choose as choose_point
 from bezstab.stability.sweeps import chain, swept_growth
+from tests.methods.kinds import sampled
 
 ASKED = r"RK4: α = 0\.56 ω, β = 0\.83 ω, ω the rate of your motion in rad/s: give omega or scene"
 
@@ -108,7 +109,13 @@ def test_so_does_a_choice_for_a_chain_in_an_engine() -> None:
     assert "A body that spins about a pin at 6 rad/s loses" in chosen.sentence
 
 
-@pytest.mark.parametrize("name", [name for name, each in ENGINES.items() if each.sweeping and each.parameters])
+@pytest.mark.parametrize(
+    "name",
+    sampled(
+        [name for name, each in ENGINES.items() if each.sweeping and each.parameters],
+        quick=["bullet", "chipmunk", "pbd"],
+    ),
+)
 def test_a_line_to_paste_is_stable_in_a_chain_of_ten_also_if_it_were_a_tenth_stronger(name: str) -> None:
     """From `choose` as from what `check` gives instead."""
     engine, h = ENGINES[name], Fraction(1, 60)

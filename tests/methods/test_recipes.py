@@ -110,6 +110,7 @@ def test_what_would_take_too_long_is_refused_in_one_short_line(why: str) -> None
 ANYTHING = st.text(max_size=60) | st.text(alphabet="xva01[]-+*/(). ,acceleration", max_size=80)
 
 
+@pytest.mark.slow
 @settings(deadline=None, max_examples=20)
 @given(ANYTHING, ANYTHING)
 def test_any_text_is_a_scheme_or_one_short_line(result: str, text: str) -> None:

@@ -66,6 +66,7 @@ def test_it_is_what_the_step_itself_gives_in_fifty_digits(name: str) -> None:
 fractions = st.fractions(-2, 2, max_denominator=6)
 
 
+@pytest.mark.slow
 @settings(max_examples=10, deadline=None)
 @given(b2=fractions, b3=fractions, c3=fractions, c2=fractions, a32=fractions, d1=st.booleans())
 def test_there_is_no_torque_of_second_order_where_d1_holds(

@@ -31,7 +31,9 @@ def test_the_best_point_is_inside_only_where_z_is_that_small() -> None:
     assert stable.best.z_abs < level < 1
 
 
-@pytest.mark.parametrize("name", ["B4", "SYM", "verlet-old"])
+@pytest.mark.parametrize(
+    "name", ["SYM", *(pytest.param(name, marks=pytest.mark.slow) for name in ("B4", "verlet-old"))]
+)
 def test_the_region_of_a_moving_mechanism_shrinks_with_its_speed_from_that_at_rest(name: str) -> None:
     method = lookup(name)
     moving, at_rest = moving_regions(method), region(method).area

@@ -18,8 +18,7 @@ from bezstab.stability.regions import region
 from tests.show.drawn import lines_of
 
 
-@pytest.mark.parametrize("h", [None, Fraction("0.001")])
-@pytest.mark.parametrize("accuracy", [False, True])
+@pytest.mark.parametrize(("accuracy", "h"), [(False, None), (True, Fraction("0.001"))])
 def test_a_map_draws_what_it_is_given(accuracy: bool, h: Fraction | None) -> None:
     """On even axes, and on logarithmic ones where errors are asked about."""
     method, scale = lookup("B4"), np.array([1, 1] if h is None else [1e3, 1e6])
@@ -126,6 +125,7 @@ def test_no_line_of_a_legend_ends_in_a_formula() -> None:
     assert all(line.count("$") % 2 == 0 for line in missing.splitlines())
 
 
+@pytest.mark.slow
 def test_of_a_scene_that_moves_words_and_point_are_those_at_rest() -> None:
     asked = map_conditions(h=Fraction("0.005"), scene="driven_four_bar", points=21)
     axes = map_figure(map_answer(lookup("B4"), asked, drawn=True)).axes[0]

@@ -45,7 +45,7 @@ def test_each_contour_is_where_the_error_is_its_power_of_ten_and_every_second_is
     assert np.median(abs(spectral_radius(method, alpha_hat, beta_hat) - 0.99)) < 1e-3
 
 
-@pytest.mark.parametrize("name", ["SYM", "B4"])
+@pytest.mark.parametrize("name", ["SYM", pytest.param("B4", marks=pytest.mark.slow)])
 def test_the_boundary_is_exact_down_to_the_last_decade(name: str) -> None:
     """Chords of a few points would be straight on other axes: what lies between two points is on the boundary, too."""
     points = lines_of(drawn_map(name))["$|z_p| = 1$"]
@@ -57,7 +57,7 @@ def test_the_boundary_is_exact_down_to_the_last_decade(name: str) -> None:
 
 def test_energy_is_kept_on_the_line_that_says_so_and_symplectic_euler_brakes_inside_it() -> None:
     """To first order in h the line is beta^2 = omega^2 - 4 alpha^2: b = (omega h)^2 - a^2."""
-    axes = map_figure(map_answer(lookup("SYM"), map_conditions(energy=True, points=121), drawn=True)).axes[0]
+    axes = map_figure(map_answer(lookup("SYM"), map_conditions(energy=True, points=61), drawn=True)).axes[0]
     (kept,) = (each for each in axes.collections if isinstance(each, QuadContourSet) and list(each.levels) == [0.0])
     (path,) = kept.get_paths()
     alpha_hat, beta_hat = np.asarray(path.vertices).T

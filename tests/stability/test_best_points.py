@@ -98,6 +98,7 @@ def test_where_every_pole_is_zero(method: Method, points: list[tuple[float, floa
     assert float(spectral_radius(method, found.alpha_hat, found.beta_hat)) < 1e-7  # simple zeros, to rounding
 
 
+@pytest.mark.slow
 def test_multiple_poles_may_be_the_least() -> None:
     """ABM2's are a double root of pi. With the old velocity 2 z^3 + (a + 2b - 4) z^2 + 2 z - a = 2 (z - p)^3 asks for
     3 p^2 = 1, a = 2 p^3, 2 b = 4 - a - 6 p; with the predicted one three meet at a negative place."""
@@ -171,6 +172,7 @@ def test_it_may_fall_along_one_ratio_of_both_parameters_alone() -> None:
     assert limit.ratio == pytest.approx(1)
 
 
+@pytest.mark.slow
 def test_without_a_stable_region_there_is_no_best_point() -> None:
     leapfrog = multistep("leapfrog", "1 0 -1", "0 2 0")
     assert (best_point(leapfrog), falls_towards(leapfrog)) == (None, None)

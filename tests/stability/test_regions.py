@@ -134,8 +134,8 @@ USERS = [
 ]
 
 
-@pytest.mark.parametrize("method", USERS, ids=str)
-@pytest.mark.parametrize("level", [1.0, 0.8])
+@pytest.mark.parametrize("method", [*USERS[:2], pytest.param(USERS[2], marks=pytest.mark.slow)], ids=str)
+@pytest.mark.parametrize("level", [1.0, pytest.param(0.8, marks=pytest.mark.slow)])
 def test_a_user_made_method_has_the_area_that_a_plain_rule_finds(method: Method, level: float) -> None:
     shape = region(method, level)
     if shape.extent is None:
@@ -221,7 +221,11 @@ def test_an_unbounded_region_says_so(name: str) -> None:
     assert np.isfinite(np.array(shape.view)).all()
 
 
-@pytest.mark.parametrize(("method", "level"), [(lookup("bdf6"), 0.9), (other_random_method(157), 1.0)], ids=str)
+@pytest.mark.parametrize(
+    ("method", "level"),
+    [pytest.param(lookup("bdf6"), 0.9, marks=pytest.mark.slow), (other_random_method(157), 1.0)],
+    ids=str,
+)
 def test_the_curves_of_what_goes_on_enclose_what_is_stable_in_the_window(method: Method, level: float) -> None:
     """A part of the first ends in a cusp that rounding closes; of the second thin parts begin beyond the window."""
     shape = region(method, level)
