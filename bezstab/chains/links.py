@@ -46,6 +46,10 @@ class Links:
             raise InputError(
                 f"--bodies {len(self.masses)}: expected 1 to {most} bodies{' with motors' * bool(self.motor)}"
             )
+        if self.both_ends and self.motor and self.motor.kind == "rate":
+            raise InputError(
+                "--motor rate: with both ends pinned such motors keep the errors that the pins would take back"
+            )
         if min(self.masses) <= 0 or max(self.masses) > LARGEST_RATIO * min(self.masses):
             raise InputError(f"--masses: expected positive masses, at most {LARGEST_RATIO:g} times the least")
 
@@ -109,14 +113,11 @@ class Links:
 
     def gaps(self, errors: FloatArray) -> tuple[float, ...]:
         """Return the size of each link's error, motors aside, as shares of the largest."""
-        sizes = [
-            np.linalg.norm(
-                [error for error, row in zip(errors, self.rows, strict=True) if row[0] == link and row[1] != "angle"]
-            )
-            for link in range(len(self.masses) + self.both_ends)
-        ]
-        most = max(sizes) or 1.0
-        return tuple(float(size / most) for size in sizes)
+        sizes = np.zeros(len(self.masses) + self.both_ends)
+        for (link, what), error in zip(self.rows, errors, strict=True):
+            if what != "angle":
+                sizes[link] = np.hypot(sizes[link], error)
+        return tuple((sizes / (sizes.max() or 1.0)).tolist())
 
     def pull(self, load: Load) -> FloatArray:
         """Return what a load adds to the rates of the constraints' errors in a second, shape (constraints,)."""

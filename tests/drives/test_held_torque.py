@@ -62,6 +62,7 @@ VELOCITY_LIMITS = [  # of alpha_hat, without stiffness: v' = v - a v of so many 
     ("SYM", Timing(), 2),
     ("SYM", Timing(every=4), Fraction(1, 2)),
     ("SYM", Timing(late=Fraction(1)), 1),
+    ("SYM", Timing(late=Fraction(1, 2)), 2),  # half of it is a step late: z^2 - (1 - a / 2) z + a / 2
     ("SYM", Timing(late=Fraction(2)), 2 * sin(pi / 10)),
     ("imex-euler", Timing(late=Fraction(1)), 2),
 ]

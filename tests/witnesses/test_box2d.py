@@ -127,7 +127,10 @@ def test_a_kicked_arm_turns_as_predicted(bodies: int, motor: str) -> None:
     for rod in rods:
         rod.linearVelocity = (0, kick * float(rng.standard_normal()))
         rod.angularVelocity = kick * float(rng.standard_normal())
-    fastest = lambda: max(abs(rod.angularVelocity) for rod in rods)  # noqa: E731
+
+    def fastest() -> float:
+        return float(max(abs(rod.angularVelocity) for rod in rods))
+
     found = grown(lambda: world.Step(H, 8, 3), fastest, 20, 2000, NO_MORE, 1)
     assert found == pytest.approx(answer.z_abs, abs=2e-3)
 

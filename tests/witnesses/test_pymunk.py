@@ -149,7 +149,7 @@ def test_a_chain_that_hangs_and_grows_jitters_as_far_as_said(
     assert 1 / 3 < measured / (answer.jitter * gravity / 9.81) < 3
 
 
-def arm(bodies: int, ratio: float, sweeps: int, motor: str) -> tuple[Any, list[Any]]:
+def arm(bodies: int, ratio: float, sweeps: int, motor: str, both_ends: bool) -> tuple[Any, list[Any]]:
     """Return a space and rods of length 2 in it, each held by a pin and a motor, out from the world, without weight."""
     space = pymunk.Space()
     space.iterations = sweeps
@@ -163,6 +163,8 @@ def arm(bodies: int, ratio: float, sweeps: int, motor: str) -> tuple[Any, list[A
         space.add(rod, pymunk.PivotJoint(before, rod, end, (-1, 0)), held)
         rods.append(rod)
         before, end = rod, (1, 0)
+    if both_ends:
+        space.add(pymunk.PivotJoint(before, space.static_body, end, (2 * bodies, 0)))
     return space, rods
 
 
@@ -173,21 +175,23 @@ def widest_gap(rods: list[Any]) -> float:
 
 
 @pytest.mark.parametrize(
-    ("bodies", "ratio", "sweeps", "motor"),
+    ("bodies", "ratio", "sweeps", "motor", "both_ends"),
     [
-        (3, 1, 10, "angle"),
-        (6, 1, 10, "angle"),
-        (10, 10, 40, "angle"),
-        (6, 1, 10, "rate"),
-        (10, 1, 40, "rate"),
-        (10, 10, 40, "rate"),
+        (3, 1, 10, "angle", False),
+        (6, 1, 10, "angle", False),
+        (10, 10, 40, "angle", False),
+        (8, 20, 4, "angle", True),
+        (6, 1, 10, "rate", False),
+        (10, 10, 40, "rate", False),
     ],
 )
-def test_a_kicked_arm_grows_as_predicted(bodies: int, ratio: float, sweeps: int, motor: str) -> None:
+def test_a_kicked_arm_grows_as_predicted(bodies: int, ratio: float, sweeps: int, motor: str, both_ends: bool) -> None:
     """To 2e-3: joints that also hold angles need far more sweeps than pins, those that hold rates hardly more."""
-    answer = judge("chipmunk", h="1/60", bodies=bodies, mass_ratio=ratio, iterations=sweeps, motor=motor)
+    answer = judge(
+        "chipmunk", h="1/60", bodies=bodies, mass_ratio=ratio, both_ends=both_ends, motor=motor, iterations=sweeps
+    )
     assert answer.safe is (motor == "rate" or bodies == 3)
-    space, rods = arm(bodies, ratio, sweeps, motor)
+    space, rods = arm(bodies, ratio, sweeps, motor, both_ends)
     rng = np.random.default_rng(1)
     for rod in rods:
         rod.velocity = (0, 1e-8 * float(rng.standard_normal()))
