@@ -57,6 +57,13 @@ def test_the_table_of_keys_has_every_key() -> None:
     assert PAGE.read_text(encoding="utf-8") == page(), "python -m tests.show.keys_page"
 
 
+def test_a_key_that_is_told_to_be_gone_is_none_of_its_commands() -> None:
+    keys = {(row["command"], row["key"]) for row in csv.DictReader(page().splitlines())}
+    for row in csv.DictReader((PAGE.parent / "renamed_keys.csv").read_text("utf-8").splitlines()):
+        gone = {(command, key) for command in row["command"].split() for key in row["key"].split()}
+        assert not gone & keys, row["now"]
+
+
 def test_one_line_makes_a_column_and_a_key() -> None:
     solves = Column[Method]("solves", "solves", implicit, "whether it is implicit")
     assert solves.text(lookup("bdf2")) == "yes"
