@@ -177,8 +177,12 @@ def _level_line(
     """Draw in black, with a label, where values of shape (y.size, x.size) have a level."""
     drawn = axes.contour(x, y, values, levels=[level], colors="black", linestyles=[dashes], linewidths=1.2)
     found = any(np.size(path.vertices) for path in drawn.get_paths())
-    # a contour has no label of its own
-    axes.plot([], [], color="black", linestyle=dashes, label=label, gid=KEY if found else None)
+    _key(axes, label, color="black", linestyle=dashes, gid=KEY if found else None)
+
+
+def _key(axes: Axes, label: str, **line: Any) -> None:
+    """Name in the legend what is drawn as contours, which have no label of their own."""
+    axes.plot([], [], **{"label": label, "gid": KEY, **line})
 
 
 def _draw_open_edges(region: Region, axes: Axes, h: float | None, inset: float = EDGE_LINES, **line: Any) -> None:
@@ -283,7 +287,7 @@ def _error_contours(axes: Axes, x: FloatArray, y: FloatArray, errors: FloatArray
     powers = np.log10(errors)
     contours = axes.contour(x, y, powers, levels=_powers(powers), colors="white", linewidths=0.7, linestyles="-")
     contours.set_path_effects(HALO)
-    axes.plot([], [], color="white", linewidth=0.7, path_effects=HALO, label="added error / motion", gid=KEY)  # a key
+    _key(axes, "added error / motion", color="white", linewidth=0.7, path_effects=HALO)
     return [(contours, "$10^{%d}$")]
 
 
@@ -297,17 +301,12 @@ def _energy_contours(axes: Axes, x: FloatArray, y: FloatArray, growth: FloatArra
             continue
         lines = axes.contour(x, y, powers, levels=_powers(powers), colors="white", linewidths=0.7, linestyles=[dashes])
         lines.set_path_effects(HALO)
-        label = f"energy that is {what}"
-        axes.plot(
-            [], [], color="white", linewidth=0.7, linestyle=dashes, path_effects=HALO, label=label, gid=KEY
-        )  # a key
+        _key(axes, f"energy that is {what}", color="white", linewidth=0.7, linestyle=dashes, path_effects=HALO)
         drawn.append((lines, "$+10^{%d}$" if sign > 0 else "$-10^{%d}$"))
     if len(drawn) == 2:
         kept = axes.contour(x, y, growth, levels=[0.0], colors="black", linewidths=1.2)
         kept.set_path_effects(WHITE_HALO)
-        axes.plot(
-            [], [], color="black", linewidth=1.2, path_effects=WHITE_HALO, label="energy is kept", gid=KEY
-        )  # a key
+        _key(axes, "energy is kept", color="black", linewidth=1.2, path_effects=WHITE_HALO)
     return drawn
 
 
