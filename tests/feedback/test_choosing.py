@@ -102,11 +102,8 @@ def test_a_choice_that_does_not_weigh_the_motion_says_what_that_costs(goal: Goal
     assert "A motion of 6 rad/s keeps its energy." in choose("SYM", goal=goal, h="1/600", omega=6).sentence
     assert "A motion of 6 rad/s gains" in choose("RK2", goal=goal, h="1/100", omega=6).sentence
     assert "In a run of 10 s: |c| at most" in choose("SYM", goal=goal, h="1/100", scene="pendulum").sentence
-
-
-def test_so_does_a_choice_for_a_chain_in_an_engine() -> None:
-    chosen = choose(engine="chipmunk", goal="robust", h="1/60", omega=6)
-    assert "A body that spins about a pin at 6 rad/s loses" in chosen.sentence
+    in_an_engine = choose(engine="chipmunk", goal="robust", h="1/60", omega=6)
+    assert "A body that spins about a pin at 6 rad/s loses" in in_an_engine.sentence
 
 
 @pytest.mark.parametrize(
