@@ -38,21 +38,6 @@ def test_poles_agree_with_fifty_digits(name: str) -> None:
                 assert abs(found.pop(k) - exact) <= allowed, (alpha_hat, beta_hat, complex(exact))
 
 
-@pytest.mark.parametrize("name", [*FEW, "AB8", "ABM4"])
-def test_a_pole_does_not_depend_on_its_neighbours_in_the_array(name: str) -> None:
-    method, random = lookup(name), np.random.default_rng(1)
-    axis = np.concatenate([[0.0], np.geomspace(1e-12, 1e12, 13), np.linspace(-2, 4, 27)])
-    a, b = (x.ravel() for x in np.meshgrid(axis, axis))
-    shuffle = random.permutation(a.size)
-    together = spectral_radius(method, a, b)
-    assert np.isfinite(together).all()
-    # 1e-4: the fourth root of eps, for ABM4 has a quadruple root at z = 1
-    assert spectral_radius(method, a[shuffle], b[shuffle]) == pytest.approx(together[shuffle], rel=1e-3, abs=1e-3)
-    few = random.permutation(a.size)[:40]
-    alone = [float(spectral_radius(method, a[i], b[i])) for i in few]
-    assert together[few] == pytest.approx(alone, rel=1e-3, abs=1e-3)
-
-
 def test_shapes_broadcast_with_the_root_axis_last() -> None:
     method = lookup("B3")
     assert poles(method, np.zeros((4, 1)), np.zeros(5)).shape == (4, 5, 6)
@@ -70,14 +55,6 @@ def test_the_verdict_is_right_on_the_boundary_itself(name: str, alpha_hat: Fract
     for da, db in ((tiny, F(0)), (F(0), tiny)):
         sides = {verdict(method, alpha_hat + sign * da, beta_hat + sign * db) for sign in (-1, 1)}
         assert sides == {"converges", "diverges"}
-
-
-@pytest.mark.parametrize("name", [*FEW, "RK4@5"])
-def test_without_feedback_the_constraint_error_grows(name: str) -> None:
-    assert verdict(lookup(name), F(0), F(0)) == "diverges"  # a repeated root on the circle
-    assert verdict(lookup(name), F(1, 100), F(0)) == "marginal"
-    assert verdict(lookup(name), F(1, 100), F(-1, 1000)) == "diverges"
-    assert verdict(lookup(name), F(-1, 100), F(1, 1000)) == "diverges"
 
 
 @pytest.mark.parametrize("name", [*FEW, "RK4@5", "bdf2", "radau3"])

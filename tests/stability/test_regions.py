@@ -10,15 +10,12 @@ from bezstab.errors import NumericalError
 from bezstab.methods.registry import lookup
 from bezstab.methods.schemes import Method
 from bezstab.stability.arrays import Extent
-from bezstab.stability.lines import Lines
-from bezstab.stability.regions import Region, _region, region, window
+from bezstab.stability.regions import Region, region, window
 from tests.methods.kinds import FEW
 from tests.reference.companion_poles import radius
 from tests.reference.enclosed_points import enclosed
-from tests.reference.fifty_digit_poles import modulus_from_p
 from tests.reference.made_methods import multistep, runge_kutta
 from tests.reference.random_methods import other_random_method, random_method
-from tests.stability.campaign import plain_area
 
 
 def found_extent(shape: Region) -> Extent:
@@ -49,33 +46,6 @@ def test_midpoint_has_the_area_of_a_disc_in_a_wedge(level: float) -> None:
     phi = atan(sqrt(max(2 * level - 1, 0)))
     exact = 4 * level**2 * (pi - 2 * phi + sin(2 * phi))
     assert_area(region(lookup("RK2"), level), exact)
-
-
-@pytest.mark.parametrize(
-    ("name", "level"),
-    [
-        *(("AB4", 0.95), ("SYM", 0.95)),
-        *(pytest.param(name, 1.0, marks=pytest.mark.slow) for name in ("AB8", "ABM3", "dopri5", "RK4@5")),
-    ],
-)
-def test_boundary_points_in_fifty_digits(name: str, level: float) -> None:
-    method = lookup(name)
-    curve = np.concatenate(region(method, level).boundary)
-    for alpha_hat, beta_hat in curve[np.linspace(0, len(curve) - 1, 12, dtype=int)[1:-1]]:
-        # the point's own rounding
-        assert modulus_from_p(method, alpha_hat, beta_hat) == pytest.approx(level, abs=1e-10)
-
-
-@pytest.mark.parametrize(("name", "squared"), [("AB3", 11 / 23), ("B4", (66 + sqrt(5056)) / 350)])
-def test_a_region_is_empty_exactly_below_the_least_modulus(name: str, squared: float) -> None:
-    """By hand: a zero of the even part of (p - 1) |sigma|(p), for B4 of 350p^4 - 132p^2 - 2."""
-    method, least = lookup(name), sqrt(squared)
-    for level in (least - 1e-6, 0.9 * least):
-        assert region(method, level) == Region(method, level)
-    above = region(method, least + 1e-6)
-    assert above.area
-    (a_low, a_high), (b_low, b_high) = found_extent(above)
-    assert radius(method, np.array([(a_low + a_high) / 2]), np.array([(b_low + b_high) / 2])) < least + 1e-5
 
 
 @pytest.mark.parametrize("name", [*FEW, "AB8", "B12", "dopri5", "RK4@5", "verlet-predicted"])
@@ -126,26 +96,6 @@ def test_the_window_shows_the_region_the_origin_and_a_margin() -> None:
         assert last == pytest.approx(1.05 * high)
 
 
-USERS = [
-    runge_kutta("lobes", "2; 0 1", "0 0 1"),
-    runge_kutta("real branch points", "-1/6 0 0;-1/4 0 0;3/5 2 1", "1/4 -2/3 17/12"),  # each arc counts once there
-    # an arc ends 4e-9 of |mu| short of the real axis
-    multistep("short of it", "1 -1 0 -3/8 3/8 1/4 -1/4", "0 1/4 5/3 -1 9/5 -1/4 -191/120"),
-]
-
-
-@pytest.mark.parametrize("method", [*USERS[:2], pytest.param(USERS[2], marks=pytest.mark.slow)], ids=str)
-@pytest.mark.parametrize("level", [1.0, pytest.param(0.8, marks=pytest.mark.slow)])
-def test_a_user_made_method_has_the_area_that_a_plain_rule_finds(method: Method, level: float) -> None:
-    shape = region(method, level)
-    if shape.extent is None:
-        box = np.meshgrid(np.linspace(0.01, 3, 300), np.linspace(0.01, 3, 300))
-        assert (radius(method, *box) >= level).all()
-        return
-    assert shape.area is not None
-    assert plain_area(shape, 20_000) == pytest.approx(shape.area, rel=1e-5)
-
-
 def test_an_island_without_end_is_mentioned_too() -> None:
     """On each line of constant alpha_hat up to the last one the region is a stretch from zero, the island goes on."""
     shape = region(other_random_method(91))
@@ -172,18 +122,6 @@ def test_parts_that_only_touch_are_refused() -> None:
         region(runge_kutta("touching itself", "2/7", "1/2 1/2"), 0.75)
 
 
-def test_areas_that_disagree_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    true = Lines.area
-
-    def by_axis(lines: Lines, *limits: float) -> tuple[float, float]:
-        area, error = true(lines, *limits)
-        return (1.001 * area if lines.axis else area), error
-
-    monkeypatch.setattr(Lines, "area", by_axis)
-    with pytest.raises(NumericalError, match="too thin to be measured"):
-        _region.__wrapped__(lookup("B2"), 1.0)
-
-
 def test_a_region_of_a_level_contains_what_is_below_it() -> None:
     # z = 1 + mu: |z|^2 is 1/2 and 1/10
     assert region(lookup("RK1"), 0.5).contains([1, 2], [0.5, 1.1]).tolist() == [False, True]
@@ -200,12 +138,6 @@ def test_a_theta_method_has_the_area_of_two_disc_halves(theta: str, level: str) 
     t, r = Fraction(theta), Fraction(level)
     rho = float(r / ((1 - t) ** 2 - (r * t) ** 2))
     assert_area(region(multistep("theta", "1 -1", f"{t} {1 - t}"), float(r)), 4 * rho**3)
-
-
-@pytest.mark.slow
-def test_next_to_one_the_disc_of_a_scheme_for_positions_and_velocities_is_as_exact() -> None:
-    r = Fraction("0.99995")  # the disc above with theta = 1/2
-    assert_area(region(lookup("average-acceleration"), float(r)), float(4 * (4 * r / (1 - r**2)) ** 3))
 
 
 @pytest.mark.parametrize("name", ["implicit-euler", "trapezoid", "bdf6", "radau3"])
@@ -235,10 +167,3 @@ def test_the_curves_of_what_goes_on_enclose_what_is_stable_in_the_window(method:
     modulus = radius(method, *points.T)
     clear = np.abs(modulus - level) > 1e-2
     assert (enclosed(shape.boundary, points) == (modulus < level))[clear].all()
-
-
-def test_an_implicit_stage_that_is_not_used_changes_nothing() -> None:
-    unused = runge_kutta("unused", "1/2 0;-1/6 1", "1 0")  # implicit midpoint, and a stage with a pole at mu = 1
-    shape, plain = region(unused), region(lookup("implicit-midpoint"))
-    assert found_extent(shape) == found_extent(plain)
-    assert [len(curve) for curve in shape.boundary] == [len(curve) for curve in plain.boundary]
