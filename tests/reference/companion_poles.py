@@ -16,15 +16,9 @@ def closed_loop_tables(method: Method) -> FloatArray:
     return np.array(closed_loop_table(method)[::-1], float)
 
 
-def polynomial_at(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray, level: float = 1.0) -> FloatArray:
-    """Return P's coefficients in z / level, descending powers along the first axis."""
-    table = closed_loop_tables(method)
-    return np.array([polynomial.polyval2d(alpha_hat, beta_hat, c) / level**k for k, c in enumerate(table)])
-
-
 def eigenvalues(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray) -> ComplexArray:
     """Return P's roots as eigenvalues of its companion matrix."""
-    c = polynomial_at(method, alpha_hat, beta_hat)
+    c = np.array([polynomial.polyval2d(alpha_hat, beta_hat, each) for each in closed_loop_tables(method)])
     n = len(c) - 1
     companion = np.zeros((*alpha_hat.shape, n, n))
     companion[..., 0, :] = -np.moveaxis(c[1:] / c[0], 0, -1)  # c[0] is one but for an implicit method

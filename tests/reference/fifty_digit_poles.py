@@ -1,10 +1,11 @@
 """The poles to 50 digits, with the error that float64 cannot avoid; |z_p| from P itself."""
 
+from fractions import Fraction
 from typing import Any
 
 import mpmath
 
-from bezstab.methods.derivation import closed_loop_polynomial
+from bezstab.methods.derivation import closed_loop_at
 from bezstab.methods.schemes import Method
 
 EPS = 2.0**-52
@@ -40,12 +41,8 @@ def poles_with_errors(method: Method, alpha_hat: float, beta_hat: float) -> list
 
 
 def modulus_from_p(method: Method, alpha_hat: float, beta_hat: float) -> float:
-    """Return |z_p| from the roots of P(z; alpha_hat, beta_hat), its exact coefficients evaluated with 50 digits."""
-    polynomial = closed_loop_polynomial(method)
+    """Return |z_p| from the roots of P(z; alpha_hat, beta_hat), whose coefficients there are exact, with 50 digits."""
+    exact = closed_loop_at(method, Fraction(alpha_hat), Fraction(beta_hat))
     with mpmath.workdps(50):
-        a, b = mpmath.mpf(alpha_hat), mpmath.mpf(beta_hat)
-        coefficients = []
-        for coefficient in polynomial.all_coeffs():
-            terms = coefficient.as_poly(*polynomial.domain.symbols).terms()
-            coefficients.append(sum(mpmath.mpf(int(c.p)) / int(c.q) * a**i * b**j for (i, j), c in terms))
-        return float(max(abs(z) for z in mpmath.polyroots(coefficients, maxsteps=5000, extraprec=300)))
+        coefficients = [mpmath.mpf(c.numerator) / c.denominator for c in exact[::-1]]
+        return float(max(map(abs, mpmath.polyroots(coefficients, maxsteps=5000, extraprec=300))))

@@ -16,9 +16,3 @@ def runge_kutta(name: str, rows: str, weights: str) -> Method:
     all_rows = given if len(given) == len(b) else [[], *given]
     tableau = tuple(tuple(map(rational, [*row, *["0"] * (len(b) - len(row))])) for row in all_rows)
     return Method(name, RungeKutta(tableau, b), "")
-
-
-def composed(steps: int) -> Method:
-    """Return implicit Euler steps composed: z = (1 - mu / n)^-n."""
-    row = f"1/{steps} " * steps
-    return runge_kutta("composed", ";".join(f"1/{steps} " * (k + 1) for k in range(steps)), row)
