@@ -15,6 +15,7 @@ import pytest
 from tests.cli.running import run
 
 GOLDEN: list[dict[str, Any]] = json.loads((Path(__file__).parent / "golden" / "outputs.json").read_text("utf-8"))
+SLOW = ("tradeoff", "region --compare")
 
 
 @dataclass(frozen=True)
@@ -87,7 +88,13 @@ def assert_agrees(command: str, key: str, printed: Any, expected: Any) -> None:
         assert printed == expected, key
 
 
-@pytest.mark.parametrize("golden", GOLDEN, ids=[golden["command"] for golden in GOLDEN])
+@pytest.mark.parametrize(
+    "golden",
+    [
+        pytest.param(each, marks=pytest.mark.slow if each["command"].startswith(SLOW) else (), id=each["command"])
+        for each in GOLDEN
+    ],
+)
 def test_a_command_prints_what_it_printed_before(golden: dict[str, Any], tmp_path: Path) -> None:
     command = golden["command"]
     result = run(command, "--format json")
