@@ -10,9 +10,9 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from itertools import chain
 from pathlib import Path
@@ -29,9 +29,8 @@ from bezstab.mechanism.runner import march, simulate
 from bezstab.mechanism.scene_files import load_scene
 from bezstab.mechanism.start import initial_state
 from bezstab.methods.registry import lookup
-from bezstab.methods.schemes import LinearMultistep, Method, RungeKutta, steps
+from bezstab.methods.schemes import LinearMultistep, Method
 from bezstab.runs.exact_rates import exact_rates
-from bezstab.runs.verdict_maps import MapRows, map_rows, simulated_verdicts
 from bezstab.stability.arrays import FloatArray
 from bezstab.stability.closed_loop import spectral_radius
 from bezstab.stability.regions import region, window
@@ -61,7 +60,6 @@ SAME = 1e-12  # SI units: rounding; less, even 0, where h times a slope's roundi
 RATES = 200  # in a batch
 STEPS_A_TURN = 200
 COMPILED_STEPS = 100_000  # of a run that pays for compiling
-COMPILED_CELLS = 44  # per axis of a map of verdicts: as many as one batch of numpy takes
 MUJOCO = {"SYM": "Euler", "RK4": "RK4"}
 ENGINE_STEPS = 20_000  # of a run of MuJoCo, of Exudyn and of ours beside them
 
@@ -234,24 +232,15 @@ def literal_slope(mechanism: Mechanism) -> Slope:
     return slope
 
 
-def literal_run(method: Method, slope: Slope, y: FloatArray) -> FloatArray:
-    """Return the state after STEPS steps of RK4, or of a multistep method with rho = z^n - z^(n-1) that RK4 starts."""
-    rk4 = lookup("RK4").scheme
-    assert isinstance(rk4, RungeKutta)
-    tableau, weights = np.array(rk4.tableau, float), np.array(rk4.weights, float)
-    sigma = np.array(method.scheme.sigma[1:], float) if isinstance(method.scheme, LinearMultistep) else None
-    slopes: list[FloatArray] = []  # newest first
+def literal_run(slope: Slope, y: FloatArray) -> FloatArray:
+    """Return the state after STEPS steps of RK4."""
     for k in range(STEPS):
         t = k * STEP
-        slopes = [slope(t, y), *slopes[: steps(method) - 1]]
-        if sigma is not None and len(slopes) == steps(method):
-            y = y + STEP * (sigma @ np.array(slopes))
-            continue
-        stages = np.zeros((len(weights), len(y)))
-        stages[0] = slopes[0]
-        for s in range(1, len(weights)):
-            stages[s] = slope(t + tableau[s].sum() * STEP, y + STEP * (tableau[s] @ stages))
-        y = y + STEP * (weights @ stages)
+        first = slope(t, y)
+        second = slope(t + STEP / 2, y + STEP / 2 * first)
+        third = slope(t + STEP / 2, y + STEP / 2 * second)
+        fourth = slope(t + STEP, y + STEP * third)
+        y = y + STEP / 6 * (first + 2 * second + 2 * third + fourth)
     return y
 
 
@@ -278,21 +267,18 @@ def alone(
 
 def runs() -> Iterator[Line]:
     """Yield the comparisons of a single run and of a batch with the paper's Eq. 9 on the slider-crank."""
-    moving = compiled_mechanism(load_scene("slider_crank"))
-    state, literal = initial_state(moving), literal_slope(moving)
-    for name in ("B4", "RK4"):
-        method = lookup(name)
-        (ours, end), (theirs, other), (together, ends) = interleaved(
-            partial(alone, moving, method, state),
-            partial(literal_run, method, literal, np.concatenate(state)),
-            partial(batch_run, method, moving),
-        )
-        assert max(np.abs(other - end[-1]).max(), np.abs(ends[0] - end[-1]).max()) < SAME
-        note = f"{STEPS / ours:.0f} steps/s against {STEPS / theirs:.0f}"
-        yield Line("run", f"{name}: literal Eq. 9", theirs / ours, 2.0, note)
-        each = together / INSTANCES
-        note = f"{1e9 * each / STEPS:.0f} ns a step and instance"
-        yield Line("run", f"{name}: one run alone, an instance of {INSTANCES}", ours / each, 10.0, note)
+    moving, method = compiled_mechanism(load_scene("slider_crank")), lookup("RK4")
+    state = initial_state(moving)
+    (ours, end), (theirs, other), (together, ends) = interleaved(
+        partial(alone, moving, method, state),
+        partial(literal_run, literal_slope(moving), np.concatenate(state)),
+        partial(batch_run, method, moving),
+    )
+    assert max(np.abs(other - end[-1]).max(), np.abs(ends[0] - end[-1]).max()) < SAME
+    yield Line("run", "RK4: literal Eq. 9", theirs / ours, 2.0, f"{STEPS / ours:.0f} steps/s")
+    each = together / INSTANCES
+    note = f"{1e9 * each / STEPS:.0f} ns a step and instance"
+    yield Line("run", f"RK4: one run alone, an instance of {INSTANCES}", ours / each, 10.0, note)
 
 
 def mujocos_run(moving: Mechanism, integrator: str, state: tuple[FloatArray, FloatArray]) -> Callable[[], FloatArray]:
@@ -329,26 +315,6 @@ def compiled_runs() -> Iterator[Line]:
             theirs = of_engine * COMPILED_STEPS / ENGINE_STEPS
             note = f"{COMPILED_STEPS / ours:.1e} steps/s against {COMPILED_STEPS / theirs:.1e}, in C"
             yield Line("compiled", f"{name}: MuJoCo's {MUJOCO[name]}", theirs / ours, 15.0, note)
-    with ProcessPoolExecutor(2) as pool:
-        for name in ("B4", "RK4"):
-            rows = map_rows(moving.scene, lookup(name), STEP, COMPILED_CELLS)
-            halves = [replace(rows[0], beta_hat=half) for half in np.array_split(rows[0].beta_hat, 2)]
-            maps_of_verdicts = [
-                partial(judged_by, pool, [replace(half, compiled=compiled) for half in halves])
-                for compiled in (False, True)
-            ]
-            maps_of_verdicts[1]()  # so that both processes have compiled
-            (slow, by_numpy), (ours, by_numba) = interleaved(*maps_of_verdicts, rounds=2)
-            differing = [(a["diverges"] != b["diverges"]).mean() for a, b in zip(by_numpy, by_numba, strict=True)]
-            assert max(differing) < 0.01  # cells at which rounding decides
-            note = f"{COMPILED_CELLS**2} runs in {ours:.2f} s by two processes that have compiled"
-            # steps are compiled, what becomes of the kicks is found by numpy in either: four fifths of the time
-            yield Line("compiled", f"{name}: a map of verdicts by numpy", slow / ours, 1.0, note)
-
-
-def judged_by(pool: ProcessPoolExecutor, chunks: list[MapRows]) -> list[Mapping[str, NDArray[np.generic]]]:
-    """Return the verdicts of chunks of a map, from the processes of a pool."""
-    return list(pool.map(simulated_verdicts, chunks))
 
 
 def report(lines: Sequence[Line]) -> str:
