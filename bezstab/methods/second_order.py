@@ -32,6 +32,7 @@ from bezstab.methods.step_equations import POSITION, VELOCITY, Equation, Evaluat
 if TYPE_CHECKING:  # loads numpy
     from bezstab.methods.determinants import ExactArray
 
+MOST_TOGETHER = 16  # equations, as of eight implicit stages: P takes two seconds
 LATEST = 2  # step of a result: beyond the end of the step by as much as a multistep formula may be written
 
 
@@ -106,8 +107,11 @@ class SecondOrder:
     def table(self) -> "ExactArray":
         """P(z; alpha_hat, beta_hat), the determinant, without roots z = 0 that no parameters move; a step of h.
 
-        Leading coefficient one at alpha_hat = beta_hat = 0.
+        Leading coefficient one at alpha_hat = beta_hat = 0. InputError if more than 16 equations wait for each other:
+        it would take too long.
         """
+        if (together := max(map(len, self.groups))) > MOST_TOGETHER:
+            raise InputError(f"{together} equations wait for each other: expected at most {MOST_TOGETHER}")
         from bezstab.methods.determinants import determinant_table  # loads sympy
 
         return determinant_table(self.equations)

@@ -11,7 +11,7 @@ from bezstab.errors import InputError
 from bezstab.methods.derivation import closed_loop_at
 from bezstab.methods.recipes import recipe
 from bezstab.methods.registry import lookup
-from bezstab.methods.schemes import Method
+from bezstab.methods.schemes import Method, RungeKutta
 from bezstab.methods.second_order import SecondOrder
 from tests.methods import kinds
 from tests.methods.random_recipes import RECIPES, VERLET
@@ -90,6 +90,12 @@ def test_what_cannot_be_is_refused_in_one_line(equations: dict[str, str], why: s
     with pytest.raises(InputError, match=why) as caught:
         recipe(equations)
     assert len(str(caught.value).splitlines()) == 1
+
+
+def test_equations_that_wait_for_each_other_are_few() -> None:
+    nine = RungeKutta(((F(1, 9),) * 9,) * 9, (F(1, 9),) * 9)
+    with pytest.raises(InputError, match="18 equations wait for each other: expected at most 16"):
+        closed_loop_at(Method("nine", nine, ""), *POINTS[0])
 
 
 def test_a_root_on_the_circle_that_stays_is_allowed_once() -> None:
