@@ -128,6 +128,7 @@ def test_an_undamped_spring_shows_what_the_integrator_adds() -> None:
     assert not drive(omega**2, -2 * 0.2619 * omega, 1, h="1/60", method="implicit-euler").safe
 
 
+@pytest.mark.slow
 def test_the_largest_integral_gain_is_where_the_verdict_turns() -> None:
     answer = drive(200, 5, "0.1", ki=1000, h="0.002", load=2)
     assert answer.sentence.startswith("kp = 200, kd = 5, ki = 1000 (explicit, inertia 0.1, h = 0.002 s): safe.")
