@@ -86,5 +86,7 @@ def test_p_of_the_form_is_the_product_of_pi_over_both_mu_of_the_feedback(name: s
 
 
 def test_an_implicit_form_has_one_group_to_solve_and_a_diagonally_implicit_one_for_each_stage() -> None:
-    for name, groups in {"bdf3": 1, "gauss4": 1, "dirk3": 3, "RK4": 0}.items():
-        assert sum(len(group) > 1 for group in lookup(name).scheme.second_order.groups) == groups
+    for name, groups in {"bdf3": 1, "implicit-midpoint": 1, "gauss4": 1, "dirk3": 3, "RK4": 0}.items():
+        scheme = lookup(name).scheme.second_order
+        assert sum(len(group) > 1 for group in scheme.groups) == groups
+        assert scheme.implicit == (groups > 0)
