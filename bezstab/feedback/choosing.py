@@ -13,13 +13,14 @@ from bezstab.engines.engine_list import engine_named
 from bezstab.errors import InputError, NumericalError
 from bezstab.feedback.conditions import Conditions, Setup, at_step, conditions, for_choosing
 from bezstab.feedback.judgement import Judgement, Role, judge
-from bezstab.feedback.sentences import judgement_sentence
+from bezstab.feedback.sentences import judgement_sentence, trials_words
 from bezstab.goals import SETTLING, UP_TO_LONGEST, Goal, one_of
 from bezstab.mechanism.scene_files import scene as scene_named
 from bezstab.mechanism.scenes import Scene
 from bezstab.methods.registry import method as method_named
 from bezstab.methods.schemes import Method
 from bezstab.questions.methods import methods_for, usual_goal
+from bezstab.questions.trial_runs import Trials, trial_runs
 from bezstab.rationals import rational, typed_number
 from bezstab.stability.choices import USUAL_SPREAD, Choice, describe_point
 from bezstab.stability.choices import choose as choose_point
@@ -88,10 +89,12 @@ class ChooseAnswer(Judgement):
     """The point that a goal asks for, judged.
 
     safe_with: the option with which a choice is safe that is not. trades: None unless asked for, and where errors are
-    not known. spare: None where nothing is swept over. sentence: the answer in words.
+    not known. trials: the runs of a scene that found the point; None where a goal alone did. spare: None where nothing
+    is swept over. sentence: the answer in words.
     """
 
     safe_with: str | None
+    trials: Trials | None
     trades: Trades | None
     spare: Spare | None
     sentence: str
@@ -287,18 +290,47 @@ def choose_answer(
 ) -> ChooseAnswer:
     """Return the point that a goal asks for, judged; errors as `choose`."""
     chosen = _chosen(method, wish, asked, margins=margins)
+    trials, judged = None, None
     if role == "chosen":
         _check_expressed(asked, chosen)
-    judged = judge(asked, chosen, role, margins=margins, cost=cost)
+        trials = _trials(chosen, wish, asked)
+    if trials:
+        found = describe_point(method, wish.goal, *trials.point, asked.spread, margins)
+        found = replace(found, searched=chosen.searched)
+        judged = judge(asked, found, role, margins=margins, cost=cost)
+    if not judged or not judged.safe:
+        trials, judged = None, judge(asked, chosen, role, margins=margins, cost=cost)
     safe_with = _safe_with(judged, wish) if role == "chosen" and not judged.safe and wish.sag is None else None
     return ChooseAnswer(
         **vars(judged),
         safe_with=safe_with,
+        trials=trials,
         trades=_trades(judged, wish)
         if trades and wish.sag is None and judged.cost and judged.cost.total_error is not None
         else None,
         spare=_spare(judged, wish),
-        sentence=judgement_sentence(judged, safe_with),
+        sentence=judgement_sentence(judged, safe_with)
+        + (trials_words(trials, chosen, asked.h) if trials and asked.h else ""),
+    )
+
+
+def _trials(choice: Choice, wish: Wish, asked: Conditions) -> Trials | None:
+    """Return what short runs of a scene find beside a choice of the goal accurate; None without one, in an engine too.
+
+    None, too, where a choice is for several steps, or has alpha = beta.
+    """
+    narrow = asked.engine or asked.h_max or wish.equal
+    if asked.mechanism is None or asked.turning is None or asked.h is None or wish.goal != "accurate" or narrow:
+        return None
+    return trial_runs(
+        asked.mechanism,
+        choice,
+        asked.h,
+        asked.motion.omega_h,
+        spread=asked.spread,
+        kappa=asked.turning.kappa,
+        settle=wish.settle,
+        duration=asked.duration,
     )
 
 

@@ -10,8 +10,9 @@ from bezstab.motion.modulated_circle import steps_to_breakdown
 from bezstab.questions.chains import SweptAnswer
 from bezstab.questions.motions import ReferenceMotion
 from bezstab.questions.scene_runs import MOST_GAINED
+from bezstab.questions.trial_runs import Trials
 from bezstab.rationals import rounded_down
-from bezstab.stability.choices import steps_to_settle
+from bezstab.stability.choices import Choice, steps_to_settle
 from bezstab.stability.turning import MovingPole
 from bezstab.units import from_dimensionless
 from bezstab.words import change_words, counted, decay_words, growth_words, point_words, seconds_words, times_words
@@ -51,6 +52,16 @@ def judgement_sentence(judged: Judgement, safe_with: str | None = None) -> str:
         said.append(f"without --omega {_assumed(motion.omega_h, judged.conditions.seconds)} is assumed")
     place = point_words(judged.alpha_hat, judged.beta_hat, h)
     return " ".join([f"{place}: {safe}.", *map(_sentence, said)])
+
+
+def trials_words(trials: Trials, rule: Choice, h: Fraction) -> str:
+    """Return that runs found a point, and what it gains over that of a rule, of a motion that was run."""
+    alpha, beta = from_dimensionless(rule.alpha_hat, rule.beta_hat, float(h))
+    return (
+        f" Chosen by {trials.runs:,} runs of {seconds_words(trials.seconds)}, steps up to {seconds_words(trials.h_max)}: "
+        f"to this motion they come {times_words(trials.times_nearer)} times nearer than with the rule's "
+        f"α = {alpha:.3g} 1/s, β = {beta:.3g} 1/s."
+    )
 
 
 def _at_rest(sag: float) -> str:
