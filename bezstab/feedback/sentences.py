@@ -58,8 +58,8 @@ def trials_words(trials: Trials, rule: Choice, h: Fraction) -> str:
     """Return that runs found a point, and what it gains over that of a rule, of a motion that was run."""
     alpha, beta = from_dimensionless(rule.alpha_hat, rule.beta_hat, float(h))
     return (
-        f" Chosen by {trials.runs:,} runs of {seconds_words(trials.seconds)}, steps up to {seconds_words(trials.h_max)}: "
-        f"to this motion they come {times_words(trials.times_nearer)} times nearer than with the rule's "
+        f" Chosen by {trials.runs:,} runs of {seconds_words(trials.seconds)}, steps up to {seconds_words(trials.h_max)}"
+        f": to this motion they come {times_words(trials.times_nearer)} times nearer than with the rule's "
         f"α = {alpha:.3g} 1/s, β = {beta:.3g} 1/s."
     )
 
