@@ -8,7 +8,7 @@ from bezstab.feedback.checking import CheckAnswer, StepAnswer
 from bezstab.feedback.choosing import Alternative, ChooseAnswer
 from bezstab.feedback.judgement import Judgement
 from bezstab.feedback.poles import PoleAnswer
-from bezstab.feedback.sentences import errors_words
+from bezstab.feedback.sentences import errors_words, sag_words
 from bezstab.methods.schemes import implicit
 from bezstab.methods.steady_errors import velocity_lag
 from bezstab.questions.chains import SweptAnswer
@@ -242,7 +242,7 @@ JUDGED: Sequence[Column[Judgement]] = (
         lambda answer: answer.sag,
         "offset at rest of one constraint under the load",
         "m or rad",
-        ".4g",
+        sag_words,
         True,
     ),
     Column("to paste", "setting", lambda answer: answer.setting, "what to write in the engine's words", brief=True),

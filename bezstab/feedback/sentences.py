@@ -68,7 +68,12 @@ def _at_rest(sag: float) -> str:
     """Return how far one constraint is off under its load: a length, or the angle of a joint that turns."""
     if not sag:
         return "under the load it does not sag"
-    return f"under the load it rests {1000 * sag:.3g} mm off (of an angle {math.degrees(sag):.3g}°)"
+    return f"under the load it rests off by {sag_words(sag)}"
+
+
+def sag_words(sag: float) -> str:
+    """Return an offset at rest (m or rad) in mm, and in degrees: 0.245 mm (of an angle 0.0141°)."""
+    return f"{1000 * sag:.3g} mm (of an angle {math.degrees(sag):.3g}°)"
 
 
 def _sentence(said: str) -> str:
