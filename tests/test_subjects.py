@@ -38,7 +38,7 @@ def test_without_its_folder_a_command_is_gone_and_the_others_answer(folder: str,
     assert SUBJECTS[folder] not in listed
     assert {*SUBJECTS.values(), "region", "check"} - set(listed) == {SUBJECTS[folder]}
     assert answer(root, "region", "--method", "B4", "--figure", "none").startswith("B4")
-    assert ": safe." in answer(root, *["check", "--method", "SYM", "--alpha", "0.5", "--beta", "0.1"])
+    assert ": safe at rest." in answer(root, *["check", "--method", "SYM", "--alpha", "0.5", "--beta", "0.1"])
 
 
 @pytest.mark.slow

@@ -59,7 +59,7 @@ def say_what_is_left_out(engine: Engine, *, many: bool = False) -> None:
     ask = ": ask `bezstab chain`" if engine.sweeping else ""
     say(f"{engine.name}: left out: {engine.excludes}{swept + ask if engine.sweeps and not many else ''}")
     if engine.name not in WITNESSES:
-        say(f"{engine.name}: this is from its source; it was never run beside it")
+        say(f"{engine.name}: taken from its source, never tested against the engine")
     if many and engine.sweeping:
         say(f"{engine.name}: sweeps are its {engine.sweeping.word}; of them left out: {engine.sweeping.excludes}")
 

@@ -55,14 +55,14 @@ COLUMNS: Sequence[Column[DriveAnswer]] = (
         brief=True,
     ),
     Column("kp", "kp", lambda answer: float(answer.drive.kp), "stiffness", unit=KP),
-    Column("kp to", "kp_max", lambda answer: _end(answer.limits.kp, 1), "largest stable kp", KP, ".4g", True),
+    Column("kp max", "kp_max", lambda answer: _end(answer.limits.kp, 1), "largest stable kp", KP, ".4g", True),
     Column("kd", "kd", lambda answer: float(answer.drive.kd), "damping", unit=KD),
     Column("kd from", "kd_min", lambda answer: _end(answer.limits.kd, 0), "smallest stable kd", KD, ".4g", True),
-    Column("kd to", "kd_max", lambda answer: _end(answer.limits.kd, 1), "largest stable kd", KD, ".4g", True),
+    Column("kd max", "kd_max", lambda answer: _end(answer.limits.kd, 1), "largest stable kd", KD, ".4g", True),
     Column("ki to", "ki_max", lambda answer: _end(answer.limits.ki, 1), "largest stable ki", KI, ".4g", True),
     Column("sag", "sag", lambda answer: answer.sag, "how far from its target it rests under the load", "rad or m"),
     Column(
-        "inertia from",
+        "inertia min",
         "inertia_min",
         lambda answer: _end(answer.limits.inertia, 0),
         "smallest stable inertia, or armature and inertia together",
@@ -71,9 +71,9 @@ COLUMNS: Sequence[Column[DriveAnswer]] = (
         True,
     ),
     Column("h", "h", lambda answer: float(answer.h), "step of the physics", unit="s"),
-    Column("h to (s)", "h_limit", lambda answer: _end(answer.limits.h, 1), "largest stable step", "s", ".4g", True),
-    Column("every to", "every_max", lambda answer: answer.limits.every, "steps that it may be held", brief=True),
-    Column("late to", "late_max", lambda answer: answer.limits.late, "whole steps that it may be late", brief=True),
+    Column("h max (s)", "h_limit", lambda answer: _end(answer.limits.h, 1), "largest stable step", "s", ".4g", True),
+    Column("every max", "every_max", lambda answer: answer.limits.every, "steps that it may be held", brief=True),
+    Column("late max", "late_max", lambda answer: answer.limits.late, "whole steps that it may be late", brief=True),
     Column(
         "limited by",
         "used_up",
@@ -105,5 +105,6 @@ def ways_words(answers: Sequence[DriveAnswer]) -> str:
         judged = [each for each in answers if each.safe == safe]
         names = [f"{each.applied} ({each.method.name})" if each.applied else each.method.name for each in judged]
         if names:
-            verdicts.append(f"{verdict} {'is' if len(names) == 1 else 'are'} {', '.join(names)}")
-    return f"Of the ways to apply the torque, of which --method names yours, {'; '.join(verdicts)}."
+            verdicts.append(f"{verdict}: {', '.join(names)}")
+    words = "; ".join(verdicts)
+    return f"{words[0].upper()}{words[1:]}. --method names how yours applies the torque."

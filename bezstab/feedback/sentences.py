@@ -40,6 +40,8 @@ def judgement_sentence(judged: Judgement, safe_with: str | None = None) -> str:
     safe = "safe" if judged.safe else "not safe"
     if judged.swept_over:
         safe += f" {'in' if swept else 'for'} {judged.swept_over}"
+    elif judged.safe and judged.run is None:
+        safe += " at rest"
     said = _swept(judged, swept) if swept else _errors(judged)
     if judged.safe and not judged.swept_over:  # more of one constraint alone means nothing for a chain of them
         said += _growth(judged)
@@ -212,11 +214,12 @@ def _growth(judged: Judgement) -> list[str]:
         "β": _to(margins.beta[1], growth_words),
     }
     if judged.conditions.h is not None:
-        limits["the step"] = _to(judged.h_limit, lambda limit: f"to {seconds_words(limit)}")
-    each = "at rest each" if judged.moving else "each"
+        limits["the step"] = _to(judged.h_limit, seconds_words)
+    stays = "at rest it stays" if judged.moving else "it stays"
     if set(limits.values()) == {growth_words(None)}:
-        return [f"{each} alone may grow without limit"]
-    return [f"{each} alone may grow: {', '.join(f'{name} {limit}' for name, limit in limits.items())}"]
+        return [f"{stays} stable if one of h, α and β alone grows without limit"]
+    named = ", ".join(f"{name} up to {limit}" for name, limit in limits.items() if limit != growth_words(None))
+    return [f"{stays} stable with one of these alone: {named}"]
 
 
 def _to(limit: float | None, text: Callable[[float], str]) -> str:

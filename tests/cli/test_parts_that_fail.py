@@ -30,7 +30,7 @@ def _forget_what_failed() -> Iterator[None]:
 
 def test_without_an_alternative_check_still_answers(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(choices, "region", failing)
-    for alpha, status, said in (("1/2", 0, "α̂ = 0.5, β̂ = 0.1: safe."), ("5", 1, "α̂ = 5, β̂ = 0.1: not safe.")):
+    for alpha, status, said in (("1/2", 0, "α̂ = 0.5, β̂ = 0.1: safe at rest."), ("5", 1, "α̂ = 5, β̂ = 0.1: not safe.")):
         result = run(f"check --method B4 --alpha {alpha} --beta 1/10 --instead")
         assert (result.exit_code, result.stdout.startswith(said)) == (status, True)
         assert f"nothing instead: {REASON}" in result.stderr
@@ -40,7 +40,7 @@ def test_without_margins_check_still_answers_and_claims_no_limit(monkeypatch: py
     monkeypatch.setattr(choices, "stability_margins", failing)
     result = run("check", POINT, "--h 0.001")
     assert result.exit_code == 0
-    assert "h = 0.001 s): safe. An error falls to a thousandth in 28 ms" in result.stdout
+    assert "h = 0.001 s): safe at rest. An error falls to a thousandth in 28 ms" in result.stdout
     assert f"not known: {REASON}" in " ".join(result.stdout.split())
     assert not {"unlimited", "without limit"} & set(result.stdout.split("  "))
     given = rows("check", POINT)[0]

@@ -188,7 +188,7 @@ def test_what_an_encoding_or_a_file_system_lacks_is_changed_and_json_is_not(tmp_
     shutil.copy(tmp_path / "é∞.toml", tmp_path / "own.toml")
     poles = ("poles", "--alpha", "0.5", "--beta", "0.1", "--method", "own.toml")
     text = finished(*poles, cwd=tmp_path, environment={"PYTHONIOENCODING": "latin-1"})
-    assert text.stdout.decode("latin-1").startswith("?? = 0.5, ?? = 0.1: safe.")
+    assert text.stdout.decode("latin-1").startswith("?? = 0.5, ?? = 0.1: safe at rest.")
     as_json = finished(*poles, "--format", "json", cwd=tmp_path, environment={"PYTHONIOENCODING": "latin-1"})
     assert b'"\\u00e9\\u221e"' in as_json.stdout
     region = ("region", "--method", "own.toml", "--grid", "9", "-o", "out")

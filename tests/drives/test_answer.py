@@ -158,4 +158,4 @@ def test_what_is_to_be_changed_is_stable_as_it_is_printed(kp: int, kd: int, iner
 
 def test_the_ways_to_apply_a_torque_are_named_and_other_methods_by_their_names() -> None:
     answers = [drive(100, 0, 1, h="0.01", method=method) for method in ("RK4", "implicit-euler", "AB2")]
-    assert "safe are RK4, fully implicit (implicit-euler); not safe is AB2." in ways_words(answers)
+    assert "Safe: RK4, fully implicit (implicit-euler); not safe: AB2." in ways_words(answers)

@@ -58,14 +58,14 @@ def test_an_answer_begins_with_its_sentence_and_is_true_where_it_is_safe() -> No
     assert f"{sqrt(1 + sqrt(3)):.3g}" == "1.65"
     safe = check("RK2", alpha_hat=1, beta_hat=1, h="1/100")
     assert repr(safe).startswith(
-        f"{place}: safe. An error falls to a thousandth in 0.1 s (10 steps). "
-        "Each alone may grow: the step to 20 ms, α 2.5 times, β 1.65 times."
+        f"{place}: safe at rest. An error falls to a thousandth in 0.1 s (10 steps). "
+        "It stays stable with one of these alone: the step up to 20 ms, α up to 2.5 times, β up to 1.65 times."
     )
     assert safe.settle_seconds == pytest.approx(0.1)
     assert safe.tenth_seconds == pytest.approx(0.04)
     assert check("RK2", alpha_hat=1, beta_hat=1).sentence == (
-        "α̂ = 1, β̂ = 1: safe. An error falls to a thousandth in 10 steps. "
-        "Each alone may grow: the step 2 times, α 2.5 times, β 1.65 times."
+        "α̂ = 1, β̂ = 1: safe at rest. An error falls to a thousandth in 10 steps. "
+        "It stays stable with one of these alone: the step up to 2 times, α up to 2.5 times, β up to 1.65 times."
     )
     unsafe = check("RK2", alpha_hat=5, beta_hat=5, h="1/100")
     assert repr(unsafe).startswith("α̂ = 5, β̂ = 5 (α = 250 1/s, β = 223.607 1/s at h = 0.01 s): not safe. Each step")
