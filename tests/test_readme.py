@@ -23,6 +23,7 @@ PAGES = (
     "bezstab/chains/README.md",
     "bezstab/drives/README.md",
     "bezstab/feedback/README.md",
+    "bezstab/motion/README.md",
     "bezstab/step_sequences/README.md",
     "bezstab/runs/README.md",
     "bezstab/mujoco/README.md",
