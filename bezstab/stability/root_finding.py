@@ -48,16 +48,17 @@ def roots_of_rows(coefficients: NDArray[np.inexact]) -> ComplexArray:
 
 def has_formula(coefficients: int, real: bool) -> bool:
     """Return whether the largest root of polynomials with so many coefficients is found by a formula."""
-    return coefficients <= (4 if real else 2)
+    return coefficients <= (4 if real else 3)
 
 
 def largest_root(rows: NDArray[np.inexact]) -> ComplexArray:
     """Return the root of largest modulus, or one of several; shape (points,). Not finite as `roots_of_rows`."""
     real = not np.iscomplexobj(rows)
     with np.errstate(all="ignore"):
-        if real and len(rows) == 3:
+        if len(rows) == 3:
             half = 0.5 * rows[1] / rows[2]
-            return larger_root(half, half * half - rows[0] / rows[2])
+            discriminant = half * half - rows[0] / rows[2]
+            return larger_root(half, discriminant) if real else _larger_complex_root(half, discriminant)
         if real and len(rows) == 4:
             return largest_cubic_root(*(rows[2::-1] / rows[3]))
     z = roots_of_rows(rows)
@@ -152,6 +153,13 @@ def larger_root(half: FloatArray, discriminant: FloatArray) -> ComplexArray:
     np.sqrt(real_square - discriminant, out=z.imag)
     np.negative(half + np.copysign(np.sqrt(real_square), half), out=z.real)
     return z
+
+
+def _larger_complex_root(half: ComplexArray, discriminant: ComplexArray) -> ComplexArray:
+    """Return the root of larger modulus of complex quadratics z^2 + 2 half z + half^2 - discriminant."""
+    root = np.sqrt(discriminant)
+    away = (half.conj() * root).real >= 0  # from zero: the sum of both loses no digits
+    return np.asarray(-(half + np.where(away, root, -root)))
 
 
 def largest_cubic_root(b: FloatArray, c: FloatArray, d: FloatArray) -> ComplexArray:
