@@ -67,9 +67,11 @@ class KeptResults:
         """Keep a finished chunk; InputError if the system refuses."""
         import joblib
 
-        output_directory(self.folder)  # another run of the same job may have finished, and removed it
         compressed = partial(joblib.dump, (self.job, result), compress=True)  # then damage shows
-        write_whole(self.file(number), compressed)
+        try:
+            write_whole(output_directory(self.folder) / self.file(number).name, compressed)
+        except InputError:  # another run of the same job may just finish, and remove the folder: once
+            write_whole(output_directory(self.folder) / self.file(number).name, compressed)
 
     def discard(self) -> None:
         """Remove the folder, as when the job's result has been written; what is not of ours stays."""

@@ -149,6 +149,22 @@ def test_chunks_of_another_job_are_not_gone_on_with(kept: KeptResults) -> None:
     assert kept.load(0) is not None
 
 
+def test_a_chunk_is_kept_although_another_run_just_removes_the_folder(
+    kept: KeptResults, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    rename, others = Path.replace, [kept.discard]
+
+    def late(path: Path, target: Path) -> Path:
+        while others:
+            others.pop()()
+        return rename(path, target)
+
+    monkeypatch.setattr(Path, "replace", late)
+    kept.save(1, {"square": np.array([16])})
+    assert not others
+    assert kept.load(1) == {"square": np.array([16])}
+
+
 def test_what_a_killed_run_had_half_written_goes_and_what_is_not_ours_stays(kept: KeptResults) -> None:
     (kept.folder / f".{kept.file(3).name}.0a1b").touch()
     (kept.folder / "mine").mkdir()
