@@ -208,23 +208,20 @@ def _growth(judged: Judgement) -> list[str]:
         return [f"how far the step, α and β may grow is not known: {judged.margins_reason}"]
     if margins is None:
         return []
-    limits = {
-        "the step": _to(margins.h, growth_words),
-        "α": _to(margins.alpha[1], growth_words),
-        "β": _to(margins.beta[1], growth_words),
-    }
-    if judged.conditions.h is not None:
-        limits["the step"] = _to(judged.h_limit, seconds_words)
+    alone: list[tuple[str, float | None, Callable[[float], str]]] = [
+        ("the step", margins.h, growth_words)
+        if judged.conditions.h is None
+        else ("the step", judged.h_limit, seconds_words),
+        ("α", margins.alpha[1], growth_words),
+        ("β", margins.beta[1], growth_words),
+    ]
+    limits = [
+        f"{name} up to {words(limit)}" for name, limit, words in alone if limit is not None and not math.isinf(limit)
+    ]
     stays = "at rest it stays" if judged.moving else "it stays"
-    if set(limits.values()) == {growth_words(None)}:
+    if not limits:
         return [f"{stays} stable if one of h, α and β alone grows without limit"]
-    named = ", ".join(f"{name} up to {limit}" for name, limit in limits.items() if limit != growth_words(None))
-    return [f"{stays} stable with one of these alone: {named}"]
-
-
-def _to(limit: float | None, text: Callable[[float], str]) -> str:
-    """Return how far something may grow."""
-    return growth_words(None) if limit is None or math.isinf(limit) else text(limit)
+    return [f"{stays} stable with one of these alone: {', '.join(limits)}"]
 
 
 def costs_words(judged: Judgement) -> str | None:

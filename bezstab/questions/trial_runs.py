@@ -94,10 +94,11 @@ def trial_runs(
     cost = evaluations(method) * (ITERATIONS if implicit(method) else 1)
     own = max(step * multiple, seconds * cost / EVALUATIONS)
     longer = max(SHARES) * own / (step * multiple)
-    points = points[:, all_within(method, points[0] * longer, points[1] * longer**2, 1.0)]
-    rule = best = len(points.T) - 1
-    if points[1, rule] != choice.beta_hat:
+    stable = all_within(method, points[0] * longer, points[1] * longer**2, 1.0)
+    if not stable[-1]:
         return None
+    points = points[:, stable]
+    rule = best = len(points.T) - 1
     gains = points[0] / step, points[1] / step**2
     errors: list[FloatArray] = []
     with np.errstate(all="ignore"):  # of runs that break down

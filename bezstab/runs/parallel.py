@@ -68,10 +68,15 @@ class KeptResults:
         import joblib
 
         compressed = partial(joblib.dump, (self.job, result), compress=True)  # then damage shows
+
+        def write() -> None:
+            output_directory(self.folder)
+            write_whole(self.file(number), compressed)
+
         try:
-            write_whole(output_directory(self.folder) / self.file(number).name, compressed)
+            write()
         except InputError:  # another run of the same job may just finish, and remove the folder: once
-            write_whole(output_directory(self.folder) / self.file(number).name, compressed)
+            write()
 
     def discard(self) -> None:
         """Remove the folder, as when the job's result has been written; what is not of ours stays."""
