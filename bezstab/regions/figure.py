@@ -41,6 +41,9 @@ EDGE_LINES = 0.015  # of the axes' sides: so far apart are the arrows of regions
 ALONG_AN_EDGE, ARROW_EVERY = 121, 24
 """Points along an edge of the axes, and at every which of them an arrow is."""
 
+GOES_ON = "stable beyond this edge"
+"""What arrows along the edges of the axes say."""
+
 TICKS = (0.1, 0.5, 0.9, 0.99, 0.999, 0.9999)
 """Of |z_p|, where it is drawn evenly in how fast errors fall."""
 
@@ -201,7 +204,9 @@ def _draw_open_edges(region: Region, axes: Axes, h: float | None, inset: float =
         if inside.any():
             x, y = np.where(inside, np.clip(edge, inset, 1 - inset).T, np.nan)
             arrows: dict[str, Any] = {"marker": ("<>", "v^")[axis][end], "markersize": 3, "markevery": ARROW_EVERY}
-            axes.plot(x, y, transform=axes.transAxes, **{"linestyle": "-", "linewidth": 0.6, **arrows, **line})
+            told = any(drawn.get_label() == GOES_ON for drawn in axes.lines)
+            arrows |= {"linestyle": "-", "linewidth": 0.6, "label": None if told else GOES_ON}
+            axes.plot(x, y, transform=axes.transAxes, **{**arrows, **line})
 
 
 def decay_scale(z_abs: FloatArray) -> FloatArray:
@@ -318,7 +323,9 @@ def comparison_figure(regions: Sequence[Region], asked: MapConditions) -> Figure
     """
     h = asked.h
     with styled():
-        figure, axes = _plane(rf"$|z_p| = {regions[0].level:g}$", [region.method for region in regions], h)
+        inside = rf"inside each line $|z_p| < {regions[0].level:g}$"
+        title = f"Stable {inside}" if regions[0].level == 1 else inside.capitalize()
+        figure, axes = _plane(title, [region.method for region in regions], h)
         for place, region in enumerate(regions):
             plot.region(region, axes, h, **line_at(place))  # of those that coincide all show between dashes
         if asked.alpha_range:

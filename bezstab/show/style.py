@@ -66,6 +66,9 @@ ROOMY = 30
 WORDS_ARE_WIDE = (0.4, 1.0)
 """What a distance across and a distance up count for a word, which is wider than high."""
 
+ROOM_FOR_A_WORD = 0.04
+"""In such distances: half of a word's width. Into a thinner area none is written."""
+
 HARD_SPACE = "\N{NO-BREAK SPACE}"
 
 
@@ -148,8 +151,8 @@ def title_lines(*parts: str) -> str:
 def name_areas(axes: Axes, stable: Callable[[FloatArray, FloatArray], NDArray[np.bool_]], at_rest: str = "") -> None:
     """Write where errors decay and where they grow, perhaps `at_rest` alone, into axes whose limits are final.
 
-    The words are far from the areas' edges, from points and from straight lines. `stable` says it of points (x, y),
-    whose arrays have one axis.
+    The words are far from the areas' edges, from points and from straight lines; an area without room has none.
+    `stable` says it of points (x, y), whose arrays have one axis.
     """
     shares = (np.arange(ROOMY) + 0.5) / ROOMY
     places = np.stack(np.meshgrid(shares, shares), axis=-1).reshape(-1, 2)
@@ -165,6 +168,8 @@ def name_areas(axes: Axes, stable: Callable[[FloatArray, FloatArray], NDArray[np
             continue
         others = np.concatenate([places[~area], *in_the_way, *walls])
         away = [np.hypot(*((others - place) * WORDS_ARE_WIDE).T).min() for place in places[area]]
+        if max(away) < ROOM_FOR_A_WORD:
+            continue
         x, y = places[area][int(np.argmax(away))]
         text = axes.text(x, y, word + at_rest, transform=axes.transAxes, ha="center", va="center", fontsize=7)
         text.set_path_effects(WHITE_HALO)

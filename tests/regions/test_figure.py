@@ -153,6 +153,13 @@ def test_arrows_along_the_edges_are_where_an_unbounded_region_goes_on(h: Fractio
         points = (low + (high - low) * shares) / scale
         assert of_boundaries[line.get_color()].contains(*points.T).all()
     assert {">", "^"} <= {line.get_marker() for line in arrows}
+    assert [line.get_label() for line in arrows].count("stable beyond this edge") == 1  # named once
+
+
+def test_into_a_sliver_no_word_is_written() -> None:
+    """Where BDF3 diverges beside small alpha_hat the word would lie across the axis."""
+    axes = map_figure(map_answer(lookup("bdf3"), map_conditions(points=41), drawn=True)).axes[0]
+    assert [text.get_text() for text in axes.texts] == ["stable"]
 
 
 @pytest.mark.parametrize("name", ["SYM", "RK4", "implicit-euler"])
