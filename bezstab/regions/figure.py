@@ -268,16 +268,16 @@ def _mesh(axes: Axes, x: FloatArray, y: FloatArray, z_abs: FloatArray, **colours
 
 def _fine(points: FloatArray) -> FloatArray:
     """Return points along the chords between points, PARTS to a chord where there are few."""
-    parts = max(1, min(PARTS, MOST_FINE // max(1, len(points))))
+    if len(points) < 2:
+        return points
+    parts = max(1, min(PARTS, MOST_FINE // len(points)))
     return np.asarray(Path(points).interpolated(parts).vertices, dtype=np.float64)
 
 
 def _refine(axes: Axes) -> None:
     """Put points on the chords of all lines, which are straight on other axes alone."""
     for line in axes.lines:
-        points = np.asarray(line.get_xydata())
-        if len(points) > 1:
-            line.set_data(*_fine(points).T)
+        line.set_data(*_fine(np.asarray(line.get_xydata())).T)
 
 
 def _powers(values: FloatArray) -> FloatArray:

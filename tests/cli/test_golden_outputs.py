@@ -40,9 +40,9 @@ TOLERANCES = (
     Tolerance(
         "simulate --method AB4 --alpha 0.5 --beta 0.101",
         "c_max|cdot_max|energy_drift",
-        1e-3,
+        0.9,
         0.0,
-        "an unstable run: what a libm's last bit does at its start, 1e-15 m, has grown 1.0014^10000 = 1.6e6 times",
+        "an unstable run: all of it is rounding at its start, 1e-15 m, grown 1.0014^10000 = 1.6e6 times",
     ),
     Tolerance(
         "simulate|tradeoff",
