@@ -1,5 +1,6 @@
-"""Methods in TOML files; configs/methods/README.md documents the format."""
+"""Methods in TOML files, own ones and built-in ones; configs/methods/README.md documents the format."""
 
+from dataclasses import replace
 from fractions import Fraction
 from functools import partial
 from pathlib import Path
@@ -8,7 +9,8 @@ from typing import Any
 from bezstab.errors import InputError, shown
 from bezstab.files import read_toml
 from bezstab.methods.algebraic_numbers import DIGITS
-from bezstab.methods.schemes import LinearMultistep, Method, RungeKutta, Scheme
+from bezstab.methods.schemes import LinearMultistep, Method, MethodGroup, RungeKutta, Scheme
+from bezstab.rationals import rational
 from bezstab.toml_tables import TomlTable, list_of, of_type
 
 EXAMPLE = "x0 + v0 + 1/2 a0"
@@ -26,13 +28,22 @@ def read_method(path: Path) -> Method:
     Numbers are exact; rationals good to 40 digits stand for square roots, and `digits` says so. Name and source are the
     file's, if given. Nothing in the file is executed. InputError, naming the file and the key, for anything else.
     """
-    return read_toml("method file", path, lambda data: _parse_method(data, path))
+    return read_toml("method file", path, lambda data: _parse_method(data, path.stem, str(path)))
 
 
-def _parse_method(data: dict[str, Any], path: Path) -> Method:
+def built_in_group(key: str, heading: str, note: str = "") -> MethodGroup:
+    """Return the methods that a table of built_in.toml has."""
+    tables = read_toml("methods", Path(__file__).with_name("built_in.toml"), lambda data: data[key])
+    return MethodGroup(heading, {name: partial(_built_in, name, **table) for name, table in tables.items()}, note)
+
+
+def _built_in(name: str, digits: int | None = None, **data: Any) -> Method:
+    return replace(_parse_method(data, name), digits=digits)
+
+
+def _parse_method(data: dict[str, Any], name: str, source: str = "") -> Method:
     table = TomlTable(data)
-    name = table.text("name", default=path.stem)
-    source = table.text("source", default=str(path))
+    name, source = table.text("name", default=name), table.text("source", default=source)
     coefficients = {key: value for key, value in data.items() if key not in ("name", "source")}
     digits = DIGITS if "sqrt" in str(coefficients) else None
     return Method(name, _parse_scheme(table, sorted(coefficients)), source, digits=digits)
@@ -40,10 +51,9 @@ def _parse_method(data: dict[str, Any], path: Path) -> Method:
 
 def _parse_scheme(table: TomlTable, keys: list[str]) -> Scheme:
     """Return the scheme by the table or the pair of keys that the file has; InputError for other keys."""
-    from bezstab.methods.recipes import exact_number, recipe  # loads sympy
 
     def coefficient(value: object) -> Fraction:
-        number = exact_number(str(value) if type(value) is int else of_type(str, value))  # not bool, an int, too
+        number = _number(str(value) if type(value) is int else of_type(str, value))  # not bool, an int, too
         if number and not 1 / LARGEST <= abs(number) <= LARGEST:
             raise InputError(f"{shown(value)}: expected 0 or a size of 1e-50 to 1e50")
         return number
@@ -55,6 +65,8 @@ def _parse_scheme(table: TomlTable, keys: list[str]) -> Scheme:
             for result, text in equations.items():
                 if not isinstance(text, str):
                     raise InputError(f"update: {shown(result)} = {shown(text)}: expected a text like {EXAMPLE!r}")
+            from bezstab.methods.recipes import recipe  # loads sympy
+
             return recipe(equations)
         case ["rho", "sigma"]:
             rho, sigma = (tuple(table.entry(key, row, RATIONAL_STRINGS)) for key in keys)
@@ -67,6 +79,15 @@ def _parse_scheme(table: TomlTable, keys: list[str]) -> Scheme:
             return RungeKutta(tuple(map(tuple, tableau)), tuple(weights))
     found = shown(", ".join(keys) or "none")[1:-1]
     raise InputError(f"expected the keys rho and sigma, or A and b, or the table update, but found {found}")
+
+
+def _number(text: str) -> Fraction:
+    try:
+        return rational(text)
+    except InputError:
+        from bezstab.methods.recipes import exact_number  # loads sympy
+
+        return exact_number(text)
 
 
 def _refuse_more_than(most: int, number: int, of_what: str) -> None:

@@ -8,17 +8,24 @@ from pathlib import Path
 
 from bezstab.errors import InputError, shown
 from bezstab.methods.aliases import ALIASES, folded, unknown_method
-from bezstab.methods.method_files import read_method
+from bezstab.methods.method_files import built_in_group, read_method
 from bezstab.methods.multistep_methods import EXPLICIT_MULTISTEP, IMPLICIT_MULTISTEP
-from bezstab.methods.runge_kutta_methods import EXPLICIT_RUNGE_KUTTA, IMPLICIT_RUNGE_KUTTA
+from bezstab.methods.runge_kutta_methods import IMPLICIT_RUNGE_KUTTA
 from bezstab.methods.schemes import Method
-from bezstab.methods.second_order_methods import PARAMETRIC, SECOND_ORDER, ParametricMethod
+from bezstab.methods.second_order_methods import NEWMARK_AND_ALPHA, PARAMETRIC, ParametricMethod
 from bezstab.rationals import rational
 
 GROUPS = (
     *EXPLICIT_MULTISTEP,
-    EXPLICIT_RUNGE_KUTTA,
-    *SECOND_ORDER,
+    built_in_group(
+        "explicit",
+        "Runge-Kutta, explicit",
+        "(SIE is the paper's 'Euler semi-implicit', not that of engines, which is SYM)",
+    ),
+    built_in_group("symplectic", "Symplectic and Nyström"),
+    built_in_group("verlet", "Velocity Verlet, by the velocity that the feedback sees"),
+    NEWMARK_AND_ALPHA,
+    built_in_group("velocity", "Implicit in the velocity, of physics engines and control"),
     IMPLICIT_MULTISTEP,
     IMPLICIT_RUNGE_KUTTA,
 )

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from fractions import Fraction
 
-from bezstab.methods.aliases import OTHER_NAMES
+from bezstab.methods.aliases import NAMES
 from bezstab.methods.schemes import Method, evaluations, implicit, steps
 from bezstab.regions.answer import RegionAnswer, region_answer
 
@@ -70,7 +70,7 @@ def method_answer(method: Method, name: str = "", *, latex: bool = False) -> Met
         order=order,
         error_constant=constant,
         order_position_forces=accuracy_by_force(method).position[0],
-        other_names=OTHER_NAMES.get(method.name, "").replace(" ", ", "),
+        other_names=NAMES["same"].get(method.name, "").replace(" ", ", "),
         added_damping=added_damping_text(method, latex),
     )
 

@@ -6,7 +6,7 @@ import pytest
 
 from bezstab.engines.engine_list import ENGINES
 from bezstab.errors import InputError
-from bezstab.methods.aliases import ADVICE, ALIASES, ANSWERS, OTHER_NAMES, folded
+from bezstab.methods.aliases import ADVICE, ALIASES, NAMES, folded
 from bezstab.methods.registry import FOLDED_NAMES, lookup
 from bezstab.methods.second_order_methods import PARAMETRIC
 from bezstab.stability.closed_loop import dominant_pole
@@ -59,7 +59,7 @@ def test_the_lists_of_names_have_no_name_twice() -> None:
     built_in = {*FOLDED_NAMES, *map(folded, PARAMETRIC)} - {"newmark"}
     assert not set(ALIASES) & built_in
     assert not set(ADVICE) & {*built_in, *ALIASES}
-    for by_text, by_name in ((OTHER_NAMES, ALIASES), (ANSWERS, ADVICE)):
+    for by_text, by_name in ((NAMES["same"], ALIASES), (NAMES["answers"], ADVICE)):
         assert len(" ".join(by_text.values()).split()) == len(by_name)
     assert all(lookup(name) for name in ALIASES)
 

@@ -4,8 +4,8 @@ from fractions import Fraction
 
 import pytest
 
+from bezstab.methods.method_files import built_in_group
 from bezstab.methods.registry import lookup
-from bezstab.methods.runge_kutta_methods import EXPLICIT
 from bezstab.methods.schemes import Method, RungeKutta, evaluations
 from tests.methods.exact_lists import fractions
 
@@ -23,6 +23,8 @@ def runge_kutta(name: str) -> RungeKutta:
 def nodes(name: str) -> tuple[Fraction, ...]:
     return tuple(sum(row, F(0)) for row in runge_kutta(name).tableau)
 
+
+EXPLICIT = built_in_group("explicit", "").methods
 
 NODES = {
     "RK1": "0",
