@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from bezstab.drives.answer import DriveAnswer
 from bezstab.drives.limits import Stretch
 from bezstab.engines.drives import Timing
+from bezstab.show.cells import between
 from bezstab.show.columns import METHOD, SENTENCE, Column, in_seconds
 from bezstab.words import seconds_words
 
@@ -22,6 +23,7 @@ def _end(stretch: Stretch | None, place: int) -> float | None:
 
 KP, KD, KI = "N m/rad or N/m", "N m s/rad or N s/m", "N m/(rad s) or N/(m s)"
 INERTIA = "kg m² or kg"
+ENDS = between(".4g", "any")
 
 COLUMNS: Sequence[Column[DriveAnswer]] = (
     METHOD,
@@ -38,10 +40,9 @@ COLUMNS: Sequence[Column[DriveAnswer]] = (
     ),
     Column(
         "a tenth in (s)",
-        "tenth_seconds",
+        "",
         lambda answer: in_seconds(answer.tenth_steps, answer.h),
-        "time until an error is a tenth",
-        unit="s",
+        "",
         form=".4g",
         brief=True,
     ),
@@ -57,8 +58,7 @@ COLUMNS: Sequence[Column[DriveAnswer]] = (
     Column("kp", "kp", lambda answer: float(answer.drive.kp), "stiffness", unit=KP),
     Column("kp max", "kp_max", lambda answer: _end(answer.limits.kp, 1), "largest stable kp", KP, ".4g", True),
     Column("kd", "kd", lambda answer: float(answer.drive.kd), "damping", unit=KD),
-    Column("kd from", "kd_min", lambda answer: _end(answer.limits.kd, 0), "smallest stable kd", KD, ".4g", True),
-    Column("kd max", "kd_max", lambda answer: _end(answer.limits.kd, 1), "largest stable kd", KD, ".4g", True),
+    Column("kd stable", "kd_range", lambda answer: answer.limits.kd, "smallest and largest stable kd", KD, ENDS, True),
     Column("ki to", "ki_max", lambda answer: _end(answer.limits.ki, 1), "largest stable ki", KI, ".4g", True),
     Column("sag", "sag", lambda answer: answer.sag, "how far from its target it rests under the load", "rad or m"),
     Column(

@@ -50,7 +50,7 @@ DECAY: Sequence[Column[Judgement]] = (
     Column(
         "steps to 1/1000", "settle_steps", lambda answer: answer.settle_steps, "steps until an error is a thousandth"
     ),
-    Column("a tenth in (s)", "tenth_seconds", lambda answer: answer.tenth_seconds, "time to a tenth", "s", ".3g"),
+    Column("a tenth in (s)", "", lambda answer: answer.tenth_seconds, "", form=".3g"),
     Column(
         "settles in (s)",
         "settle_seconds",
@@ -179,7 +179,7 @@ RUN: Sequence[Column[SceneRun]] = (
     Column("|c| in the run", "c_max", lambda run: run.c_max, "largest |c|", "m or rad", ".1e"),
     Column(
         "energy gained",
-        "run_gained",
+        "energy_growth",
         lambda run: run.gained,
         "energy that no driver or force gave, as a share of the largest kinetic energy",
         form=".2e",
@@ -192,7 +192,6 @@ RUN: Sequence[Column[SceneRun]] = (
         "s",
         ".3g",
     ),
-    Column("", "failure", lambda run: run.failure, "why the run ended early"),
 )
 
 SWEPT: Sequence[Column[SweptAnswer]] = (
@@ -216,25 +215,21 @@ SWEPT: Sequence[Column[SweptAnswer]] = (
 
 def _remark(answer: Judgement) -> str | None:
     searched = None if answer.searched is None else f"searched for αh, βh to {answer.searched:g}"
-    return "; ".join(filter(None, (answer.margins_reason, searched))) or None
+    failure = answer.run.failure if answer.run else None
+    return "; ".join(filter(None, (answer.margins_reason, searched, failure))) or None
 
 
 JUDGED: Sequence[Column[Judgement]] = (
     *ASKED,
     *DECAY,
     *ENDS,
-    Column("remark", "remark", _remark, "why margins are not known, and how far was searched"),
+    Column("remark", "remark", _remark, "why margins are not known, how far was searched, why the run ended early"),
     *of_part(Judgement, lambda answer: answer.margins, MARGINS),
     *MOTION,
     *of_part(Judgement, lambda answer: answer.cost, COST),
     *of_part(Judgement, lambda answer: answer.moving, MOVING),
     *of_part(Judgement, lambda answer: answer.run, RUN),
-    Column(
-        "holds for",
-        "swept",
-        lambda answer: answer.swept_over,
-        "for which constraints `safe` holds in an engine that sweeps",
-    ),
+    Column("holds for", "", lambda answer: answer.swept_over, ""),
     *of_part(Judgement, lambda answer: answer.swept, SWEPT),
     Column(
         "sag",
@@ -257,7 +252,6 @@ CHECKED: Sequence[Column[CheckAnswer | ChooseAnswer]] = (
 
 CHOSEN: Sequence[Column[ChooseAnswer]] = (
     *JUDGED,
-    Column("", "safe_with", lambda answer: answer.safe_with, "the option with which an unsafe choice is safe"),
     SENTENCE,
 )
 

@@ -37,17 +37,16 @@ STATES: Sequence[Column[Judged]] = (
     Column("|z|", "z_abs", lambda judged: judged.z_abs, "a step multiplies errors by it, at most"),
     Column(
         "a tenth in (s)",
-        "tenth_seconds",
+        "",
         lambda judged: judged.seconds_to(10.0),
-        "until errors are a tenth",
-        "s",
-        ".3g",
+        "",
+        form=".3g",
     ),
     Column(
         "a thousandth",
         "settle_seconds",
         lambda judged: judged.seconds_to(1000.0),
-        "until they are a thousandth; null where some do not fall",
+        "until errors are a thousandth; null where some do not fall",
         "s",
         ".3g",
     ),
@@ -78,10 +77,12 @@ ENERGIES: Sequence[Column[Kept]] = (
     Column("with", "setting", lambda kept: kept.setting, "solref and solimp"),
     Column(
         "energy kept in 1 s",
-        "kept",
-        lambda kept: kept.kept,
-        "share of the energy that a second keeps, without drives and friction; null where the run breaks down",
-        form=".2%",
+        "energy_rate",
+        lambda kept: None if kept.kept is None else kept.kept - 1,
+        "share of its energy that a motion gains in a second, without drives and friction; null where the run breaks "
+        "down",
+        "1/s",
+        lambda gained: format(1 + gained, ".2%"),
     ),
 )
 

@@ -42,7 +42,7 @@ POLES: Sequence[Column[Probe]] = (
         "± of z",
         "uncertainty",
         lambda answer: answer.found.uncertainty if answer.pole is not None else None,
-        "how far the pole may be off; null without a pole",
+        "how far the pole may be off, or α̂ and β̂; null without a pole",
         form=".1e",
     ),
     Column("rows", "", lambda answer: answer.found.samples, ""),
@@ -77,10 +77,12 @@ FOUND: Sequence[Column[Found]] = (
     Column("α̂", "alpha_hat", lambda it: it.point.alpha_hat, "2αh where the method has the pole", brief=True),
     Column("β̂", "beta_hat", lambda it: it.point.beta_hat, "β²h² where the method has the pole", brief=True),
     Column(
-        "± of α̂", "alpha_hat_error", lambda it: it.point.alpha_hat_error, "how far α̂ may be off", form=".1e", brief=True
-    ),
-    Column(
-        "± of β̂", "beta_hat_error", lambda it: it.point.beta_hat_error, "how far β̂ may be off", form=".1e", brief=True
+        "± of α̂, β̂",
+        "uncertainty",
+        lambda it: [it.point.alpha_hat_error, it.point.beta_hat_error],
+        "how far α̂ and β̂ may be off",
+        form=".1e",
+        brief=True,
     ),
     Column("α (1/s)", "alpha", lambda it: _rates(it)[0], "damping; null without h", "1/s", brief=True),
     Column("β (1/s)", "beta", lambda it: _rates(it)[1], "stiffness as a rate; null without h", "1/s", brief=True),

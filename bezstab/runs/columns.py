@@ -60,7 +60,7 @@ RUN: Sequence[Column[Simulation]] = (
     Column(
         "Newton's iterations", "iterations", lambda run: run.iterations, "in the whole run; null for an explicit method"
     ),
-    Column("failure", "failure", lambda run: run.failure, "why the run ended early; null if it did not", brief=True),
+    Column("failure", "remark", lambda run: run.failure, "why the run ended early; null if it did not", brief=True),
 )
 
 
@@ -101,9 +101,10 @@ MEASURED: Sequence[Column[Measurement]] = (
     Column("measured verdict", "verdict", lambda found: found.measured_verdict, "of the run", apart=True),
     Column(
         "verdicts agree",
-        "verdicts_agree",
+        "agreeing",
         lambda found: found.verdicts_agree,
-        "whether predicted and measured verdict agree; null where either is not settled",
+        "whether predicted and measured verdict agree, null where either is not settled; of a map, how many of its "
+        "runs have the predicted one",
         form="NO",
         apart=True,
     ),
@@ -131,7 +132,7 @@ SUMMARY: Sequence[Column[MeasurementSummary]] = (
 VERDICT_MAP: Sequence[Column[VerdictMap]] = (
     METHOD,
     Column("h (s)", "h", lambda found: found.h, "step", "s"),
-    Column("runs", "runs", lambda found: found.undecided.size, "number of runs", brief=True),
+    Column("runs", "", lambda found: found.undecided.size, "", brief=True),
     Column("gave a verdict", "", lambda found: found.judged, "", brief=True),
     Column("as predicted", "agreeing", lambda found: found.agreeing, "runs with the predicted verdict", brief=True),
     Column(
@@ -149,14 +150,14 @@ class Ranked(NamedTuple):
 
     run: Run
     front: str
-    cheapest: bool
 
 
 def ranked_rows(swept: SweptRuns) -> list[Ranked]:
-    """Return each run with the fronts on which it is: T by trajectory error, c by constraint error."""
-    letters = {"T": swept.fronts["trajectory"], "c": swept.fronts["constraint"]}
+    """Return each run with the fronts on which it is: T by trajectory error, c by constraint error, or cheapest."""
+    cheapest = [place for place, run in enumerate(swept.runs) if run is swept.cheapest]
+    best = {"T": swept.fronts["trajectory"], "c": swept.fronts["constraint"], "cheapest": cheapest}
     return [
-        Ranked(run, " ".join(letter for letter, front in letters.items() if place in front), run is swept.cheapest)
+        Ranked(run, " ".join(word for word, places in best.items() if place in places))
         for place, run in enumerate(swept.runs)
     ]
 
@@ -240,17 +241,11 @@ COSTS: Sequence[Column[Ranked]] = (
         "front",
         "front",
         lambda it: it.front,
-        "T if no run is both cheaper and nearer to the trajectory, c if none is to the constraints",
+        "T if no run is both cheaper and nearer to the trajectory, c if none is to the constraints; and cheapest of "
+        "those with a trajectory error within --tolerance",
         brief=True,
     ),
-    Column(
-        "cheapest",
-        "cheapest",
-        lambda it: it.cheapest,
-        "whether it costs least of all runs with a trajectory error within --tolerance",
-        brief=True,
-    ),
-    Column("failure", "failure", lambda it: it.run.failure, "why the run ended early; null if it did not"),
+    Column("failure", "remark", lambda it: it.run.failure, "why the run ended early; null if it did not"),
 )
 
 

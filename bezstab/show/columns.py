@@ -104,9 +104,13 @@ RATES: Sequence[Column[_WithRates]] = (
 SENTENCE = Column[_InWords]("", "sentence", lambda it: it.sentence, "the answer in words")
 
 POLE: Sequence[Column[complex]] = (
-    Column("pole z", "", pole_words, "the pole and its conjugate"),
-    Column("", "z_real", lambda z: z.real, "real part of the pole"),
-    Column("", "z_imag", lambda z: z.imag, "imaginary part of the pole, that of the upper one of a pair"),
+    Column(
+        "pole z",
+        "z",
+        lambda z: (z.real, z.imag),
+        "real and imaginary part of the pole, of the upper one of a pair",
+        form=lambda parts: pole_words(complex(*parts)),
+    ),
     Column("|z_p|", "z_abs", abs, "modulus of the pole: each step multiplies errors by it", form=modulus_words),
     Column("∠z (deg)", "", lambda z: math.degrees(cmath.phase(z)), "", form=".3f"),
 )

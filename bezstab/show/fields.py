@@ -28,12 +28,14 @@ Form = str | Callable[[Any], str]
 def formatted(value: Value, form: Form = "") -> str:
     """Return a value in a form, by default six digits, minus zero as zero; a dash for None and for an empty text.
 
-    Truth is yes or no; a format of its own is what it is called in place of no.
+    Truth is yes or no; a format of its own is what it is called in place of no. That of a list is of its parts.
     """
     if value is None or value == "":
         return MISSING
     if callable(form):
         return form(value)
+    if form and isinstance(value, list | tuple):
+        return ", ".join(formatted(each, form) for each in value)
     if isinstance(value, bool):
         return "yes" if value else form or "no"
     if isinstance(value, float):

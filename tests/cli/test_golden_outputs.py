@@ -32,7 +32,7 @@ class Tolerance:
 TOLERANCES = (
     Tolerance(
         "verify",
-        "z_.*",
+        "z(_abs)?",
         1e-6,
         1e-5,
         "simulated, then fitted: libm and BLAS differ between machines, by less than fits are off what is predicted",
@@ -57,13 +57,17 @@ TOLERANCES = (
     Tolerance("tradeoff", "order", 1e-6, 1e-5, "the logarithm of a ratio of simulated errors"),
     Tolerance(
         "choose --method (RK4|B4 --method SYM)",
-        "alpha.*|beta.*|worst|h_.*|.*error|z_(real|imag|abs)",
+        "alpha.*|beta.*|worst|h_.*|.*error|z(_abs)?",
         1e-5,
         1e-7,
         "the goal accurate: where an error is least it is flat, so that its place is known to the root of rounding",
     ),
     Tolerance(
-        "choose|check", "z_.*", 1e-9, 1e-7, "many choices are double poles, which split by the root of rounding, 1e-8"
+        "choose|check",
+        "z(_abs)?",
+        1e-9,
+        1e-7,
+        "many choices are double poles, which split by the root of rounding, 1e-8",
     ),
     Tolerance("", ".*", 1e-9, 1e-12, "float64 arithmetic on numbers of order one"),
 )

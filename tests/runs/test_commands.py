@@ -28,7 +28,7 @@ def test_simulate_writes_the_history_that_its_row_sums_up(tmp_path: Path) -> Non
 def test_a_run_that_fails_is_status_three_with_its_time_and_keeps_the_history(tmp_path: Path) -> None:
     result = run("simulate --alpha 1.7 --beta 0.8 --time 1 --table csv --format json")
     assert result.exit_code == 3
-    assert "blow-up" in json.loads(result.stdout)[0]["failure"]
+    assert "blow-up" in json.loads(result.stdout)[0]["remark"]
     assert "at t = 0.1" in result.stderr.splitlines()[-1]
     assert sorted(path.suffix for path in tmp_path.iterdir()) == [".csv", ".png"]
 
@@ -105,7 +105,7 @@ def test_without_numba_compiled_runs_are_refused_in_a_line(command: str, monkeyp
 def test_what_is_thrown_apart_at_once_diverges_and_seconds_are_understood() -> None:
     at = "verify --scene pendulum --method RK4"
     (gone,) = rows(at, "--alpha 14217 --beta 16544")  # |z| = 1.7e15: nothing stays finite
-    assert (gone["z_abs"], gone["verdict"], gone["verdicts_agree"]) == (None, "diverges", True)
+    assert (gone["z_abs"], gone["verdict"], gone["agreeing"]) == (None, "diverges", True)
     # alpha = 400 1/s and beta = 500 1/s: alpha_hat = 2 alpha h, beta_hat = (beta h)^2
     (in_seconds,) = rows(at, "--alpha 400 --beta 500 --h 0.001 --physical")
     assert (in_seconds["alpha_hat"], in_seconds["beta_hat"]) == (0.8, 0.25)
