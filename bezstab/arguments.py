@@ -4,7 +4,7 @@ import re
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from fractions import Fraction
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -14,6 +14,9 @@ from bezstab.units import to_dimensionless
 
 Number = int | float | str | Fraction
 """A number that is read exactly: a float as the decimal it shows, a text as a decimal or a fraction such as "6/11"."""
+
+Missing = TypeVar("Missing", bound=None)
+"""None, of a number that may be missing."""
 
 
 @contextmanager
@@ -30,8 +33,13 @@ def _keyword(option: re.Match[str]) -> str:
     return {"time": "duration", "filter": "filter_seconds"}.get(option[1], option[1].replace("-", "_"))
 
 
-def exact_number(value: Number, name: str) -> Fraction:
-    """Return one number exactly as it is written, a float as the decimal it shows; InputError for what is none."""
+def exact_number(value: Number | Missing, name: str) -> Fraction | Missing:
+    """Return one number exactly as it is written, a float as the decimal it shows; None where it is missing.
+
+    InputError for what is none.
+    """
+    if value is None:
+        return value
     if isinstance(value, np.ndarray | np.generic) and value.ndim == 0 and not isinstance(value, np.ma.MaskedArray):
         value = value.item()
     if isinstance(value, bool) or not isinstance(value, int | float | str | Fraction):
@@ -42,14 +50,9 @@ def exact_number(value: Number, name: str) -> Fraction:
         raise InputError(f"{name}: {error}") from None
 
 
-def exact_or_none(value: Number | None, name: str) -> Fraction | None:
-    """Return the same of a number that may be missing."""
-    return None if value is None else exact_number(value, name)
-
-
-def whole_number(value: int, name: str) -> int:
-    """Return a whole number; InputError for what is none."""
-    if isinstance(value, bool) or not isinstance(value, int):
+def whole_number(value: int | Missing, name: str) -> int | Missing:
+    """Return a whole number, or None where it is missing; InputError for what is none."""
+    if value is not None and (isinstance(value, bool) or not isinstance(value, int)):
         raise InputError(f"{name} = {shown(value)}: expected a whole number")
     return value
 
@@ -66,28 +69,24 @@ def plane_point(
     beta: Any,
     h: Number | None,
     read: Callable[[Any, str], Any] = exact_number,
-) -> tuple[Any, Any]:
+    *,
+    needed: bool = True,
+) -> Any:
     """Return (alpha_hat, beta_hat) from whichever two were given, alpha and beta in 1/s with the step h in s.
 
-    Numbers are exact, unless they are `read` else. InputError if anything else is given, or nothing.
+    Numbers are exact, unless they are `read` else. InputError if anything else is given. Where nothing is: InputError
+    if a point is `needed`, else None.
     """
     all_four = {"alpha_hat": alpha_hat, "beta_hat": beta_hat, "alpha": alpha, "beta": beta}
     given = {name: value for name, value in all_four.items() if value is not None}
+    if not given and not needed:
+        return None
     if given.keys() not in ({"alpha_hat", "beta_hat"}, {"alpha", "beta"}):
         expected = "alpha_hat= and beta_hat=, or as alpha= and beta= in 1/s with h= in s"
         raise InputError(f"a point is given as {expected}, not as {', '.join(given) or 'nothing'}")
-    if "alpha" in given and h is None:
-        raise InputError("alpha and beta in 1/s need the step h in s")
     first, second = (read(value, name) for name, value in given.items())
-    return (
-        (first, second) if h is None or "alpha_hat" in given else to_dimensionless(first, second, exact_number(h, "h"))
-    )
-
-
-def point_if_given(
-    alpha_hat: Number | None, beta_hat: Number | None, alpha: Number | None, beta: Number | None, h: Number | None
-) -> tuple[Fraction, Fraction] | None:
-    """Return the same, exact; None if none of the four is given."""
-    if alpha_hat is alpha is beta_hat is beta is None:
-        return None
-    return plane_point(alpha_hat, beta_hat, alpha, beta, h)
+    if "alpha_hat" in given:
+        return first, second
+    if h is None:
+        raise InputError("alpha and beta in 1/s need the step h in s")
+    return to_dimensionless(first, second, exact_number(h, "h"))

@@ -151,7 +151,7 @@ def drive(
     )
     gains = Drive(*(exact_number(gain, name) for gain, name in zip((kp, kd, inertia, ki), GAINS, strict=True)))
     named = method if isinstance(method, Method) else lookup(method)
-    return judge_drive(gains, step, named, timing, None if load is None else exact_number(load, "load"))
+    return judge_drive(gains, step, named, timing, exact_number(load, "load"))
 
 
 def rates(

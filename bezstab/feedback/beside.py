@@ -4,8 +4,7 @@ from collections.abc import Sequence
 
 from bezstab.cli.asking import say_what_is_left_out
 from bezstab.cli.output import say, show_text
-from bezstab.feedback.checking import Given, made_points
-from bezstab.feedback.conditions import Conditions
+from bezstab.feedback.conditions import Conditions, Given
 from bezstab.feedback.judgement import Judgement
 from bezstab.words import point_words
 
@@ -14,13 +13,13 @@ def show_point(judged: Sequence[Judgement]) -> None:
     """Print which point was judged, above a table: the sentence of a single answer says it."""
     if len(judged) > 1:
         first = judged[0]
-        show_text(f"{point_words(first.alpha_hat, first.beta_hat, first.conditions.h)}\n")
+        show_text(f"{point_words(first.alpha_hat, first.beta_hat, first.h)}\n")
 
 
 def say_what_the_engine_did(given: Given, asked: Conditions) -> None:
     """Say on standard error what an engine did to its values, and what the conversion leaves out; else nothing."""
     if asked.engine is None:
         return
-    for note in made_points(given, asked).notes or ():
+    for note in given.made.notes or ():
         say(f"{asked.engine.name}: {note} (--as-typed leaves that out)")
     say_what_is_left_out(asked.engine, many=asked.swept is not None)

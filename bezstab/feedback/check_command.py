@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -42,17 +42,12 @@ def check(
     alpha: Fraction | None,
     beta: Fraction | None,
     physical: bool,
-    h: Fraction | None,
     engine: EngineValues | None,
     as_typed: bool,
-    omega: Fraction | None,
-    scene: str | None,
-    speed: Fraction,
-    duration: Fraction | None,
-    load: Fraction | None,
     instead: bool,
     every_column: bool,
     form: str,
+    **simulation: Any,
 ) -> bool:
     """Tell whether a choice is safe: exit status 0 if so, 1 if not.
 
@@ -68,27 +63,26 @@ def check(
     """
 
     from bezstab.feedback.beside import say_what_the_engine_did, show_point
-    from bezstab.feedback.checking import Given, checks, step_answer
+    from bezstab.feedback.checking import checks
     from bezstab.feedback.columns import CHECKED, STEPS, spare_words
-    from bezstab.feedback.conditions import Setup, conditions
+    from bezstab.feedback.conditions import Setup, conditions, given_feedback
+    from bezstab.feedback.largest_steps import step_answer
     from bezstab.feedback.sentences import costs_words, energy_sentence, motion_words
     from bezstab.questions.methods import methods_for
-    from bezstab.questions.motions import check_speed
+    from bezstab.stability.damping_limits import stable_up_to
 
-    typed = TypedPoint(alpha, beta, physical)
-    numbers = typed.numbers
-    if physical and numbers and h is None and not (engine or scene or omega or load):
-        check_speed(None, speed)
-        found = [step_answer(method, *numbers) for method in methods_for(methods, None)]
+    typed, (named, values) = TypedPoint(alpha, beta, physical), engine or (None, None)
+    setup = Setup(engine=named, **simulation)
+    if physical and typed.numbers and setup.h is None and not (engine or setup.scene or setup.omega):
+        point = typed.numbers
+        found = [step_answer(method, *point, stable_up_to(method, *point)) for method in methods_for(methods, None)]
         show_answers(STEPS, found, [answer.sentence for answer in found])
         return all(found)
-    named, values = engine or (None, None)
-    given = Given(point=typed.at(h), values=values, as_typed=as_typed)
-    setup = Setup(h=h, engine=named, omega=omega, scene=scene, speed=speed, duration=duration, load=load)
-    methods, asked = methods_for(methods, named), worked_out(lambda: conditions(setup), scene)
+    given = given_feedback(setup, typed.at(setup.h), values, as_typed=as_typed)
+    methods, asked = methods_for(methods, named), worked_out(lambda: conditions(setup), simulation["scene"])
     say_each(asked.warnings)
     answers = checks(methods, given, asked, instead=instead, instead_of_unsafe=True)
-    say_if_units_were_mistaken(methods, typed, h)
+    say_if_units_were_mistaken(methods, typed, setup.h)
     better = [each.instead for each in answers if each.instead is not None]
     if for_reading():
         show_point(answers)

@@ -1,28 +1,31 @@
 """Is this feedback safe, and what does it cost? A point of yours, or an engine's own values, judged.
 
-methods, point or values of an engine, Conditions   →   checks   →   CheckAnswer, by method and point
-method, alpha and beta in 1/s, no step              →   largest_steps   →   StepAnswer
+methods, Given, Conditions   →   checks   →   CheckAnswer, by method and point
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 
-from bezstab.arguments import Number, exact_number, exact_or_none, in_keywords, plane_point, point_if_given, real_number
-from bezstab.engines.conversions import Applied, Point
+from bezstab.arguments import Number, in_keywords, plane_point
 from bezstab.engines.engine_list import engine_and_values
 from bezstab.errors import InputError, NumericalError
 from bezstab.feedback.choosing import ChooseAnswer, Wish, check_motion, choose_answer
-from bezstab.feedback.conditions import Conditions, Setup, conditions, for_choosing
-from bezstab.feedback.judgement import AS_GIVEN, Judgement, judge
-from bezstab.feedback.sentences import judgement_sentence, step_sentence
-from bezstab.mechanism.scene_files import scene as scene_named
+from bezstab.feedback.conditions import (
+    AS_GIVEN,
+    Conditions,
+    Given,
+    conditions,
+    for_choosing,
+    given_feedback,
+    setup_in_python,
+)
+from bezstab.feedback.judgement import Judgement, judge
+from bezstab.feedback.sentences import judgement_sentence
 from bezstab.mechanism.scenes import Scene
 from bezstab.methods.registry import method as method_named
 from bezstab.methods.schemes import Method
 from bezstab.questions.methods import methods_for, usual_goal
 from bezstab.stability.choices import USUAL_SPREAD, describe_point
-from bezstab.stability.damping_limits import stable_up_to
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
@@ -39,26 +42,6 @@ class CheckAnswer(Judgement):
 
     def __repr__(self) -> str:
         return f"{self.sentence} [{self.method.name}, {self.goal}, |z_p| = {abs(self.pole):.6g}]"
-
-
-@dataclass(frozen=True, kw_only=True)
-class Given:
-    """The point that is judged, or the `values` of an engine, which makes points of them; `as_typed` without clamps.
-
-    InputError unless it is one of the two.
-    """
-
-    point: Point | None = None
-    values: tuple[Fraction, ...] | None = None
-    as_typed: bool = False
-
-    def __post_init__(self) -> None:
-        if self.as_typed and self.values is None:
-            raise InputError("--as-typed needs --engine: it leaves out what that engine does to its values")
-        if self.values is not None and self.point is not None:
-            raise InputError("--engine takes the place of --alpha, --beta and --physical")
-        if self.values is None and self.point is None:
-            raise InputError("a point is needed: --alpha with --beta, or --engine")
 
 
 @in_keywords()
@@ -127,31 +110,14 @@ def check(
     The Schur-Cohn test (I. Schur, J. reine angew. Math. 147, 1917) on the polynomial of the paper's Eq. 17.
     """
     named, values = (None, None) if engine is None else engine_and_values(engine)
-    given_point = point_if_given if engine else plane_point
-    point = given_point(alpha_hat, beta_hat, alpha, beta, h)
-    given = Given(point=point, values=values, as_typed=as_typed)
-    setup = Setup(
-        h=exact_or_none(h, "h"),
-        engine=named,
-        omega=exact_or_none(omega, "omega"),
-        omega_h=exact_or_none(omega_h, "omega_h"),
-        scene=None if scene is None else scene_named(scene),
-        speed=exact_number(speed, "speed"),
-        duration=exact_or_none(duration, "duration"),
-        spread=real_number(spread, "spread"),
-        load=exact_or_none(load, "load"),
+    setup = setup_in_python(
+        named, scene, spread, h=h, omega=omega, omega_h=omega_h, speed=speed, duration=duration, load=load
     )
+    point = plane_point(alpha_hat, beta_hat, alpha, beta, h, needed=named is None)
+    given = given_feedback(setup, point, values, as_typed=as_typed)
     methods = methods_for(() if method is None else (method_named(method),), named)
     found = checks(methods, given, conditions(setup), margins=margins, cost=cost, instead=instead)
     return next((answer for answer in found if not answer.safe), found[0])
-
-
-def made_points(given: Given, asked: Conditions) -> Applied:
-    """Return the point that is judged, and those at which an engine's values must be safe, too."""
-    if given.values is not None and asked.engine and asked.h is not None:
-        return asked.engine.applied(given.values, asked.h, as_typed=given.as_typed)
-    assert given.point
-    return Applied(given.point, None)
 
 
 def checks(
@@ -169,20 +135,11 @@ def checks(
     What to take instead stands in the first answer of a method: if asked for, or with `instead_of_unsafe` where one of
     the method's answers is not safe.
     """
-    made, found = made_points(given, asked), []
+    found = []
     for method in methods:
         judged = [
-            judge(
-                asked,
-                describe_point(method, label, *point, asked.spread, margins),
-                "given",
-                values=given.values,
-                applied=made.words if asked.engine and label == AS_GIVEN else None,
-                as_typed=given.as_typed,
-                margins=margins,
-                cost=cost,
-            )
-            for label, point in ((AS_GIVEN, made.point), *made.also)
+            judge(asked, describe_point(method, label, *point, asked.spread, margins), "given", given, cost=cost)
+            for label, point in ((AS_GIVEN, given.made.point), *given.made.also)
         ]
         better, reason = None, None
         if instead or (instead_of_unsafe and not all(judged)):
@@ -190,16 +147,10 @@ def checks(
                 better = _instead(method, asked)
             except (InputError, NumericalError) as error:  # the verdict stands without it
                 reason = str(error)
-        for number, each in enumerate(judged):
-            first = number == 0
-            found.append(
-                CheckAnswer(
-                    **vars(each),
-                    instead=better if first else None,
-                    instead_reason=reason if first else None,
-                    sentence=judgement_sentence(each),
-                )
-            )
+        for each in judged:
+            sentence = judgement_sentence(each)
+            found.append(CheckAnswer(**vars(each), instead=better, instead_reason=reason, sentence=sentence))
+            better, reason = None, None
     return found
 
 
@@ -212,68 +163,3 @@ def _instead(method: Method, asked: Conditions) -> ChooseAnswer:
     if goal == "accurate":
         check_motion(method, asked)
     return choose_answer(method, Wish(goal), for_choosing(asked), "instead")
-
-
-@dataclass(frozen=True, repr=False)
-class StepAnswer:
-    """The step (s) up to which every step is stable with a method, alpha and beta (1/s): infinite if all are.
-
-    safe: whether small steps are stable at all; else h_limit is zero.
-    """
-
-    method: Method
-    alpha: float
-    beta: float
-    h_limit: float
-    safe: bool
-    sentence: str
-
-    def __repr__(self) -> str:
-        return self.sentence
-
-    def __bool__(self) -> bool:
-        return self.safe
-
-
-@in_keywords()
-def largest_step(method: str | Method, *, alpha: Number, beta: Number) -> float:
-    """Return the step (s) up to which every step is stable with alpha and beta.
-
-    Parameters
-    ----------
-    method : str or Method
-        The integration method.
-    alpha, beta : number or str
-        The feedback in 1/s.
-
-    Returns
-    -------
-    float
-        Infinite if every step is stable, 0 if small ones are not. The verdict is proven on both sides.
-
-    Raises
-    ------
-    InputError
-        A number is not finite.
-
-    References
-    ----------
-    The path of all steps through the plane of the paper's Eq. 17.
-    """
-    return stable_up_to(method_named(method), exact_number(alpha, "alpha"), exact_number(beta, "beta"))
-
-
-def step_answer(method: Method, alpha: Fraction, beta: Fraction) -> StepAnswer:
-    """Return up to which step alpha and beta (1/s) are stable, as an answer."""
-    return _step_answer(method, float(alpha), float(beta), stable_up_to(method, alpha, beta))
-
-
-def step_answer_of(chosen: ChooseAnswer) -> StepAnswer:
-    """Return the same of a choice whose alpha and beta do not depend on the step."""
-    assert chosen.alpha is not None
-    assert chosen.beta is not None
-    return _step_answer(chosen.method, chosen.alpha, chosen.beta, chosen.h_limit or 0.0)
-
-
-def _step_answer(method: Method, alpha: float, beta: float, h_limit: float) -> StepAnswer:
-    return StepAnswer(method, alpha, beta, h_limit, h_limit > 0, step_sentence(alpha, beta, h_limit))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -15,7 +15,6 @@ from bezstab.cli.output import for_reading, progress, show_answers, worked_out
 from bezstab.goals import GOALS, SETTLING, UP_TO_LONGEST, Goal, one_of
 
 if TYPE_CHECKING:
-    from bezstab.engines.conversions import Engine
     from bezstab.methods.schemes import Method
 
 
@@ -48,22 +47,14 @@ GOALS_IN_LINES = "\b\nGoals:\n" + "\n".join(f"  {goal:<9} {asked}" for goal, ask
 )
 @grouped("Output", shared.every_column, shared.form)
 def choose(
+    methods: tuple[Method, ...],
     goal: Goal | None,
     settle: Fraction | None,
-    spread: float,
     equal: str | None,
-    engine: Engine | None,
     sag: Fraction | None,
-    load: Fraction | None,
-    methods: tuple[Method, ...],
-    h: Fraction | None,
-    h_max: Fraction | None,
-    omega: Fraction | None,
-    scene: str | None,
-    speed: Fraction,
-    duration: Fraction | None,
     every_column: bool,
     form: str,
+    **simulation: Any,
 ) -> bool:
     """Recommend α and β for an integrator and its step size.
 
@@ -75,31 +66,25 @@ def choose(
     Example: bezstab choose --method SYM --h 0.001 --omega 10
     """
 
-    from bezstab.feedback.checking import step_answer_of
-    from bezstab.feedback.choosing import asked_to_choose, choices, wish_of
+    from bezstab.feedback.choosing import asked_to_choose, choose_answer
     from bezstab.feedback.columns import CHOSEN, STEPS, spare_words, trade_words
     from bezstab.feedback.conditions import Setup
+    from bezstab.feedback.largest_steps import step_answer
     from bezstab.feedback.sentences import motion_words
 
-    wish = wish_of(goal, settle, equal is not None, sag, engine, methods)
-    setup = Setup(
-        h=h,
-        h_max=h_max,
-        engine=engine,
-        omega=omega,
-        scene=scene,
-        speed=speed,
-        duration=duration,
-        spread=spread,
-        load=load,
+    setup = Setup(**simulation)
+    methods, wish, asked = worked_out(
+        lambda: asked_to_choose(methods, setup, goal, settle=settle, equal=bool(equal), sag=sag), simulation["scene"]
     )
-    methods, asked = worked_out(lambda: asked_to_choose(methods, wish, setup), scene)
     if asked.h is None:
         raise click.MissingParameter(param_hint="'--h'", param_type="option")
     say_each(asked.warnings)
-    chosen = list(progress(choices(methods, wish, asked, trades=for_reading()), wish.goal, len(methods)))
-    if h is None:
-        at_any_step = [step_answer_of(answer) for answer in chosen]
+    answers = (choose_answer(method, wish, asked, trades=for_reading()) for method in methods)
+    chosen = list(progress(answers, wish.goal, len(methods)))
+    if setup.h is None:
+        at_any_step = [
+            step_answer(each.method, each.alpha or 0.0, each.beta or 0.0, each.h_limit or 0.0) for each in chosen
+        ]
         show_answers(STEPS, at_any_step, [answer.sentence for answer in at_any_step])
         return all(chosen)
     show_answers(CHOSEN, chosen, [answer.sentence for answer in chosen])
@@ -111,6 +96,6 @@ def choose(
         show_sentences([motion_words(asked.motion)])
     show_sentences(map(spare_words, chosen))
     say_each(answer.cost_reason for answer in chosen)
-    if engine and for_reading():
-        say_what_is_left_out(engine, many=asked.swept is not None)
+    if setup.engine and for_reading():
+        say_what_is_left_out(setup.engine, many=asked.swept is not None)
     return all(chosen)

@@ -1,21 +1,19 @@
 """Which alpha and beta to take: the point that a goal asks for, judged, and what faster or slower decay would change.
 
-methods, Wish (a goal), Conditions   →   choices   →   ChooseAnswer, by method
+method, Wish (a goal), Conditions   →   choose_answer   →   ChooseAnswer
 """
 
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
-from bezstab.arguments import Number, exact_number, exact_or_none, in_keywords, real_number
+from bezstab.arguments import Number, exact_number, in_keywords
 from bezstab.engines.conversions import READ_BACK, Curve, Engine
 from bezstab.engines.engine_list import engine_named
 from bezstab.errors import InputError, NumericalError
-from bezstab.feedback.conditions import Conditions, Setup, at_step, conditions, for_choosing
+from bezstab.feedback.conditions import Conditions, Setup, at_step, conditions, for_choosing, setup_in_python
 from bezstab.feedback.judgement import Judgement, Role, judge
 from bezstab.feedback.sentences import judgement_sentence, trials_words
 from bezstab.goals import SETTLING, UP_TO_LONGEST, Goal, one_of
-from bezstab.mechanism.scene_files import scene as scene_named
 from bezstab.mechanism.scenes import Scene
 from bezstab.methods.registry import method as method_named
 from bezstab.methods.schemes import Method
@@ -178,60 +176,48 @@ def choose(
     The poles of the paper's Eq. 17; the goals are this package's.
     """
     named = None if engine is None else engine_named(engine)
-    given = () if method is None else (method_named(method),)
-    wish = wish_of(goal, exact_or_none(settle, "settle"), equal, exact_or_none(sag, "sag"), named, given)
-    setup = Setup(
-        h=exact_or_none(h, "h"),
-        h_max=exact_or_none(h_max, "h_max"),
-        engine=named,
-        omega=exact_or_none(omega, "omega"),
-        omega_h=exact_or_none(omega_h, "omega_h"),
-        scene=None if scene is None else scene_named(scene),
-        speed=exact_number(speed, "speed"),
-        duration=exact_or_none(duration, "duration"),
-        spread=real_number(spread, "spread"),
-        load=exact_or_none(load, "load"),
+    setup = setup_in_python(
+        named, scene, spread, h=h, h_max=h_max, omega=omega, omega_h=omega_h, speed=speed, duration=duration, load=load
     )
-    methods, asked = asked_to_choose(given, wish, setup)
+    given = () if method is None else (method_named(method),)
+    within, at_most = exact_number(settle, "settle"), exact_number(sag, "sag")
+    methods, wish, asked = asked_to_choose(given, setup, goal, settle=within, equal=equal, sag=at_most)
     return choose_answer(methods[0], wish, asked, margins=margins, cost=cost, trades=trades)
 
 
-def wish_of(
+def asked_to_choose(
+    methods: tuple[Method, ...],
+    setup: Setup,
     goal: Goal | None,
+    *,
     settle: Fraction | None,
     equal: bool,
     sag: Fraction | None,
-    engine: Engine | None,
-    methods: tuple[Method, ...],
-) -> Wish:
-    """Return what a choice is for, by the usual goal where none is named; InputError for a sag beside a goal."""
-    if sag is None:
-        return Wish(goal or usual_goal(engine, methods), settle, equal)
-    if goal or settle or equal:
-        raise InputError("--sag takes the place of --goal, --settle and --keep")
-    if engine is None:
-        raise InputError("--sag needs --engine: a hard constraint does not sag")
-    return Wish("robust", sag=sag)
+) -> tuple[tuple[Method, ...], Wish, Conditions]:
+    """Return the methods, what a choice is for, by the usual goal where none is named, and the conditions.
 
-
-def asked_to_choose(methods: tuple[Method, ...], wish: Wish, setup: Setup) -> tuple[tuple[Method, ...], Conditions]:
-    """Return the methods and the conditions of a choice; InputError for what does not go together.
-
-    Without a step, it is what makes OMEGA_H of the rate omega, where every method follows the motion. A sag is that
-    under gravity, unless a load is given.
+    InputError for what does not go together. Without a step, it is what makes OMEGA_H of the rate omega, where every
+    method follows the motion. A sag is that under gravity, unless a load is given.
     """
+    if sag is None:
+        wish = Wish(goal or usual_goal(setup.engine, methods), settle, equal)
+    elif goal or settle or equal:
+        raise InputError("--sag takes the place of --goal, --settle and --keep")
+    elif setup.engine is None:
+        raise InputError("--sag needs --engine: a hard constraint does not sag")
+    else:
+        wish = Wish("robust", sag=sag)
     _check_wish(wish, setup.h, setup.h_max, setup.engine)
     if setup.h is None and setup.omega and methods and all(map(follows_motion, methods)):
         setup = replace(setup, h=OMEGA_H / setup.omega)
-    if setup.load is None and wish.sag is not None:
-        setup = replace(setup, load=GRAVITY)
-    methods, asked = methods_for(methods, setup.engine), conditions(setup)
-    if wish.sag is not None:
-        return methods, asked  # one constraint alone: `chain` adds up what many sag
-    if wish.goal == "accurate" and wish.settle is None:
+    methods = methods_for(methods, setup.engine)
+    if sag is not None:  # of one constraint alone: `chain` adds up what many sag
+        return methods, wish, conditions(replace(setup, load=setup.load or GRAVITY))
+    asked = conditions(setup)
+    if wish.goal == "accurate" and settle is None:
         for method in methods:
-            check_motion(method, asked, equal=wish.equal)
-    return methods, for_choosing(asked)
+            check_motion(method, asked, equal=equal)
+    return methods, wish, for_choosing(asked)
 
 
 def _check_wish(wish: Wish, h: Fraction | None, h_max: Fraction | None, engine: Engine | None) -> None:
@@ -270,14 +256,6 @@ def check_motion(method: Method, asked: Conditions, *, equal: bool = False) -> N
     )
 
 
-def choices(
-    methods: tuple[Method, ...], wish: Wish, asked: Conditions, *, trades: bool = False
-) -> Iterator[ChooseAnswer]:
-    """Yield the answer for each method; errors as `choose_answer`."""
-    for method in methods:
-        yield choose_answer(method, wish, asked, trades=trades)
-
-
 def choose_answer(
     method: Method,
     wish: Wish,
@@ -289,25 +267,24 @@ def choose_answer(
     trades: bool = False,
 ) -> ChooseAnswer:
     """Return the point that a goal asks for, judged; errors as `choose`."""
-    chosen = _chosen(method, wish, asked, margins=margins)
-    trials, judged = None, None
+    chosen = found = _chosen(method, wish, asked, margins=margins)
+    trials = None
     if role == "chosen":
         _check_expressed(asked, chosen)
         trials = _trials(chosen, wish, asked)
     if trials:
         found = describe_point(method, wish.goal, *trials.point, asked.spread, margins)
         found = replace(found, searched=chosen.searched)
-        judged = judge(asked, found, role, margins=margins, cost=cost)
-    if not judged or not judged.safe:
-        trials, judged = None, judge(asked, chosen, role, margins=margins, cost=cost)
-    safe_with = _safe_with(judged, wish) if role == "chosen" and not judged.safe and wish.sag is None else None
+    judged = judge(asked, found, role, cost=cost)
+    if trials and not judged.safe:
+        trials, judged = None, judge(asked, chosen, role, cost=cost)
+    by_goal = wish.sag is None
+    safe_with = _safe_with(judged, wish) if role == "chosen" and by_goal and not judged.safe else None
     return ChooseAnswer(
         **vars(judged),
         safe_with=safe_with,
         trials=trials,
-        trades=_trades(judged, wish)
-        if trades and wish.sag is None and judged.cost and judged.cost.total_error is not None
-        else None,
+        trades=_trades(judged, wish) if trades and by_goal else None,
         spare=_spare(judged, wish),
         sentence=judgement_sentence(judged, safe_with)
         + (trials_words(trials, chosen, asked.h) if trials and asked.h else ""),
@@ -422,7 +399,7 @@ def _safe_with(judged: Judgement, wish: Wish) -> str | None:
 def _is_safe(method: Method, wish: Wish, asked: Conditions) -> bool:
     """Return whether another choice is safe; it is not if it cannot be found."""
     try:
-        return judge(asked, _chosen(method, wish, asked, margins=False), "chosen", margins=False, cost=False).safe
+        return judge(asked, _chosen(method, wish, asked, margins=False), "chosen", cost=False).safe
     except (InputError, NumericalError):
         return False
 

@@ -4,9 +4,10 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-from bezstab.feedback.checking import CheckAnswer, StepAnswer
+from bezstab.feedback.checking import CheckAnswer
 from bezstab.feedback.choosing import Alternative, ChooseAnswer
 from bezstab.feedback.judgement import Judgement
+from bezstab.feedback.largest_steps import StepAnswer
 from bezstab.feedback.poles import PoleAnswer
 from bezstab.feedback.sentences import errors_words, sag_words
 from bezstab.methods.schemes import implicit
@@ -33,7 +34,7 @@ ASKED: Sequence[Column[Judgement]] = (
     Column("goal", "goal", lambda answer: answer.goal, "what the point is chosen for, or that it is given", apart=True),
     *POINT,
     *RATES,
-    Column("h (s)", "h", lambda answer: answer.conditions.seconds, "step", "s"),
+    Column("h (s)", "h", lambda answer: answer.h, "step", "s"),
 )
 
 DECAY: Sequence[Column[Judgement]] = (

@@ -1,17 +1,21 @@
-"""Your simulation, as far as an answer depends on it: its step, its engine, how it moves, how exact its feedback is.
+"""What is asked about: the feedback that is given, if one is, and your simulation as far as an answer depends on it.
 
-h, engine, scene, omega, ...   →   Setup   →   conditions   →   Conditions
+h, engine, scene, omega, ...   →   Setup         →   conditions   →   Conditions
+a point, or an engine's values →   given_feedback   →   Given
 """
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from typing import Any
 
-from bezstab.engines.conversions import Engine
+from bezstab.arguments import Number, exact_number, real_number
+from bezstab.engines.conversions import Applied, Engine, Point
 from bezstab.errors import InputError
 from bezstab.mechanism.constraint_normals import TurningNormals
 from bezstab.mechanism.equations import Mechanism, compiled_mechanism
+from bezstab.mechanism.scene_files import scene as scene_named
 from bezstab.mechanism.scenes import Scene
-from bezstab.questions.chains import USUAL_CHAIN, SweptConstraints, constraints_of, constraints_of_chain
+from bezstab.questions.chains import USUAL_CHAIN, Constraints, SweptConstraints, constraints_of, constraints_of_chain
 from bezstab.questions.motions import (
     ReferenceMotion,
     check_speed,
@@ -22,6 +26,9 @@ from bezstab.questions.motions import (
 )
 from bezstab.stability.choices import USUAL_SPREAD
 from bezstab.units import check_step
+
+AS_GIVEN = "as given"
+"""In place of a goal, of a point that nobody chose."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,14 +57,51 @@ class Setup:
             if step is not None:
                 check_step(step, name)
         check_speed(self.scene, self.speed)
-        _check_duration(self.duration, self.scene, self.h)
+        if self.duration is not None and self.scene is None:
+            raise InputError("--time needs --scene: it is how long that is run")
+        if self.duration is not None and self.h and self.duration < self.h:
+            least = f"at least one step of {float(self.h):g} s"
+            raise InputError(f"--time {float(self.duration):g} s: expected {least}")
         if self.load is not None and self.engine is None:
             raise InputError("--load needs --engine: a hard constraint holds any load without an offset")
 
-    @property
-    def seconds(self) -> float | None:
-        """The step in float64."""
-        return None if self.h is None else float(self.h)
+
+def setup_in_python(
+    engine: Engine | None, scene: str | Scene | None, spread: Number, **numbers: Number | None
+) -> Setup:
+    """Return a setup from the arguments of a function in Python, its numbers read exactly."""
+    exact: dict[str, Any] = {name: exact_number(value, name) for name, value in numbers.items()}
+    named = None if scene is None else scene_named(scene)
+    return Setup(engine=engine, scene=named, spread=real_number(spread, "spread"), **exact)
+
+
+@dataclass(frozen=True)
+class Given:
+    """The feedback that is judged: its point, and those that count as well.
+
+    values: those of an engine that makes these points of them, without its clamps if `as_typed`; else None.
+    """
+
+    made: Applied
+    values: tuple[Fraction, ...] | None = None
+    as_typed: bool = False
+
+
+def given_feedback(
+    setup: Setup, point: Point | None, values: tuple[Fraction, ...] | None, *, as_typed: bool = False
+) -> Given:
+    """Return the feedback that is judged; InputError unless it is either a point or the values of an engine."""
+    if as_typed and values is None:
+        raise InputError("--as-typed needs --engine: it leaves out what that engine does to its values")
+    if values is not None and point is not None:
+        raise InputError("--engine takes the place of --alpha, --beta and --physical")
+    if point is not None:
+        return Given(Applied(point, None))
+    if values is None or setup.engine is None:
+        raise InputError("a point is needed: --alpha with --beta, or --engine")
+    if setup.h is None:
+        raise InputError("--engine needs --h: the step in s")
+    return Given(setup.engine.applied(values, setup.h, as_typed=as_typed), values, as_typed)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -79,12 +123,10 @@ class Conditions(Setup):
 def conditions(setup: Setup) -> Conditions:
     """Return the conditions of a question, the scene loaded and its motion followed.
 
-    InputError for an engine without a step, and as `motion_of` and `turning_of`.
+    InputError as `motion_of` and `turning_of`.
     """
     h, scene, speed = setup.h, setup.scene, setup.speed
-    if setup.engine is not None and h is None:
-        raise InputError("--physical and --engine need --h: the step in s")
-    swept = _swept(setup.engine, h, scene, speed)
+    swept = _swept(setup, constraints_of(scene, speed)) if setup.engine and scene is not None else None
     turning = turning_of(scene, speed, h)
     try:
         motion = motion_of(setup.omega, scene, speed, h, setup.h_max, omega_h=setup.omega_h)
@@ -105,11 +147,7 @@ def conditions(setup: Setup) -> Conditions:
 
 def for_choosing(asked: Conditions) -> Conditions:
     """Return the same with USUAL_CHAIN to sweep over, where the engine sweeps and nobody says over what."""
-    engine, h = asked.engine, asked.h
-    if engine is None or engine.sweeping is None or h is None or asked.scene is not None:
-        return asked
-    chain = SweptConstraints(engine, h, constraints_of_chain(USUAL_CHAIN), engine.sweeping.iterations)
-    return replace(asked, swept=chain)
+    return replace(asked, swept=_swept(asked, constraints_of_chain(USUAL_CHAIN))) if asked.scene is None else asked
 
 
 def at_step(asked: Conditions, h: Fraction) -> Conditions:
@@ -117,21 +155,9 @@ def at_step(asked: Conditions, h: Fraction) -> Conditions:
     return replace(asked, h=h, motion=motion_of(asked.omega, asked.scene, asked.speed, h, omega_h=asked.omega_h))
 
 
-def _swept(
-    engine: Engine | None, h: Fraction | None, scene: str | Scene | None, speed: Fraction
-) -> SweptConstraints | None:
-    """Return the constraints of a scene over which an engine sweeps; None where there is only one."""
-    if engine is None or engine.sweeping is None or h is None or scene is None:
+def _swept(setup: Setup, constraints: Constraints) -> SweptConstraints | None:
+    """Return constraints over which an engine sweeps; None where it does not, and where there is only one."""
+    engine, h = setup.engine, setup.h
+    if engine is None or engine.sweeping is None or h is None or len(constraints.joints) == 1:
         return None
-    found = constraints_of(scene, speed)
-    return SweptConstraints(engine, h, found, engine.sweeping.iterations) if found.count > 1 else None
-
-
-def _check_duration(duration: Fraction | None, scene: str | Scene | None, h: Fraction | None) -> None:
-    """Raise InputError for a time without a scene to run, or less than a step."""
-    if duration is None:
-        return
-    if scene is None:
-        raise InputError("--time needs --scene: it is how long that is run")
-    if h and duration < h:
-        raise InputError(f"--time {float(duration):g} s: expected at least one step of {float(h):g} s")
+    return SweptConstraints(engine, h, constraints, engine.sweeping.iterations)

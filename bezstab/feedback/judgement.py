@@ -1,26 +1,23 @@
 """One method at one point, judged: does an error die, how large does it stay, what does it do to the motion?
 
-stability.choices.Choice (a point with its proven verdict), Conditions   →   judge   →   Judgement
+stability.choices.Choice (a point with its proven verdict), Conditions, Given   →   judge   →   Judgement
 """
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Literal
 
-from bezstab.engines.conversions import Engine, Point
 from bezstab.errors import InputError, NumericalError
-from bezstab.feedback.conditions import Conditions
-from bezstab.methods.schemes import Method
-from bezstab.methods.schur import Verdict
+from bezstab.feedback.conditions import AS_GIVEN, Conditions, Given
 from bezstab.questions.chains import ALONE, SweptAnswer
 from bezstab.questions.energy import EnergyRate, energy_rate, impedance, spins
 from bezstab.questions.scene_runs import SceneRun, scene_run
 from bezstab.rationals import rational
-from bezstab.stability.choices import Choice, steps_to_settle
+from bezstab.stability.choices import TENTH, Choice, steps_to_settle
 from bezstab.stability.feedback_costs import FeedbackCost, feedback_cost
-from bezstab.stability.margins import Margins, largest_stable_step
+from bezstab.stability.margins import largest_stable_step
 from bezstab.stability.rest_offsets import offset_at_rest
 from bezstab.stability.turning import MovingPole, moving_pole
 from bezstab.units import alpha_and_beta
@@ -28,26 +25,15 @@ from bezstab.units import alpha_and_beta
 Role = Literal["given", "instead", "chosen"]
 """A point was given, or is to be taken instead of a given one, or was chosen by a goal."""
 
-AS_GIVEN = "as given"
-"""In place of a goal, of a point that nobody chose."""
-
-TENTH, THOUSAND = 10.0, 1000.0
-"""Falls of an error: one that is seen, and one after which it is gone for most purposes."""
-
 
 @dataclass(frozen=True, kw_only=True, repr=False)
-class Judgement:
+class Judgement(Choice):
     """What is known of a method at a point, under the conditions of a question. Complete when made.
 
-    goal: what the point was chosen for, or which of an engine's points it is. alpha_hat, beta_hat: dimensionless, and
-    exact in `point`; alpha, beta in 1/s, None without a step. verdict: proven. pole: the dominant one. worst: the
-    largest |z_p| with alpha and beta off by the spread. searched: as Choice has it.
-
-    margins: factors on h, alpha and beta; None where the point is not stable, or they were not asked for;
-    margins_reason: why they are not known. h_limit: the largest stable step (s), infinite where any is; in an engine,
-    of its values as they are. None of these where an engine
-    sweeps over many constraints. settle_steps: until an error is a thousandth; tenth_seconds, settle_seconds: until a
-    tenth and a thousandth (s). settle_steps_at_worst: with alpha and beta off by the spread.
+    goal: what the point was chosen for, or which of an engine's points it is. alpha, beta in 1/s and h, the step (s):
+    None without a step. margins: none for constraints that an engine sweeps over; settle_steps is then of these.
+    h_limit: the largest stable step (s), infinite where any is; in an engine, of its values as they are; None as
+    margins are. tenth_seconds, settle_seconds: until an error is a tenth and a thousandth (s).
 
     cost: what accuracy the feedback costs on the motion; cost_reason: why that is not known. energy_rate: what a second
     adds to the energy of a motion of rate omega, and its part by rotation alone, as shares; None without that rate.
@@ -65,23 +51,11 @@ class Judgement:
     """
 
     role: Role
-    method: Method
-    goal: str
-    point: Point
-    alpha_hat: float
-    beta_hat: float
+    conditions: Conditions
+    h: float | None
     alpha: float | None
     beta: float | None
-    conditions: Conditions
-    verdict: Verdict
-    pole: complex
-    worst: float
-    searched: float | None
-    margins: Margins | None
-    margins_reason: str | None
     h_limit: float | None
-    settle_steps: int | None
-    settle_steps_at_worst: int | None
     tenth_seconds: float | None
     settle_seconds: float | None
     cost: FeedbackCost | None
@@ -102,64 +76,47 @@ class Judgement:
         return self.safe
 
 
-def judge(
-    asked: Conditions,
-    choice: Choice,
-    role: Role,
-    *,
-    values: Sequence[Fraction] | None = None,
-    applied: str | None = None,
-    as_typed: bool = False,
-    margins: bool = True,
-    cost: bool = True,
-) -> Judgement:
-    """Return what is known of a point under the conditions of a question; `values` are those given of the engine.
+def judge(asked: Conditions, choice: Choice, role: Role, given: Given | None = None, *, cost: bool = True) -> Judgement:
+    """Return what is known of a point under the conditions of a question; of one that was given, with what it was.
 
     InputError where the engine cannot express a point that was chosen; NumericalError where rounding leaves open
     whether swept errors decay, and as `moving_pole` and `scene_run`.
     """
-    method, point, engine, h = choice.method, choice.point, asked.engine, asked.seconds
-    setting = None
-    if engine and asked.h is not None and role != "given":
+    method, point, engine = choice.method, choice.point, asked.engine
+    h = None if asked.h is None else float(asked.h)
+    as_typed = given is not None and given.as_typed
+    values, setting = given.values if given else None, None
+    if engine and asked.h and given is None:
         setting = engine.setting(point, asked.h)
-    if values is None and engine and asked.h is not None:
         values = tuple(map(rational, engine.values(point, asked.h)))
-    moving = None
-    if asked.turning is not None and h is not None:
-        moving = moving_pole(method, asked.turning.kappa, h, choice.alpha_hat, choice.beta_hat)
     swept = asked.swept.answer(values) if asked.swept and values is not None else None
-    run = None if swept else _run(asked, choice, moving)
-    hard = None if values is None else impedance(engine, values, at_no_error=choice.goal == AS_GIVEN and not as_typed)
-    rate = None
-    if asked.omega is not None and h is not None and asked.scene is None and choice.verdict == "converges":
-        rate = energy_rate(method, point, h, float(asked.omega), engine, hard or 1.0)
+    converges = choice.verdict == "converges"
+    z_abs = abs(choice.pole) if converges else math.inf
+    if swept:
+        z_abs = swept.growth.factor
+        choice = replace(choice, margins=None, margins_reason=None, settle_steps=steps_to_settle(z_abs))
+    moving, run, goes_well = _as_it_moves(asked, choice, swept)
+    hard, rate, sag = None, None, None
+    if values is not None:
+        hard = impedance(engine, values, at_no_error=choice.goal == AS_GIVEN and not as_typed)
+    if converges and h is not None:
+        if asked.omega is not None and asked.scene is None:
+            rate = energy_rate(method, point, h, float(asked.omega), engine, hard or 1.0)
+        if asked.load is not None and engine and asked.h and values is not None:
+            sag = abs(offset_at_rest(engine, values, asked.h, asked.load))
     found, reason = _cost(asked, choice, role) if cost else (None, None)
     alpha, beta = alpha_and_beta(*point, asked.h)
     own_step = None if h is None else h * float(method.step_multiple)
-    settle, tenth = choice.settle_steps, _steps(choice.verdict, abs(choice.pole), TENTH)
-    if swept:
-        settle, tenth = (steps_to_settle(swept.growth.factor, fall) for fall in (THOUSAND, TENTH))
     return Judgement(
+        **vars(choice),
         role=role,
-        method=method,
-        goal=choice.goal,
-        point=point,
-        alpha_hat=choice.alpha_hat,
-        beta_hat=choice.beta_hat,
+        conditions=asked,
+        h=h,
         alpha=alpha,
         beta=beta,
-        conditions=asked,
-        verdict=choice.verdict,
-        pole=choice.pole,
-        worst=choice.worst,
-        searched=choice.searched,
-        margins=None if swept else choice.margins,
-        margins_reason=None if swept else choice.margins_reason,
-        h_limit=None if swept or not margins else _h_limit(asked, choice, values, as_typed=as_typed),
-        settle_steps=settle,
-        settle_steps_at_worst=choice.settle_steps_at_worst,
-        tenth_seconds=_seconds(tenth, own_step),
-        settle_seconds=_seconds(settle, own_step),
+        h_limit=_h_limit(asked, choice, values, as_typed=as_typed),
+        tenth_seconds=_seconds(steps_to_settle(z_abs, TENTH), own_step),
+        settle_seconds=_seconds(choice.settle_steps, own_step),
         cost=found,
         cost_reason=reason,
         energy_rate=rate,
@@ -168,37 +125,29 @@ def judge(
         moving=moving,
         run=run,
         swept=swept,
-        swept_over=_swept_over(engine, swept),
+        swept_over=(swept.constraints if swept else ALONE).words if engine and engine.sweeps else None,
         setting=setting,
-        applied=applied,
-        sag=_sag(asked, choice, values),
-        safe=_safe(choice, moving, run, swept),
+        applied=given.made.words if given and engine and choice.goal == AS_GIVEN else None,
+        sag=sag,
+        safe=converges and goes_well and (swept is None or swept.growth.decays),
     )
 
 
-def _safe(choice: Choice, moving: MovingPole | None, run: SceneRun | None, swept: SweptAnswer | None) -> bool:
-    """Return whether a point is safe: at rest, swept over, and in the motion of the scene."""
-    if choice.verdict != "converges" or (swept and not swept.growth.decays):
-        return False
-    if moving is None or moving.verdict == "diverges":
-        return moving is None
-    return run.sound if run and run.decides else moving.verdict == "converges"
+def _as_it_moves(
+    asked: Conditions, choice: Choice, swept: SweptAnswer | None
+) -> tuple[MovingPole | None, SceneRun | None, bool]:
+    """Return the bounds on the poles as a scene moves, what a run of it shows, and whether that is well.
 
-
-def _run(asked: Conditions, choice: Choice, moving: MovingPole | None) -> SceneRun | None:
-    """Return what a run of the scene shows; None without a scene, and where errors grow anyway."""
-    grows = choice.verdict != "converges" or (moving is not None and moving.verdict == "diverges")
-    if asked.mechanism is None or asked.h is None or grows:
-        return None
+    None of these without a scene. Where errors grow anyway, or constraints are swept over, it is not run.
+    """
+    if asked.mechanism is None or asked.turning is None or asked.h is None:
+        return None, None, True
+    moving = moving_pole(choice.method, asked.turning.kappa, float(asked.h), choice.alpha_hat, choice.beta_hat)
+    if swept or choice.verdict != "converges" or moving.verdict == "diverges":
+        return moving, None, moving.verdict == "converges"
     duration = None if asked.duration is None else float(asked.duration)
-    return scene_run(asked.mechanism, choice.method, asked.h, choice.point, duration)
-
-
-def _sag(asked: Conditions, choice: Choice, values: Sequence[Fraction] | None) -> float | None:
-    """Return how far one constraint rests from its place; None without a load, and where errors do not decay."""
-    if asked.load is None or asked.engine is None or asked.h is None or values is None or choice.verdict != "converges":
-        return None
-    return abs(offset_at_rest(asked.engine, values, asked.h, asked.load))
+    run = scene_run(asked.mechanism, choice.method, asked.h, choice.point, duration)
+    return moving, run, run.sound if run.decides else moving.verdict == "converges"
 
 
 def _cost(asked: Conditions, choice: Choice, role: Role) -> tuple[FeedbackCost | None, str | None]:
@@ -218,26 +167,15 @@ def _h_limit(asked: Conditions, choice: Choice, values: Sequence[Fraction] | Non
 
     Of an engine's values, as the engine reads them at each step.
     """
-    engine, h = asked.engine, asked.seconds
-    if choice.verdict != "converges" or h is None:
+    engine, h = asked.engine, asked.h
+    if h is None or not (choice.margins or choice.margins_reason):  # not asked for, or not stable
         return None
     if engine is None or values is None:
-        return None if choice.margins is None else choice.margins.h * h
+        return choice.margins.h * float(h) if choice.margins else None
     limit = largest_stable_step(
-        choice.method, lambda step: engine.applied(tuple(values), step, as_typed=as_typed).points, h
+        choice.method, lambda step: engine.applied(tuple(values), step, as_typed=as_typed).points, float(h)
     )
     return math.inf if limit is None else limit
-
-
-def _swept_over(engine: Engine | None, swept: SweptAnswer | None) -> str | None:
-    """Return the constraints that an answer is about in an engine that sweeps; None if it solves all together."""
-    if engine is None or not engine.sweeps:
-        return None
-    return (swept.constraints if swept else ALONE).words
-
-
-def _steps(verdict: Verdict, z_abs: float, fall: float) -> int | None:
-    return steps_to_settle(z_abs, fall) if verdict == "converges" else None
 
 
 def _seconds(steps: int | None, step: float | None) -> float | None:

@@ -6,9 +6,8 @@ methods, Given, Conditions   →   poles_at   →   PoleAnswer, by method and po
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from bezstab.feedback.checking import Given, made_points
-from bezstab.feedback.conditions import Conditions
-from bezstab.feedback.judgement import AS_GIVEN, Judgement, judge
+from bezstab.feedback.conditions import AS_GIVEN, Conditions, Given
+from bezstab.feedback.judgement import Judgement, judge
 from bezstab.feedback.sentences import judgement_sentence
 from bezstab.methods.schemes import Method
 from bezstab.stability.choices import describe_point
@@ -32,18 +31,10 @@ def poles_at(methods: Sequence[Method], given: Given, asked: Conditions, *, ever
 
     Of a pair the upper one stands for both. Errors as `judge`.
     """
-    made, found = made_points(given, asked), []
+    found = []
     for method in methods:
-        judged = judge(
-            asked,
-            describe_point(method, AS_GIVEN, *made.point, asked.spread, margins=False),
-            "given",
-            values=given.values,
-            applied=made.words if asked.engine else None,
-            as_typed=given.as_typed,
-            margins=False,
-            cost=False,
-        )
+        at_point = describe_point(method, AS_GIVEN, *given.made.point, asked.spread, margins=False)
+        judged = judge(asked, at_point, "given", given, cost=False)
         if every:
             sentence = f"{method.name} {judged.verdict}. Each step multiplies this pole's part of the error by |z|."
             found += [

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from bezstab.cli import shared_options as shared
 from bezstab.cli.asking import say_each, say_if_units_were_mistaken
 from bezstab.cli.grouped_help import GroupedCommand, grouped
-from bezstab.cli.options import METHOD, SECONDS, EngineValues, TypedPoint, typed_options
+from bezstab.cli.options import METHOD, SECONDS, EngineValues, TypedPoint
 from bezstab.cli.output import for_reading, show_answers, worked_out
 
 if TYPE_CHECKING:
@@ -40,14 +40,12 @@ def poles(
     alpha: Fraction | None,
     beta: Fraction | None,
     physical: bool,
-    h: Fraction | None,
     engine: EngineValues | None,
     as_typed: bool,
-    scene: str | None,
-    speed: Fraction,
     all_poles: bool,
     every_column: bool,
     form: str,
+    **simulation: Any,
 ) -> None:
     """Print each method's dominant pole at one point, and the verdict.
 
@@ -58,26 +56,24 @@ def poles(
     """
 
     from bezstab.feedback.beside import say_what_the_engine_did, show_point
-    from bezstab.feedback.checking import Given
     from bezstab.feedback.columns import POLES
-    from bezstab.feedback.conditions import Setup, conditions
+    from bezstab.feedback.conditions import Setup, conditions, given_feedback
     from bezstab.feedback.poles import poles_at
     from bezstab.methods.registry import lookup
     from bezstab.questions.methods import methods_for
     from bezstab.stability.forced_errors import OMEGA_H
 
-    named, values = engine or (None, None)
-    typed = TypedPoint(alpha, beta, physical)
-    if "--h" in typed_options() and not (physical or engine or scene):
+    typed, (named, values) = TypedPoint(alpha, beta, physical), engine or (None, None)
+    setup = Setup(engine=named, omega_h=OMEGA_H, **simulation)  # no errors on a motion are told
+    if setup.h and not (physical or engine or setup.scene):
         raise click.UsageError("--h needs one of --physical, --engine, --scene: α̂ and β̂ have no unit")
-    given = Given(point=typed.at(h), values=values, as_typed=as_typed)
+    given = given_feedback(setup, typed.at(setup.h), values, as_typed=as_typed)
     if not methods and named is None:
         methods = tuple(map(lookup, USUAL_METHODS))
-    setup = Setup(h=h, engine=named, omega_h=OMEGA_H, scene=scene, speed=speed)  # no errors on a motion are told
-    methods, asked = methods_for(methods, named), worked_out(lambda: conditions(setup), scene)
+    methods, asked = methods_for(methods, named), worked_out(lambda: conditions(setup), simulation["scene"])
     say_each(asked.warnings)
     found = poles_at(methods, given, asked, every=all_poles)
-    say_if_units_were_mistaken(methods, typed, h)
+    say_if_units_were_mistaken(methods, typed, setup.h)
     show_point([each.judged for each in found])
     show_answers(POLES, found, [each.sentence for each in found])
     if for_reading():

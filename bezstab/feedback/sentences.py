@@ -11,7 +11,6 @@ from bezstab.questions.chains import SweptAnswer
 from bezstab.questions.motions import ReferenceMotion
 from bezstab.questions.scene_runs import MOST_GAINED
 from bezstab.questions.trial_runs import Trials
-from bezstab.rationals import rounded_down
 from bezstab.stability.choices import Choice, steps_to_settle
 from bezstab.stability.turning import MovingPole
 from bezstab.units import from_dimensionless
@@ -36,7 +35,7 @@ def judgement_sentence(judged: Judgement, safe_with: str | None = None) -> str:
     With a scene also what happens over the motion; of an engine that solves its constraints one after another, for how
     many that is. `safe_with` is the option with which a choice is safe that is not.
     """
-    swept, h = judged.swept, judged.conditions.h
+    swept = judged.swept
     safe = "safe" if judged.safe else "not safe"
     if judged.swept_over:
         safe += f" {'in' if swept else 'for'} {judged.swept_over}"
@@ -51,8 +50,8 @@ def judgement_sentence(judged: Judgement, safe_with: str | None = None) -> str:
         said.append(f"with {safe_with} it is safe")
     motion = judged.conditions.motion
     if judged.goal == "accurate" and motion.assumed:
-        said.append(f"without --omega {_assumed(motion.omega_h, judged.conditions.seconds)} is assumed")
-    place = point_words(judged.alpha_hat, judged.beta_hat, h)
+        said.append(f"without --omega {_assumed(motion.omega_h, judged.h)} is assumed")
+    place = point_words(judged.alpha_hat, judged.beta_hat, judged.h)
     return " ".join([f"{place}: {safe}.", *map(_sentence, said)])
 
 
@@ -93,8 +92,8 @@ def _change(judged: Judgement, z_abs: float, verdict: str, bound: str = "") -> s
     steps = judged.settle_steps if z_abs == abs(judged.pole) else steps_to_settle(z_abs)
     if verdict != "converges" or steps is None:
         return change_words(z_abs, verdict, bound=bound)
-    h = judged.conditions.seconds
-    return decay_words(steps, None if h is None else h * float(judged.method.step_multiple), bound=bound)
+    own_step = None if judged.h is None else judged.h * float(judged.method.step_multiple)
+    return decay_words(steps, own_step, bound=bound)
 
 
 def _errors(judged: Judgement) -> list[str]:
@@ -128,7 +127,7 @@ def _on_a_motion(judged: Judgement) -> list[str]:
     if judged.energy_rate is None or not (abs(judged.energy_rate[0]) >= MOVED or unweighed):
         return []
     rate, by_rotation = judged.energy_rate
-    omega, h = float(judged.conditions.omega or 0), judged.conditions.seconds or 0.0
+    omega, h = float(judged.conditions.omega or 0), judged.h or 0.0
     what = "gains" if rate > 0 else "loses"
     motion = f"a body that spins about a pin at {omega:.3g} rad/s" if judged.spins else f"a motion of {omega:.3g} rad/s"
     if judged.spins and judged.impedance:
@@ -209,9 +208,7 @@ def _growth(judged: Judgement) -> list[str]:
     if margins is None:
         return []
     alone: list[tuple[str, float | None, Callable[[float], str]]] = [
-        ("the step", margins.h, growth_words)
-        if judged.conditions.h is None
-        else ("the step", judged.h_limit, seconds_words),
+        ("the step", margins.h, growth_words) if judged.h is None else ("the step", judged.h_limit, seconds_words),
         ("α", margins.alpha[1], growth_words),
         ("β", margins.beta[1], growth_words),
     ]
@@ -239,10 +236,10 @@ def costs_words(judged: Judgement) -> str | None:
     amplitude = asked.motion.amplitude
     in_units = "" if amplitude is None else f" ({cost.total_error * amplitude:.1e} m or rad)"
     least = "the least"
-    if asked.engine is None and asked.seconds is None:
+    if asked.engine is None and judged.h is None:
         least = "α̂ = {:.3g}, β̂ = {:.3g}".format(*cost.least_at)
-    elif asked.engine is None and asked.seconds is not None:
-        least = "α = {:.3g} 1/s, β = {:.3g} 1/s".format(*from_dimensionless(*cost.least_at, asked.seconds))
+    elif asked.engine is None and judged.h is not None:
+        least = "α = {:.3g} 1/s, β = {:.3g} 1/s".format(*from_dimensionless(*cost.least_at, judged.h))
     return (
         f"This feedback costs accuracy: {judged.method.name} keeps order {cost.order_left} of {cost.order}. Compared "
         f"with {least}: {errors_words(times)}. They are {cost.total_error:.1e} of the motion's amplitude{in_units} "
@@ -266,11 +263,3 @@ def motion_words(motion: ReferenceMotion) -> str:
     """Return what errors are shares of, and what is called the least."""
     shares = f"Errors are relative to the amplitude of a motion, here {motion.words}."
     return f"{shares} The smallest possible errors are those of --goal accurate."
-
-
-def step_sentence(alpha: float, beta: float, h_limit: float) -> str:
-    """Return up to which step (s) alpha and beta (1/s) are safe, rounded down: infinite if all are, zero if none is."""
-    judged = f"α = {alpha:.6g} 1/s, β = {beta:.6g} 1/s"
-    if not h_limit:
-        return f"{judged}: not safe at small steps."
-    return f"{judged}: safe {'at any h' if math.isinf(h_limit) else f'up to h = {rounded_down(h_limit, 4)} s'}."

@@ -9,7 +9,7 @@ from fractions import Fraction
 
 from numpy.typing import ArrayLike
 
-from bezstab.arguments import Number, exact_number, in_keywords, point_if_given, whole_number
+from bezstab.arguments import Number, exact_number, in_keywords, plane_point, whole_number
 from bezstab.engines.conversions import Point
 from bezstab.errors import InputError, shown
 from bezstab.methods.registry import lookup
@@ -164,11 +164,11 @@ def probe(
     if methods is not None and (isinstance(methods, str | Method) or not isinstance(methods, Iterable)):
         raise InputError(f"methods = {shown(methods)}: expected a list of methods")
     compared = compared_with(
-        point_if_given(alpha_hat, beta_hat, alpha, beta, h),
+        plane_point(alpha_hat, beta_hat, alpha, beta, h, needed=False),
         tuple(map(method_named, methods or ())),
         whole_number(every, "every"),
-        None if h is None else exact_number(h, "h"),
-        None if turning is None else exact_number(turning, "turning"),
+        exact_number(h, "h"),
+        exact_number(turning, "turning"),
     )
     c = real_array(c, "c")
     minus = None if minus is None else real_array(minus, "minus")

@@ -49,11 +49,6 @@ class Constraints:
     joints: tuple[int, ...]
     motors: Motors | None = None
 
-    @property
-    def count(self) -> int:
-        """How many there are."""
-        return len(self.joints)
-
 
 ALONE = Constraints("one constraint alone", np.ones((1, 1)), (0,))
 

@@ -6,7 +6,7 @@ scene, method, steps, feedback or projection   →   run_of   →   Simulation
 from collections.abc import Sequence
 from fractions import Fraction
 
-from bezstab.arguments import Number, exact_number, in_keywords, plane_point, point_if_given
+from bezstab.arguments import Number, exact_number, in_keywords, plane_point
 from bezstab.engines.conversions import Point
 from bezstab.errors import InputError
 from bezstab.mechanism.equations import Mechanism, compiled_mechanism
@@ -79,13 +79,12 @@ def simulate(
     ----------
     The paper's Eqs. 6 to 9.
     """
-    find = plane_point if stabilise == "baumgarte" else point_if_given
     return run_of(
         compiled_mechanism(scene_named(scene)),
         method_named(method),
         h=exact_number(h, "h"),
         duration=exact_number(duration, "duration"),
-        point=find(alpha_hat, beta_hat, alpha, beta, h),
+        point=plane_point(alpha_hat, beta_hat, alpha, beta, h, needed=stabilise == "baumgarte"),
         start=start,
         perturb=exact_number(perturb, "perturb"),
         stabilise=stabilise,

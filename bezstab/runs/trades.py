@@ -12,7 +12,7 @@ from itertools import chain
 import numpy as np
 from numpy.typing import NDArray
 
-from bezstab.arguments import Number, exact_number, exact_or_none, in_keywords, point_if_given
+from bezstab.arguments import Number, exact_number, in_keywords, plane_point
 from bezstab.engines.conversions import Point
 from bezstab.errors import InputError
 from bezstab.mechanism.compiled_stepping import runs_compiled
@@ -173,8 +173,8 @@ def tradeoff(
         [method_named(each) for each in methods],
         [exact_number(step, "steps") for step in steps],
         duration=exact_number(duration, "duration"),
-        numbers=point_if_given(alpha_hat, beta_hat, None, None, None),
-        omega=exact_or_none(omega, "omega"),
+        numbers=plane_point(alpha_hat, beta_hat, None, None, None, needed=False),
+        omega=exact_number(omega, "omega"),
         stabilise=stabilise,
         against=against,
         tolerance=exact_number(tolerance, "tolerance"),

@@ -37,58 +37,36 @@ OFFSETS: FloatArray = np.linspace(-1, 1, 9)  # of the spread
 SEARCHED = 4.0  # alpha h and beta h: there e^-4, a fiftieth, is left after a step, and nobody asks for faster decay
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class Choice:
     """A point, its proven verdict and dominant pole, and the largest |z_p| when alpha and beta are off by the spread.
 
-    All dimensionless; `point` is alpha_hat and beta_hat, exact. `margins` is None unless the point is stable and they
-    were asked for. `searched` is the largest alpha h and beta h (of the method's step) that were looked at where the
-    region goes on without end and a stronger feedback might be better by the goal; None where all of the region was
-    searched, or none of it. `margins_reason` says why they are not known, though asked for at a stable point; else
-    None.
+    All dimensionless; `point` is alpha_hat and beta_hat, exact; these two in float64. `margins` is None unless the
+    point is stable and they were asked for. `searched` is the largest alpha h and beta h (of the method's step) that
+    were looked at where the region goes on without end and a stronger feedback might be better by the goal; None where
+    all of the region was searched, or none of it. `margins_reason` says why they are not known, though asked for at a
+    stable point; else None. `settle_steps`: steps until |z_p|^k is a thousandth; if every pole is zero, those that
+    clear the method's memory; None if the point is unstable, or so near to it that rounding leaves no digits.
+    `settle_steps_at_worst`: the same with alpha and beta off by the spread.
     """
 
     method: Method
     goal: str
     point: tuple[Fraction, Fraction]
+    alpha_hat: float
+    beta_hat: float
     verdict: Verdict
     pole: complex
     worst: float
     margins: Margins | None
-    searched: float | None = None
-    margins_reason: str | None = None
+    margins_reason: str | None
+    searched: float | None
+    settle_steps: int | None
+    settle_steps_at_worst: int | None
 
     def __repr__(self) -> str:
         place = f"alpha_hat = {self.alpha_hat:.6g}, beta_hat = {self.beta_hat:.6g}"
         return f"Choice({self.method.name}, {self.goal}: {place}, |z_p| = {abs(self.pole):.6g}, {self.verdict})"
-
-    @property
-    def alpha_hat(self) -> float:
-        """The damping, in float64."""
-        return float(self.point[0])
-
-    @property
-    def beta_hat(self) -> float:
-        """The stiffness, in float64."""
-        return float(self.point[1])
-
-    @property
-    def settle_steps(self) -> int | None:
-        """Steps until |z_p|^k is a thousandth; if every pole is zero, those that clear the method's memory.
-
-        None if the point is unstable, or so near to it that rounding leaves no digits.
-        """
-        return self._steps_to_settle(abs(self.pole))
-
-    @property
-    def settle_steps_at_worst(self) -> int | None:
-        """The same with alpha and beta off by the spread; None, too, where errors do not decay there."""
-        return self._steps_to_settle(self.worst)
-
-    def _steps_to_settle(self, z_abs: float) -> int | None:
-        if self.verdict != "converges":
-            return None
-        return 2 * steps(self.method) if z_abs < DOUBLE else steps_to_settle(z_abs)
 
 
 def steps_to_settle(z_abs: float, fall: float = 1000.0) -> int | None:
@@ -240,10 +218,15 @@ def describe_point(
     """
     _check_spread(spread)
     a, b = float(alpha_hat), float(beta_hat)
-    pole_at = partial(largest_pole, method)
     proven = verdict(method, alpha_hat, beta_hat)
     offsets = 1 + spread * OFFSETS
     near_a, near_b = np.meshgrid(a * offsets, b * offsets**2)
+    pole = complex(largest_pole(method, a, b))
+    worst = float(np.abs(largest_pole(method, near_a.ravel(), near_b.ravel())).max())
+    settle, at_worst = (
+        None if proven != "converges" else 2 * steps(method) if z_abs < DOUBLE else steps_to_settle(z_abs)
+        for z_abs in (abs(pole), worst)
+    )
     found, trouble = None, None
     if margins and proven == "converges":
         try:
@@ -254,11 +237,16 @@ def describe_point(
         method=method,
         goal=goal,
         point=(alpha_hat, beta_hat),
+        alpha_hat=a,
+        beta_hat=b,
         verdict=proven,
-        pole=complex(pole_at(a, b)),
-        worst=float(np.abs(pole_at(near_a.ravel(), near_b.ravel())).max()),
+        pole=pole,
+        worst=worst,
         margins=found,
         margins_reason=trouble,
+        searched=None,
+        settle_steps=settle,
+        settle_steps_at_worst=at_worst,
     )
 
 

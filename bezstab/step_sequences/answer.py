@@ -113,9 +113,8 @@ def steps(
     """
     named, values = (None, None) if engine is None else engine_and_values(engine)
     given = () if method is None else (method if isinstance(method, Method) else lookup(method),)
-    numbers = [None if each is None else exact_number(each, name) for each, name in ((alpha, "alpha"), (beta, "beta"))]
     asked = Steps(exact_number(h_min, "h_min"), exact_number(h_max, "h_max"), hold)
-    found = answers(given, asked, *numbers, engine=named, values=values)
+    found = answers(given, asked, exact_number(alpha, "alpha"), exact_number(beta, "beta"), engine=named, values=values)
     return next((answer for answer in found if not answer), found[0])
 
 

@@ -1,6 +1,6 @@
 """A point that is given is judged whole: each part agrees with the function that finds it."""
 
-from dataclasses import fields, is_dataclass, replace
+from dataclasses import fields, is_dataclass
 from fractions import Fraction
 from math import sqrt
 from typing import Any
@@ -11,11 +11,12 @@ import pytest
 from bezstab.engines.conversions import Point
 from bezstab.engines.engine_list import ENGINES
 from bezstab.errors import InputError
-from bezstab.feedback import checking, columns
-from bezstab.feedback.checking import CheckAnswer, Given, check, checks, largest_step
+from bezstab.feedback import columns
+from bezstab.feedback.checking import CheckAnswer, check, checks
 from bezstab.feedback.choosing import ChooseAnswer
-from bezstab.feedback.conditions import Setup, conditions
+from bezstab.feedback.conditions import Setup, conditions, given_feedback
 from bezstab.feedback.judgement import Judgement
+from bezstab.feedback.largest_steps import largest_step, step_answer
 from bezstab.feedback.poles import PoleAnswer
 from bezstab.methods.registry import lookup
 from bezstab.motion.spinning_bodies import spin_change
@@ -23,7 +24,7 @@ from bezstab.questions.energy import engine_energy_rate
 from bezstab.questions.meant import meant_in_seconds
 from bezstab.questions.methods import methods_for
 from bezstab.rationals import rational
-from bezstab.stability.choices import choose
+from bezstab.stability.choices import Choice, choose
 from tests.reference.engine_steps import STEPS, matrix
 
 SYM, RK4 = lookup("SYM"), lookup("RK4")
@@ -34,7 +35,7 @@ AT: dict[str, Any] = {"alpha_hat": ONE, "beta_hat": Fraction(1, 2)}
 
 def test_an_answer_is_complete_when_made() -> None:
     """Nothing of it is computed when it is touched: no property, nothing cached, nothing lazy."""
-    for kind in (Judgement, CheckAnswer, ChooseAnswer, PoleAnswer):
+    for kind in (Choice, Judgement, CheckAnswer, ChooseAnswer, PoleAnswer):
         assert is_dataclass(kind)
         own = {name for base in kind.__mro__[:-1] for name in vars(base) if not name.startswith("_")}
         assert own <= {field.name for field in fields(kind)}, kind
@@ -92,8 +93,8 @@ def test_instead_is_what_choose_gives() -> None:
 
 def all_points(engine: str, values: str, h: str, **asked: Any) -> list[CheckAnswer]:
     """Return the answers for every point that an engine makes of its values."""
-    given = Given(values=tuple(map(rational, values.split(","))))
     setup = Setup(h=Fraction(h), engine=ENGINES[engine], **asked)
+    given = given_feedback(setup, None, tuple(map(rational, values.split(","))))
     return checks(methods_for((), ENGINES[engine]), given, conditions(setup), instead=True)
 
 
@@ -122,9 +123,9 @@ def test_the_largest_step_of_alpha_and_beta_ends_where_they_do() -> None:
     h = Fraction(largest_step(SYM, alpha=60, beta=55))
     assert 4 * 60 * h + 55**2 * h**2 == pytest.approx(4)  # 2 alpha_hat + beta_hat = 4
     assert largest_step(SYM, alpha=0, beta=1) == 0
-    assert not checking.step_answer(SYM, Fraction(0), ONE).safe
+    assert not step_answer(SYM, 0, 1, largest_step(SYM, alpha=0, beta=1)).safe
     rounded = next(column for column in columns.STEPS if column.key == "h_limit")
-    assert rounded.text(replace(checking.step_answer(SYM, ONE, ONE), h_limit=0.0123456)) == "0.01234"  # it is safe
+    assert rounded.text(step_answer(SYM, 1, 1, 0.0123456)) == "0.01234"  # it is safe
 
 
 @pytest.mark.parametrize(

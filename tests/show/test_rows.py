@@ -12,9 +12,8 @@ from importlib import import_module
 import numpy as np
 import pytest
 
-from bezstab.feedback.checking import Given
 from bezstab.feedback.columns import POLES
-from bezstab.feedback.conditions import Setup, conditions
+from bezstab.feedback.conditions import Setup, conditions, given_feedback
 from bezstab.feedback.poles import poles_at
 from bezstab.methods.registry import lookup
 from bezstab.methods.schemes import Method, implicit
@@ -70,7 +69,8 @@ def test_one_line_makes_a_column_and_a_key() -> None:
     assert for_programs([row_of([solves], lookup("bdf2"))], "csv").splitlines() == ["solves", "True"]
 
 
-(ANSWER,) = poles_at([lookup("B4")], Given(point=(Fraction(1, 2), Fraction(1, 10))), conditions(Setup()))
+GIVEN = given_feedback(Setup(), (Fraction(1, 2), Fraction(1, 10)), None)
+(ANSWER,) = poles_at([lookup("B4")], GIVEN, conditions(Setup()))
 ROWS = [row_of(POLES, replace(ANSWER, z=z)) for z in (0.75 + 0.125j, -0.5 + 0j)]
 
 

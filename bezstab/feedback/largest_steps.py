@@ -1,0 +1,74 @@
+"""Up to which step is every step stable with alpha and beta in 1/s? What `check` and `choose` answer without --h."""
+
+import math
+from dataclasses import dataclass
+from fractions import Fraction
+
+from bezstab.arguments import Number, exact_number, in_keywords
+from bezstab.methods.registry import method as method_named
+from bezstab.methods.schemes import Method
+from bezstab.rationals import rounded_down
+from bezstab.stability.damping_limits import stable_up_to
+
+
+@dataclass(frozen=True, repr=False)
+class StepAnswer:
+    """The step (s) up to which every step is stable with a method, alpha and beta (1/s): infinite if all are.
+
+    safe: whether small steps are stable at all; else h_limit is zero.
+    """
+
+    method: Method
+    alpha: float
+    beta: float
+    h_limit: float
+    safe: bool
+    sentence: str
+
+    def __repr__(self) -> str:
+        return self.sentence
+
+    def __bool__(self) -> bool:
+        return self.safe
+
+
+def step_answer(method: Method, alpha: Fraction | float, beta: Fraction | float, h_limit: float) -> StepAnswer:
+    """Return the answer of a step that was found, as `largest_step` finds it."""
+    rates = float(alpha), float(beta)
+    return StepAnswer(method, *rates, h_limit, h_limit > 0, _sentence(*rates, h_limit))
+
+
+@in_keywords()
+def largest_step(method: str | Method, *, alpha: Number, beta: Number) -> float:
+    """Return the step (s) up to which every step is stable with alpha and beta.
+
+    Parameters
+    ----------
+    method : str or Method
+        The integration method.
+    alpha, beta : number or str
+        The feedback in 1/s.
+
+    Returns
+    -------
+    float
+        Infinite if every step is stable, 0 if small ones are not. The verdict is proven on both sides.
+
+    Raises
+    ------
+    InputError
+        A number is not finite.
+
+    References
+    ----------
+    The path of all steps through the plane of the paper's Eq. 17.
+    """
+    return stable_up_to(method_named(method), exact_number(alpha, "alpha"), exact_number(beta, "beta"))
+
+
+def _sentence(alpha: float, beta: float, h_limit: float) -> str:
+    """Return up to which step (s) alpha and beta (1/s) are safe, rounded down: infinite if all are, zero if none is."""
+    judged = f"α = {alpha:.6g} 1/s, β = {beta:.6g} 1/s"
+    if not h_limit:
+        return f"{judged}: not safe at small steps."
+    return f"{judged}: safe {'at any h' if math.isinf(h_limit) else f'up to h = {rounded_down(h_limit, 4)} s'}."
