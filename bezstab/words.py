@@ -52,9 +52,9 @@ def seconds_words(seconds: float) -> str:
     return f"{_three_digits(seconds)} s"
 
 
-def growth_words(factor: float | None) -> str:
-    """Return how far something may grow: 1.32 times, or without limit where there is no factor."""
-    return "without limit" if factor is None else f"{_three_digits(factor)} times"
+def growth_words(factor: float) -> str:
+    """Return how far something may grow: 1.32 times."""
+    return f"{_three_digits(factor)} times"
 
 
 def times_words(factor: float) -> str:

@@ -11,7 +11,7 @@ from bezstab.cli import shared_options as shared
 from bezstab.cli.asking import say_each, say_if_units_were_mistaken, show_sentences
 from bezstab.cli.grouped_help import GroupedCommand, grouped
 from bezstab.cli.options import SECONDS, EngineValues, TypedPoint
-from bezstab.cli.output import for_reading, say, show_answers, show_text, worked_out
+from bezstab.cli.output import for_reading, show_answers, show_text, worked_out
 
 if TYPE_CHECKING:
     from bezstab.feedback.checking import CheckAnswer
@@ -62,12 +62,10 @@ def check(
     Example: bezstab check --method RK2 --h 0.002 --alpha 50 --beta 50 --physical
     """
 
-    from bezstab.feedback.beside import say_what_the_engine_did, show_point
+    from bezstab.feedback import beside, columns, sentences
     from bezstab.feedback.checking import checks
-    from bezstab.feedback.columns import CHECKED, STEPS, spare_words
     from bezstab.feedback.conditions import Setup, conditions, given_feedback
     from bezstab.feedback.largest_steps import step_answer
-    from bezstab.feedback.sentences import costs_words, energy_sentence, motion_words
     from bezstab.questions.methods import methods_for
     from bezstab.stability.damping_limits import stable_up_to
 
@@ -76,7 +74,7 @@ def check(
     if physical and typed.numbers and setup.h is None and not (engine or setup.scene or setup.omega):
         point = typed.numbers
         found = [step_answer(method, *point, stable_up_to(method, *point)) for method in methods_for(methods, None)]
-        show_answers(STEPS, found, [answer.sentence for answer in found])
+        show_answers(columns.STEPS, found, [answer.sentence for answer in found])
         return all(found)
     given = given_feedback(setup, typed.at(setup.h), values, as_typed=as_typed)
     methods, asked = methods_for(methods, named), worked_out(lambda: conditions(setup), simulation["scene"])
@@ -85,25 +83,23 @@ def check(
     say_if_units_were_mistaken(methods, typed, setup.h)
     better = [each.instead for each in answers if each.instead is not None]
     if for_reading():
-        show_point(answers)
-        show_answers(CHECKED, answers, [answer.sentence for answer in answers])
+        beside.show_point(answers)
+        show_answers(columns.CHECKED, answers, [answer.sentence for answer in answers])
         if len(answers) > 1:  # a single one has said so
-            said = ((each, energy_sentence(each)) for each in answers)
+            said = ((each, sentences.energy_sentence(each)) for each in answers)
             show_sentences(f"{each.method.name}, {each.goal}: {sentence}" for each, sentence in said if sentence)
-        show_sentences(map(costs_words, answers))
+        show_sentences(map(sentences.costs_words, answers))
         if better:
             show_text("\nWhat `choose` gives instead:\n")
-            show_answers(CHECKED, better, [answer.sentence for answer in better])
-            show_sentences(map(spare_words, better))
+            show_answers(columns.CHECKED, better, [answer.sentence for answer in better])
+            show_sentences(map(columns.spare_words, better))
         if every_column and not asked.motion.assumed:
-            show_sentences([motion_words(asked.motion)])
+            show_sentences([sentences.motion_words(asked.motion)])
     else:
         both: list[CheckAnswer | ChooseAnswer] = [*answers, *better]
-        show_answers(CHECKED, both, [])
-    for answer in answers:
-        if answer.instead_reason:
-            say(f"bezstab: nothing instead: {answer.instead_reason}")
-    say_each(answer.cost_reason for answer in answers)
+        show_answers(columns.CHECKED, both, [])
+    say_each(each.instead_reason and f"nothing instead: {each.instead_reason}" for each in answers)
+    say_each(each.cost_reason for each in answers)
     if for_reading():
-        say_what_the_engine_did(given, asked)
+        beside.say_what_the_engine_did(given, asked)
     return all(answers)

@@ -66,11 +66,10 @@ def choose(
     Example: bezstab choose --method SYM --h 0.001 --omega 10
     """
 
+    from bezstab.feedback import columns, sentences
     from bezstab.feedback.choosing import asked_to_choose, choose_answer
-    from bezstab.feedback.columns import CHOSEN, STEPS, spare_words, trade_words
     from bezstab.feedback.conditions import Setup
     from bezstab.feedback.largest_steps import step_answer
-    from bezstab.feedback.sentences import motion_words
 
     setup = Setup(**simulation)
     methods, wish, asked = worked_out(
@@ -85,16 +84,16 @@ def choose(
         at_any_step = [
             step_answer(each.method, each.alpha or 0.0, each.beta or 0.0, each.h_limit or 0.0) for each in chosen
         ]
-        show_answers(STEPS, at_any_step, [answer.sentence for answer in at_any_step])
+        show_answers(columns.STEPS, at_any_step, [answer.sentence for answer in at_any_step])
         return all(chosen)
-    show_answers(CHOSEN, chosen, [answer.sentence for answer in chosen])
+    show_answers(columns.CHOSEN, chosen, [answer.sentence for answer in chosen])
     if for_reading() and not asked.swept:
         for answer in chosen:
             name = f"{answer.method.name}: " if len(chosen) > 1 else ""
-            show_sentences(["\n".join(f"{name}{line}" for line in trade_words(answer))])
+            show_sentences(["\n".join(f"{name}{line}" for line in columns.trade_words(answer))])
     if every_column:
-        show_sentences([motion_words(asked.motion)])
-    show_sentences(map(spare_words, chosen))
+        show_sentences([sentences.motion_words(asked.motion)])
+    show_sentences(map(columns.spare_words, chosen))
     say_each(answer.cost_reason for answer in chosen)
     if setup.engine and for_reading():
         say_what_is_left_out(setup.engine, many=asked.swept is not None)

@@ -23,7 +23,7 @@ from bezstab.rationals import rational, typed_number
 from bezstab.stability.choices import USUAL_SPREAD, Choice, describe_point
 from bezstab.stability.choices import choose as choose_point
 from bezstab.stability.closed_loop import Modulus
-from bezstab.stability.feedback_costs import FeedbackCost, feedback_cost, follows_motion
+from bezstab.stability.feedback_costs import feedback_cost, follows_motion
 from bezstab.stability.forced_errors import OMEGA_H
 from bezstab.stability.rest_offsets import least_feedback, offset_at_rest
 from bezstab.stability.turning import LAW_HOLDS, moving_modulus
@@ -405,26 +405,20 @@ def _is_safe(method: Method, wish: Wish, asked: Conditions) -> bool:
 
 
 def _trades(judged: Judgement, wish: Wish) -> Trades | None:
-    """Return what a choice that decays faster would cost, and one that decays slower gain; None without errors."""
+    """Return what a choice that decays faster would cost, and one that decays slower gain; None without errors.
+
+    The slower one may take SLOWER times as long (s, to two digits) as the choice takes at worst.
+    """
     if judged.cost is None or judged.cost.total_error is None:
         return None
-    z_abs, faster = abs(judged.pole), None
-    for goal in ("robust", "fastest"):
-        other = _alternative(judged, Wish(goal, None, wish.equal))
-        if other and other.z_abs < z_abs:
-            faster = other
-            break
-    settle = _slower_settle(judged)
-    slower = None if settle is None else _alternative(judged, Wish("accurate", settle, wish.equal))
+    goals: tuple[Goal, ...] = ("robust", "fastest")
+    stronger = (_alternative(judged, Wish(goal, None, wish.equal)) for goal in goals)
+    faster = next((each for each in stronger if each and each.z_abs < abs(judged.pole)), None)
+    steps, h, slower = judged.settle_steps_at_worst, judged.conditions.h, None
+    if steps is not None and h is not None:
+        settle = Fraction(f"{float(SLOWER * steps * h * judged.method.step_multiple):.2g}")
+        slower = _alternative(judged, Wish("accurate", settle, wish.equal))
     return Trades(faster, slower)
-
-
-def _slower_settle(judged: Judgement) -> Fraction | None:
-    """Return SLOWER times the time (s, to two digits) in which a choice settles at worst; None if it does not."""
-    steps, h = judged.settle_steps_at_worst, judged.conditions.h
-    if steps is None or h is None:
-        return None
-    return Fraction(f"{float(SLOWER * steps * h * judged.method.step_multiple):.2g}")
 
 
 def _alternative(judged: Judgement, wish: Wish) -> Alternative | None:
@@ -435,15 +429,10 @@ def _alternative(judged: Judgement, wish: Wish) -> Alternative | None:
         there = feedback_cost(judged.method, *other.point, asked.motion.omega_h, least=False)
     except (InputError, NumericalError):
         return None
-    times = None if here is None else _times(here, there)
-    return None if times is None else Alternative(wish.goal, wish.settle, abs(other.pole), times)
-
-
-def _times(here: FeedbackCost, there: FeedbackCost) -> tuple[float, float] | None:
-    """Return the errors of constraint and velocity there over those here; None if not known."""
-    if here.total_error and here.velocity_error and there.total_error and there.velocity_error:
-        return there.total_error / here.total_error, there.velocity_error / here.velocity_error
-    return None
+    if not (here and here.total_error and here.velocity_error and there.total_error and there.velocity_error):
+        return None
+    times = there.total_error / here.total_error, there.velocity_error / here.velocity_error
+    return Alternative(wish.goal, wish.settle, abs(other.pole), times)
 
 
 def _spare(judged: Judgement, wish: Wish) -> Spare | None:

@@ -1,7 +1,6 @@
 """What is said of a judged point in words: the verdict, how fast errors fall, what may grow, what it costs."""
 
 import math
-from collections.abc import Callable
 from fractions import Fraction
 
 from bezstab.feedback.judgement import Judgement
@@ -35,24 +34,20 @@ def judgement_sentence(judged: Judgement, safe_with: str | None = None) -> str:
     With a scene also what happens over the motion; of an engine that solves its constraints one after another, for how
     many that is. `safe_with` is the option with which a choice is safe that is not.
     """
-    swept = judged.swept
     safe = "safe" if judged.safe else "not safe"
     if judged.swept_over:
-        safe += f" {'in' if swept else 'for'} {judged.swept_over}"
+        safe += f" {'in' if judged.swept else 'for'} {judged.swept_over}"
     elif judged.safe and judged.run is None:
         safe += " at rest"
-    said = _swept(judged, swept) if swept else _errors(judged)
-    if judged.safe and not judged.swept_over:  # more of one constraint alone means nothing for a chain of them
-        said += _growth(judged)
-    if judged.sag is not None:
-        said.append(_at_rest(judged.sag))
-    if safe_with:
-        said.append(f"with {safe_with} it is safe")
-    motion = judged.conditions.motion
-    if judged.goal == "accurate" and motion.assumed:
-        said.append(f"without --omega {_assumed(motion.omega_h, judged.h)} is assumed")
+    clauses = [
+        *(_swept(judged, judged.swept) if judged.swept else _errors(judged)),
+        _growth(judged),
+        _at_rest(judged.sag),
+        safe_with and f"with {safe_with} it is safe",
+        _assumed(judged),
+    ]
     place = point_words(judged.alpha_hat, judged.beta_hat, judged.h)
-    return " ".join([f"{place}: {safe}.", *map(_sentence, said)])
+    return " ".join([f"{place}: {safe}.", *map(_sentence, filter(None, clauses))])
 
 
 def trials_words(trials: Trials, rule: Choice, h: Fraction) -> str:
@@ -65,11 +60,11 @@ def trials_words(trials: Trials, rule: Choice, h: Fraction) -> str:
     )
 
 
-def _at_rest(sag: float) -> str:
+def _at_rest(sag: float | None) -> str | None:
     """Return how far one constraint is off under its load: a length, or the angle of a joint that turns."""
-    if not sag:
-        return "under the load it does not sag"
-    return f"under the load it rests off by {sag_words(sag)}"
+    if sag is None:
+        return None
+    return f"under the load it rests off by {sag_words(sag)}" if sag else "under the load it does not sag"
 
 
 def sag_words(sag: float) -> str:
@@ -81,10 +76,14 @@ def _sentence(said: str) -> str:
     return f"{said[0].upper()}{said[1:]}."
 
 
-def _assumed(omega_h: Fraction, h: float | None) -> str:
-    """Return the motion that a choice was made for, though nobody gave its rate."""
-    turn = f"ωh = {float(omega_h):g}"
-    return f"a motion with {turn}" if h is None else f"a motion of {float(omega_h) / h:.3g} rad/s ({turn})"
+def _assumed(judged: Judgement) -> str | None:
+    """Return the motion that a choice was made for, if nobody gave its rate."""
+    motion = judged.conditions.motion
+    if judged.goal != "accurate" or not motion.assumed:
+        return None
+    omega_h = float(motion.omega_h)
+    whose = f"ωh = {omega_h:g}" if judged.h is None else f"{omega_h / judged.h:.3g} rad/s (ωh = {omega_h:g})"
+    return f"without --omega a motion {'with' if judged.h is None else 'of'} {whose} is assumed"
 
 
 def _change(judged: Judgement, z_abs: float, verdict: str, bound: str = "") -> str:
@@ -96,12 +95,12 @@ def _change(judged: Judgement, z_abs: float, verdict: str, bound: str = "") -> s
     return decay_words(steps, own_step, bound=bound)
 
 
-def _errors(judged: Judgement) -> list[str]:
+def _errors(judged: Judgement) -> list[str | None]:
     """Return what becomes of an error at rest, and over the motion of a scene."""
     at_rest = _change(judged, abs(judged.pole), judged.verdict)
     if judged.moving:
         return [f"at rest {at_rest}", _in_motion(judged, judged.moving), *_as_it_ran(judged)]
-    return [at_rest, *_on_a_motion(judged)]
+    return [at_rest, _on_a_motion(judged)]
 
 
 def _in_motion(judged: Judgement, moving: MovingPole) -> str:
@@ -118,34 +117,34 @@ def _in_motion(judged: Judgement, moving: MovingPole) -> str:
     return f"in motion this may diverge: {how}"
 
 
-def _on_a_motion(judged: Judgement) -> list[str]:
+def _on_a_motion(judged: Judgement) -> str | None:
     """Return what a second does to the energy of a motion whose rate was given; nothing if that is a hundredth.
 
     Of a choice that does not weigh it, it is said anyway.
     """
     unweighed = judged.role == "chosen" and judged.goal != "accurate"
     if judged.energy_rate is None or not (abs(judged.energy_rate[0]) >= MOVED or unweighed):
-        return []
+        return None
     rate, by_rotation = judged.energy_rate
-    omega, h = float(judged.conditions.omega or 0), judged.h or 0.0
-    what = "gains" if rate > 0 else "loses"
+    omega = float(judged.conditions.omega or 0)
     motion = f"a body that spins about a pin at {omega:.3g} rad/s" if judged.spins else f"a motion of {omega:.3g} rad/s"
     if judged.spins and judged.impedance:
         motion += f", with an impedance d of {judged.impedance:g},"
     if abs(rate) < KEPT:
-        return [f"{motion} keeps its energy"]
-    said = f"{motion} {what} {100 * abs(rate):.2g} % of its energy a second"
+        return f"{motion} keeps its energy"
+    said = f"{motion} {'gains' if rate > 0 else 'loses'} {100 * abs(rate):.2g} % of its energy a second"
     # stages' torque grows as the cube of the rate
-    if not judged.spins and by_rotation > MOVED and stage_torque(judged.method).power == 2:
-        end = h * steps_to_breakdown(judged.method, judged.alpha_hat, judged.beta_hat, omega * h)
-        said += f" and breaks down after about {seconds_words(end)}" if end < math.inf else ""
+    if judged.h and not judged.spins and by_rotation > MOVED and stage_torque(judged.method).power == 2:
+        steps = steps_to_breakdown(judged.method, judged.alpha_hat, judged.beta_hat, omega * judged.h)
+        said += f" and breaks down after about {seconds_words(steps * judged.h)}" if steps < math.inf else ""
         said += ": take heun or RK4, or gentler feedback"
-    return [said]
+    return said
 
 
 def energy_sentence(judged: Judgement) -> str | None:
     """Return what a second does to the energy of a motion of rate omega; None where that is little, or not known."""
-    return "".join(map(_sentence, _on_a_motion(judged))) or None
+    said = _on_a_motion(judged)
+    return said and _sentence(said)
 
 
 def _as_it_ran(judged: Judgement) -> list[str]:
@@ -183,42 +182,41 @@ def _energy_text(gained: float) -> str:
     return f"energy {100 * gained:+.2g} %" if gained < 1 else f"energy grown by {times_words(gained)} times its largest"
 
 
-def _swept(judged: Judgement, swept: SweptAnswer) -> list[str]:
+def _swept(judged: Judgement, swept: SweptAnswer) -> list[str | None]:
     """Return what becomes of an error of many constraints in an engine that sweeps, and how many sweeps are enough.
 
     What else was asked, of a scene that moves, is said of constraints that are solved exactly.
     """
     z_abs, stable = swept.growth.factor, swept.stable_iterations
     change = _change(judged, z_abs, "converges" if z_abs < 1 else "diverges")
-    enough = "no number of sweeps that was tried is stable"
-    if stable is not None:
-        enough = f"stable from {counted(stable, 'sweep')}"
-    alone = f"{change}; of one constraint alone, each step multiplies it by {swept.alone:.2f}"
-    said = [alone, enough, *_on_a_motion(judged)]
-    if judged.moving:
-        said.append(f"that is at rest. Solved exactly: {_in_motion(judged, judged.moving)}")
-    return said
+    return [
+        f"{change}; of one constraint alone, each step multiplies it by {swept.alone:.2f}",
+        f"stable from {counted(stable, 'sweep')}" if stable else "no number of sweeps that was tried is stable",
+        _on_a_motion(judged),
+        f"that is at rest. Solved exactly: {_in_motion(judged, judged.moving)}" if judged.moving else None,
+    ]
 
 
-def _growth(judged: Judgement) -> list[str]:
-    """Return how far the step, α and β may grow: each alone, at rest; nothing if not asked."""
+def _growth(judged: Judgement) -> str | None:
+    """Return how far the step, α and β may grow: each alone, at rest; nothing if not asked.
+
+    Nothing in an engine that sweeps, either: more of one constraint alone means nothing for a chain of them.
+    """
     margins = judged.margins
+    if not judged.safe or judged.swept_over:
+        return None
     if judged.margins_reason:
-        return [f"how far the step, α and β may grow is not known: {judged.margins_reason}"]
+        return f"how far the step, α and β may grow is not known: {judged.margins_reason}"
     if margins is None:
-        return []
-    alone: list[tuple[str, float | None, Callable[[float], str]]] = [
-        ("the step", margins.h, growth_words) if judged.h is None else ("the step", judged.h_limit, seconds_words),
-        ("α", margins.alpha[1], growth_words),
-        ("β", margins.beta[1], growth_words),
-    ]
-    limits = [
-        f"{name} up to {words(limit)}" for name, limit, words in alone if limit is not None and not math.isinf(limit)
-    ]
+        return None
+    factors = {"the step": margins.h if judged.h is None else math.inf, "α": margins.alpha[1], "β": margins.beta[1]}
+    limits = [f"{name} up to {growth_words(factor)}" for name, factor in factors.items() if factor < math.inf]
+    if judged.h_limit is not None and judged.h_limit < math.inf:
+        limits.insert(0, f"the step up to {seconds_words(judged.h_limit)}")
     stays = "at rest it stays" if judged.moving else "it stays"
     if not limits:
-        return [f"{stays} stable if one of h, α and β alone grows without limit"]
-    return [f"{stays} stable with one of these alone: {', '.join(limits)}"]
+        return f"{stays} stable if one of h, α and β alone grows without limit"
+    return f"{stays} stable with one of these alone: {', '.join(limits)}"
 
 
 def costs_words(judged: Judgement) -> str | None:
