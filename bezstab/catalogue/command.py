@@ -45,7 +45,7 @@ def engines(
     point = TypedPoint(alpha, beta).numbers
     if names:
         found = [engine_facts(engine, h, point, omega) for engine in names]
-        show_answers(COLUMNS, found, [""] * len(found), in_blocks=True)
+        show_answers(COLUMNS, found, in_blocks=True)
         return
     show_tables([(COLUMNS, [engine_facts(engine, h, point, omega) for engine in ENGINES.values()])], every_column=False)
     also = ", ".join(f"{name} ({engine})" for name, engine in ENGINE_ALIASES.items())

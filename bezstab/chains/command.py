@@ -73,7 +73,7 @@ def chain(
     answer = judge_chain(words, values, h, whole, iterations, load)
     files = Files(output, figure)
     files.check_output()
-    show_answers(COLUMNS, [answer], [answer.sentence])
+    show_answers(COLUMNS, [answer])
     if figure != "none":
         from bezstab.chains.figure import chain_figure
 

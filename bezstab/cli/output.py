@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO, TypeVar
 import click
 
 from bezstab.files import output_directory, write_whole
-from bezstab.show.columns import Column, row_of
+from bezstab.show.columns import SENTENCE, Column, row_of
 from bezstab.show.fields import MISSING, visible
 from bezstab.show.tables import Format, fits, for_programs, lines_below, table, wrapped
 
@@ -58,21 +58,24 @@ Table = tuple[Sequence[Column[Any]], Sequence[Any]]
 def show_answers(
     columns: Sequence[Column[Item]],
     answers: Sequence[Item],
-    sentences: Sequence[str],
+    sentences: Sequence[str] | None = None,
     *,
     in_blocks: bool = False,
     below: Sequence[Table] = (),
 ) -> None:
     """Print answers on standard output: every column as JSON and CSV, else the brief ones, or with --all every one.
 
-    As text each answer is its sentence, with a line for each column below; several are a table, if that is not wider
-    than the terminal, unless they are to be `in_blocks`. A command without --all shows every one. Tables of another
-    kind follow `below`, as `show_tables` has them.
+    As text each answer is its sentence, by default that of its columns, with a line for each column below; several are
+    a table, if that is not wider than the terminal, unless they are to be `in_blocks`. A command without --all shows
+    every one. Tables of another kind follow `below`, as `show_tables` has them.
     """
     if not for_reading():
         _show_for_programs([(columns, answers), *below])
         return
     shown = _shown(columns, answers, _every_column())
+    if sentences is None:
+        told = [each for each in columns if each.key == SENTENCE.key]
+        sentences = ["".join(each.text(answer) for each in told) for answer in answers]
     if in_blocks and chosen_format() == "text":
         click.echo(_blocks(shown, answers, sentences))
     else:

@@ -117,7 +117,7 @@ def drive(
         show_text(f"{timing_words(timing, float(h))}\n")
     if len(answers) > 1:
         show_text(f"{ways_words(answers)}\n")
-    show_answers(COLUMNS, answers, [answer.sentence for answer in answers])
+    show_answers(COLUMNS, answers)
     if timing != FRESH:
         show_text(f"\n{NOT_JUDGED}")
     for answer in answers if figure != "none" else ():

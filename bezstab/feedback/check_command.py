@@ -74,7 +74,7 @@ def check(
     if physical and typed.numbers and setup.h is None and not (engine or setup.scene or setup.omega):
         point = typed.numbers
         found = [step_answer(method, *point, stable_up_to(method, *point)) for method in methods_for(methods, None)]
-        show_answers(columns.STEPS, found, [answer.sentence for answer in found])
+        show_answers(columns.STEPS, found)
         return all(found)
     given = given_feedback(setup, typed.at(setup.h), values, as_typed=as_typed)
     methods, asked = methods_for(methods, named), worked_out(lambda: conditions(setup), simulation["scene"])
@@ -84,20 +84,20 @@ def check(
     better = [each.instead for each in answers if each.instead is not None]
     if for_reading():
         beside.show_point(answers)
-        show_answers(columns.CHECKED, answers, [answer.sentence for answer in answers])
+        show_answers(columns.CHECKED, answers)
         if len(answers) > 1:  # a single one has said so
             said = ((each, sentences.energy_sentence(each)) for each in answers)
             show_sentences(f"{each.method.name}, {each.goal}: {sentence}" for each, sentence in said if sentence)
         show_sentences(map(sentences.costs_words, answers))
         if better:
             show_text("\nWhat `choose` gives instead:\n")
-            show_answers(columns.CHECKED, better, [answer.sentence for answer in better])
+            show_answers(columns.CHECKED, better)
             show_sentences(map(columns.spare_words, better))
         if every_column and not asked.motion.assumed:
             show_sentences([sentences.motion_words(asked.motion)])
     else:
         both: list[CheckAnswer | ChooseAnswer] = [*answers, *better]
-        show_answers(columns.CHECKED, both, [])
+        show_answers(columns.CHECKED, both)
     say_each(each.instead_reason and f"nothing instead: {each.instead_reason}" for each in answers)
     say_each(each.cost_reason for each in answers)
     if for_reading():

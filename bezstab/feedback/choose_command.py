@@ -84,9 +84,9 @@ def choose(
         at_any_step = [
             step_answer(each.method, each.alpha or 0.0, each.beta or 0.0, each.h_limit or 0.0) for each in chosen
         ]
-        show_answers(columns.STEPS, at_any_step, [answer.sentence for answer in at_any_step])
+        show_answers(columns.STEPS, at_any_step)
         return all(chosen)
-    show_answers(columns.CHOSEN, chosen, [answer.sentence for answer in chosen])
+    show_answers(columns.CHOSEN, chosen)
     if for_reading() and not asked.swept:
         for answer in chosen:
             name = f"{answer.method.name}: " if len(chosen) > 1 else ""

@@ -48,4 +48,4 @@ def methods(methods: Sequence[Method], latex: bool, **_: object) -> None:
         )
     else:
         answers = [answer for _, of_group in listed for answer in of_group]
-        show_answers(LISTED, answers, [""] * len(answers))
+        show_answers(LISTED, answers)

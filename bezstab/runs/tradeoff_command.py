@@ -158,7 +158,7 @@ def tradeoff(
         files.write(path, None, lambda: table_arrays(COSTS, rows))
         for name, draw in trade_figures(swept, asked.scene).items():
             files.write(path.with_name(f"{path.name}_{name}"), draw)
-    show_answers(COSTS, rows, [""] * len(rows))
+    show_answers(COSTS, rows)
     show_text(f"\n{basis_words(asked)}")
 
 
@@ -183,5 +183,5 @@ def _show_fronts(
     files.check_output()
     points = [Placed(point, h) for front in progress(found, "fronts", len(methods)) for point in front]
     files.write(files.path("tradeoff", "predicted"), None, lambda: table_arrays(FRONTS, points))
-    show_answers(FRONTS, points, [""] * len(points))
+    show_answers(FRONTS, points)
     show_text(combined_words(motion) + energy_words(motion))

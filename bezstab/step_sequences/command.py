@@ -53,7 +53,7 @@ def steps(
 
     named, values = engine or (None, None)
     found = answers(methods, Steps(h_min, h_max, hold), alpha, beta, engine=named, values=values)
-    show_answers(COLUMNS, found, [answer.sentence for answer in found])
+    show_answers(COLUMNS, found)
     for answer in found if for_reading() else ():
         if answer.shown_by:
             show_text("\nThis shows errors grow:\n")
