@@ -8,8 +8,8 @@ from tests.extremes.checks import EXTREMES, Extreme
 PAGE = Path(__file__).parents[2] / "figures" / "extremes.md"
 HEAD = """# What holds at the extremes
 
-Written by `make extremes`; the slow tests look at a few of each. Each line says what must come out, in how many cases it did, and
-which case came nearest to failing.
+Written by `make extremes`; the slow tests look at a few of each. Each line says what must come out, in how many cases
+it did, and which came nearest to failing.
 
 """
 
