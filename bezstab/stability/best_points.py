@@ -28,7 +28,7 @@ from bezstab.rationals import exact
 from bezstab.stability.arrays import DOUBLE, ROUNDING, SAME, FloatArray
 from bezstab.stability.closed_loop import converges, largest_at_mu, mu_table, poles, spectral_radius
 from bezstab.stability.root_finding import roots_of_rows
-from bezstab.stability.searches import Points, least_between, lowest_minima, zoom_on_minimum
+from bezstab.stability.searches import lowest_minima, zoom_on_minimum
 from bezstab.stability.stretches import ALONG_BETA, float_table, paths
 
 SIZES: FloatArray = np.geomspace(1e-4, 1e4, 129)  # of alpha h, beta h: 15 % from one to the next
@@ -39,7 +39,6 @@ ROUGH, ROUNDS, SHRINK = 8, 45, 0.4  # grids of a zoom, at first and then to 1e-1
 HOPEFUL = 0.02  # above the lowest: a zoom has not stopped so far short after its first grids
 NEAR = 0.03  # of logarithms: starts so near lead to one place
 LINES, LINE_ROUNDS = 17, 18  # the same over lines, each an eighth of the last
-CIRCLE_ROUNDS, WINDOW = 18, 0.2  # over circles; to either side of the best damping ratio, in rad
 OFFSETS: FloatArray = np.linspace(-1, 1, LINES)
 WELL_INSIDE = 0.9  # of the reach: a best line further out says that the valley may lead on
 REACH = 0.3  # of alpha_hat: within it a line as good as any lies, where a start is
@@ -59,6 +58,9 @@ DIRECTIONS = sorted(
 
 Place = tuple[float, float]
 """alpha_hat and beta_hat."""
+
+Found = tuple[Place, float]
+"""A place, and |z_p| there."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -119,28 +121,27 @@ def best_point_or_reason(method: Method) -> tuple[BestPoint | None, str | None]:
 @cache
 def _best_or_limit(method: Method) -> BestPoint | FarLimit | None:
     limit = _far_limit(method)
-    places, values = _over_mu(method) if mu_table(method).size else _over_lines(method, limit)
-    least = values.min(initial=math.inf)
-    lowest = places[np.argmin(values)] if values.size else np.full(2, math.inf)
+    found = _over_mu(method) if mu_table(method).size else _over_plane(method, limit)
+    least, lowest = min(((level, place) for place, level in found), default=(math.inf, (math.inf, math.inf)))
     far_out = math.sqrt(lowest[1]) * float(method.step_multiple) > FAR_OUT
     if least > AT_ZERO and limit.z_abs < least * (1 + (DOUBLE if far_out else -DOUBLE)):
         return limit
     # of several alike, as along an arc of B2, the most damped
-    alike = places[values <= max(AT_ZERO, least * (1 + SAME))]
-    (alpha_hat, beta_hat), *others = sorted(alike.tolist(), key=lambda place: -place[0] / math.sqrt(place[1]))
+    alike = [place for place, level in found if level <= max(AT_ZERO, least * (1 + SAME))]
+    (alpha_hat, beta_hat), *others = sorted(alike, key=lambda place: -place[0] / math.sqrt(place[1]))
     if not converges(method, exact(alpha_hat), exact(beta_hat)):
         return None
     if least > AT_ZERO:
-        return BestPoint(method, float(least), alpha_hat, beta_hat)
+        return BestPoint(method, least, alpha_hat, beta_hat)
     zeros = [(alpha_hat, beta_hat)]
     for place in others:
         if not any(np.allclose(place, other, rtol=DOUBLE, atol=DOUBLE) for other in zeros):
-            zeros.append((place[0], place[1]))
+            zeros.append(place)
     return BestPoint(method, 0.0, alpha_hat, beta_hat, tuple(zeros[1:]))
 
 
-def _over_mu(method: Method) -> tuple[FloatArray, FloatArray]:
-    """Return places (alpha_hat, beta_hat) of lowest |z_p|, shape (places, 2), and the values there."""
+def _over_mu(method: Method) -> list[Found]:
+    """Return places of lowest |z_p| of a method that has a mu."""
 
     def modulus(points: FloatArray) -> FloatArray:
         """Return the largest |z| over points (log |mu|, arcsine of the damping ratio)."""
@@ -153,46 +154,27 @@ def _over_mu(method: Method) -> tuple[FloatArray, FloatArray]:
     def within(points: FloatArray) -> FloatArray:
         return np.stack([points[..., 0], np.clip(points[..., 1], 0, np.pi / 2)], axis=-1)
 
+    def in_plane(log_size: float, ratio: float) -> Place:
+        size = math.exp(log_size) / float(method.step_multiple)
+        return 2 * size * math.sin(ratio if ratio > ROUNDING else 0), size**2
+
     axis = np.log(SIZES)
     starts, rough = lowest_minima(modulus, [axis, RATIOS], STARTS, rounds=ROUGH, shrink=SHRINK, fold=within)
-    (edge, *_), (value, *_) = lowest_minima(on_edge, [axis], 1, rounds=ROUNDS, shrink=SHRINK)
-    found: list[tuple[FloatArray, float]] = []
+    ((edge,), *_), (at_edge, *_) = lowest_minima(on_edge, [axis], 1, rounds=ROUNDS, shrink=SHRINK)
+    found = [(in_plane(edge, np.pi / 2), float(at_edge))]
     for start, _ in _hopeful(starts, rough):
-        place, zoomed = zoom_on_minimum(
+        point, zoomed = zoom_on_minimum(
             modulus, start, np.full(2, SHRINK**ROUGH), rounds=ROUNDS, shrink=SHRINK, fold=within
         )
-        least = float(zoomed)
-        found.append(_on_circles(modulus, place, least) if AT_ZERO < least < value * (1 - SAME) else (place, least))
-    points = np.array([(edge[0], np.pi / 2), *(place for place, _ in found)])
-    size, ratio = np.exp(points[:, 0]) / float(method.step_multiple), np.where(points[:, 1] < ROUNDING, 0, points[:, 1])
-    return np.stack([2 * size * np.sin(ratio), size**2], axis=-1), np.array([value, *(least for _, least in found)])
-
-
-def _on_circles(modulus: Points, place: FloatArray, least: float) -> tuple[FloatArray, float]:
-    """Return a place near another one, and the value there, once more by circles of constant |mu|, each with its least.
-
-    Valleys that are curved and narrower than a grid's spacing hold grids of points fast.
-    """
-    best, value = place, least
-
-    def on_circles(points: FloatArray) -> FloatArray:
-        nonlocal best, value
-        size = points[..., 0]
-        ends = (np.full(size.shape, np.clip(best[1] + side * WINDOW, 0, np.pi / 2)) for side in (-1, 1))
-        ratios, values = least_between(
-            lambda some: modulus(np.stack(np.broadcast_arrays(size[..., np.newaxis], some), axis=-1)), *ends
+        place, least = in_plane(*point.tolist()), float(zoomed)
+        # valleys that are curved and narrower than a grid's spacing hold grids of points fast
+        found.append(
+            _narrowed(method, *place, least, NEAR) if AT_ZERO < least < at_edge * (1 - SAME) else (place, least)
         )
-        k = int(np.argmin(values))
-        if values[k] < value * (1 - SAME):
-            best, value = np.array([size[k], ratios[k]]), float(values[k])
-        return values
-
-    zoom_on_minimum(on_circles, place[:1], np.array([NEAR]), points=LINES, rounds=CIRCLE_ROUNDS, shrink=0.25)
-    undamped = np.array([best[0], 0.0])
-    return (undamped, value) if modulus(undamped[np.newaxis])[0] <= value * (1 + SAME) else (best, value)
+    return found
 
 
-def _over_lines(method: Method, limit: FarLimit) -> tuple[FloatArray, FloatArray]:
+def _over_plane(method: Method, limit: FarLimit) -> list[Found]:
     """Return the same of a method without a mu; nothing where only zeros are lower than a limit."""
     multiple = float(method.step_multiple)
 
@@ -202,20 +184,15 @@ def _over_lines(method: Method, limit: FarLimit) -> tuple[FloatArray, FloatArray
     axes = [np.array([0.0, *(2 * SIZES / multiple)]), 2 * np.log(SIZES / multiple)]
     starts, rough = lowest_minima(modulus, axes, STARTS, rounds=ROUGH, shrink=SHRINK, fold=_not_negative)
     hopeful = [((float(start[0]), float(np.exp(start[1]))), level) for start, level in _hopeful(starts, rough)]
-    zeros = [zero for place, level in hopeful if level < HOPEFUL_ZERO and (zero := _zero(method, place))]
+    all_poles = len(float_table(method)) - 1
+    near_zero = [_multiple_pole(method, all_poles, place) for place, level in hopeful if level < HOPEFUL_ZERO]
+    zeros = [(found[0], 0.0) for found in near_zero if found]
     if zeros or not limit.z_abs:
-        return np.reshape(zeros, (-1, 2)), np.zeros(len(zeros))
-    found = [_narrowed(method, *place, level) for place, level in hopeful]
-    return np.array([place for place, _ in found]), np.array([level for _, level in found])
+        return zeros
+    return [_narrowed(method, *place, level, REACH * place[0] or REACH) for place, level in hopeful]
 
 
-def _zero(method: Method, near: Place) -> Place | None:
-    """Return the place near another one where all poles are zero, if there is one."""
-    found = _multiple_pole(method, len(float_table(method)) - 1, near)
-    return found[0] if found else None
-
-
-def _multiple_pole(method: Method, times: int, near: Place, pole: float | None = None) -> tuple[Place, float] | None:
+def _multiple_pole(method: Method, times: int, near: Place, pole: float | None = None) -> Found | None:
     """Return the place near another one where a real pole is so many times a root of P, and it: near `pole`, or zero.
 
     P and its derivatives vanish there, which is smooth though poles part like a root. Newton's method; None without.
@@ -249,12 +226,12 @@ def _not_negative(points: FloatArray) -> FloatArray:
     return np.stack([np.abs(points[..., 0]), points[..., 1]], axis=-1)
 
 
-def _narrowed(method: Method, alpha_hat: float, beta_hat: float, level: float) -> tuple[Place, float]:
+def _narrowed(method: Method, alpha_hat: float, beta_hat: float, level: float, reach: float) -> Found:
     """Return the place of the least |z_p| near one that has a level, and that least, from lines of constant alpha_hat.
 
     On each the least level with a stable stretch counts: it falls in leaps until no line has a lower one.
     """
-    reach, level, least = REACH * alpha_hat or REACH, level * (1 + HOPEFUL), math.inf  # rounding may have lowered it
+    level, least = level * (1 + HOPEFUL), level  # rounding may have lowered it
     fall = level / 2
     for _ in range(LINE_ROUNDS):
         lines, before, low, start = np.abs(alpha_hat + reach * OFFSETS), alpha_hat, 0.0, level
@@ -281,7 +258,7 @@ def _narrowed(method: Method, alpha_hat: float, beta_hat: float, level: float) -
         found := _multiple_pole(method, 3, (alpha_hat, beta_hat), z[together].real.mean())
     ):
         return found[0], abs(found[1])
-    return (alpha_hat, beta_hat), least
+    return (alpha_hat if alpha_hat > ROUNDING else 0.0, beta_hat), least
 
 
 def _inside(low: float, high: float) -> float:
