@@ -41,12 +41,12 @@ RUN_UNDERNEATH = {
 
 WITNESSES = {
     "mujoco": "tests/runs/test_mujoco_maps.py::test_an_equality_is_the_point_of_its_solref",
-    "bullet": "tests/witnesses/test_pybullet.py::test_bullets_pole_is_that_of_its_erp",
-    "chipmunk": "tests/witnesses/test_pymunk.py::test_chipmunks_pole_is_that_of_its_error_bias",
-    "box2d-v2": "tests/witnesses/test_box2d.py::test_errors_of_a_chain_shrink_as_predicted",
-    "cannon-es": "tests/witnesses/test_javascript_engines.py::test_cannon_es_grows_as_its_spook_says",
-    "matter.js": "tests/witnesses/test_javascript_engines.py::test_matter_js_grows_as_its_stiffness_says",
-    "p2": "tests/witnesses/test_javascript_engines.py::test_p2_grows_as_its_spook_says",
+    "bullet": "tests/witnesses/test_sweeping_engines.py::test_one_joint_has_the_pole_of_its_row",
+    "chipmunk": "tests/witnesses/test_sweeping_engines.py::test_one_joint_has_the_pole_of_its_row",
+    "box2d-v2": "tests/witnesses/test_sweeping_engines.py::test_errors_of_a_chain_grow_or_shrink_as_predicted",
+    "cannon-es": "tests/witnesses/test_javascript_engines.py::test_an_engine_grows_as_its_row_says",
+    "matter.js": "tests/witnesses/test_javascript_engines.py::test_an_engine_grows_as_its_row_says",
+    "p2": "tests/witnesses/test_javascript_engines.py::test_an_engine_grows_as_its_row_says",
 }
 """The test that runs an engine itself and holds its row against that, by the engine's name; add a line for each.
 

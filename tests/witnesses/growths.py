@@ -1,12 +1,9 @@
-"""By what factor errors of a run grow or shrink from step to step, in the long run, and what that is to be."""
+"""By what factor errors of a run grow or shrink from step to step, in the long run."""
 
 from collections.abc import Callable, Sequence
-from fractions import Fraction
 
 import numpy as np
-
-from bezstab.engines.engine_list import engine_and_values
-from bezstab.stability.sweeps import Growth, chain, swept_growth
+from numpy.typing import NDArray
 
 
 def growth(errors: Sequence[float], window: int) -> float:
@@ -19,19 +16,20 @@ def growth(errors: Sequence[float], window: int) -> float:
     return float(np.exp(np.polyfit(np.arange(len(later)), later, 1)[0]))
 
 
-def grown(
-    step: Callable[[], object], error: Callable[[], float], window: int, steps: int, least: float, most: float
-) -> float:
-    """Return the growth of a run of at most so many steps, at least two windows, whose errors stay in that range."""
+def grown(step: Callable[[], object], error: Callable[[], float], window: int, least: float, most: float) -> float:
+    """Return the growth of a run of up to 3000 steps, at least two windows, whose errors stay in that range."""
     errors: list[float] = []
-    while len(errors) < 2 * window or (len(errors) < steps and least < max(errors[-window:]) < most):
+    while len(errors) < 2 * window or (len(errors) < 3000 and least < max(errors[-window:]) < most):
         step()
         errors.append(error())
     return growth(errors, window)
 
 
-def predicted(engine: str, h: str, bodies: int, ratio: float, sweeps: int) -> Growth:
-    """Return what a step of an engine, typed with its values, does to a straight chain whose last body is heavier."""
-    named, values = engine_and_values(engine)
-    assert named.sweeping
-    return swept_growth(chain(bodies, ratio), named.sweeping.step(sweeps, Fraction(h), *values))
+def largest_pole(run: NDArray[np.float64], order: int) -> complex:
+    """Return the largest pole of the linear recursion of that order which a run follows; of a pair the upper one."""
+    rows = np.array([run[start : start + order + 1] for start in range(len(run) - order)])
+    rows /= np.abs(rows).max(axis=1, keepdims=True)
+    coefficients = np.linalg.lstsq(rows[:, :-1], rows[:, -1], rcond=None)[0]
+    z = np.roots([1, *-coefficients[::-1]])
+    largest = complex(z[np.argmax(np.abs(z))])
+    return complex(largest.real, abs(largest.imag))

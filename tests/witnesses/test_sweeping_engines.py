@@ -1,0 +1,264 @@
+"""Engines that sweep, run: one constraint, chains, arms and a closed four-bar do what their rows say.
+
+pymunk: a joint with error_bias e leaves e^h of an error each step, SYM at (1, 1 - e^h). PyBullet: a constraint with ERP
+is SYM at (1, ERP), so that its limit is 2, not 1.
+"""
+
+import tomllib
+from collections.abc import Callable, Iterator, Sequence
+from fractions import Fraction
+from functools import cache
+from itertools import islice
+from typing import Any
+
+import numpy as np
+import pytest
+
+from bezstab.chains.answer import chain as judge
+from bezstab.engines.engine_list import engine_and_values
+from bezstab.mechanism.equations import Mechanism, compiled_mechanism
+from bezstab.mechanism.scene_files import parse_scene
+from bezstab.mechanism.start import constraint_errors, constraint_jacobian, initial_state
+from bezstab.methods.registry import lookup
+from bezstab.stability.closed_loop import dominant_pole
+from tests.witnesses.growths import grown
+from tests.witnesses.worlds import Body, Box2d, Bullet, FloatArray, Joint, Pymunk, World
+
+H = 1 / 60
+ENGINES: dict[str, tuple[str, Callable[..., World]]] = {
+    "chipmunk": ("pymunk", Pymunk),
+    "bullet": ("pybullet_utils.bullet_client", Bullet),
+    "box2d-v2": ("Box2D", Box2d),
+}
+
+
+def made(engine: str, bodies: Sequence[Body], joints: Sequence[Joint], **settings: Any) -> World:
+    """Return a mechanism in an engine, at steps of H; the test is skipped where the engine is missing."""
+    module, world = ENGINES[engine]
+    return world(pytest.importorskip(module), bodies, joints, H, **settings)
+
+
+def chain(engine: str, bodies: int, ratio: float, moved: Any, **settings: Any) -> World:
+    """Return a straight chain from the world on along x, the last body heavier, each body moved by so much.
+
+    In Box2D it goes to and fro, so that all places are between 0 and 1; PyBullet has pins in place of links.
+    """
+    masses = [1.0] * (bodies - 1) + [ratio]
+    places = [n % 2 if engine == "box2d-v2" else n for n in range(1, bodies + 1)]
+    points = [(1.0 if engine == "bullet" else 0.0, 0.0), (0.0, 0.0)]
+    joints = [Joint("link", n, n + 1, points) for n in range(bodies)]
+    beads = [Body(mass, mass, (x, 0, 0)) for mass, x in zip(masses, places + moved, strict=True)]
+    return made(engine, beads, joints, **settings)
+
+
+def too_long(world: World) -> FloatArray:
+    """Return by how much each link of a chain is too long."""
+    places = np.vstack([np.zeros(2), world.places()[:, :2]])
+    return np.asarray(np.linalg.norm(np.diff(places, axis=0), axis=1) - 1)
+
+
+@pytest.mark.parametrize(
+    ("typed", "share", "within"),
+    [
+        ("chipmunk", None, 1e-6),  # pymunk's own
+        *((f"chipmunk={bias!r}", 1 - bias**H, 1e-6) for bias in (0.9, 1.1, 1e-20, 1.1**60)),
+        *((f"bullet={erp}", erp, 1e-9) for erp in (0.2, 1.8, 2.2)),
+    ],
+)
+def test_one_joint_has_the_pole_of_its_row(typed: str, share: float | None, within: float) -> None:
+    """At 0.9 and 1.1 of the limits, too. pymunk's first step but sets the body in motion."""
+    engine, values = engine_and_values(typed)
+    expected = complex(dominant_pole(lookup("SYM"), *map(float, engine.applied(values, Fraction(1, 60)).point)))
+    body, joint = Body(2, 3, (1e-6, 0, 0)), Joint("pin", 0, 1, [(0, 0), (0, 0)])
+    world = made(engine.name, [body], [joint], share=share)
+    errors = []
+    for _ in range(12):
+        world.step()
+        errors.append(world.places()[0, 0])
+    assert np.divide(errors[2:], errors[1:-1]) == pytest.approx(expected.real, abs=within)
+
+
+@pytest.mark.parametrize(
+    ("engine", "bodies", "ratio", "sweeps", "share"),
+    [
+        ("chipmunk", 2, 1, 1, 0.9),
+        ("chipmunk", 10, 1, 4, 0.2),
+        ("chipmunk", 10, 1, 10, 0.8),
+        ("chipmunk", 10, 100, 120, 0.1),
+        ("bullet", 5, 1, 1, 0.2),
+        ("bullet", 10, 1, 4, 1.9),
+        ("bullet", 10, 100, 10, 0.2),
+        ("box2d-v2", 20, 10, 8, None),
+        ("box2d-v2", 10, 100, 8, None),
+    ],
+)
+def test_errors_of_a_chain_grow_or_shrink_as_predicted(
+    engine: str, bodies: int, ratio: float, sweeps: int, share: float | None
+) -> None:
+    """To 2e-3 of the factor a step. In Box2D while they are above its slop.
+
+    They are too long and too short in turn there, as if a straight chain was stretched: the slowest error of all.
+    """
+    value = {"chipmunk": f"={(1 - (share or 0)) ** 60!r}", "bullet": f"={share}"}.get(engine, "")
+    answer = judge(engine + value, h="1/60", bodies=bodies, mass_ratio=ratio, iterations=sweeps)
+    moved = (1e-2 if answer.safe else 1e-8) * np.random.default_rng(1).standard_normal(bodies)
+    window, least = 30, 1e-12
+    if engine == "box2d-v2":
+        moved, window, least = 0.1 * np.arange(1.0, bodies + 1), 10, 0.01
+    world = chain(engine, bodies, ratio, moved, sweeps=sweeps, share=share)
+    found = grown(world.step, lambda: float(np.abs(too_long(world)).max()), window, least, 1 if answer.safe else 5e-3)
+    assert found == pytest.approx(answer.z_abs, abs=2e-3)
+
+
+@pytest.mark.parametrize(
+    ("bodies", "ratio", "sweeps", "gravity"), [(10, 1, 10, 50), (10, 10, 10, 5), (6, 20, 4, 50), (16, 0.6, 6, 50)]
+)
+def test_a_chain_that_hangs_in_chipmunk_does_not_sag_and_if_it_grows_jitters_as_far_as_said(
+    bodies: int, ratio: float, sweeps: int, gravity: float
+) -> None:
+    """To a thousandth; jitter within a factor of three, root mean square of the worst joint."""
+    answer = judge("chipmunk", h="1/60", bodies=bodies, mass_ratio=ratio, iterations=sweeps, load="gravity")
+    aside = 0.2 * gravity if answer.jitter else 0
+    world = chain("chipmunk", bodies, ratio, np.zeros(bodies), sweeps=sweeps, gravity=(gravity, aside))
+    errors = []
+    for _ in range(2400):
+        world.step()
+        errors.append(too_long(world))
+    measured = np.sqrt(np.mean(np.square(errors[1200:]), axis=0)).max()
+    if answer.jitter:
+        assert 1 / 3 < measured / (answer.jitter * gravity / 9.81) < 3
+    else:
+        assert (answer.sag, measured) == (0, pytest.approx(0, abs=1e-3))
+
+
+def arm(engine: str, bodies: int, motor: str, ratio: float = 1, both_ends: bool = False, **settings: Any) -> World:
+    """Return rods of length 1 out from the world, the last one heavier, each held by a pin and a motor."""
+    masses = [1.0] * (bodies - 1) + [ratio]
+    rods = [Body(mass, mass / 12, (n + 0.5, 0, 0)) for n, mass in enumerate(masses)]
+    joints = [Joint("pin", n, n + 1, [(0.5 if n else 0, 0), (-0.5, 0)], motor) for n in range(bodies)]
+    closed = [Joint("pin", 0, bodies, [(bodies, 0), (0.5, 0)])] * both_ends
+    return made(engine, rods, [*joints, *closed], **settings)
+
+
+@pytest.mark.parametrize(
+    ("engine", "bodies", "motor", "settings", "safe"),
+    [
+        ("chipmunk", 3, "angle", {}, True),
+        ("chipmunk", 6, "angle", {}, False),
+        ("chipmunk", 8, "angle", {"mass_ratio": 20, "iterations": 4, "both_ends": True}, False),
+        ("chipmunk", 6, "rate", {}, True),
+        ("box2d-v2", 3, "5,0.7", {}, True),
+        ("box2d-v2", 6, "60,1", {}, False),
+        ("box2d-v2", 6, "rate", {}, True),
+    ],
+)
+def test_a_kicked_arm_turns_as_predicted(
+    engine: str, bodies: int, motor: str, settings: dict[str, Any], safe: bool
+) -> None:
+    """To 2e-3: joints that also hold angles need far more sweeps than pins, those that hold rates hardly more."""
+    answer = judge(engine, h="1/60", bodies=bodies, motor=motor, **settings)
+    assert answer.safe is safe
+    names = {"mass_ratio": "ratio", "iterations": "sweeps"}
+    world = arm(engine, bodies, motor, **{names.get(name, name): value for name, value in settings.items()})
+    kick, window, least, most = 1e-8, 60, 1e-13, 0.1
+    if engine == "box2d-v2":
+        kick, window, least, most = 1e-2 if safe else 1e-5, 20, 3e-6, 1
+    world.kick(kick * np.random.default_rng(1).standard_normal((bodies, 3)) * (0, 1, 1))
+    found = grown(world.step, lambda: float(np.abs(world.rates()[:, 2]).max()), window, least, most)
+    assert found == pytest.approx(answer.z_abs, abs=2e-3)
+
+
+def test_an_arm_droops_as_predicted() -> None:
+    """To a hundredth, with so little gravity that it stays nearly straight."""
+    share = 0.005
+    world = arm("box2d-v2", 6, "20,1", gravity=(0, -share * 9.81))
+    for _ in range(4000):
+        world.step()
+    sag = judge("box2d-v2", h="1/60", bodies=6, motor="20,1", load="gravity").sag
+    _, y, angle = world.places()[-1]
+    assert -(y + np.sin(angle) / 2) == pytest.approx(share * (sag or 0.0), rel=0.01)
+
+
+RODS = """
+name = "rods of 1 kg/m without weight, of 1, 3 and 2.5 m, closed by the ground's 3 m"
+body = [
+    {name = "crank", mass = 1.0, inertia = 0.08333333333333333, free = ["x", "y", "theta"]},
+    {name = "coupler", mass = 3.0, inertia = 2.25, free = ["x", "y", "theta"]},
+    {name = "rocker", mass = 2.5, inertia = 1.3020833333333333, free = ["x", "y", "theta"]},
+]
+joint = [
+    {type = "revolute", bodies = ["ground", "crank"], points = [[0.0, 0.0], [-0.5, 0.0]]},
+    {type = "revolute", bodies = ["crank", "coupler"], points = [[0.5, 0.0], [-1.5, 0.0]]},
+    {type = "revolute", bodies = ["coupler", "rocker"], points = [[1.5, 0.0], [1.25, 0.0]]},
+    {type = "revolute", bodies = ["rocker", "ground"], points = [[-1.25, 0.0], [3.0, 0.0]]},
+]
+[initial]
+position = {"crank.theta" = 1.0}
+velocity = {"crank.theta" = 6.0}
+[initial.guess]
+"crank.x" = 0.3
+"crank.y" = 0.4
+"coupler.x" = 1.9
+"coupler.y" = 1.5
+"coupler.theta" = 0.5
+"rocker.x" = 3.1
+"rocker.y" = 1.2
+"rocker.theta" = 1.5
+"""
+
+
+@cache
+def closed_loop() -> Mechanism:
+    return compiled_mechanism(parse_scene(tomllib.loads(RODS)))
+
+
+def of_class(share: float | None) -> Iterator[FloatArray]:
+    """Yield velocities of a run whose steps are those of the class bias, without a share of beside.
+
+    All constraints are solved together, which so many sweeps come to.
+    """
+    mechanism = closed_loop()
+    (q, v), inverse = initial_state(mechanism), 1 / mechanism.mass
+
+    def push(wanted: FloatArray) -> FloatArray:
+        normals = constraint_jacobian(mechanism, 0.0, q)
+        change: FloatArray = inverse * (np.linalg.solve(normals * inverse @ normals.T, wanted) @ normals)
+        return change
+
+    while True:
+        yield v
+        error = (share or 0) * constraint_errors(mechanism, 0.0, q) / H
+        v = v - push(constraint_jacobian(mechanism, 0.0, q) @ v + error)
+        q = q + H * v
+        for _ in range(0 if share else 8):
+            q = q - push(constraint_errors(mechanism, 0.0, q))
+
+
+def of_engine(engine: str, share: float | None, sweeps: int) -> Iterator[FloatArray]:
+    """Yield velocities of a run of the engine."""
+    given = tomllib.loads(RODS)
+    of_joints = [(joint["bodies"], joint["points"]) for joint in given["joint"]]
+    names = ["ground", *(body["name"] for body in given["body"])]
+    states = np.stack(initial_state(closed_loop())).reshape(2, 3, 3).tolist()
+    rods = [Body(body["mass"], body["inertia"], *state) for body, *state in zip(given["body"], *states, strict=True)]
+    pins = [Joint("pin", names.index(a), names.index(b), points) for (a, b), points in of_joints]
+    world = made(engine, rods, pins, sweeps=sweeps, share=share)
+    while True:
+        yield world.rates().ravel()
+        world.step()
+
+
+def lost(run: Iterator[FloatArray]) -> float:
+    """Return the share of its energy that a motion loses from the first second to the sixth."""
+    energies = [float(closed_loop().mass @ np.square(velocities) / 2) for velocities in islice(run, 360)]
+    return 1 - energies[-1] / float(np.mean(energies[55:66]))
+
+
+@pytest.mark.parametrize(
+    ("engine", "share", "sweeps"),
+    [("chipmunk", 0.1, 1000), ("chipmunk", 0.8, 1000), ("bullet", 0.2, 1000), ("box2d-v2", None, 200)],
+)
+def test_a_closed_loop_is_braked_as_by_a_step_of_the_engines_class(
+    engine: str, share: float | None, sweeps: int
+) -> None:
+    assert lost(of_engine(engine, share, sweeps)) == pytest.approx(lost(of_class(share)), rel=0.02)
