@@ -17,8 +17,7 @@ from bezstab.stability.accurate_points import Within, accurate_point, default_ra
 from bezstab.stability.arrays import DOUBLE, SLOW, Extent, FloatArray
 from bezstab.stability.best_points import best_point
 from bezstab.stability.closed_loop import Modulus, all_within, converges, largest_pole, spectral_radius, verdict
-from bezstab.stability.critical_points import critical_point
-from bezstab.stability.curve_choices import Curve, least_along, mildest_along, of_equal
+from bezstab.stability.curve_choices import Curve, critical_point, least_along, mildest_along, of_equal
 from bezstab.stability.forced_errors import OMEGA_H
 from bezstab.stability.margins import Margins, stability_margins
 from bezstab.stability.regions import Region, region
@@ -138,7 +137,7 @@ def choose(
         what = "any setting of the engine" if along else "alpha = beta"
         point, cut = mildest_along(curve, z_abs, rate or 0.0, f"with {what} {method.name}"), False
     elif goal == "critical":
-        point = critical_point(method, min(box[0][1] / 2, math.sqrt(box[1][1])))
+        point = critical_point(method, box)
     elif goal == "robust" or goal == "fastest":  # noqa: PLR1714 (what the type checker follows)
         objective = _slowest(method, z_abs, spread) if goal == "robust" else z_abs
         # without a curve of the fastest where |z_p| falls on as the feedback grows, or for a mechanism that moves

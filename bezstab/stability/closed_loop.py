@@ -12,7 +12,6 @@ from functools import cache, lru_cache, partial
 from typing import Any
 
 import numpy as np
-from numpy.polynomial.polynomial import polyval2d
 from numpy.typing import ArrayLike, NDArray
 
 from bezstab.errors import NumericalError
@@ -31,7 +30,7 @@ from bezstab.stability.root_finding import (
     largest_roots,
     roots_of_rows,
 )
-from bezstab.stability.stretches import float_table
+from bezstab.stability.stretches import float_table, rounded
 
 BLOCK = 16 * CHUNK  # points whose poles are found in one go: their work arrays stay below 50 MB
 SPLITTER = 2.0**27 + 1  # multiplying by it parts the 53 bits of a float64 into two halves (Dekker)
@@ -70,8 +69,12 @@ def poles(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> ComplexA
     rows = _all_poles(method, alpha_hat.ravel(), beta_hat.ravel())
     z = rows.T.reshape(*alpha_hat.shape, len(rows))
     _check_solved(method, alpha_hat, beta_hat, z)
-    order = np.lexsort((-z.imag, -np.abs(z)), axis=-1)
-    return _without_rounding(np.take_along_axis(z, order, axis=-1))
+    return _without_rounding(descending(z))
+
+
+def descending(z: ComplexArray) -> ComplexArray:
+    """Return poles along the last axis descending by modulus, of a conjugate pair first that with Im > 0."""
+    return np.take_along_axis(z, np.lexsort((-z.imag, -np.abs(z)), axis=-1), axis=-1)
 
 
 def dominant_pole(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> ComplexArray:
@@ -150,10 +153,7 @@ def mu_table(method: Method) -> FloatArray:
 
     NumericalError if an exact coefficient leaves the range of float64.
     """
-    try:
-        return np.array(method.scheme.mu_table, float)
-    except OverflowError:
-        raise NumericalError(f"{method.name}: products of its coefficients leave the range of float64") from None
+    return rounded(method, np.array(method.scheme.mu_table, object))
 
 
 def feedback_roots(
@@ -170,16 +170,6 @@ def feedback_roots(
     other = np.divide(beta_hat[real], larger, out=np.zeros(real.size), where=larger != 0)
     multiple = float(method.step_multiple)
     return multiple * first, real, (multiple * other).astype(complex)
-
-
-def own_feedback_root(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray, z: ComplexArray) -> ComplexArray:
-    """Return the mu that each pole z belongs to, of a method that has a mu; all of one shape."""
-    first, real, other = feedback_roots(method, alpha_hat.ravel(), beta_hat.ravel())
-    second = first.conj()
-    second[real] = other
-    both = np.stack([first, second]).reshape(2, *z.shape)
-    left_over = np.abs(polyval2d(np.broadcast_to(z, both.shape), both, mu_table(method)))
-    return np.asarray(np.take_along_axis(both, np.argmin(left_over, axis=0)[np.newaxis], axis=0)[0])
 
 
 def _square_less(x: FloatArray, y: FloatArray) -> FloatArray:

@@ -12,8 +12,10 @@ from typing import Any
 import numpy as np
 
 from bezstab.errors import InputError
-from bezstab.stability.arrays import Extent, FloatArray
-from bezstab.stability.closed_loop import Modulus
+from bezstab.methods.schemes import Method
+from bezstab.stability.arrays import SAME, Extent, FloatArray
+from bezstab.stability.best_points import AT_ZERO
+from bezstab.stability.closed_loop import Modulus, largest_at_mu, mu_table
 from bezstab.stability.root_finding import TOLD
 from bezstab.stability.searches import first_where, least_between
 
@@ -24,6 +26,9 @@ EVEN: FloatArray = np.linspace(0, 1, 1001)[1:]
 SAMPLES: FloatArray = np.concatenate([np.geomspace(1e-6, EVEN[0], 100)[:-1], EVEN])
 """Shares of the way: |z_p| has no features as narrow as that, and what is narrower the zoom finds. Errors that a slow
 motion forces are least at weak feedback."""
+
+ASIDE = 1e-7
+"""Of the way: a double mu splits by 1e-8 in float64, which must not let a rival of equal modulus win."""
 
 
 def of_equal(extent: Extent) -> Curve:
@@ -47,6 +52,32 @@ def least_along(curve: Curve, objective: Modulus) -> tuple[float, float]:
     if np.count_nonzero(sampled <= as_small) > 1 and (level := first_where(lambda s: values(s) <= as_small, SAMPLES)):
         best = level[1]
     return _point(curve, best)
+
+
+def critical_point(method: Method, extent: Extent) -> tuple[float, float]:
+    """Return the point of alpha = beta whose dominant pole is the smallest that is double, real and positive.
+
+    On the way from weak feedback it falls from one, until it has a least value, another pole overtakes it, or it meets
+    one and leaves the real axis. There both mu of a method that has a mu are one, so each of its poles is double.
+    Elsewhere such a pole is not known: InputError for a method without a mu.
+    """
+    if not mu_table(method).size:
+        raise InputError(
+            f"{method.name}: --goal critical is known on alpha = beta alone, where its poles are not double"
+        )
+    curve = of_equal(extent)
+
+    def modulus(alpha_hat: FloatArray, beta_hat: FloatArray) -> FloatArray:
+        z = largest_at_mu(method, np.asarray(-float(method.step_multiple) / 2 * alpha_hat, complex))
+        return np.where((z.real > 0) & (np.abs(z.imag) <= SAME * z.real), z.real, np.inf)
+
+    ended = np.flatnonzero(np.isinf(modulus(*_points(curve, SAMPLES))))
+    end = SAMPLES[ended[0]] if ended.size else 1.0
+    alpha_hat, beta_hat = least_along(lambda share: curve(end * share), modulus)
+    here, further = modulus(alpha_hat * np.array([1, 1 + ASIDE]), beta_hat * np.array([1, (1 + ASIDE) ** 2]))
+    if here > AT_ZERO and np.isinf(further):
+        return alpha_hat * (1 - ASIDE), beta_hat * (1 - ASIDE) ** 2
+    return alpha_hat, beta_hat
 
 
 def mildest_along(curve: Curve, modulus: Modulus, rate: float, name: str) -> tuple[float, float]:

@@ -14,7 +14,7 @@ from bezstab.methods.derivation import closed_loop_at, closed_loop_table
 from bezstab.methods.schemes import Method
 from bezstab.methods.schur import Verdict, recursion_verdict
 from bezstab.stability.arrays import ComplexArray, plane_arrays
-from bezstab.stability.closed_loop import largest_pole
+from bezstab.stability.closed_loop import descending, largest_pole
 from bezstab.stability.root_finding import roots_of_rows
 
 
@@ -32,12 +32,9 @@ def velocity_poles(method: Method, alpha_hat: ArrayLike) -> ComplexArray:
     Shape of alpha_hat plus (2 n - 1,), dimensionless. Infinite where an implicit step has no solution.
     """
     alpha_hat, _ = plane_arrays(alpha_hat, 0.0)
-    without_stiffness = [[row[0] for row in in_plane] for in_plane in closed_loop_table(method)]
-    of_velocity = np.cumsum(np.array(without_stiffness, object), axis=0)[:-1]
-    z = roots_of_rows(polyval(alpha_hat.ravel(), of_velocity.T.astype(float))).T
-    z = np.where(np.isfinite(z), z, np.inf) + 0  # of minus zero, lest a negative pole's angle be -180 degrees
-    order = np.lexsort((-z.imag, -np.abs(z)), axis=-1)
-    return np.take_along_axis(z, order, axis=-1).reshape(*alpha_hat.shape, -1)
+    of_velocity = np.cumsum(closed_loop_table(method)[:, :, 0], axis=0)[:-1].astype(float)
+    z = roots_of_rows(polyval(alpha_hat.ravel(), of_velocity.T)).T.reshape(*alpha_hat.shape, -1)
+    return descending(np.where(np.isfinite(z), z, np.inf) + 0)  # of minus zero, lest a negative pole's angle be -180°
 
 
 def drive_pole(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> ComplexArray:

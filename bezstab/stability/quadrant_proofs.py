@@ -59,18 +59,12 @@ def _positive(polynomial: PolyElement) -> bool:
 
 def _nowhere_negative(polynomial: PolyElement) -> bool:
     """Return whether a polynomial in one variable is >= 0 for all positive ones: no simple crossing of zero there."""
-    crossing = [factor for factor, multiplicity in polynomial.sqf_list()[1] if multiplicity % 2]
-    return polynomial.LC > 0 and not any(_positive_roots(factor) for factor in crossing)
+    crossing = [factor for factor, multiplicity in polynomial.factor_list()[1] if multiplicity % 2]
+    return polynomial.LC > 0 and not any(factor.const() and _has_positive_root(factor) for factor in crossing)
 
 
-def _positive_roots(polynomial: PolyElement) -> int:
-    """Return the number of different positive roots of a square-free polynomial in one variable, by Sturm's theorem."""
-    at_zero = polynomial.const() == 0
-    return (
-        int(sp.Poly(polynomial.as_expr(), domain=sp.QQ).count_roots(0, None)) - at_zero
-        if not polynomial.is_ground
-        else 0
-    )
+def _has_positive_root(polynomial: PolyElement) -> bool:
+    return bool(sp.Poly(polynomial.as_expr(), domain=sp.QQ).count_roots(0, None))
 
 
 def crossing_polynomials(coefficients: Sequence[PolyElement]) -> list[PolyElement]:

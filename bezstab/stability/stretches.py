@@ -36,7 +36,7 @@ from itertools import zip_longest
 from math import comb, inf
 
 import numpy as np
-from numpy.polynomial.polynomial import polyval
+from numpy.polynomial.polynomial import polymul, polypow, polyval
 from numpy.typing import NDArray
 
 from bezstab.errors import NumericalError
@@ -183,7 +183,7 @@ def paths(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray, powers: P
 @cache
 def float_table(method: Method) -> FloatArray:
     """Return P in float64: entry [k, i, j] belongs to z^k alpha_hat^i beta_hat^j. Errors as `paths`."""
-    return _rounded(method, np.array(closed_loop_table(method)))
+    return rounded(method, np.array(closed_loop_table(method)))
 
 
 @lru_cache  # the least |z_p| is looked for by hundreds of levels
@@ -194,10 +194,11 @@ def table_in_w(method: Method, level: float = 1.0) -> FloatArray:
     """
     table = np.array(closed_loop_table(method))
     powers = np.array([exact(level) ** k for k in range(len(table))])  # a Fraction to the power of an array is a float
-    return _rounded(method, np.tensordot(in_w(len(table) - 1) * powers, table, axes=1))
+    return rounded(method, np.tensordot(in_w(len(table) - 1) * powers, table, axes=1))
 
 
-def _rounded(method: Method, table: NDArray[np.object_]) -> FloatArray:
+def rounded(method: Method, table: NDArray[np.object_]) -> FloatArray:
+    """Return exact coefficients of a method in float64; NumericalError if one leaves its range."""
     try:
         return table.astype(float)
     except OverflowError:
@@ -210,13 +211,8 @@ def in_w(n: int) -> NDArray[np.object_]:
 
     Column k has (1 + w)^k (1 - w)^(n - k), in whole numbers. Shape (n + 1, n + 1).
     """
-    column = np.array([(-1) ** j * comb(n, j) for j in range(n + 1)], object)  # of (1 - w)^n
-    columns = [column]
-    for _ in range(n):  # times (1 + w) / (1 - w): q (1 - w) = p (1 + w) gives q_j = p_j + p_(j - 1) + q_(j - 1)
-        shifted = np.concatenate([[0], column[:-1]])
-        column = np.cumsum(column + shifted)
-        columns.append(column)
-    return np.stack(columns, axis=1)
+    above, below = np.array([1, 1], object), np.array([1, -1], object)
+    return np.stack([polymul(polypow(above, k), polypow(below, n - k)) for k in range(n + 1)], axis=1)
 
 
 def in_left_half_plane(ascending: Sequence[FloatArray]) -> BoolArray:

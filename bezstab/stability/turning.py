@@ -35,7 +35,7 @@ from numpy.typing import ArrayLike
 
 from bezstab.methods.schemes import Method
 from bezstab.stability.arrays import ComplexArray, FloatArray
-from bezstab.stability.closed_loop import Modulus, mu_table, own_feedback_root, poles
+from bezstab.stability.closed_loop import Modulus, mu_table, poles
 from bezstab.stability.stretches import float_table
 
 LAW_HOLDS = 0.1
@@ -92,7 +92,9 @@ def turning_shift(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike, z: 
         if not in_mu.size:
             by_z, by_alpha, by_beta = (polyval3d(z, a, b, polyder(float_table(method), axis=axis)) for axis in range(3))
             return np.asarray(z - (2 * by_alpha + a * by_beta) / (multiple * by_z))
-        mu = own_feedback_root(method, a, b, z)
+        roots = multiple * np.stack(_feedback_roots(a, b))
+        of_first, of_second = np.abs(polyval2d(np.broadcast_to(z, roots.shape), roots, in_mu))
+        mu = np.where(of_first < of_second, *roots)  # which z belongs to
         by_z, by_mu = (polyval2d(z, mu, polyder(in_mu, axis=axis)) for axis in (0, 1))
         return np.asarray(z + by_mu / by_z)
 
@@ -134,11 +136,12 @@ def turn_limits(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> Fl
     `poles`.
     """
     z_abs, shift = moduli_and_shifts(method, alpha_hat, beta_hat)
-    half_gap, least_mu = _feedback_roots(alpha_hat, beta_hat)
+    smaller, larger = _feedback_roots(alpha_hat, beta_hat)
+    half_gap = np.abs(larger - smaller) / 2
     with np.errstate(divide="ignore", invalid="ignore"):
         turned = ((1 - z_abs) / shift).min(axis=-1)  # if the first order were all
         limits = np.fmax(turned / 2, 2 * turned / (1 + np.sqrt(1 + 4 * turned / half_gap)))
-    limits = np.minimum(limits, np.minimum(LAW_HOLDS, SLOWER * least_mu))
+    limits = np.minimum(limits, np.minimum(LAW_HOLDS, SLOWER * np.abs(smaller)))
     return np.asarray(np.where(turned > 0, limits, turned))
 
 
@@ -157,13 +160,13 @@ def most_moved(alpha_hat: ArrayLike, beta_hat: ArrayLike, shift: FloatArray, tur
     """Return by how much |z| changes at most, shape of the shifts: at rest not at all, however large they are."""
     if turned == 0:
         return np.zeros_like(shift)
-    half_gap, _ = _feedback_roots(alpha_hat, beta_hat)
+    half_gap = np.abs(np.subtract(*_feedback_roots(alpha_hat, beta_hat))) / 2
     with np.errstate(divide="ignore", invalid="ignore"):  # of gaps that are zero; of a turn without a bound
         return np.asarray(shift * turned * (1 + np.minimum(1, turned / half_gap))[..., np.newaxis])
 
 
-def _feedback_roots(alpha_hat: ArrayLike, beta_hat: ArrayLike) -> tuple[FloatArray, FloatArray]:
-    """Return half the distance of the feedback's two roots mu, and the smaller |mu|; shape of both broadcast."""
+def _feedback_roots(alpha_hat: ArrayLike, beta_hat: ArrayLike) -> tuple[ComplexArray, ComplexArray]:
+    """Return the feedback's two roots mu, with damping the smaller one first; shape of both broadcast."""
     middle = -np.asarray(alpha_hat, complex) / 2
     half = np.sqrt(middle**2 - np.asarray(beta_hat))
-    return np.abs(half), np.minimum(np.abs(middle + half), np.abs(middle - half))
+    return middle + half, middle - half
