@@ -24,10 +24,12 @@ MOTOR = ParsedType("rate|angle|hz,ratio", motor_named, lambda: ["rate", "angle"]
 @grouped(
     "The chain",
     click.option("--bodies", type=int, default=10, help="Bodies of the chain."),
-    click.option("--mass-ratio", type=NUMBER, default="1", help="The last body is so many times as heavy."),
-    click.option("--masses", type=NUMBERS, metavar="M,M,...", help="The masses from the world on, such as 1,1,5."),
-    click.option("--pinned", type=click.Choice(["one", "both"]), default="one", help="Ends that the world holds."),
-    click.option("--motor", type=MOTOR, help="A motor in each joint: holds its rate, its angle, or is a spring, 5,1."),
+    click.option("--mass-ratio", type=NUMBER, default="1", help="Mass of the last body over that of each other."),
+    click.option("--masses", type=NUMBERS, metavar="M,M,...", help="All masses from the world on, such as 1,1,5."),
+    click.option("--pinned", type=click.Choice(["one", "both"]), default="one", help="Ends pinned to the world."),
+    click.option(
+        "--motor", type=MOTOR, help="A motor in each joint holds its rate or its angle, or is a spring (5,1)."
+    ),
     click.option("--load", type=LOAD, help="Gravity, or a force in N on its end: how far does it sag?"),
 )
 @grouped(
@@ -51,14 +53,13 @@ def chain(
     figure: str,
     **_: object,
 ) -> bool:
-    """Judge a chain of bodies in a game engine: 0 if safe, 1 if not.
+    """Judge a chain of bodies in a game engine: exit status 0 if safe, 1 if not.
 
-    Game engines solve one constraint after another; each pass over all of them is a sweep. With few sweeps a chain may
-    come apart although each constraint alone is stable. What stacks of boxes do is not known. --figure draws all chains
-    up to --bodies, over the sweeps.
+    Game engines solve one constraint after another; each pass over all of them is a sweep. With few sweeps a chain can
+    come apart although each constraint alone is stable. --figure draws the sweeps that chains up to --bodies need.
+    Stacks of boxes are not predicted.
 
-    With --motor bodies are equally long rods, each joint a pin and a motor: an arm, which may bend, too. --motor angle
-    is a weld.
+    With --motor the bodies are rods of equal length, and each joint is a pin and a motor. --motor angle is a weld.
 
     Example: bezstab chain --engine chipmunk --h 1/60 --bodies 10
     """

@@ -29,7 +29,7 @@ Command = TypeVar("Command", bound=Callable[..., Any])
 
 alpha = click.option("--alpha", type=NUMBER, help="α̂, or with --physical α in 1/s.")
 beta = click.option("--beta", type=NUMBER, help="β̂, or with --physical β in 1/s.")
-physical = click.option("--physical", is_flag=True, help="--alpha and --beta are α and β in 1/s; needs --h.")
+physical = click.option("--physical", is_flag=True, help="--alpha and --beta are α and β in 1/s; with --h.")
 
 
 def _load(text: str) -> Fraction:
@@ -63,16 +63,14 @@ engine_values = click.option(
     help="An engine's own values, such as mujoco=0.02,1 [its defaults], in place of --alpha and --beta; needs --h.",
 )
 as_typed = click.option(
-    "--as-typed", is_flag=True, help="With --engine: without what it does to values, such as clamps."
+    "--as-typed", is_flag=True, help="With --engine: take values as typed, without its clamps and scales."
 )
 omega = click.option(
     "--omega", type=POSITIVE, help="Rate of the motion in 1/s; needs --h [that of --scene, or ωh = 0.01]."
 )
 scene = click.option("--scene", type=SCENE, help="A mechanism that moves: a shipped scene, or a .toml file.")
-speed = click.option("--speed", type=SPEED, default="1", help="With --scene: so many times as fast.")
-time = click.option(
-    "--time", "duration", type=SECONDS, help="With --scene: run it so many s [10 s, at most 10,000 steps]."
-)
+speed = click.option("--speed", type=SPEED, default="1", help="Run --scene so many times as fast.")
+time = click.option("--time", "duration", type=SECONDS, help="Run --scene for so many s [10 s, at most 10,000 steps].")
 compiled = click.option(
     "--compiled",
     type=click.Choice(["auto", "yes", "no"]),
@@ -93,7 +91,7 @@ FORMS = get_args(Format)
 form = click.option(
     "--format", "form", type=click.Choice(FORMS), default="text", metavar="FORM", help=f"{', '.join(FORMS)}."
 )
-every_column = click.option("--all", "every_column", is_flag=True, help="Print every column, not the main ones alone.")
+every_column = click.option("--all", "every_column", is_flag=True, help="Print every column, not only the main ones.")
 
 
 def point(command: Command) -> Command:
@@ -111,5 +109,5 @@ def output_options(command: Command) -> Command:
 
 
 load = click.option(
-    "--load", type=LOAD, help="With --engine: how far does it sag? gravity, or 50,2: N and kg, or N m and kg m²."
+    "--load", type=LOAD, help="Sag of --engine under gravity, or under 50,2: N and kg, or N m and kg m²."
 )

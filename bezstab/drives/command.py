@@ -48,9 +48,9 @@ POINTS = 200
     click.option("--kp", type=NUMBER, help="Stiffness, N m/rad or N/m."),
     click.option("--kd", type=NUMBER, help="Damping, N m s/rad or N s/m."),
     click.option("--ki", type=NUMBER, default="0", help="Integral gain, N m/(rad s) or N/(m s)."),
-    click.option("--inertia", type=POSITIVE, required=True, help="Inertia that it feels, kg m² or kg."),
-    click.option("--bandwidth", type=NUMBER, help="Find critically damped gains: of so many Hz."),
-    click.option("--settle", type=NUMBER, help="Find critically damped gains: settle in so many s."),
+    click.option("--inertia", type=POSITIVE, required=True, help="Inertia or mass that it moves, kg m² or kg."),
+    click.option("--bandwidth", type=NUMBER, help="Find critically damped gains of so many Hz."),
+    click.option("--settle", type=NUMBER, help="Find critically damped gains that settle in so many s."),
     click.option("--load", type=ParsedType("number", _load), help="A steady load, N m or N: how far does it sag?"),
 )
 @grouped(
@@ -58,9 +58,11 @@ POINTS = 200
     click.option("--h", type=SECONDS, help="Step of the physics in s; or --physics."),
     click.option("--physics", type=POSITIVE, help="Rate of the physics in Hz, in place of --h."),
     shared.methods,
-    click.option("--every", type=int, help="The torque is held for so many steps [1]."),
+    click.option("--every", type=int, help="Hold each torque for so many steps [1]."),
     click.option("--controller", type=POSITIVE, help="Rate of the controller in Hz, in place of --every."),
-    click.option("--late", type=LATE, default="0", metavar="STEPS|5MS", help="Delay in steps, or 5ms."),
+    click.option(
+        "--late", type=LATE, default="0", metavar="STEPS|5MS", help="Delay of the torque: steps, or a time such as 5ms."
+    ),
     click.option("--filter", "filter_seconds", type=NUMBER, default="0", help="Time constant of a filter of q', s."),
 )
 @grouped("Output", shared.output_options)
@@ -89,7 +91,7 @@ def drive(
     are judged: explicit (SYM), implicit in velocity (imex-euler), stable PD (stable-pd), fully implicit
     (implicit-euler). Yours is most often SYM.
 
-    A contact of stiffness k and damping c between bodies of reduced mass m is --kp k --kd c --inertia m.
+    A contact with stiffness k and damping c between bodies of reduced mass m is --kp k --kd c --inertia m.
 
     Example: bezstab drive --kp 200 --kd 5 --inertia 0.1 --h 0.002 --every 4
     """

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 @grouped(
     "Your simulation",
     shared.methods,
-    click.option("--h", type=SECONDS, help="Step in s, for --physical, --engine, --scene and --omega."),
+    click.option("--h", type=SECONDS, help="Step in s; --engine, --scene and --omega need it."),
     shared.omega,
     shared.scene,
     shared.speed,
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 )
 @grouped(
     "Output",
-    click.option("--instead", is_flag=True, help="Also what `choose` gives; an unsafe choice gets it anyway."),
+    click.option("--instead", is_flag=True, help="Also print what `choose` gives, not only if unsafe."),
     shared.every_column,
     shared.form,
 )
@@ -49,17 +49,17 @@ def check(
     form: str,
     **simulation: Any,
 ) -> bool:
-    """Tell whether a choice is safe: exit status 0 if so, 1 if not.
+    """Tell whether α and β are safe: exit status 0 if so, 1 if not.
 
-    Safe means that errors are proven to shrink with every method named. With --scene the mechanism is also run: its
+    Safe means: bezstab proves that errors shrink, with every method named. With --scene it also runs the mechanism: its
     constraints must hold, and its energy may grow by a tenth of the largest kinetic energy.
 
-    With α and β in 1/s (--physical) but no --h: the step up to which every step is safe.
+    Given α and β in 1/s (--physical) without --h, it finds the largest safe step.
 
-    bezstab/feedback/README.md says what the answers mean. Steps that vary: `bezstab steps`. A joint's drive: `bezstab
-    drive`. Chains in engines that sweep: `bezstab chain`.
+    bezstab/feedback/README.md explains the answers. For steps that vary see `bezstab steps`, for a joint's drive
+    `bezstab drive`, for chains of bodies in a game engine `bezstab chain`.
 
-    Example: bezstab check --method RK2 --h 0.002 --alpha 50 --beta 50 --physical
+    Example: bezstab check --method RK2 --h 0.01 --alpha 9 --beta 9 --physical
     """
 
     from bezstab.feedback import beside, columns, sentences

@@ -26,18 +26,21 @@ GOALS_IN_LINES = "\b\nGoals:\n" + "\n".join(f"  {goal:<9} {asked}" for goal, ask
 @grouped(
     "What is chosen",
     click.option(
-        "--goal", type=click.Choice(list(GOALS)), metavar="GOAL", help="What for [accurate; robust in most engines]."
+        "--goal",
+        type=click.Choice(list(GOALS)),
+        metavar="GOAL",
+        help="One of those below [accurate; robust in most engines].",
     ),
     click.option("--settle", type=SECONDS, help=f"{one_of(SETTLING)}: time to a thousandth."),
-    click.option("--spread", type=SHARE, default="0.1", help="The share by which α and β may be wrong."),
+    click.option("--spread", type=SHARE, default="0.1", help="Share by which α and β may be wrong."),
     click.option("--keep", "equal", type=click.Choice(["alpha=beta"]), help="Only points with α = β."),
-    click.option("--engine", type=ENGINE, help="Only what this engine can express."),
-    click.option("--sag", type=POSITIVE, help="Instead: the weakest that sags by so many m."),
+    click.option("--engine", type=ENGINE, help="Only settings that this engine has."),
+    click.option("--sag", type=POSITIVE, help="Instead of --goal: the weakest that sags by so many m."),
 )
 @grouped(
     "Your simulation",
     shared.methods,
-    click.option("--h", type=SECONDS, help="Step in s; some need none with --omega."),
+    click.option("--h", type=SECONDS, help="Step in s; RK4 and others need none with --omega."),
     click.option("--h-max", type=SECONDS, help=f"{one_of(UP_TO_LONGEST)}: the longest step [--h]."),
     shared.omega,
     shared.scene,
@@ -60,8 +63,8 @@ def choose(
 
     The answer is proven stable. With --scene it must also be safe as that mechanism moves: exit status 1 if it is not.
 
-    Most Runge-Kutta methods need --omega or --scene for accurate: α and β are multiples of that rate. Others assume
-    ωh = 0.01 without it. bezstab/feedback/README.md explains the goals and the numbers.
+    Most Runge-Kutta methods need --omega or --scene with the goal accurate: their best α and β are multiples of that
+    rate. Others assume ωh = 0.01 without it. bezstab/feedback/README.md explains the goals and the numbers.
 
     Example: bezstab choose --method SYM --h 0.001 --omega 10
     """

@@ -51,20 +51,20 @@ def _load(text: str) -> tuple[str, tuple[float, ...]]:
 @click.argument("model", type=click.Path(path_type=Path))
 @grouped(
     "What is judged",
-    click.option("--at", multiple=True, help="At qpos0, a keyframe, or a CSV log of qpos; repeatable [all]."),
+    click.option("--at", multiple=True, help="qpos0, a keyframe, or a CSV log of qpos; repeatable [all]."),
     click.option("--deep", is_flag=True, help="Judge constraints past solimp's width, too."),
     click.option(
         "--spin",
         type=ParsedType("joint=rate", _rate),
         multiple=True,
-        help="What a second keeps of the energy, from a joint's rate in rad/s or m/s; repeatable.",
+        help="Energy left after a second, begun at a joint's rate in rad/s or m/s; repeatable.",
     ),
     click.option(
         "--load",
         "loads",
         type=ParsedType("gravity|body=fx,fy,fz", _load, lambda: ["gravity"]),
         multiple=True,
-        help="How far all sags under gravity, and forces (N) on bodies; repeatable.",
+        help="Sag under gravity, and under a force (N) on a body; repeatable.",
     ),
 )
 @grouped(
@@ -74,10 +74,10 @@ def _load(text: str) -> tuple[str, tuple[float, ...]]:
         "gains",
         type=ParsedType("name=kp,kd", _gains),
         multiple=True,
-        help="Its gains on motors, else joints, of that name or regular expression; repeatable.",
+        help="Gains for the motors, or else joints, of a name or regular expression; repeatable.",
     ),
-    click.option("--every", type=int, default=1, help="The torque is held for so many steps."),
-    click.option("--late", type=NUMBER, default="0", help="The torque is so many steps late."),
+    click.option("--every", type=int, default=1, help="Hold each torque for so many steps."),
+    click.option("--late", type=NUMBER, default="0", help="Delay of the torque in steps."),
 )
 @grouped("Output", shared.form)
 def lint(
@@ -93,12 +93,12 @@ def lint(
 ) -> int:
     """Judge a MuJoCo model at its timestep: exit status 1 if unsafe.
 
-    MODEL is MuJoCo's XML or a URDF. MuJoCo's own step is differenced around each state: qpos0, every keyframe, or
-    those of --at. A log has rows of qpos, or of qpos and qvel; the worst is shown.
+    MODEL is MuJoCo's XML or a URDF. lint differentiates MuJoCo's own step at each state: at qpos0 and every keyframe,
+    or at those of --at. A log has rows of qpos, or of qpos and qvel; lint shows its worst row.
 
-    Errors that only a smaller step, or another gain, keeps from growing are "unsafe". A mechanism may also fall by
-    itself, at any step. Contacts and limits that just begin at a state are judged twice: touching, and touching
-    nothing. The last table shows each solref as Baumgarte's feedback.
+    "Unsafe" means: errors grow, and a smaller step or another gain would stop that. A mechanism that falls by itself
+    does so at any step. Where a contact or limit just begins, lint judges the model with all of them and without. The
+    last table shows each solref as Baumgarte's feedback.
 
     Exit status: 1 if unsafe somewhere, else 3 if not smooth somewhere, else 0. Needs mujoco 3.7 or later.
 

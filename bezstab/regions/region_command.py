@@ -29,22 +29,22 @@ Window = tuple[Fraction, Fraction]
     click.option("--method", "methods", type=METHOD, multiple=True, help=f"{shared.METHOD_HELP} Repeatable [B4]."),
     click.option("--level", "levels", type=POSITIVE, multiple=True, help="Also where |z_p| < LEVEL. Repeatable."),
     click.option("--compare", is_flag=True, help="Boundaries of all methods in one figure, at --level [1]."),
-    click.option("--accuracy", is_flag=True, help="The error that the feedback makes on a motion, with |z_p|."),
-    click.option("--motion", "energy", is_flag=True, help="What the feedback does to the energy of a motion."),
+    click.option("--accuracy", is_flag=True, help="Draw the error that the feedback adds to a motion, and |z_p|."),
+    click.option("--motion", "energy", is_flag=True, help="Draw the energy that a motion gains or loses."),
 )
 @grouped(
     "Your simulation",
     click.option("--h", type=SECONDS, help="Step size in s; the axes are then 2α (1/s) and β² (1/s²)."),
     click.option("--omega", type=POSITIVE, help="Rate of that motion, 1/s; needs --h [the scene's]."),
-    click.option("--engine", type=ENGINE, help="Mark its default values and rules of thumb; needs --h."),
+    click.option("--engine", type=ENGINE, help="Mark its default and rules of thumb; needs --h."),
     click.option("--scene", type=SCENE, help="Also the region of this mechanism as it moves; needs --h."),
     click.option("--speed", "speeds", type=SPEED, multiple=True, help="Times the scene's own speed. Repeatable [1]."),
 )
 @grouped(
     "Output",
     shared.every_column,
-    click.option("--alpha-range", type=NUMBER, nargs=2, help="α̂ is drawn from the first to the second."),
-    click.option("--beta-range", type=NUMBER, nargs=2, help="β̂ is drawn from the first to the second."),
+    click.option("--alpha-range", type=NUMBER, nargs=2, help="Draw α̂ from the first number to the second."),
+    click.option("--beta-range", type=NUMBER, nargs=2, help="Draw β̂ from the first number to the second."),
     click.option("--alpha-beta", is_flag=True, help="Axes of α and β (1/s); needs --h."),
     click.option(
         "--quality",
@@ -60,7 +60,7 @@ Window = tuple[Fraction, Fraction]
         type=click.Choice([*shared.FIGURES, "window"]),
         default="png",
         metavar="FORM",
-        help=f"{shared.FIGURE_HELP[:-1]}; or a window, which says what a point means.",
+        help=f"{shared.FIGURE_HELP[:-1]}; or window, which explains the point under the mouse.",
     ),
     shared.output,
     shared.form,
@@ -89,8 +89,8 @@ def region(
     """Draw where each method is stable, and |z_p| there.
 
     Prints how far the exact region reaches, its area, the smallest |z_p| and where that is. Writes region_METHOD.png;
-    with --table csv also α̂, β̂, |z_p| and ∠z_p, or with --compare the boundary curves. What maps of a scene, of
-    --accuracy and of --motion show: bezstab/stability/README.md.
+    with --table csv also α̂, β̂, |z_p| and ∠z_p, or with --compare the boundary curves. bezstab/stability/README.md
+    explains the maps.
 
     Example: bezstab region --method B4
     """

@@ -40,15 +40,17 @@ USUAL_POINT: Point = (Fraction("0.5"), Fraction("0.1"))
     options.stabilise,
     options.iterations,
     click.option("--h", "given_h", type=SECONDS, help="Step size in s [0.001]."),
-    click.option("--steps", "sequence", type=SEQUENCE, help="Steps in turn: 1/60,0.00917 or 3*0.01,0.02, or a file."),
-    click.option("--hold", is_flag=True, help="With --steps: α̂ and β̂ stay as at --h; else α and β do."),
+    click.option(
+        "--steps", "sequence", type=SEQUENCE, help="A sequence of steps: 1/60,0.00917 or 3*0.01,0.02, or a file."
+    ),
+    click.option("--hold", is_flag=True, help="With --steps: keep α̂ and β̂ as at --h, not α and β."),
     click.option("--time", "duration", type=SECONDS, default="10", help="Duration in s."),
     click.option(
         "--start",
         type=click.Choice(["rk4", "ramp", "euler", "steady"]),
         default="rk4",
         metavar="START",
-        help="First values: by rk4, ramp (fewer steps), euler; or steady (half a step back for SYM).",
+        help="How it starts: rk4, ramp (fewer steps), euler; steady (for SYM).",
     ),
     shared.compiled,
 )
@@ -80,11 +82,11 @@ def simulate(
     table: str,
     **_: object,
 ) -> None:
-    """Run a mechanism and see what its constraint error does.
+    """Run a mechanism, and draw its constraint error.
 
-    Without --alpha and --beta the feedback is α̂ = 0.5, β̂ = 0.1. --table csv also writes the whole history.
+    Without --alpha and --beta the feedback is α̂ = 0.5, β̂ = 0.1. --table csv also writes the history.
 
-    Exit status 3 if the run broke down; what came before is kept.
+    Exit status 3 if the run broke down; what came before is drawn and written.
 
     Example: bezstab simulate --method AB4 --alpha 0.5 --beta 0.101 --time 2
     """
