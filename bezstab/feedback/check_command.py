@@ -67,7 +67,7 @@ def check(
     from bezstab.feedback.conditions import Setup, conditions, given_feedback
     from bezstab.feedback.largest_steps import step_answer
     from bezstab.questions.methods import methods_for
-    from bezstab.stability.damping_limits import stable_up_to
+    from bezstab.stability.path_ends import stable_up_to
 
     typed, (named, values) = TypedPoint(alpha, beta, physical), engine or (None, None)
     setup = Setup(engine=named, **simulation)

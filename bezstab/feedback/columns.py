@@ -18,7 +18,7 @@ from bezstab.rationals import rounded_down, typed_number
 from bezstab.show.cells import between, modulus_words, up_to
 from bezstab.show.columns import METHOD, POINT, POLE, RATES, SENTENCE, Column, of_part
 from bezstab.stability.feedback_costs import FeedbackCost
-from bezstab.stability.margins import Margins
+from bezstab.stability.path_ends import Margins
 from bezstab.stability.turning import MovingPole
 from bezstab.words import counted, times_words
 

@@ -17,7 +17,7 @@ from bezstab.questions.scene_runs import SceneRun, scene_run
 from bezstab.rationals import rational
 from bezstab.stability.choices import TENTH, Choice, steps_to_settle
 from bezstab.stability.feedback_costs import FeedbackCost, feedback_cost
-from bezstab.stability.margins import largest_stable_step
+from bezstab.stability.path_ends import largest_stable_step
 from bezstab.stability.rest_offsets import offset_at_rest
 from bezstab.stability.turning import MovingPole, moving_pole
 from bezstab.units import alpha_and_beta

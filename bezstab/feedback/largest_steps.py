@@ -8,7 +8,7 @@ from bezstab.arguments import Number, exact_number, in_keywords
 from bezstab.methods.registry import method as method_named
 from bezstab.methods.schemes import Method
 from bezstab.rationals import rounded_down
-from bezstab.stability.damping_limits import stable_up_to
+from bezstab.stability.path_ends import stable_up_to
 
 
 @dataclass(frozen=True, repr=False)

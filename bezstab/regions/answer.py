@@ -26,12 +26,12 @@ from bezstab.stability.arrays import ComplexArray, Extent, FloatArray
 from bezstab.stability.best_points import BestPoint, FarLimit, best_point_or_reason, falls_towards
 from bezstab.stability.choices import Choice, choose
 from bezstab.stability.closed_loop import QUALITY, pole_map
-from bezstab.stability.damping_limits import (
+from bezstab.stability.forced_errors import combined_error
+from bezstab.stability.path_ends import (
     critical_damping_limit,
     exact_critical_damping_limit,
     unconditional_damping_ratio,
 )
-from bezstab.stability.forced_errors import combined_error
 from bezstab.stability.quadrant_proofs import stable_for_all
 from bezstab.stability.regions import Region, check_level, window
 from bezstab.stability.regions import region as region_of

@@ -19,7 +19,7 @@ from bezstab.stability.best_points import best_point
 from bezstab.stability.closed_loop import Modulus, all_within, converges, largest_pole, spectral_radius, verdict
 from bezstab.stability.curve_choices import Curve, critical_point, least_along, mildest_along, of_equal
 from bezstab.stability.forced_errors import OMEGA_H
-from bezstab.stability.margins import Margins, stability_margins
+from bezstab.stability.path_ends import Margins, stability_margins
 from bezstab.stability.regions import Region, region
 from bezstab.stability.searches import lowest_minima
 

@@ -19,6 +19,9 @@ from bezstab.stability.lines import Lines
 DRAWN = 400
 """Even lines at least: chords are as near to the curves as figures show."""
 
+Stretch = tuple[float, float, float]
+"""A line's place, and where along it the stretch begins and ends."""
+
 SEEN = 1e-5
 """Of the window: points nearer to their neighbour than that no figure parts."""
 
@@ -38,11 +41,11 @@ def boundary_curves(lines: Lines, right: float, top: float) -> tuple[FloatArray,
         points = points[points[:, 0] <= right]
         edges += [piece for k in (1, 2) for piece in _pieces(points[:, [0, k]], top)]
     for last, first in pairwise([0.0, *sorted(lines.found)]):
-        before = [strip.ends[-1] for strip in strips if strip.places[-1] == last]
-        after = [strip.ends[0] for strip in strips if strip.places[0] == first]
-        if first <= right and (before or after):
-            edges += _closing(first, np.reshape(before, (-1, 2)), np.reshape(after, (-1, 2)), top)
-    thinned = (_thinned(curve, scale) for curve in joined(edges, SEEN * scale))
+        before = [(last, *strip.ends[-1]) for strip in strips if strip.places[-1] == last]
+        after = [(first, *strip.ends[0]) for strip in strips if strip.places[0] == first]
+        if first <= right:
+            edges += _closing(before, after, top)
+    thinned = (_thinned(curve, scale) for curve in _joined(edges))
     return tuple(curve for curve in thinned if (np.ptp(curve, axis=0) > SEEN * scale).any())
 
 
@@ -54,43 +57,42 @@ def _pieces(points: FloatArray, top: float) -> list[FloatArray]:
     near[:-1] |= below[1:]
     kept = near & np.isfinite(points[:, 1])
     cuts = np.flatnonzero(np.diff(kept)) + 1
-    return [piece for piece, some in zip(np.split(points, cuts), np.split(kept, cuts), strict=True) if some[0]]
+    return [
+        piece
+        for piece, some in zip(np.split(points, cuts), np.split(kept, cuts), strict=True)
+        if some[0] and len(piece) > 1
+    ]
 
 
-def _closing(place: float, before: FloatArray, after: FloatArray, top: float) -> list[FloatArray]:
-    """Return the pieces of a line on one side of which alone it is stable."""
-    ends = np.unique(np.concatenate([before.ravel(), after.ravel()]).clip(0, top))
+def _closing(before: list[Stretch], after: list[Stretch], top: float) -> list[FloatArray]:
+    """Return the pieces between two neighbouring lines that lead from one stretch's end to the next one's.
+
+    They lie where one of both lines is stable alone.
+    """
+    vertices = [(place, end) for place, *ends in (*before, *after) for end in ends]
     pieces = []
-    for low, high in pairwise(ends.tolist()):
-        middle = (low + high) / 2
-        sides = [((each[:, 0] < middle) & (middle < each[:, 1])).any() for each in (before, after)]
-        if sides[0] != sides[1]:
-            pieces.append(np.array([(place, low), (place, high)]))
+    for (place, low), (next_place, high) in pairwise(sorted(vertices, key=lambda vertex: vertex[1])):
+        sides = [any(start < (low + high) / 2 < end for _, start, end in each) for each in (before, after)]
+        if low < top and (low == high or sides[0] != sides[1]):
+            pieces.append(np.array([(place, low), (next_place, min(high, top))]))
     return pieces
 
 
-def joined(edges: list[FloatArray], most: FloatArray) -> list[FloatArray]:
-    """Return edges of shape (points, 2) joined end to end, each time with the nearest free end, no gap wider than that.
-
-    `most`: the widest gap in either parameter. A curve is closed, its first point repeated at its end, where its own
-    start is nearer than every free end.
-    """
+def _joined(edges: list[FloatArray]) -> list[FloatArray]:
+    """Return edges of shape (points, 2) joined where they have an end in common."""
     curves = []
     free = list(edges)
     while free:
         curve = free.pop()
         for _ in range(2):  # from one end, then from the other
-            while free:
-                ends = np.array([[edge[0], edge[-1]] for edge in free])
-                gaps = (np.abs(ends - curve[-1]) / most).max(axis=-1)
-                k, reverse = np.unravel_index(np.argmin(gaps), gaps.shape)
-                if gaps[k, reverse] > min(1.0, float((np.abs(curve[-1] - curve[0]) / most).max())):
+            while (curve[0] != curve[-1]).any():
+                meeting = [k for k, edge in enumerate(free) if (edge[[0, -1]] == curve[-1]).all(axis=1).any()]
+                if not meeting:
                     break
-                edge = free.pop(int(k))
-                curve = np.concatenate([curve, edge[::-1] if reverse else edge])
+                edge = free.pop(meeting[0])
+                curve = np.concatenate([curve, edge[1:] if (edge[0] == curve[-1]).all() else edge[-2::-1]])
             curve = curve[::-1]
-        is_closed = (np.abs(curve[-1] - curve[0]) <= most).all()
-        curves.append(np.concatenate([curve, curve[:1]]) if is_closed else curve)
+        curves.append(curve)
     return curves
 
 

@@ -25,7 +25,7 @@ from sympy.polys.rings import PolyElement
 
 from bezstab.methods.derivation import closed_loop_table, plane_elements
 from bezstab.methods.schemes import Method
-from bezstab.stability.damping_limits import RATIOS, limit_at
+from bezstab.stability.path_ends import RATIOS, limit_at
 
 StableForAll = Literal["proven", "no unstable point found", "no"]
 

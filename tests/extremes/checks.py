@@ -23,7 +23,7 @@ from bezstab.mechanism.scene_files import load_scene
 from bezstab.mechanism.start import constraint_errors, initial_state
 from bezstab.methods.registry import lookup
 from bezstab.runs.kicks import kicked_fates
-from bezstab.stability.damping_limits import critical_damping_limit
+from bezstab.stability.path_ends import critical_damping_limit
 from bezstab.units import feedback_gains
 from tests.extremes.root_digits import DIGITS, pole_digits
 

@@ -5,7 +5,7 @@ import pytest
 
 from bezstab.methods.registry import lookup
 from bezstab.stability.closed_loop import verdict
-from bezstab.stability.damping_limits import (
+from bezstab.stability.path_ends import (
     critical_damping_limit,
     exact_critical_damping_limit,
     unconditional_damping_ratio,

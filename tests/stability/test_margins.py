@@ -12,8 +12,7 @@ from bezstab.errors import InputError, NumericalError
 from bezstab.methods.registry import lookup
 from bezstab.stability import path_ends
 from bezstab.stability.closed_loop import verdict
-from bezstab.stability.damping_limits import stable_up_to
-from bezstab.stability.margins import Margins, largest_stable_step, stability_margins
+from bezstab.stability.path_ends import Margins, largest_stable_step, stability_margins, stable_up_to
 from bezstab.stability.regions import region, window
 from tests.methods.kinds import sampled
 from tests.reference.made_methods import runge_kutta

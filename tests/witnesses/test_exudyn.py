@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from bezstab.methods.registry import lookup
 from bezstab.stability.closed_loop import dominant_pole
-from bezstab.stability.margins import stability_margins
+from bezstab.stability.path_ends import stability_margins
 from tests.witnesses.growths import largest_pole
 
 exudyn: Any = pytest.importorskip("exudyn")
