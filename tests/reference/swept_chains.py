@@ -1,14 +1,81 @@
-"""A straight chain of bodies whose links are solved one after another: loops over bodies and links, as engines do it.
+"""Chains and arms whose constraints are solved one after another: loops over constraints, as engines do it.
 
-Link i ties body i to body i - 1, the first to the world. h = 1; numbers of any kind. No matrices.
+h = 1; numbers of any kind. No matrices.
 """
 
 from cmath import rect
-from collections.abc import Callable, Sequence
-from typing import Any
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, NamedTuple
 
 State = list[Any]
-"""Positions, velocities and kept impulses of all bodies and links, one after another."""
+"""Positions, velocities and kept impulses, one after another."""
+
+Step = Callable[[State], State]
+
+
+class Constraint(NamedTuple):
+    """By how much each coordinate that is off by one opens it, and what sweeps take back of that.
+
+    `share` of velocity sweeps, `of_positions` of those that move positions. `softness` is of its own inverse effective
+    mass.
+    """
+
+    arms: Mapping[int, Any]
+    share: Any = 0
+    softness: Any = 0
+    of_positions: Any = 0
+
+    def of(self, values: Sequence[Any]) -> Any:
+        return sum(arm * values[place] for place, arm in self.arms.items())
+
+    def push(self, values: State, inverse: Sequence[Any], impulse: Any) -> None:
+        for place, arm in self.arms.items():
+            values[place] += inverse[place] * arm * impulse
+
+    def gives(self, inverse: Sequence[Any]) -> Any:
+        """Return how far an impulse of one opens it."""
+        return sum(inverse[place] * arm * arm for place, arm in self.arms.items())
+
+
+def swept_step(
+    constraints: Sequence[Constraint],
+    inverse: Sequence[Any],
+    sweeps: int,
+    *,
+    kept: Any = 1,
+    relaxation: Any = 1,
+    relaxing: int = 0,
+    positions: int = 0,
+    pull: Sequence[Any] | None = None,
+) -> Step:
+    """Return a step: what pulls, kept impulses, sweeps, a move, hard sweeps without bias, sweeps over positions."""
+    count = len(inverse)
+
+    def sweep(x: State, v: State, impulses: State, biased: bool) -> None:
+        for number, each in enumerate(constraints):
+            gives = each.gives(inverse)
+            softness = each.softness * biased
+            wanted = each.of(v) + each.share * biased * each.of(x) + softness * gives * impulses[number]
+            impulse = -relaxation * wanted / (gives * (1 + softness))
+            each.push(v, inverse, impulse)
+            impulses[number] += impulse
+
+    def step(state: State) -> State:
+        x, v = state[:count], [a + b for a, b in zip(state[count : 2 * count], pull or [0] * count, strict=True)]
+        impulses = [kept * each for each in state[2 * count :]]
+        for each, impulse in zip(constraints, impulses, strict=True):
+            each.push(v, inverse, impulse)
+        for _ in range(sweeps):
+            sweep(x, v, impulses, True)
+        x = [a + b for a, b in zip(x, v, strict=True)]
+        for _ in range(relaxing):
+            sweep(x, v, impulses, False)
+        for _ in range(positions):
+            for each in constraints:
+                each.push(x, inverse, -each.of_positions * each.of(x) / each.gives(inverse))
+        return x + v + impulses
+
+    return step
 
 
 def inverse_masses(bodies: int, ratio: Any) -> list[Any]:
@@ -16,88 +83,27 @@ def inverse_masses(bodies: int, ratio: Any) -> list[Any]:
     return [1] * (bodies - 1) + [1 / ratio]
 
 
-def error(values: Sequence[Any], link: int) -> Any:
-    """Return by how much a link is too long, or grows."""
-    return values[link] - (values[link - 1] if link else 0)
+def links(count: int, *settings: Any) -> list[Constraint]:
+    """Return those of a straight chain: link i ties body i to body i - 1, the first to the world."""
+    return [Constraint({link: 1, link - 1: -1} if link else {0: 1}, *settings) for link in range(count)]
 
 
-def push(values: list[Any], inverse: Sequence[Any], link: int, impulse: Any) -> None:
-    """Apply an impulse of a link to the velocities, or positions, of the bodies that it ties."""
-    values[link] += inverse[link] * impulse
-    if link:
-        values[link - 1] -= inverse[link - 1] * impulse
-
-
-def sweep(
-    x: State, v: State, impulses: State, inverse: Sequence[Any], bias: Any = 0, mass_scale: Any = 1, relaxation: Any = 1
-) -> None:
-    """Solve each link for its own rate: hard, or soft with a mass scale below 1."""
-    for link in range(len(inverse)):
-        both = inverse[link] + (inverse[link - 1] if link else 0)
-        hard = mass_scale * (error(v, link) + bias * error(x, link)) / both
-        impulse = -relaxation * (hard + (1 - mass_scale) * impulses[link])
-        push(v, inverse, link, impulse)
-        impulses[link] += impulse
-
-
-def begun(state: State, inverse: Sequence[Any], kept: Any = 1) -> tuple[State, State, State]:
-    """Return positions, velocities and impulses once what is kept of the impulses is applied."""
-    x, v, impulses = (state[i * len(inverse) : (i + 1) * len(inverse)] for i in range(3))
-    impulses = [kept * each for each in impulses]
-    for link, impulse in enumerate(impulses):
-        push(v, inverse, link, impulse)
-    return x, v, impulses
-
-
-def moved(x: State, v: State) -> State:
-    return [a + b for a, b in zip(x, v, strict=True)]
-
-
-def hard_step(
-    inverse: Sequence[Any], sweeps: int, share: Any, kept: Any = 1, relaxation: Any = 1
-) -> Callable[[State], State]:
+def hard_step(inverse: Sequence[Any], sweeps: int, share: Any, kept: Any = 1, relaxation: Any = 1) -> Step:
     """Return a step with a bias in the velocity: warm start, sweeps, move."""
-
-    def step(state: State) -> State:
-        x, v, impulses = begun(state, inverse, kept)
-        for _ in range(sweeps):
-            sweep(x, v, impulses, inverse, share, relaxation=relaxation)
-        return moved(x, v) + v + impulses
-
-    return step
+    return swept_step(links(len(inverse), share), inverse, sweeps, kept=kept, relaxation=relaxation)
 
 
-def soft_step(inverse: Sequence[Any], bias: float, mass_scale: float, relaxing: int) -> Callable[[State], State]:
+def soft_step(inverse: Sequence[Any], bias: float, mass_scale: float, relaxing: int) -> Step:
     """Return Box2D 3's substep: warm start, one soft sweep, a move, hard sweeps without bias."""
-
-    def step(state: State) -> State:
-        x, v, impulses = begun(state, inverse)
-        sweep(x, v, impulses, inverse, bias, mass_scale)
-        x = moved(x, v)
-        for _ in range(relaxing):
-            sweep(x, v, impulses, inverse)
-        return x + v + impulses
-
-    return step
+    return swept_step(links(len(inverse), bias, 1 / mass_scale - 1), inverse, 1, relaxing=relaxing)
 
 
-def position_step(inverse: Sequence[Any], sweeps: int, share: Any, position_sweeps: int) -> Callable[[State], State]:
+def position_step(inverse: Sequence[Any], sweeps: int, share: Any, position_sweeps: int) -> Step:
     """Return the step of Jolt and of Box2D 2: velocities without bias, a move, then positions are pushed."""
-    without_bias = hard_step(inverse, sweeps, 0)
-
-    def step(state: State) -> State:
-        state = without_bias(state)
-        x = state[: len(inverse)]
-        for _ in range(position_sweeps):
-            for link in range(len(inverse)):
-                both = inverse[link] + (inverse[link - 1] if link else 0)
-                push(x, inverse, link, -share * error(x, link) / both)
-        return x + state[len(inverse) :]
-
-    return step
+    return swept_step(links(len(inverse), 0, 0, share), inverse, sweeps, positions=position_sweeps)
 
 
-def columns(step: Callable[[State], State], bodies: int, one: Any = 1.0) -> list[State]:
+def columns(step: Step, bodies: int, one: Any = 1.0) -> list[State]:
     """Return what becomes of each unit vector: the columns of the step's matrix."""
     count = 3 * bodies
     return [step([one if i == j else 0 * one for i in range(count)]) for j in range(count)]
@@ -109,67 +115,28 @@ def arm_step(
     share: float,
     motor: tuple[float, float],
     *,
-    length: float = 2.0,
     pull: tuple[float, float] = (0.0, 0.0),
-    kept: float = 1.0,
-    relaxation: float = 1.0,
-    positions: int = 0,
-) -> Callable[[State], State]:
-    """Return a step of rods that bend: each is held at its near end by a pin and then by a motor on the angle there.
+    **settings: Any,
+) -> Step:
+    """Return a step of rods of length 2 that bend: each is held at its near end by a pin, then by a motor on the angle.
 
-    A state is the heights of their middles, their angles, both rates and the impulses of pins and of motors. Pins take
-    back a share of their error; with `positions` so many sweeps move them after the step, all the way. A `motor` has a
-    share and a softness, of its own inverse effective mass. `pull`: an acceleration of all rods across their line, and
-    a force on the far end of the last one.
+    Positions are the heights of their middles, then their angles. Pins take back a share of their error; position
+    sweeps move them all the way. A `motor` has a share and a softness. `pull`: an acceleration of all rods across their
+    line, and a force on the far end of the last one.
     """
     count = len(masses)
-    inertias = [mass * length**2 / 12 for mass in masses]
-
-    def gap(y: State, angle: State, rod: int) -> float:
-        far_end = y[rod - 1] + length / 2 * angle[rod - 1] if rod else 0.0
-        return float(y[rod] - length / 2 * angle[rod] - far_end)
-
-    def bend(angle: State, rod: int) -> float:
-        return float(angle[rod] - (angle[rod - 1] if rod else 0.0))
-
-    def push(y: State, angle: State, rod: int, force: float, torque: float) -> None:
-        y[rod] += force / masses[rod]
-        angle[rod] += (torque - length / 2 * force) / inertias[rod]
+    constraints = []
+    for rod in range(count):
+        gap, bend = {rod: 1, count + rod: -1}, {count + rod: 1}
         if rod:
-            y[rod - 1] -= force / masses[rod - 1]
-            angle[rod - 1] -= (torque + length / 2 * force) / inertias[rod - 1]
-
-    def gives(rod: int, force: float, torque: float) -> float:
-        """Return how far a force or a torque of one at a joint opens it."""
-        y, angle = [0.0] * count, [0.0] * count
-        push(y, angle, rod, force, torque)
-        return gap(y, angle, rod) if force else bend(angle, rod)
-
-    def step(state: State) -> State:
-        y, angle, v, turn, forces, torques = (state[i * count : (i + 1) * count] for i in range(6))
-        v = [each + pull[0] for each in v]
-        v[-1] += pull[1] / masses[-1]
-        turn[-1] += pull[1] * length / 2 / inertias[-1]
-        forces, torques = [kept * each for each in forces], [kept * each for each in torques]
-        for rod in range(count):
-            push(v, turn, rod, forces[rod], torques[rod])
-        for _ in range(sweeps):
-            for rod in range(count):
-                force = -relaxation * (gap(v, turn, rod) + share * gap(y, angle, rod)) / gives(rod, 1, 0)
-                push(v, turn, rod, force, 0.0)
-                forces[rod] += force
-                softness = motor[1] * gives(rod, 0, 1)
-                wanted = bend(turn, rod) + motor[0] * bend(angle, rod) + softness * torques[rod]
-                torque = -relaxation * wanted / (gives(rod, 0, 1) + softness)
-                push(v, turn, rod, 0.0, torque)
-                torques[rod] += torque
-        y, angle = moved(y, v), moved(angle, turn)
-        for _ in range(positions):
-            for rod in range(count):
-                push(y, angle, rod, -gap(y, angle, rod) / gives(rod, 1, 0), 0.0)
-        return y + angle + v + turn + forces + torques
-
-    return step
+            gap |= {rod - 1: -1, count + rod - 1: -1}
+            bend |= {count + rod - 1: -1}
+        constraints += [Constraint(gap, share, 0, 1), Constraint(bend, *motor)]
+    inverse = [*(1 / mass for mass in masses), *(3 / mass for mass in masses)]
+    pulls = [pull[0]] * count + [0.0] * count
+    for place in (count - 1, -1):
+        pulls[place] += pull[1] * inverse[place]
+    return swept_step(constraints, inverse, sweeps, pull=pulls, **settings)
 
 
 def hanging_errors(
@@ -180,21 +147,21 @@ def hanging_errors(
     Impulse by impulse along the links where they are, with a bias in the velocity and kept impulses. `pull` is what
     gravity adds to velocities in a step, h = 1. Places and velocities are complex; gravity is along the real axis.
     """
-    inverse = [1 / mass for mass in masses]
+    inverse, tied = [1 / mass for mass in masses], links(len(masses))
     places = [length * (number + 1) * rect(1, angle) for number in range(len(masses))]
     velocities, impulses, seen = [0j] * len(masses), [0.0] * len(masses), []
     for _ in range(steps):
-        links = [error(places, link) for link in range(len(masses))]
-        errors, along = [abs(link) - length for link in links], [link / abs(link) for link in links]
+        spans = [link.of(places) for link in tied]
+        errors, along = [abs(span) - length for span in spans], [span / abs(span) for span in spans]
         velocities = [velocity + pull for velocity in velocities]
-        for link, impulse in enumerate(impulses):
-            push(velocities, inverse, link, impulse * along[link])
+        for link, impulse, direction in zip(tied, impulses, along, strict=True):
+            link.push(velocities, inverse, impulse * direction)
         for _ in range(sweeps):
-            for link, direction in enumerate(along):
-                rate = (error(velocities, link) * direction.conjugate()).real
-                added = -(rate + share * errors[link]) / (inverse[link] + (inverse[link - 1] if link else 0))
-                push(velocities, inverse, link, added * direction)
-                impulses[link] += added
-        places = moved(places, velocities)
+            for number, (link, direction) in enumerate(zip(tied, along, strict=True)):
+                rate = (link.of(velocities) * direction.conjugate()).real
+                added = -(rate + share * errors[number]) / link.gives(inverse)
+                link.push(velocities, inverse, added * direction)
+                impulses[number] += added
+        places = [place + velocity for place, velocity in zip(places, velocities, strict=True)]
         seen.append(errors)
     return seen
