@@ -59,11 +59,3 @@ def test_an_element_that_is_switched_off_is_none(kind: str, beside: str) -> None
     assert step_at(whole, states[0]).matrix == pytest.approx(before, abs=1e-12)  # it is as it was
     if kind != "muscle":  # whose own activation is a state
         assert np.abs(less - before).max() > 1e-5
-
-
-@pytest.mark.parametrize(
-    ("kind", "name"), [("equality", "equality 0"), ("joint limit", "joint 'y'"), ("tendon limit", "tendon 't'")]
-)
-def test_elements_have_their_names_else_numbers(kind: str, name: str) -> None:
-    robot = robot_of(model_of(text_with(kind)))
-    assert [each.name for each in acting(robot, at_qpos0(robot))] == [name]

@@ -53,11 +53,8 @@ def test_every_remedy_makes_the_model_safe(name: str) -> None:
     ],
 )
 def test_largest_gains_and_the_least_armature_are_those_of_the_map(name: str, label: str, limit: float) -> None:
-    (value,) = [
-        float(remedy.write.split('"')[1])
-        for remedy in lint(model_of(UNSAFE_MODELS[name])).remedies
-        if remedy.write.startswith(label)
-    ]
+    writes = dict(remedy.write.split("=") for remedy in lint(model_of(UNSAFE_MODELS[name])).remedies)
+    value = float(writes[label].strip('"'))
     assert value == pytest.approx(limit, rel=0.1)  # two digits
     assert value > limit if label == "armature" else value < limit
 
@@ -80,12 +77,6 @@ def test_at_the_arms_own_keyframe_the_least_armature_is_the_joints_there() -> No
             joint = remedy.element.split("'")[1]
             text = ARM.replace(f'<joint name="{joint}"', f'<joint name="{joint}" {remedy.write}')
             assert lint(model_of(text)).status == 0
-
-
-def test_gains_of_a_controller_are_remedied_and_implicitfast_is_none_of_its_remedies() -> None:
-    found = lint(model_of(mjcf(LINK.format(""))), pd={"x": (300, 60)})
-    labels = [remedy.write.split("=")[0] for remedy in found.remedies]
-    assert labels == ["timestep", "armature", "kd"]
 
 
 def test_a_gain_of_the_wrong_sign_pushes_away_at_any_step() -> None:

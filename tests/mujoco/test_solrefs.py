@@ -3,7 +3,6 @@
 from fractions import Fraction
 from typing import Any
 
-import numpy as np
 import pytest
 
 from bezstab.methods.registry import lookup
@@ -62,15 +61,14 @@ def test_past_its_width_a_setting_is_judged_if_asked_and_a_run_does_so() -> None
     assert (far.alpha_hat, far.beta_hat) == pytest.approx((1, 2.2))
     assert (near.unsafe, far.unsafe) == (False, True)
     model = model_of(mjcf(SLIDE.format(""), setting, h=H))
-    assert grown(mujoco, model, mujoco.MjData(model), kick=1e-6, steps=300) < 1e-3
-    assert grown(mujoco, model, mujoco.MjData(model), kick=1e-2, steps=300) > 1e3
+    small, large = (grown(mujoco, model, mujoco.MjData(model), kick, steps=300) for kick in (1e-6, 1e-2))
+    assert (small < 1e-3, large > 1e3) == (True, True)
 
 
-@pytest.mark.parametrize("method", ["SYM", "RK4"])
-@pytest.mark.parametrize("ratio", [Fraction(1, 9999), Fraction(1, 2), Fraction(1)])
-def test_the_solref_to_write_is_safe_whatever_solimp_makes_of_it(method: str, ratio: Fraction) -> None:
+def test_the_solref_to_write_is_safe_whatever_solimp_makes_of_it() -> None:
     """A time constant of two steps is (1, 1/4), scaled by r and r^2."""
-    assert verdict(lookup(method), ratio, ratio**2 / 4) == "converges"
+    for ratio in (Fraction(1, 9999), Fraction(1, 2), Fraction(1)):
+        assert {verdict(lookup(method), ratio, ratio**2 / 4) for method in ("SYM", "RK4")} == {"converges"}
 
 
 def test_friction_has_a_velocity_alone() -> None:
@@ -78,4 +76,3 @@ def test_friction_has_a_velocity_alone() -> None:
     assert row.beta_hat == 0
     assert row.z_abs == pytest.approx(1 - float(row.alpha_hat or 0))
     assert row.verdict == "converges"
-    assert np.isfinite(row.z_abs or np.nan)

@@ -1,11 +1,9 @@
-"""The poles to 50 digits, with the error that float64 cannot avoid; |z_p| from P itself."""
+"""The poles to 50 digits, with the error that float64 cannot avoid."""
 
-from fractions import Fraction
 from typing import Any
 
 import mpmath
 
-from bezstab.methods.derivation import closed_loop_at
 from bezstab.methods.schemes import Method
 
 EPS = 2.0**-52
@@ -38,11 +36,3 @@ def poles_with_errors(method: Method, alpha_hat: float, beta_hat: float) -> list
                     error = min(error, (len(coefficients) * rounding / slope) ** (mpmath.mpf(1) / k))
             pairs.append((z, error))
     return pairs
-
-
-def modulus_from_p(method: Method, alpha_hat: float, beta_hat: float) -> float:
-    """Return |z_p| from the roots of P(z; alpha_hat, beta_hat), whose coefficients there are exact, with 50 digits."""
-    exact = closed_loop_at(method, Fraction(alpha_hat), Fraction(beta_hat))
-    with mpmath.workdps(50):
-        coefficients = [mpmath.mpf(c.numerator) / c.denominator for c in exact[::-1]]
-        return float(max(map(abs, mpmath.polyroots(coefficients, maxsteps=5000, extraprec=300))))
