@@ -3,39 +3,42 @@
 import csv
 import io
 from collections.abc import Iterator, Mapping, Sequence
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from bezstab.catalogue import columns as catalogue
-from bezstab.chains import columns as chains
-from bezstab.drives import columns as drives
-from bezstab.feedback import columns as feedback
-from bezstab.mujoco import columns as mujoco
-from bezstab.probes import columns as probes
-from bezstab.regions import columns as regions
-from bezstab.runs import columns as runs
 from bezstab.show.columns import Column
-from bezstab.step_sequences import columns as step_sequences
 
 PAGE = Path(__file__).parents[2] / "bezstab" / "show" / "keys.csv"
 
+LISTS = """
+chain chains.COLUMNS
+check feedback.CHECKED feedback.STEPS
+choose feedback.CHOSEN feedback.STEPS
+poles feedback.POLES
+drive drives.COLUMNS
+engines catalogue.COLUMNS
+lint mujoco.STATES mujoco.SUSPECTS mujoco.REMEDIES mujoco.ENERGIES mujoco.SAGS mujoco.SETTINGS
+methods regions.LISTED regions.WHOLE
+probe probes.POLES probes.COMPARED probes.FOUND
+region regions.REGION regions.ON_A_MOTION regions.MOVING
+simulate runs.RUN
+steps step_sequences.COLUMNS
+tradeoff runs.COSTS runs.FRONTS
+verify runs.MEASURED runs.VERDICT_MAP
+"""
+"""Each command, and the lists of columns that it prints."""
+
+
+def _columns(path: str) -> Sequence[Column[Any]]:
+    room, name = path.split(".")
+    columns: Sequence[Column[Any]] = getattr(import_module(f"bezstab.{room}.columns"), name)
+    return columns
+
+
 COLUMNS: Mapping[str, Sequence[Sequence[Column[Any]]]] = {
-    "chain": [chains.COLUMNS],
-    "check": [feedback.CHECKED, feedback.STEPS],
-    "choose": [feedback.CHOSEN, feedback.STEPS],
-    "poles": [feedback.POLES],
-    "drive": [drives.COLUMNS],
-    "engines": [catalogue.COLUMNS],
-    "lint": [mujoco.STATES, mujoco.SUSPECTS, mujoco.REMEDIES, mujoco.ENERGIES, mujoco.SAGS, mujoco.SETTINGS],
-    "methods": [regions.LISTED, regions.WHOLE],
-    "probe": [probes.POLES, probes.COMPARED, probes.FOUND],
-    "region": [regions.REGION, regions.ON_A_MOTION, regions.MOVING],
-    "simulate": [runs.RUN],
-    "steps": [step_sequences.COLUMNS],
-    "tradeoff": [runs.COSTS, runs.FRONTS],
-    "verify": [runs.MEASURED, runs.VERDICT_MAP],
+    command: [_columns(path) for path in paths] for command, *paths in map(str.split, LISTS.strip().splitlines())
 }
-"""The columns that each command prints."""
 
 
 def page() -> str:

@@ -1,8 +1,6 @@
 """What all figures share: lines that are told apart, bytes that stay the same."""
 
 import io
-import subprocess
-import sys
 
 import matplotlib as mpl
 import pytest
@@ -42,22 +40,6 @@ def test_equal_figures_are_equal_bytes_whatever_the_users_settings_and_the_day(
         outputs.append(file.getvalue())
     assert outputs[0] == outputs[1]
     assert form != "svg" or b">B4</text>" in outputs[0]  # text stays text
-
-
-@pytest.mark.slow
-def test_two_processes_draw_the_same_bytes() -> None:
-    code = (
-        "import sys; from bezstab.regions.figure import comparison_figure; from bezstab.show.style import save;"
-        "from bezstab.methods.registry import lookup;"
-        "from bezstab.regions.answer import MapConditions; from bezstab.stability.regions import region;"
-        "save(comparison_figure([region(lookup('B4'))], MapConditions()), 'svg', sys.stdout.buffer)"
-    )
-    first, second = (
-        subprocess.run([sys.executable, "-c", code], capture_output=True, check=True, env={"PYTHONHASHSEED": seed})
-        for seed in ("1", "2")
-    )
-    assert first.stdout == second.stdout
-    assert b"<svg" in first.stdout
 
 
 def test_a_title_breaks_at_commas_wherever_that_does() -> None:

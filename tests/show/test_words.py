@@ -1,16 +1,14 @@
 """What numbers and points are called in words. Whole answers: tests/cli/sentences.md."""
 
 import math
-from fractions import Fraction
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bezstab.methods.registry import lookup
-from bezstab.regions.sentences import best_point_words, falling_words
-from bezstab.stability.best_points import FarLimit, best_point
-from bezstab.words import change_words, decay_words, growth_words, point_words, seconds_words, times_words
+from bezstab.regions.sentences import falling_words
+from bezstab.stability.best_points import FarLimit
+from bezstab.words import change_words, decay_words, growth_words, seconds_words, times_words
 
 
 @given(st.floats(1e-7, 1e4))  # with the least and the largest that a unit suits
@@ -32,12 +30,6 @@ def test_a_factor_up_to_which_something_may_grow_is_plain() -> None:
     assert [growth_words(factor) for factor in (1.6529, 2000.0, 3e8)] == ["1.65 times", "2,000 times", "3e+08 times"]
 
 
-def test_a_point_is_said_with_its_rates_where_there_is_a_step() -> None:
-    assert point_words(1.0, 1.0, Fraction(1, 100)) == "α̂ = 1, β̂ = 1 (α = 50 1/s, β = 100 1/s at h = 0.01 s)"
-    assert point_words(1.0, 1.0, None) == "α̂ = 1, β̂ = 1"
-    assert point_words(1.0, -1.0, 0.01) == "α̂ = 1, β̂ = -1 (α = 50 1/s at h = 0.01 s)"  # the square of no β
-
-
 @given(st.floats(1e-3, 1e8))
 def test_a_factor_in_words_is_the_factor_to_two_digits(factor: float) -> None:
     assert float(times_words(factor).replace(",", "")) == pytest.approx(factor, rel=0.05)
@@ -57,14 +49,6 @@ def test_the_proven_verdict_counts_more_than_a_rounded_modulus() -> None:
     assert change_words(1.0, "diverges") == f"the error grows, {by_less}"  # a repeated root on the circle
     assert change_words(math.nextafter(1, 2), "marginal") == "the error neither shrinks nor grows"
     assert change_words(5.1e-8, "converges") == "the error is gone within a few steps"  # a double root zero, rounded
-
-
-def test_words_for_a_best_point() -> None:
-    kink, zero = best_point(lookup("B4")), best_point(lookup("RK4"))
-    assert kink
-    assert zero
-    assert best_point_words(kink) is None
-    assert best_point_words(zero) == "deadbeat: every pole is 0; also at (0.541112, 6.347103)"
 
 
 @pytest.mark.parametrize(
