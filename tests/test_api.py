@@ -2,6 +2,7 @@ import ast
 import doctest
 import inspect
 import json
+from collections.abc import Sequence
 from fractions import Fraction
 from pathlib import Path
 from typing import Any, get_args
@@ -9,10 +10,11 @@ from typing import Any, get_args
 import pytest
 
 import bezstab
+from bezstab.drives import columns as drives
 from bezstab.errors import InputError
 from bezstab.feedback.columns import CHECKED, CHOSEN
 from bezstab.goals import GOALS, Goal
-from bezstab.show.columns import row_of
+from bezstab.show.columns import Column, row_of
 from bezstab.show.tables import for_programs
 from tests.cli.running import DATA, rows, run
 
@@ -70,37 +72,42 @@ def test_both_ways_to_give_a_point_and_a_motion_agree() -> None:
     assert of_longest.alpha_hat == pytest.approx(chosen.alpha_hat / 2)
 
 
-def test_every_goal_has_a_meaning() -> None:
-    assert set(GOALS) == set(get_args(Goal))
-
-
-@pytest.mark.parametrize("goal", GOALS)
+@pytest.mark.parametrize("goal", get_args(Goal))
 def test_every_goal_can_be_chosen(goal: Goal) -> None:
     assert bezstab.choose("RK2", goal=goal, h=0.01, settle=1 if goal == "gentle" else None).goal == goal
+    assert GOALS[goal]
 
 
 @pytest.mark.parametrize(
-    ("typed", "asked"),
+    ("typed", "columns", "asked"),
     [
-        ("check --engine mujoco=0.0001,1 --h 0.002", {"engine": "mujoco=0.0001,1", "h": 0.002}),
+        ("check --engine mujoco=0.0001,1 --h 0.002", CHECKED, {"engine": "mujoco=0.0001,1", "h": 0.002}),
         (
             "check --method SYM --alpha 1 --beta 0.5 --h 0.01 --scene driven_four_bar --speed 2",
+            CHECKED,
             {"method": "SYM", "alpha_hat": 1, "beta_hat": 0.5, "h": 0.01, "scene": "driven_four_bar", "speed": 2},
         ),
-        ("choose --engine bullet --h 1/240", {"engine": "bullet", "h": "1/240"}),
         (
             "choose --method SYM --h 0.01 --goal robust --h-max 0.02",
+            CHOSEN,
             {"method": "SYM", "h": 0.01, "goal": "robust", "h_max": 0.02},
+        ),
+        (
+            "drive --kp 200 --kd 5 --inertia 0.1 --h 0.002 --every 4 --late 1 --filter 0.01 --method SYM",
+            drives.COLUMNS,
+            {"kp": 200, "kd": 5, "inertia": "0.1", "h": 0.002, "every": 4, "late": 1, "filter_seconds": "0.01"},
         ),
     ],
 )
 @pytest.mark.slow
-def test_python_answers_what_the_command_line_answers(typed: str, asked: dict[str, Any]) -> None:
-    command = typed.split(maxsplit=1)[0]
-    printed = json.loads(run(typed, "--format json").stdout)
-    answer = getattr(bezstab, command)(**asked)
-    columns = CHECKED if command == "check" else CHOSEN
-    assert printed[0] == json.loads(for_programs([row_of(columns, answer)], "json"))[0]
+def test_python_answers_what_the_command_line_answers(
+    typed: str, columns: Sequence[Column[Any]], asked: dict[str, Any]
+) -> None:
+    answer = getattr(bezstab, typed.split(maxsplit=1)[0])(**asked)
+    assert (
+        json.loads(run(typed, "--format json").stdout)[0]
+        == json.loads(for_programs([row_of(columns, answer)], "json"))[0]
+    )
 
 
 def test_of_several_answers_the_first_that_is_not_safe_is_returned() -> None:
@@ -117,23 +124,12 @@ def test_poles_are_measured_at_each_of_the_points() -> None:
         assert each.measured == pytest.approx(each.predicted, abs=1e-3)
 
 
-def test_a_drive_is_judged_as_on_the_command_line() -> None:
-    answer = bezstab.drive(200, 5, "0.1", h=0.002, every=4, late=1, filter_seconds="0.01")
-    typed = "drive --kp 200 --kd 5 --inertia 0.1 --h 0.002 --every 4 --late 1 --filter 0.01 --method SYM"
-    (row,) = rows(typed)
-    assert (answer.verdict, answer.z_abs, answer.used_up) == (row["verdict"], row["z_abs"], row["used_up"])
-    assert answer.limits.late == row["late_max"]
-    assert row["kd_range"] == list(answer.limits.kd or ())
-
-
 def test_a_mujoco_model_is_judged_as_on_the_command_line_from_a_path_or_loaded() -> None:
     mujoco = pytest.importorskip("mujoco")
     path = DATA / "legs.xml"
     typed, *_ = rows("lint", str(path), "--pd hip.*=200,5 --every 4 --late 1")
     for model in (path, mujoco.MjModel.from_xml_path(str(path))):
         linted = bezstab.lint(model, pd={"hip.*": (200, 5)}, every=4, late=1)
-        assert (linted.worst.kind, linted.status) == ("decays", 0)
-        assert linted.worst.z_abs == typed["z_abs"]
-        assert linted.sentence.startswith(("legs.xml is safe", "the model is safe"))
+        assert (linted.worst.kind, linted.worst.z_abs) == ("decays", typed["z_abs"])
     with pytest.raises(InputError, match=r"^pd knee: matches no motor"):
         bezstab.lint(path, pd={"knee": (1, 1)})

@@ -147,13 +147,9 @@ def test_computation_neither_prints_nor_exits_nor_filters_warnings_and_one_file_
 
 def test_every_library_that_is_imported_is_declared() -> None:
     project = tomllib.loads((PACKAGE.parent / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    extras = project["optional-dependencies"]
-    declared = {
-        re.split(r"\W", requirement)[0]
-        for requirement in sum(
-            (extras[name] for name in ("mujoco", "parallel", "dask", "fast")), project["dependencies"]
-        )
-    }
+    optional = [project["optional-dependencies"][name] for name in ("mujoco", "parallel", "dask", "fast")]
+    wanted = sum(optional, project["dependencies"])
+    declared = {re.split(r"\W", requirement)[0] for requirement in wanted}
     imported = {module.split(".")[0] for path in FILES for module, _ in imports(path, with_types=False)}
     assert imported - set(sys.stdlib_module_names) - {"bezstab", "__future__"} <= declared
 

@@ -16,24 +16,9 @@ from tests.reference.sampled_responses import of_poles
 
 ROOT = Path(__file__).parent.parent
 DATA = ROOT / "tests" / "cli" / "data"
-PAGES = (
-    "README.md",
-    "bezstab/README.md",
-    "bezstab/stability/README.md",
-    "bezstab/chains/README.md",
-    "bezstab/drives/README.md",
-    "bezstab/feedback/README.md",
-    "bezstab/motion/README.md",
-    "bezstab/step_sequences/README.md",
-    "bezstab/runs/README.md",
-    "bezstab/mujoco/README.md",
-    "bezstab/paper/README.md",
-    "bezstab/probes/README.md",
-    "configs/methods/README.md",
-    "configs/scenes/README.md",
-    "tests/README.md",
-    "tests/cli/sentences.md",
-)
+FOLDERS = ("", "bezstab", "bezstab/*", "configs/*", "tests")
+READMES = sorted(path for folder in FOLDERS for path in ROOT.glob(f"{folder}/README.md".lstrip("/")))
+PAGES = [*(path.relative_to(ROOT).as_posix() for path in READMES), "tests/cli/sentences.md"]
 """The pages whose commands are run."""
 
 ON_A_PIPE = {"COLUMNS": None}

@@ -11,6 +11,7 @@ import pytest
 from bezstab.runs.parallel import _deaf_to_terminals
 
 ROOT = Path(__file__).parent.parent
+RAISE = "signal.raise_signal(number)"
 START = """
 import os, signal, sys
 for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
@@ -38,7 +39,7 @@ def run(code: str, name: str) -> "subprocess.CompletedProcess[str]":
     [("SIGINT", "interrupted", 130), ("SIGTERM", "terminated", 143), ("SIGHUP", "hung up", 129)],
 )
 def test_a_signal_ends_a_process_with_one_line(name: str, word: str, status: int) -> None:
-    ended = run("signal.raise_signal(number)", name)
+    ended = run(RAISE, name)
     assert (ended.returncode, ended.stdout, ended.stderr) == (status, "", f"bezstab: {word}\n")
 
 
@@ -78,16 +79,22 @@ print("never")
     assert (ended.returncode, ended.stdout, ended.stderr) == (143, "gone\n", "bezstab: terminated\n")
 
 
-def test_what_a_library_makes_of_it_is_no_error() -> None:
-    ended = run(
-        "try:\n    signal.raise_signal(number)\nexcept BaseException:\n    raise ImportError from None", "SIGINT"
-    )
-    assert (ended.returncode, ended.stderr) == (130, "bezstab: interrupted\n")
-
-
-def test_a_run_that_was_not_told_ends_as_it_does() -> None:
-    ended = run("raise SystemExit(3)", "SIGINT")
-    assert (ended.returncode, ended.stdout, ended.stderr) == (3, "", "")
+@pytest.mark.parametrize(
+    ("code", "status", "said"),
+    [
+        (
+            f"try:\n    {RAISE}\nexcept BaseException:\n    raise ImportError from None",
+            130,
+            "interrupted",
+        ),  # as libraries
+        ("raise SystemExit(3)", 3, ""),  # it was not told
+        # ignored before, as nohup does
+        ("signal.signal(number, signal.SIG_IGN)\nstop_when_told()\n" + RAISE, 0, ""),
+    ],
+)
+def test_it_ends_as_it_was_told_to(code: str, status: int, said: str) -> None:
+    ended = run(code, "SIGINT")
+    assert (ended.returncode, ended.stderr) == (status, f"bezstab: {said}\n" if said else "")
 
 
 def test_a_process_that_is_started_for_chunks_does_not_hear_a_terminal() -> None:

@@ -48,17 +48,3 @@ def test_without_these_folders_types_are_right(tmp_path: Path) -> None:
     mypy = [sys.executable, "-m", "mypy", "bezstab"]
     found = subprocess.run(mypy, cwd=root, capture_output=True, text=True, check=False)
     assert found.returncode == 0, found.stdout
-
-
-@pytest.mark.slow
-def test_a_field_that_is_renamed_is_found_by_the_types_of_columns(tmp_path: Path) -> None:
-    """A column is a function of the answer: mypy --strict names the file and the line that must follow."""
-    root = without(set(), tmp_path)
-    shutil.copy(PACKAGE.parent / "pyproject.toml", root)
-    judgement = root / "bezstab" / "feedback" / "judgement.py"
-    text = judgement.read_text(encoding="utf-8")
-    judgement.write_text(text.replace("tenth_seconds", "seconds_to_a_tenth"), encoding="utf-8")
-    mypy = [sys.executable, "-m", "mypy", "bezstab"]
-    found = subprocess.run(mypy, cwd=root, capture_output=True, text=True, check=False)
-    assert found.returncode == 1
-    assert re.search(r'feedback/columns\.py:\d+: error: "Judgement" has no attribute "tenth_seconds"', found.stdout)

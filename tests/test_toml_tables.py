@@ -4,8 +4,6 @@ import math
 from collections.abc import Callable
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from bezstab.errors import InputError
 from bezstab.toml_tables import TomlTable
@@ -26,11 +24,6 @@ def test_a_message_has_the_place_the_key_the_value_and_what_is_expected() -> Non
     table = TomlTable({"mass": -1.0}, "body 'bob'")
     expected = "body 'bob': mass = -1.0: expected a positive number, 1e-100 to 1e100"
     assert refusal(lambda: table.positive_number("mass")) == expected
-
-
-@given(st.floats(1e-100, 1e100) | st.floats(-1e100, -1e-100) | st.just(0.0))
-def test_every_number_of_ordinary_size_is_handed_out(value: float) -> None:
-    assert TomlTable({"x": value}).number("x") == value
 
 
 def test_an_unknown_key_of_a_table_within_is_found_from_outside() -> None:

@@ -7,7 +7,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import IO, Any
 
@@ -35,11 +35,8 @@ def started(
 
     `environment` is added to this one's, None takes a variable away; `prepare` runs in the child before the command.
     """
-    variables: dict[str, str] = {**os.environ, "PYTHONPATH": str(ROOT)}
-    for name, value in (environment or {}).items():
-        variables.pop(name, None)
-        if value is not None:
-            variables[name] = value
+    asked = {**os.environ, "PYTHONPATH": str(ROOT), **(environment or {})}
+    variables = {name: value for name, value in asked.items() if value is not None}
 
     def prepared() -> None:
         default_signals()
@@ -59,10 +56,8 @@ def started(
         yield running
     finally:
         for process in (running.pid, *group_members(running.pid)):
-            try:
+            with suppress(ProcessLookupError):
                 os.kill(process, signal.SIGKILL)
-            except ProcessLookupError:
-                continue
         running.communicate()
 
 
@@ -95,15 +90,13 @@ def catches(number: int, process: int) -> bool:
 def group_members(leader: int) -> list[int]:
     """Return the processes of a group that are alive, without its leader."""
     members: list[int] = []
-    for entry in Path("/proc").iterdir():
-        if entry.name.isdecimal() and int(entry.name) != leader:
-            try:
-                fields = (entry / "stat").read_text(encoding="ascii", errors="replace").rpartition(")")[2].split()
-            except OSError:
-                continue  # it has just ended
-            state, group = fields[0], int(fields[2])
-            if group == leader and state != "Z":
-                members.append(int(entry.name))
+    for stat in Path("/proc").glob("[0-9]*/stat"):
+        try:
+            fields = stat.read_text(encoding="ascii", errors="replace").rpartition(")")[2].split()
+        except OSError:
+            continue  # it has just ended
+        if fields[0] != "Z" and int(fields[2]) == leader != int(stat.parent.name):
+            members.append(int(stat.parent.name))
     return members
 
 

@@ -19,11 +19,9 @@ NAMES = main.list_commands(click.Context(main))
 
 def test_help_has_a_heading_for_each_group_and_a_whole_sentence_for_each_command() -> None:
     text = CliRunner().invoke(main, ["--help"], terminal_width=80).stdout
-    sections = dict(re.findall(r"^(\w+):\n((?:  .+\n)+)", text, re.MULTILINE))
-    assert list(sections) == ["Options", "Maps", "Choose", "Evidence", "Paper"]
-    listed = [line.split(maxsplit=1) for title in list(sections)[1:] for line in sections[title].splitlines()]
-    assert [name for name, _ in listed] == NAMES
-    assert all(re.fullmatch(r"[A-Z].*[^.]\.", sentence) for _, sentence in listed)
+    assert re.findall(r"^(\w+):$", text, re.MULTILINE) == ["Options", "Maps", "Choose", "Evidence", "Paper"]
+    listed = re.findall(r"^  (\w+)  .*[A-Z].*[^.]\.$", text.partition("Maps:")[2], re.MULTILINE)
+    assert listed == NAMES
     bare = run()
     assert (bare.exit_code, bare.stdout, bare.stderr) == (0, run("--help").stdout, "")
 

@@ -4,7 +4,6 @@ import pytest
 from click.shell_completion import ShellComplete
 
 from bezstab.cli.command_group import main
-from bezstab.engines.engine_list import ENGINES
 from bezstab.mechanism.scene_files import shipped_scenes
 from bezstab.methods.registry import REGISTRY, lookup
 
@@ -20,12 +19,9 @@ def completions(words: str, kind: str = "plain") -> list[str]:
     ("words", "expected"),
     [
         ("methods rk", [name for name in REGISTRY if name.lower().startswith("rk")]),
-        ("simulate --method gen", ["generalized-alpha"]),
         ("simulate --scene ", list(shipped_scenes())),
-        ("choose --engine ", list(ENGINES)),
         ("check --engine muj", ["mujoco="]),
         ("trad", ["tradeoff"]),
-        ("engines --al", ["--alpha"]),
         ("poles --alpha 1", []),
     ],
 )

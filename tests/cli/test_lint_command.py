@@ -25,10 +25,7 @@ SLACK = """<mujoco><worldbody><body><joint name="x" type="slide"/><geom size=".1
         ("<mujoco>", 2, ""),
     ],
 )
-def test_exit_statuses_and_the_first_line(
-    text: str, status: int, words: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(tmp_path)
+def test_exit_statuses_and_the_first_line(text: str, status: int, words: str) -> None:
     Path("model.xml").write_text(text, encoding="utf-8")
     result = run("lint model.xml")
     assert result.exit_code == status
@@ -52,27 +49,10 @@ def test_without_mujoco_one_line_says_how_to_install_it(monkeypatch: pytest.Monk
     assert "pip install 'bezstab[mujoco]'" in result.stderr
 
 
-def test_a_motor_is_judged_with_its_controllers_gains_and_gravity() -> None:
-    """Without gravity along the joint it is the drive that `drive` judges."""
-    model = str(DATA / "motor.xml")
+def test_a_motor_is_judged_with_its_controllers_gains() -> None:
+    """Along its joint there is no gravity: it is the drive that `drive` judges."""
+    model, timing = str(DATA / "motor.xml"), "--every 4 --late 1"
     assert "Motors without a controller: hip_left" in run("lint", model).stdout
-    timing = "--every 4 --late 1"
-    for gains, exit_code in (("200,5", 0), ("0,60", 1)):
-        row, *_ = rows("lint", model, f"--pd hip.*={gains}", timing, status=exit_code)
-        kp, kd = gains.split(",")
-        (answer,) = rows(f"drive --kp {kp} --kd {kd} --inertia 0.094 --h 0.002 --method SYM", timing, status=exit_code)
-        assert row["z_abs"] == pytest.approx(answer["z_abs"], rel=1e-9)
-
-
-def test_the_least_armature_is_that_of_drive_to_its_two_digits(tmp_path: Path) -> None:
-    """An inertia of 0.001: kd = 5 at 2 ms."""
-    model = tmp_path / "hinge.xml"
-    body = '<body><joint name="j"/><inertial pos="0 0 0" mass="1" diaginertia="1 1 .001"/></body>'
-    text = f'<mujoco><worldbody>{body}</worldbody><actuator><motor name="m" joint="j"/></actuator></mujoco>'
-    model.write_text(text, encoding="utf-8")
-    written = [row["setting"] for row in rows("lint", str(model), "--pd m=20,5", status=1) if row["role"] == "remedy"]
-    (lints,) = [float(text.split('"')[1]) for text in written if text.startswith("armature")]
-    (answer,) = rows("drive --kp 20 --kd 5 --inertia 0.001 --h 0.002 --method SYM", status=1)
-    least = answer["inertia_min"] - 0.001
-    assert least <= lints <= 1.05 * least
-    assert "(armature 0.00403)" in answer["sentence"]
+    row, *_ = rows("lint", model, "--pd hip.*=0,60", timing, status=1)
+    (answer,) = rows("drive --kp 0 --kd 60 --inertia 0.094 --h 0.002 --method SYM", timing, status=1)
+    assert row["z_abs"] == pytest.approx(answer["z_abs"], rel=1e-9)

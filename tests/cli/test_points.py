@@ -55,37 +55,29 @@ def test_what_is_meant_in_seconds_has_a_largest_step_and_what_is_meant_per_step_
     assert of_the_engine == pytest.approx(of_alpha_and_beta, rel=1e-9)
 
 
-def test_numbers_that_look_like_one_over_seconds_are_said_to() -> None:
-    typed = "check --method SYM --alpha 50 --beta 50.5 --h 0.002"
-    assert run(typed).stderr.splitlines()[0].endswith("if 50 and 50.5 are in 1/s, add --physical")
-    assert run(typed, "--physical").stderr == ""
-    assert (
-        run("check --method SYM --alpha 14217 --beta 16544 --h 0.002 --physical").stderr == ""
-    )  # meant so, and unsafe
-    for command in ("poles", "check --method SYM", f"probe {DATA}/pendulum.csv"):  # and no step to read them at
-        said = run(command, "--alpha 14217 --beta 16544").stderr
-        assert "note: if 14217 and 16544 are in 1/s, add --physical and your --h\n" in said
-    with_step = "tradeoff --method SYM --h 0.002 --time 0.01 --alpha 14217 --beta 16544 --figure none --table none"
-    assert run(with_step).stderr.endswith("add --physical\n")
-
-
-@pytest.mark.parametrize("number", ["1", "5"])
-def test_numbers_that_would_settle_in_seconds_are_asked_about_where_a_step_was_typed(number: str) -> None:
-    typed = f"check --method RK2 --alpha {number} --beta {number}"
-    note = f"note: if {number} and {number} are in 1/s, add --physical"
-    assert note in run(typed, "--h 0.01").stderr.splitlines()
-    assert note not in run(typed).stderr
-    assert run(typed, "--h 0.01 --physical").stderr == ""
-    for simulated in ("verify --scene pendulum", "simulate --time 0.02 --figure none --table none"):
-        result = run(simulated, f"--method SYM --h 0.01 --alpha {number} --beta {number}")
-        assert note in result.stderr.splitlines()
-        assert result.stdout.startswith(f"SYM at α̂ = {number}, β̂ = {number} (α = ")
-
-
-def test_alpha_hat_and_beta_hat_are_taken_as_typed_without_a_step() -> None:
-    result = run("poles --alpha 0.5 --beta 0.1")
-    assert result.stdout.startswith("α̂ = 0.5, β̂ = 0.1\n")
-    assert result.stderr == ""
+@pytest.mark.parametrize(
+    ("typed", "note"),
+    [
+        ("check --method SYM --alpha 50 --beta 50.5 --h 0.002", "if 50 and 50.5 are in 1/s, add --physical"),
+        ("check --method SYM --alpha 50 --beta 50.5 --h 0.002 --physical", ""),
+        ("check --method SYM --alpha 14217 --beta 16544 --h 0.002 --physical", ""),  # meant so, and unsafe
+        (
+            "poles --alpha 50 --beta 50",
+            "if 50 and 50 are in 1/s, add --physical and your --h",
+        ),  # no step to read them at
+        (f"probe {DATA}/pendulum.csv --alpha 50 --beta 50", "if 50 and 50 are in 1/s, add --physical and your --h"),
+        # they would settle in seconds, where a step was typed
+        ("check --method RK2 --alpha 1 --beta 1 --h 0.01", "if 1 and 1 are in 1/s, add --physical"),
+        ("check --method RK2 --alpha 1 --beta 1", ""),
+        ("verify --scene pendulum --method SYM --h 0.01 --alpha 5 --beta 5", "if 5 and 5 are in 1/s, add --physical"),
+        ("simulate --time 0.02 --figure none --table none --method SYM --h 0.01 --alpha 5 --beta 5", "if 5 and 5 are"),
+        ("tradeoff --method SYM --h 0.002 --time 0.01 --alpha 50 --beta 50 --figure none --table none", "if 50 and 50"),
+    ],
+)
+def test_numbers_that_look_like_one_over_seconds_are_asked_about(typed: str, note: str) -> None:
+    said = [line.removeprefix("note: ") for line in run(typed).stderr.splitlines() if line.startswith("note: ")]
+    assert [line[: len(note)] for line in said] == [note] * bool(note)
+    assert "your --h" in note or not any("your --h" in line for line in said)
 
 
 def test_what_was_typed_is_shown_as_typed() -> None:

@@ -7,6 +7,7 @@ import shutil
 import signal
 import subprocess
 import time
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -73,23 +74,12 @@ def test_two_runs_at_once_in_the_same_place_both_write_the_whole(whole: bytes, t
     assert (tmp_path / f"{NAME}.csv").read_bytes() == whole
 
 
-# a process whose files are limited must not keep compiled modules: Python leaves them cut short, for all others to read
-COMPILES_FOR_ITSELF = {"PYTHONDONTWRITEBYTECODE": "1"}
-
-
-def finished_on_a_full_disk(*arguments: str, size: int, cwd: Path) -> subprocess.CompletedProcess[bytes]:
-    """Return what a command printed whose files may have so many bytes each: to it, the disk is full there."""
-    return finished(
-        *arguments,
-        cwd=cwd,
-        environment=COMPILES_FOR_ITSELF,
-        prepare=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size)),
-    )
-
-
 @pytest.mark.slow
 def test_a_full_disk_takes_one_line_and_resume_goes_on(whole: bytes, tmp_path: Path) -> None:
-    full = finished_on_a_full_disk(*SMALL, size=700, cwd=tmp_path)
+    """A process whose files are limited must not keep compiled modules: Python leaves them cut short, for others."""
+    environment = {"PYTHONDONTWRITEBYTECODE": "1"}
+    limit = partial(resource.setrlimit, resource.RLIMIT_FSIZE, (700, 700))
+    full = finished(*SMALL, cwd=tmp_path, environment=environment, prepare=limit)
     assert full.returncode == 2
     assert only_line(full.stderr).startswith("bezstab: cannot write")
     assert not [name for name in files_below(tmp_path) if "/." in name or name.endswith(".csv")]
@@ -166,17 +156,6 @@ def test_an_interrupt_stops_what_computes_in_one_call(tmp_path: Path) -> None:
         assert running.returncode == 130
     assert only_line(errors) == "bezstab: interrupted"
     assert files_below(tmp_path) == []
-
-
-@pytest.mark.slow
-def test_a_signal_that_was_ignored_stays_so(tmp_path: Path) -> None:
-    def ignore_hangup() -> None:
-        signal.signal(signal.SIGHUP, signal.SIG_IGN)  # as nohup does
-
-    with started("poles", "--alpha", "1", "--beta", "1", cwd=tmp_path, prepare=ignore_hangup) as running:
-        wait_until(lambda: catches(signal.SIGTERM, running.pid), running)
-        running.send_signal(signal.SIGHUP)
-        assert running.wait(timeout=60) == 0
 
 
 OLD_LOCALE = {"LANG": "C", "LC_ALL": "C", "PYTHONCOERCECLOCALE": "0", "PYTHONUTF8": "0"}  # then files' names are ASCII
