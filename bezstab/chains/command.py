@@ -53,7 +53,7 @@ def chain(
     figure: str,
     **_: object,
 ) -> bool:
-    """Judge a chain of bodies in a game engine: exit status 0 if safe, 1 if not.
+    """Judge a chain of bodies in a game engine: 0 if safe, 1 if not.
 
     Game engines solve one constraint after another; each pass over all of them is a sweep. With few sweeps a chain can
     come apart although each constraint alone is stable. --figure draws the sweeps that chains up to --bodies need.
