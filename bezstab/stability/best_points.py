@@ -17,7 +17,7 @@ Far out |z_p| may be lower than anywhere, and then no point has the least. All i
 
 import math
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, partial
 
 import numpy as np
 from numpy.polynomial.polynomial import polyder, polyroots, polyval2d, polyval3d
@@ -151,14 +151,11 @@ def _over_mu(method: Method) -> list[Found]:
     def on_edge(points: FloatArray) -> FloatArray:
         return modulus(np.concatenate([points, np.full_like(points, np.pi / 2)], axis=-1))
 
-    def within(points: FloatArray) -> FloatArray:
-        return np.stack([points[..., 0], np.clip(points[..., 1], 0, np.pi / 2)], axis=-1)
-
     def in_plane(log_size: float, ratio: float) -> Place:
         size = math.exp(log_size) / float(method.step_multiple)
         return 2 * size * math.sin(ratio if ratio > ROUNDING else 0), size**2
 
-    axis = np.log(SIZES)
+    axis, within = np.log(SIZES), partial(np.clip, a_min=[-np.inf, 0], a_max=[np.inf, np.pi / 2])
     starts, rough = lowest_minima(modulus, [axis, RATIOS], STARTS, rounds=ROUGH, shrink=SHRINK, fold=within)
     ((edge,), *_), (at_edge, *_) = lowest_minima(on_edge, [axis], 1, rounds=ROUNDS, shrink=SHRINK)
     found = [(in_plane(edge, np.pi / 2), float(at_edge))]
@@ -182,7 +179,9 @@ def _over_plane(method: Method, limit: FarLimit) -> list[Found]:
         return spectral_radius(method, points[..., 0], np.exp(points[..., 1]))
 
     axes = [np.array([0.0, *(2 * SIZES / multiple)]), 2 * np.log(SIZES / multiple)]
-    starts, rough = lowest_minima(modulus, axes, STARTS, rounds=ROUGH, shrink=SHRINK, fold=_not_negative)
+    starts, rough = lowest_minima(
+        modulus, axes, STARTS, rounds=ROUGH, shrink=SHRINK, fold=partial(np.clip, a_min=[0, -np.inf], a_max=np.inf)
+    )
     hopeful = [((float(start[0]), float(np.exp(start[1]))), level) for start, level in _hopeful(starts, rough)]
     all_poles = len(float_table(method)) - 1
     near_zero = [_multiple_pole(method, all_poles, place) for place, level in hopeful if level < HOPEFUL_ZERO]
@@ -220,10 +219,6 @@ def _hopeful(starts: FloatArray, rough: FloatArray) -> list[tuple[FloatArray, fl
         if rough[k] <= rough.min() + HOPEFUL and all(np.abs(starts[k] - start).max() > NEAR for start, _ in kept):
             kept.append((starts[k], float(rough[k])))
     return kept
-
-
-def _not_negative(points: FloatArray) -> FloatArray:
-    return np.stack([np.abs(points[..., 0]), points[..., 1]], axis=-1)
 
 
 def _narrowed(method: Method, alpha_hat: float, beta_hat: float, level: float, reach: float) -> Found:

@@ -282,21 +282,18 @@ def _least(extent: Extent, objective: Modulus, cut: bool) -> tuple[float, float]
     """
     largest = np.array([extent[0][1] / 2, math.sqrt(extent[1][1])])  # alpha h and beta h
 
-    def over_positive_points(points: FloatArray) -> FloatArray:
-        values = np.full(points.shape[:-1], np.inf)
-        positive = (points > 0).all(axis=-1)
-        alpha, beta = points[positive].T  # times h
-        values[positive] = objective(2 * alpha, beta**2)
-        return values
+    def over_points(points: FloatArray) -> FloatArray:
+        alpha_h, beta_h = points.reshape(-1, 2).T
+        return objective(2 * alpha_h, beta_h**2).reshape(points.shape[:-1])
 
     (best, *_), _ = lowest_minima(
-        over_positive_points,
+        over_points,
         list(np.linspace(np.zeros(2), largest, FIRST_GRID, axis=1)),
         1,
         ZOOM * largest / 2,
         points=GRID,
         shrink=ZOOM,
         rounds=ZOOMS,
-        fold=(lambda points: np.minimum(points, largest)) if cut else None,
+        fold=lambda points: np.clip(points, 0, largest if cut else np.inf),
     )
     return 2 * float(best[0]), float(best[1]) ** 2

@@ -4,9 +4,8 @@ import math
 from dataclasses import replace
 from fractions import Fraction
 
-from bezstab.methods.orders import accuracy, accuracy_by_force
+from bezstab.methods.orders import accuracy, accuracy_by_force, stage_weights
 from bezstab.methods.registry import REGISTRY, lookup
-from bezstab.methods.rooted_trees import stage_weights
 from tests.reference.made_methods import runge_kutta
 from tests.reference.orders import JAMESON, adams_constant
 

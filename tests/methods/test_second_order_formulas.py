@@ -1,7 +1,7 @@
 from fractions import Fraction
 
+from bezstab.methods.formulas import second_order_text
 from bezstab.methods.recipes import recipe
-from bezstab.methods.second_order_formulas import second_order_text
 
 
 def written(equations: dict[str, str], multiple: str = "1", latex: bool = False) -> str:
