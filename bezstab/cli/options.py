@@ -24,8 +24,6 @@ from bezstab.units import LEAST_STEP, LONGEST_STEP, to_dimensionless
 EngineValues = tuple[Engine, tuple[Fraction, ...]]
 
 MOST_IN_SEQUENCE = 10**6  # steps: a run of minutes
-USUAL_METHODS = ("B2", "B3", "B4", "AB2", "AB3", "AB4", "RK4@5", "SIE")
-"""The methods that poles shows without --method: the Bezier methods and their usual alternatives."""
 
 
 @dataclass(frozen=True)

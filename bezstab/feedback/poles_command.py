@@ -16,15 +16,15 @@ from bezstab.cli.output import for_reading, show_answers, worked_out
 if TYPE_CHECKING:
     from bezstab.methods.schemes import Method
 
-USUAL_METHODS = ("B2", "B3", "B4", "AB2", "AB3", "AB4", "RK4@5", "SIE")
-"""Without --method: the Bezier methods and their usual alternatives."""
+USUAL_METHODS = ("SYM", "B2", "B3", "B4", "AB2", "AB3", "AB4", "RK4@5", "SIE")
+"""Without --method: what most engines have, the Bezier methods, and their alternatives in the paper."""
 
 
 @click.command(cls=GroupedCommand)
 @grouped("What is judged", shared.alpha, shared.beta, shared.physical, shared.engine_values, shared.as_typed)
 @grouped(
     "Your simulation",
-    click.option("--method", "methods", type=METHOD, multiple=True, help=f"{shared.METHOD_HELP} Repeatable [eight]."),
+    click.option("--method", "methods", type=METHOD, multiple=True, help=f"{shared.METHOD_HELP} Repeatable [nine]."),
     click.option("--h", type=SECONDS, help="Step in s, for --physical, --engine and --scene."),
     shared.scene,
     shared.speed,
