@@ -138,7 +138,14 @@ def checks(
     found = []
     for method in methods:
         judged = [
-            judge(asked, describe_point(method, label, *point, asked.spread, margins), "given", given, cost=cost)
+            judge(
+                asked,
+                describe_point(method, label, *point, asked.spread),
+                "given",
+                given,
+                margins=margins,
+                cost=cost,
+            )
             for label, point in ((AS_GIVEN, given.made.point), *given.made.also)
         ]
         better, reason = None, None

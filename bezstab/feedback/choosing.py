@@ -248,7 +248,7 @@ def check_motion(method: Method, asked: Conditions, *, equal: bool = False) -> N
     """Raise InputError if the most accurate feedback of a method follows a motion whose rate is not known."""
     if not asked.motion.assumed or not follows_motion(method):
         return
-    chosen = choose_point(method, "accurate", spread=asked.spread, equal=equal, margins=False)
+    chosen = choose_point(method, "accurate", spread=asked.spread, equal=equal)
     alpha, beta = from_dimensionless(chosen.alpha_hat, chosen.beta_hat, float(OMEGA_H))
     raise InputError(
         f"{method.name}: α = {alpha:.2g} ω, β = {beta:.2g} ω, ω the rate of your motion in rad/s: give --omega "
@@ -267,17 +267,17 @@ def choose_answer(
     trades: bool = False,
 ) -> ChooseAnswer:
     """Return the point that a goal asks for, judged; errors as `choose`."""
-    chosen = found = _chosen(method, wish, asked, margins=margins)
+    chosen = found = _chosen(method, wish, asked)
     trials = None
     if role == "chosen":
         _check_expressed(asked, chosen)
         trials = _trials(chosen, wish, asked)
     if trials:
-        found = describe_point(method, wish.goal, *trials.point, asked.spread, margins)
+        found = describe_point(method, wish.goal, *trials.point, asked.spread)
         found = replace(found, searched=chosen.searched)
-    judged = judge(asked, found, role, cost=cost)
+    judged = judge(asked, found, role, margins=margins, cost=cost)
     if trials and not judged.safe:
-        trials, judged = None, judge(asked, chosen, role, cost=cost)
+        trials, judged = None, judge(asked, chosen, role, margins=margins, cost=cost)
     by_goal = wish.sag is None
     safe_with = _safe_with(judged, wish) if role == "chosen" and by_goal and not judged.safe else None
     return ChooseAnswer(
@@ -322,9 +322,9 @@ def _check_expressed(asked: Conditions, chosen: Choice) -> None:
         raise InputError(f"{error}: ask `check --engine {words}` about values of yours") from None
 
 
-def _chosen(method: Method, wish: Wish, asked: Conditions, *, margins: bool) -> Choice:
+def _chosen(method: Method, wish: Wish, asked: Conditions) -> Choice:
     """Return the choice of a goal; if an engine sweeps over constraints, at most the strongest that they allow."""
-    found = _chosen_alone(method, wish, asked, margins=margins)
+    found = _chosen_alone(method, wish, asked)
     swept = asked.swept
     if swept is None or not (swept.engine.parameters and _curve(wish, asked)):
         return found
@@ -333,13 +333,13 @@ def _chosen(method: Method, wish: Wish, asked: Conditions, *, margins: bool) -> 
         raise InputError(f"{swept.engine.name}: no feedback is stable in {swept.constraints.words}")
     if found.beta_hat <= strongest[1] * (1 + READ_BACK):  # as is all of the curve but its end, which is not tried
         return found
-    return describe_point(method, wish.goal, *strongest, asked.spread, margins)
+    return describe_point(method, wish.goal, *strongest, asked.spread)
 
 
-def _chosen_alone(method: Method, wish: Wish, asked: Conditions, *, margins: bool) -> Choice:
+def _chosen_alone(method: Method, wish: Wish, asked: Conditions) -> Choice:
     """Return the choice of a goal for one constraint; if its goal is one of UP_TO_LONGEST, for all steps to h_max."""
     if wish.sag is not None:
-        return _sags_no_further(method, wish.sag, asked, margins=margins)
+        return _sags_no_further(method, wish.sag, asked)
     modulus: Modulus | None = None
     if asked.turning and asked.h:
         turned = asked.turning.kappa * float(asked.h_max or asked.h)
@@ -355,11 +355,10 @@ def _chosen_alone(method: Method, wish: Wish, asked: Conditions, *, margins: boo
         modulus=modulus,
         along=_curve(wish, asked),
         omega_h=asked.motion.omega_h_max,
-        margins=margins,
     )
 
 
-def _sags_no_further(method: Method, sag: Fraction, asked: Conditions, *, margins: bool) -> Choice:
+def _sags_no_further(method: Method, sag: Fraction, asked: Conditions) -> Choice:
     """Return the weakest feedback that the engine expresses and that sags by at most so much (m or rad)."""
     assert asked.engine
     assert asked.h is not None
@@ -370,7 +369,7 @@ def _sags_no_further(method: Method, sag: Fraction, asked: Conditions, *, margin
     values = tuple(map(rational, asked.engine.values(found, asked.h)))
     if not offset_at_rest(asked.engine, values, asked.h, asked.load):
         raise InputError(f"--sag: {asked.engine.name} holds a load without an offset; choose by a --goal")
-    return describe_point(method, "sag", *found, asked.spread, margins)
+    return describe_point(method, "sag", *found, asked.spread)
 
 
 def _curve(wish: Wish, asked: Conditions) -> Curve | None:
@@ -399,7 +398,7 @@ def _safe_with(judged: Judgement, wish: Wish) -> str | None:
 def _is_safe(method: Method, wish: Wish, asked: Conditions) -> bool:
     """Return whether another choice is safe; it is not if it cannot be found."""
     try:
-        return judge(asked, _chosen(method, wish, asked, margins=False), "chosen", cost=False).safe
+        return judge(asked, _chosen(method, wish, asked), "chosen", margins=False, cost=False).safe
     except (InputError, NumericalError):
         return False
 
@@ -425,7 +424,7 @@ def _alternative(judged: Judgement, wish: Wish) -> Alternative | None:
     """Return another choice; None if there is none, or it or its errors cannot be found: no answer needs it."""
     asked, here = judged.conditions, judged.cost
     try:
-        other = _chosen(judged.method, wish, asked, margins=False)
+        other = _chosen(judged.method, wish, asked)
         there = feedback_cost(judged.method, *other.point, asked.motion.omega_h, least=False)
     except (InputError, NumericalError):
         return None
@@ -443,7 +442,7 @@ def _spare(judged: Judgement, wish: Wish) -> Spare | None:
     enough = swept.sweeps_to_spare(judged.point, asked.spread)
     if enough is None or enough > swept.iterations:
         return None
-    alone = _chosen_alone(judged.method, wish, asked, margins=False).point
+    alone = _chosen_alone(judged.method, wish, asked).point
     if alone == judged.point:
         return Spare(enough, None)
     return Spare(enough, (swept.engine.setting(alone, asked.h), swept.sweeps_to_spare(alone, asked.spread)))

@@ -17,7 +17,7 @@ from bezstab.questions.scene_runs import SceneRun, scene_run
 from bezstab.rationals import rational
 from bezstab.stability.choices import TENTH, Choice, steps_to_settle
 from bezstab.stability.feedback_costs import FeedbackCost, feedback_cost
-from bezstab.stability.path_ends import largest_stable_step
+from bezstab.stability.path_ends import Margins, largest_stable_step, stability_margins
 from bezstab.stability.rest_offsets import offset_at_rest
 from bezstab.stability.turning import MovingPole, moving_pole
 from bezstab.units import alpha_and_beta
@@ -31,9 +31,11 @@ class Judgement(Choice):
     """What is known of a method at a point, under the conditions of a question. Complete when made.
 
     goal: what the point was chosen for, or which of an engine's points it is. alpha, beta in 1/s and h, the step (s):
-    None without a step. margins: none for constraints that an engine sweeps over; settle_steps is then of these.
-    h_limit: the largest stable step (s), infinite where any is; in an engine, of its values as they are; None as
-    margins are. tenth_seconds, settle_seconds: until an error is a tenth and a thousandth (s).
+    None without a step. margins: factors on h, alpha and beta; None where the point is not stable, for constraints that
+    an engine sweeps over, and where they were not asked for; margins_reason: why they are not known. h_limit: the
+    largest stable step (s), infinite where any is; in an engine, of its values as they are. settle_steps: of
+    constraints that are swept over, if there are. tenth_seconds, settle_seconds: until an error is a tenth and a
+    thousandth (s).
 
     cost: what accuracy the feedback costs on the motion; cost_reason: why that is not known. energy_rate: what a second
     adds to the energy of a motion of rate omega, and its part by rotation alone, as shares; None without that rate.
@@ -55,6 +57,8 @@ class Judgement(Choice):
     h: float | None
     alpha: float | None
     beta: float | None
+    margins: Margins | None
+    margins_reason: str | None
     h_limit: float | None
     tenth_seconds: float | None
     settle_seconds: float | None
@@ -76,7 +80,15 @@ class Judgement(Choice):
         return self.safe
 
 
-def judge(asked: Conditions, choice: Choice, role: Role, given: Given | None = None, *, cost: bool = True) -> Judgement:
+def judge(
+    asked: Conditions,
+    choice: Choice,
+    role: Role,
+    given: Given | None = None,
+    *,
+    margins: bool = True,
+    cost: bool = True,
+) -> Judgement:
     """Return what is known of a point under the conditions of a question; of one that was given, with what it was.
 
     InputError where the engine cannot express a point that was chosen; NumericalError where rounding leaves open
@@ -84,17 +96,17 @@ def judge(asked: Conditions, choice: Choice, role: Role, given: Given | None = N
     """
     method, point, engine = choice.method, choice.point, asked.engine
     h = None if asked.h is None else float(asked.h)
-    as_typed = given is not None and given.as_typed
-    values, setting = given.values if given else None, None
-    if engine and asked.h and given is None:
-        setting = engine.setting(point, asked.h)
-        values = tuple(map(rational, engine.values(point, asked.h)))
+    setting, values, as_typed = None, None, False
+    if given:
+        values, as_typed = given.values, given.as_typed
+    elif engine and asked.h:
+        setting, values = engine.setting(point, asked.h), tuple(map(rational, engine.values(point, asked.h)))
     swept = asked.swept.answer(values) if asked.swept and values is not None else None
     converges = choice.verdict == "converges"
     z_abs = abs(choice.pole) if converges else math.inf
     if swept:
         z_abs = swept.growth.factor
-        choice = replace(choice, margins=None, margins_reason=None, settle_steps=steps_to_settle(z_abs))
+        choice = replace(choice, settle_steps=steps_to_settle(z_abs))
     moving, run, goes_well = _as_it_moves(asked, choice, swept)
     hard, rate, sag = None, None, None
     if values is not None:
@@ -104,6 +116,9 @@ def judge(asked: Conditions, choice: Choice, role: Role, given: Given | None = N
             rate = energy_rate(method, point, h, float(asked.omega), engine, hard or 1.0)
         if asked.load is not None and engine and asked.h and values is not None:
             sag = abs(offset_at_rest(engine, values, asked.h, asked.load))
+    limits, limits_reason, h_limit = None, None, None
+    if margins and converges and not swept:
+        limits, limits_reason, h_limit = _limits(asked, choice, values, as_typed=as_typed)
     found, reason = _cost(asked, choice, role) if cost else (None, None)
     alpha, beta = alpha_and_beta(*point, asked.h)
     own_step = None if h is None else h * float(method.step_multiple)
@@ -114,7 +129,9 @@ def judge(asked: Conditions, choice: Choice, role: Role, given: Given | None = N
         h=h,
         alpha=alpha,
         beta=beta,
-        h_limit=_h_limit(asked, choice, values, as_typed=as_typed),
+        margins=limits,
+        margins_reason=limits_reason,
+        h_limit=h_limit,
         tenth_seconds=_seconds(steps_to_settle(z_abs, TENTH), own_step),
         settle_seconds=_seconds(choice.settle_steps, own_step),
         cost=found,
@@ -162,20 +179,25 @@ def _cost(asked: Conditions, choice: Choice, role: Role) -> tuple[FeedbackCost |
         return None, f"what accuracy the feedback costs is not known: {error}"
 
 
-def _h_limit(asked: Conditions, choice: Choice, values: Sequence[Fraction] | None, *, as_typed: bool) -> float | None:
-    """Return the largest stable step (s), infinite where any is; None where it is not known, or none is.
+def _limits(
+    asked: Conditions, choice: Choice, values: Sequence[Fraction] | None, *, as_typed: bool
+) -> tuple[Margins | None, str | None, float | None]:
+    """Return how far h, alpha and beta may each go alone, why that is not known, and the largest stable step (s).
 
-    Of an engine's values, as the engine reads them at each step.
+    The latter of an engine's values, as the engine reads them at each step; infinite where any is stable.
     """
-    engine, h = asked.engine, asked.h
-    if h is None or not (choice.margins or choice.margins_reason):  # not asked for, or not stable
-        return None
-    if engine is None or values is None:
-        return choice.margins.h * float(h) if choice.margins else None
+    method, engine, h = choice.method, asked.engine, asked.h
+    margins, reason = None, None
+    try:
+        margins = stability_margins(method, *choice.point)
+    except NumericalError as error:  # the verdict stands without them
+        reason = str(error)
+    if h is None or engine is None or values is None:
+        return margins, reason, margins.h * float(h) if margins and h else None
     limit = largest_stable_step(
-        choice.method, lambda step: engine.applied(tuple(values), step, as_typed=as_typed).points, float(h)
+        method, lambda step: engine.applied(tuple(values), step, as_typed=as_typed).points, float(h)
     )
-    return math.inf if limit is None else limit
+    return margins, reason, math.inf if limit is None else limit
 
 
 def _seconds(steps: int | None, step: float | None) -> float | None:

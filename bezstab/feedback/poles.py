@@ -33,8 +33,8 @@ def poles_at(methods: Sequence[Method], given: Given, asked: Conditions, *, ever
     """
     found = []
     for method in methods:
-        at_point = describe_point(method, AS_GIVEN, *given.made.point, asked.spread, margins=False)
-        judged = judge(asked, at_point, "given", given, cost=False)
+        at_point = describe_point(method, AS_GIVEN, *given.made.point, asked.spread)
+        judged = judge(asked, at_point, "given", given, margins=False, cost=False)
         if every:
             sentence = f"{method.name} {judged.verdict}. Each step multiplies this pole's part of the error by |z|."
             found += [

@@ -124,7 +124,7 @@ def _settings(robot: Robot, state: State) -> Iterator[tuple[str, Change]]:
     if not 0 < omega * robot.h < FASTEST:
         return
     try:
-        point = choose(method, "accurate", omega_h=Fraction(exact(omega)) * exact(robot.h), margins=False).point
+        point = choose(method, "accurate", omega_h=Fraction(exact(omega)) * exact(robot.h)).point
     except (InputError, NumericalError):
         return
     damping, stiffness = feedback_gains(float(point[0]), float(point[1]), robot.h)

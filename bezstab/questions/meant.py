@@ -27,5 +27,5 @@ def meant_in_seconds(methods: Sequence[Method], point: Point, h: Fraction | None
 
 def _settles(method: Method, point: Point, h: Fraction) -> bool:
     """Return whether errors fall to a thousandth in less than SLOWLY, with steps of h (s)."""
-    at_point = describe_point(method, "as given", *point, margins=False)
+    at_point = describe_point(method, "as given", *point)
     return at_point.settle_steps is not None and at_point.settle_steps * h * method.step_multiple < SLOWLY

@@ -375,11 +375,11 @@ def _chosen(method: Method, asked: MapConditions, drawn: bool) -> tuple[Choice |
     """
     try:
         if asked.motion:
-            return choose(method, "accurate", margins=False, omega_h=asked.motion.omega_h), None
+            return choose(method, "accurate", omega_h=asked.motion.omega_h), None
         if not drawn:
             return None, None
         along = asked.engine.curve if asked.engine else None
-        return choose(method, usual_goal(asked.engine, (method,)), along=along, margins=False), None
+        return choose(method, usual_goal(asked.engine, (method,)), along=along), None
     except (InputError, NumericalError) as error:
         return None, f"no {'most accurate point' if asked.motion else 'point to choose'}: {error}"
 

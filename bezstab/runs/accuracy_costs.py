@@ -215,7 +215,7 @@ def _point(sweep: Sweep, h: float) -> tuple[float, float]:
     """Return alpha_hat and beta_hat at a step of h (s)."""
     if sweep.point is None:
         assert sweep.omega is not None
-        chosen = choose(sweep.method, "accurate", margins=False, omega_h=sweep.omega * exact(h))
+        chosen = choose(sweep.method, "accurate", omega_h=sweep.omega * exact(h))
         return chosen.alpha_hat, chosen.beta_hat
     if not sweep.physical:
         return sweep.point

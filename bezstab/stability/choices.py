@@ -1,4 +1,4 @@
-"""Which feedback to choose: by goal, with proven stability and the margins that are left to the boundary."""
+"""Which feedback to choose: by goal, with proven stability."""
 
 import math
 from dataclasses import dataclass, replace
@@ -19,7 +19,6 @@ from bezstab.stability.best_points import best_point
 from bezstab.stability.closed_loop import Modulus, all_within, converges, largest_pole, spectral_radius, verdict
 from bezstab.stability.curve_choices import Curve, critical_point, least_along, mildest_along, of_equal
 from bezstab.stability.forced_errors import OMEGA_H
-from bezstab.stability.path_ends import Margins, stability_margins
 from bezstab.stability.regions import Region, region
 from bezstab.stability.searches import lowest_minima
 
@@ -40,13 +39,12 @@ SEARCHED = 4.0  # alpha h and beta h: there e^-4, a fiftieth, is left after a st
 class Choice:
     """A point, its proven verdict and dominant pole, and the largest |z_p| when alpha and beta are off by the spread.
 
-    All dimensionless; `point` is alpha_hat and beta_hat, exact; these two in float64. `margins` is None unless the
-    point is stable and they were asked for. `searched` is the largest alpha h and beta h (of the method's step) that
-    were looked at where the region goes on without end and a stronger feedback might be better by the goal; None where
-    all of the region was searched, or none of it. `margins_reason` says why they are not known, though asked for at a
-    stable point; else None. `settle_steps`: steps until |z_p|^k is a thousandth; if every pole is zero, those that
-    clear the method's memory; None if the point is unstable, or so near to it that rounding leaves no digits.
-    `settle_steps_at_worst`: the same with alpha and beta off by the spread.
+    All dimensionless; `point` is alpha_hat and beta_hat, exact; these two in float64. `searched` is the largest alpha h
+    and beta h (of the method's step) that were looked at where the region goes on without end and a stronger feedback
+    might be better by the goal; None where all of the region was searched, or none of it. `settle_steps`: steps until
+    |z_p|^k is a thousandth; if every pole is zero, those that clear the method's memory; None if the point is unstable,
+    or so near to it that rounding leaves no digits. `settle_steps_at_worst`: the same with alpha and beta off by the
+    spread.
     """
 
     method: Method
@@ -57,8 +55,6 @@ class Choice:
     verdict: Verdict
     pole: complex
     worst: float
-    margins: Margins | None
-    margins_reason: str | None
     searched: float | None
     settle_steps: int | None
     settle_steps_at_worst: int | None
@@ -87,9 +83,8 @@ def choose(
     modulus: Modulus | None = None,
     along: Curve | None = None,
     omega_h: Fraction = OMEGA_H,
-    margins: bool = True,
 ) -> Choice:
-    """Return the point that a goal asks for, dimensionless and proven stable; without `margins` in less time.
+    """Return the point that a goal asks for, dimensionless and proven stable.
 
     accurate: the least combined error on a motion of omega_h rad a step (forced_errors.py), at worst with alpha
     and beta off by the spread (a share), among what settles in time; by default errors fall by e^(-1/2) for each rad of
@@ -115,7 +110,7 @@ def choose(
     rate = THOUSANDFOLD ** float(largest * method.step_multiple / settle) if largest and settle else None
     at_rest = modulus is None
     if goal == "fastest" and at_rest and not along and not equal and (best := best_point(method)):
-        return _described(method, goal, (best.alpha_hat, best.beta_hat), h, largest, spread, margins)
+        return _described(method, goal, (best.alpha_hat, best.beta_hat), h, largest, spread)
     box, cut = search_box(region(method))
     curve = along or (of_equal(box) if equal or goal == "gentle" else None)
     z_abs = modulus or partial(spectral_radius, method)
@@ -125,7 +120,7 @@ def choose(
         wanted = default_rate(method, omega_h) if rate is None else rate
         found = settling(wanted)
         if found is None and rate is None:
-            fast = choose(method, "robust", spread=spread, equal=equal, modulus=modulus, along=along, margins=False)
+            fast = choose(method, "robust", spread=spread, equal=equal, modulus=modulus, along=along)
             wanted = fast.worst**0.5
             found = settling(wanted)
         if found is None:
@@ -144,7 +139,7 @@ def choose(
         point = least_along(curve, objective) if curve else _least(box, objective, cut)
     else:
         assert_never(goal)
-    choice = _described(method, goal, point, h, largest, spread, margins)
+    choice = _described(method, goal, point, h, largest, spread)
     return replace(choice, searched=SEARCHED) if cut and not along else choice
 
 
@@ -155,14 +150,13 @@ def _described(
     h: Fraction | None,
     largest: Fraction | None,
     spread: float,
-    margins: bool,
 ) -> Choice:
     """Return what there is to say, at the step h, of a point for the largest step; NumericalError if it is unstable."""
     alpha_hat, beta_hat = (exact(each) for each in point)
     if not converges(method, alpha_hat, beta_hat):
         raise NumericalError(f"{method.name}: the point {point} found for {goal} is not stable")
     share = h / largest if h and largest else ONE
-    return describe_point(method, goal, alpha_hat * share, beta_hat * share**2, spread, margins)
+    return describe_point(method, goal, alpha_hat * share, beta_hat * share**2, spread)
 
 
 def _accurate(
@@ -207,13 +201,11 @@ def describe_point(
     alpha_hat: Fraction,
     beta_hat: Fraction,
     spread: float = USUAL_SPREAD,
-    margins: bool = True,
 ) -> Choice:
     """Return what there is to say of an exact, dimensionless point; `goal` is only kept.
 
-    `spread` is the share by which alpha and beta may be off; `margins`: whether those are found and proven. Where that
-    fails the verdict stands nevertheless, and `margins_reason` says why. NumericalError if a pole (a root of paper Eq.
-    17) leaves the range of float64; InputError for a spread outside 0 to 1.
+    `spread` is the share by which alpha and beta may be off. NumericalError if a pole (a root of paper Eq. 17) leaves
+    the range of float64; InputError for a spread outside 0 to 1.
     """
     _check_spread(spread)
     a, b = float(alpha_hat), float(beta_hat)
@@ -226,12 +218,6 @@ def describe_point(
         None if proven != "converges" else 2 * steps(method) if z_abs < DOUBLE else steps_to_settle(z_abs)
         for z_abs in (abs(pole), worst)
     )
-    found, trouble = None, None
-    if margins and proven == "converges":
-        try:
-            found = stability_margins(method, alpha_hat, beta_hat)
-        except NumericalError as error:
-            trouble = str(error)
     return Choice(
         method=method,
         goal=goal,
@@ -241,8 +227,6 @@ def describe_point(
         verdict=proven,
         pole=pole,
         worst=worst,
-        margins=found,
-        margins_reason=trouble,
         searched=None,
         settle_steps=settle,
         settle_steps_at_worst=at_worst,

@@ -127,7 +127,7 @@ def _times(error: float | None, least: float | None) -> float | None:
 def _least_at(method: Method, omega_h: Fraction) -> tuple[float, float] | None:
     """Return the point of the goal accurate; None where there is none that is known."""
     try:
-        chosen = choose(method, "accurate", margins=False, omega_h=omega_h)
+        chosen = choose(method, "accurate", omega_h=omega_h)
     except (InputError, NumericalError):
         return None
     return chosen.alpha_hat, chosen.beta_hat

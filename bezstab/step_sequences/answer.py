@@ -185,7 +185,7 @@ def proven_choice(method: Method, asked: Steps) -> StepsAnswer:
     check_one_step(method)
     tried: list[StepsAnswer] = []
     for goal in GOALS:
-        chosen = choose(method, goal, h=asked.h_max, margins=False)
+        chosen = choose(method, goal, h=asked.h_max)
         answer = judge_steps(method, chosen.point, asked, goal)
         if answer.safe:
             return answer

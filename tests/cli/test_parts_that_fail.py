@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from bezstab.errors import NumericalError
-from bezstab.feedback import checking
+from bezstab.feedback import checking, judgement
 from bezstab.regions import answer as regions
 from bezstab.stability import best_points, choices, feedback_costs
 from bezstab.stability.regions import region
@@ -37,7 +37,7 @@ def test_without_an_alternative_check_still_answers(monkeypatch: pytest.MonkeyPa
 
 
 def test_without_margins_check_still_answers_and_claims_no_limit(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(choices, "stability_margins", failing)
+    monkeypatch.setattr(judgement, "stability_margins", failing)
     result = run("check", POINT, "--h 0.001")
     assert result.exit_code == 0
     assert "h = 0.001 s): safe at rest. An error falls to a thousandth in 28 ms" in result.stdout

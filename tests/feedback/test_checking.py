@@ -48,7 +48,7 @@ def test_what_is_not_asked_for_is_not_looked_for(monkeypatch: pytest.MonkeyPatch
     monkeypatch.setattr("bezstab.feedback.choosing.choose_point", refuse)
     assert check(SYM, **AT).instead is None
     monkeypatch.setattr("bezstab.feedback.judgement.feedback_cost", refuse)
-    monkeypatch.setattr("bezstab.stability.choices.stability_margins", refuse)
+    monkeypatch.setattr("bezstab.feedback.judgement.stability_margins", refuse)
     answer = check(SYM, **AT, margins=False, cost=False)
     assert (answer.margins, answer.cost, answer.safe) == (None, None, True)
 

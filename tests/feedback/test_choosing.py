@@ -69,7 +69,7 @@ def test_a_choice_that_is_not_safe_says_with_which_step_it_is() -> None:
 
 def test_a_choice_whose_run_fails_says_that_the_goal_robust_is_safe(monkeypatch: pytest.MonkeyPatch) -> None:
     """The run of the fastest point is made to gain energy; that of robust is as it is."""
-    fastest, run = choose_point(lookup("SYM"), "fastest", margins=False), scene_run
+    fastest, run = choose_point(lookup("SYM"), "fastest"), scene_run
 
     def gains_there(mechanism: Mechanism, method: Method, h: Fraction, point: Point, time: float | None) -> SceneRun:
         found = run(mechanism, method, h, point, time)

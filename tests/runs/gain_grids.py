@@ -60,9 +60,9 @@ def grid(scene: str, name: str, goals: Sequence[Goal] = GOALS) -> Grid:
     h, duration = SCENES[scene]
     method = lookup(name)
     omega = constraint_motion(compiled_mechanism(load_scene(scene)), duration).omega
-    strongest = np.sqrt(choose(method, "robust", margins=False).beta_hat)
+    strongest = np.sqrt(choose(method, "robust").beta_hat)
     points = [(2 * ratio * scale * strongest, (scale * strongest) ** 2) for scale in SCALES for ratio in DAMPING_RATIOS]
-    chosen = {goal: choose(method, goal, margins=False, omega_h=exact(h) * exact(omega)) for goal in goals}
+    chosen = {goal: choose(method, goal, omega_h=exact(h) * exact(omega)) for goal in goals}
     return Grid(
         np.array([measured(scene, method, point) for point in points if spectral_radius(method, *point) < 1]),
         {goal: measured(scene, method, (choice.alpha_hat, choice.beta_hat)) for goal, choice in chosen.items()},

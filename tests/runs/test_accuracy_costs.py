@@ -51,7 +51,7 @@ def test_a_run_knows_its_error_its_cost_and_its_order(name: str) -> None:
 def test_its_own_choice_at_each_step_costs_no_order(name: str) -> None:
     *_, fine = swept(name, (8e-4, 1.6e-3))
     assert fine.order == pytest.approx(accuracy(lookup(name))[0], abs=0.2)
-    chosen = choose(lookup(name), "accurate", omega_h=OMEGA * exact(fine.h), margins=False)
+    chosen = choose(lookup(name), "accurate", omega_h=OMEGA * exact(fine.h))
     assert (fine.alpha_hat, fine.beta_hat) == (chosen.alpha_hat, chosen.beta_hat)
 
 
@@ -78,7 +78,7 @@ def test_in_the_later_half_of_a_run_the_constraint_error_is_the_predicted_one(na
 
 
 def test_strong_feedback_costs_rk4_what_the_page_of_stability_says() -> None:
-    robust = choose(lookup("RK4"), "robust", margins=False)
+    robust = choose(lookup("RK4"), "robust")
     (strong,), (own,) = swept("RK4", (0.005,), (robust.alpha_hat, robust.beta_hat)), swept("RK4", (0.005,))
     assert strong.c_max / own.c_max == pytest.approx(2500, rel=0.05)
     assert (strong.trajectory_error or 0) / (own.trajectory_error or 1) == pytest.approx(700, rel=0.05)

@@ -35,7 +35,7 @@ FEW |= {("SYM", "slider_crank_light"), ("gauss4", "slider_crank_light")}
 
 def robust_point(name: str, share: float = 1.0) -> tuple[float, float]:
     """Return the robust choice of a method, or that share of its alpha and beta."""
-    chosen = choose(lookup(name), "robust", margins=False)
+    chosen = choose(lookup(name), "robust")
     return share * chosen.alpha_hat, share**2 * chosen.beta_hat
 
 

@@ -20,7 +20,7 @@ OMEGA_H = Fraction(1, 50)
 @pytest.mark.slow
 def test_it_decays_as_asked_within_the_spread_and_no_sampled_point_forces_less(name: str) -> None:
     method = lookup(name)
-    chosen = choose(method, "accurate", omega_h=OMEGA_H, margins=False)
+    chosen = choose(method, "accurate", omega_h=OMEGA_H)
     assert chosen.worst <= default_rate(method, OMEGA_H) * (1 + 1e-9)
     without = forced_error(method, 0.0, 0.0, OMEGA_H, sampled=True).velocity
 
@@ -51,5 +51,5 @@ def test_where_nothing_decays_so_fast_it_is_half_as_fast_as_robust() -> None:
             h=Fraction(1),
             settle=settling(default_rate(method, Fraction(6, 100))),
         )
-    chosen = choose(method, "accurate", omega_h=Fraction(6, 100), margins=False)
-    assert chosen.worst <= choose(method, "robust", margins=False).worst ** 0.5 * (1 + 1e-9)
+    chosen = choose(method, "accurate", omega_h=Fraction(6, 100))
+    assert chosen.worst <= choose(method, "robust").worst ** 0.5 * (1 + 1e-9)

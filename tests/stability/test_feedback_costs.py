@@ -18,8 +18,8 @@ def test_the_order_that_is_left_is_at_most_the_methods_own(name: str, left: int,
 
 def test_at_the_goal_accurate_it_is_once_the_least_and_at_robust_thousands_of_times() -> None:
     method, omega_h = lookup("RK4"), Fraction(1, 50)
-    accurate = choose(method, "accurate", omega_h=omega_h, margins=False)
-    robust = choose(method, "robust", margins=False)
+    accurate = choose(method, "accurate", omega_h=omega_h)
+    robust = choose(method, "robust")
     least = feedback_cost(method, accurate.alpha_hat, accurate.beta_hat, omega_h)
     assert least.times_least == pytest.approx(1)
     times = feedback_cost(method, robust.alpha_hat, robust.beta_hat, omega_h).times_least
@@ -41,7 +41,7 @@ def test_which_methods_take_the_least_damping_that_settles(name: str) -> None:
         slow, fast = (
             (chosen.alpha_hat / 2 / rate, chosen.beta_hat**0.5 / rate)
             for rate in (0.01, 0.05)
-            for chosen in [choose(method, omega_h=Fraction(str(rate)), margins=False)]
+            for chosen in [choose(method, omega_h=Fraction(str(rate)))]
         )
         assert fast == pytest.approx(slow, rel=0.05)
         assert slow[0] == pytest.approx(0.5 / 0.9, rel=1e-3)  # e^(-1/2) in a radian, with a tenth less than that
