@@ -51,7 +51,9 @@ class SceneRun:
     of the largest kinetic energy; negative where it lost. At the end of the run, but at its height where that is more
     than MOST_GAINED: a run may explode, and lose all of it again. culprit: whether most of it is the multipliers' work,
     which depends on the feedback, or the method's own. breakdown: when (s) the energy becomes infinite if it goes on
-    so, None where it does not. passages: singular configurations on the way. failure: why the run ended early.
+    so, None where it does not. grown: whether constraints do not hold. failure: why the run ended early. decides:
+    whether it says anything: past a singular configuration a motion branches by rounding. sound: whether it went
+    through, with constraints that hold, and gained next to no energy.
     """
 
     duration: float
@@ -60,18 +62,9 @@ class SceneRun:
     culprit: Culprit
     breakdown: float | None
     grown: bool
-    passages: int
     failure: str | None
-
-    @property
-    def decides(self) -> bool:
-        """Whether the run says anything: past a singular configuration a motion branches by rounding."""
-        return self.passages == 0
-
-    @property
-    def sound(self) -> bool:
-        """Whether it went through, with constraints that hold, and gained next to no energy."""
-        return not (self.failure or self.grown or self.gained > MOST_GAINED)
+    decides: bool
+    sound: bool
 
 
 def run_time(mechanism: Mechanism, method: Method, h: float) -> float:
@@ -112,15 +105,18 @@ def scene_run(mechanism: Mechanism, method: Method, h: Fraction, point: Point, t
         breakdown = end if longer.failure else _breakdown(run)
         if breakdown < end:  # it went on: a driver keeps its rate
             breakdown = None
+    gained = drift / own
+    grown = bool(sizes[-tenth:].max() > max(GROWN * sizes[: half + 1].max(), SEEN))
     return SceneRun(
         duration=float(run.t[-1]),
         c_max=run.c_max,
-        gained=drift / own,
+        gained=gained,
         culprit=culprit,
         breakdown=breakdown,
-        grown=bool(sizes[-tenth:].max() > max(GROWN * sizes[: half + 1].max(), SEEN)),
-        passages=len(run.singular_times),
+        grown=grown,
         failure=run.failure,
+        decides=not len(run.singular_times),
+        sound=not (run.failure or grown or gained > MOST_GAINED),
     )
 
 
