@@ -63,6 +63,18 @@ def times_words(factor: float) -> str:
     return f"{float(digits):,.0f}" if 100 <= float(digits) < PLAIN else digits
 
 
+def errors_words(times: tuple[float, float]) -> str:
+    """Return by how many times the errors of constraint and velocity are larger or smaller."""
+    of_constraint, of_velocity = map(_ratio_words, times)
+    return f"constraint error {of_constraint}, velocity error {of_velocity}"
+
+
+def _ratio_words(times: float) -> str:
+    """Return how one error compares with another that it is so many times as large as."""
+    words = times_words(max(times, 1 / times))
+    return "unchanged" if words == "1" else f"{words} times {'larger' if times > 1 else 'smaller'}"
+
+
 def _three_digits(number: float) -> str:
     """Return a number to three digits: 0.25, 17,300, or a power of ten where nobody counts its zeros."""
     digits = f"{number:.3g}"

@@ -9,7 +9,7 @@ from bezstab.feedback.choosing import Alternative, ChooseAnswer
 from bezstab.feedback.judgement import Judgement
 from bezstab.feedback.largest_steps import StepAnswer
 from bezstab.feedback.poles import PoleAnswer
-from bezstab.feedback.sentences import errors_words, sag_words
+from bezstab.feedback.sentences import sag_words
 from bezstab.methods.schemes import implicit
 from bezstab.methods.steady_errors import velocity_lag
 from bezstab.questions.chains import SweptAnswer
@@ -20,60 +20,13 @@ from bezstab.show.columns import METHOD, POINT, POLE, RATES, SENTENCE, Column, o
 from bezstab.stability.feedback_costs import FeedbackCost
 from bezstab.stability.path_ends import Margins
 from bezstab.stability.turning import MovingPole
-from bezstab.words import counted, times_words
+from bezstab.words import counted, errors_words, times_words
 
 GAIN = 0.95
 """Of an error: what is not below is called no gain."""
 
 UNLIMITED, ANY = "unlimited", "any"
 
-
-ASKED: Sequence[Column[Judgement]] = (
-    Column("", "role", lambda answer: answer.role, "whether the point is given, chosen, or to be taken instead"),
-    METHOD,
-    Column("goal", "goal", lambda answer: answer.goal, "what the point is chosen for, or that it is given", apart=True),
-    *POINT,
-    *RATES,
-    Column("h (s)", "h", lambda answer: answer.h, "step", "s"),
-)
-
-DECAY: Sequence[Column[Judgement]] = (
-    Column("verdict", "verdict", lambda answer: answer.verdict, "what errors do at rest, proven on the typed numbers"),
-    Column(
-        "safe",
-        "safe",
-        lambda answer: answer.safe,
-        "whether every error shrinks, proven; with a scene, whether its run goes well, too",
-        apart=True,
-    ),
-    Column("|z_p|", "z_abs", lambda answer: abs(answer.pole), "a step multiplies errors by it", form=modulus_words),
-    Column("worst |z_p|", "worst", lambda answer: answer.worst, "the same with α and β off by the spread", form=".4f"),
-    Column(
-        "steps to 1/1000", "settle_steps", lambda answer: answer.settle_steps, "steps until an error is a thousandth"
-    ),
-    Column("a tenth in (s)", "", lambda answer: answer.tenth_seconds, "", form=".3g"),
-    Column(
-        "settles in (s)",
-        "settle_seconds",
-        lambda answer: answer.settle_seconds,
-        "time until an error is a thousandth; null where it does not fall",
-        "s",
-        ".3g",
-        brief=True,
-    ),
-)
-
-ENDS: Sequence[Column[Judgement]] = (
-    Column(
-        "largest stable h (s)",
-        "h_limit",
-        lambda answer: answer.h_limit,
-        "largest stable step, of an engine's values as they are; null where there is none, or any is",
-        "s",
-        up_to(".4g", UNLIMITED),
-        brief=True,
-    ),
-)
 
 MARGINS: Sequence[Column[Margins]] = (
     Column(
@@ -98,24 +51,6 @@ MARGINS: Sequence[Column[Margins]] = (
         "factors on β alone between which it is stable; null where any is",
         form=between(".3g", ANY),
         brief=True,
-    ),
-)
-
-MOTION: Sequence[Column[Judgement]] = (
-    Column(
-        "ωh (rad)",
-        "omega_h",
-        lambda answer: float(answer.conditions.motion.omega_h),
-        "angle by which the motion turns in a step on which errors are told",
-        "rad",
-    ),
-    Column(
-        "energy gained a second",
-        "energy_rate",
-        lambda answer: None if answer.energy_rate is None else answer.energy_rate[0],
-        "share of its energy that a motion of rate ω gains in a second; in an engine a body that spins about a pin",
-        "1/s",
-        ".2e",
     ),
 )
 
@@ -221,12 +156,61 @@ def _remark(answer: Judgement) -> str | None:
 
 
 JUDGED: Sequence[Column[Judgement]] = (
-    *ASKED,
-    *DECAY,
-    *ENDS,
+    Column("", "role", lambda answer: answer.role, "whether the point is given, chosen, or to be taken instead"),
+    METHOD,
+    Column("goal", "goal", lambda answer: answer.goal, "what the point is chosen for, or that it is given", apart=True),
+    *POINT,
+    *RATES,
+    Column("h (s)", "h", lambda answer: answer.h, "step", "s"),
+    Column("verdict", "verdict", lambda answer: answer.verdict, "what errors do at rest, proven on the typed numbers"),
+    Column(
+        "safe",
+        "safe",
+        lambda answer: answer.safe,
+        "whether every error shrinks, proven; with a scene, whether its run goes well, too",
+        apart=True,
+    ),
+    Column("|z_p|", "z_abs", lambda answer: abs(answer.pole), "a step multiplies errors by it", form=modulus_words),
+    Column("worst |z_p|", "worst", lambda answer: answer.worst, "the same with α and β off by the spread", form=".4f"),
+    Column(
+        "steps to 1/1000", "settle_steps", lambda answer: answer.settle_steps, "steps until an error is a thousandth"
+    ),
+    Column("a tenth in (s)", "", lambda answer: answer.tenth_seconds, "", form=".3g"),
+    Column(
+        "settles in (s)",
+        "settle_seconds",
+        lambda answer: answer.settle_seconds,
+        "time until an error is a thousandth; null where it does not fall",
+        "s",
+        ".3g",
+        brief=True,
+    ),
+    Column(
+        "largest stable h (s)",
+        "h_limit",
+        lambda answer: answer.h_limit,
+        "largest stable step, of an engine's values as they are; null where there is none, or any is",
+        "s",
+        up_to(".4g", UNLIMITED),
+        brief=True,
+    ),
     Column("remark", "remark", _remark, "why margins are not known, how far was searched, why the run ended early"),
     *of_part(Judgement, lambda answer: answer.margins, MARGINS),
-    *MOTION,
+    Column(
+        "ωh (rad)",
+        "omega_h",
+        lambda answer: float(answer.conditions.motion.omega_h),
+        "angle by which the motion turns in a step on which errors are told",
+        "rad",
+    ),
+    Column(
+        "energy gained a second",
+        "energy_rate",
+        lambda answer: None if answer.energy_rate is None else answer.energy_rate[0],
+        "share of its energy that a motion of rate ω gains in a second; in an engine a body that spins about a pin",
+        "1/s",
+        ".2e",
+    ),
     *of_part(Judgement, lambda answer: answer.cost, COST),
     *of_part(Judgement, lambda answer: answer.moving, MOVING),
     *of_part(Judgement, lambda answer: answer.run, RUN),

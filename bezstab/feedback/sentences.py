@@ -13,7 +13,16 @@ from bezstab.questions.trial_runs import Trials
 from bezstab.stability.choices import Choice, steps_to_settle
 from bezstab.stability.turning import MovingPole
 from bezstab.units import from_dimensionless
-from bezstab.words import change_words, counted, decay_words, growth_words, point_words, seconds_words, times_words
+from bezstab.words import (
+    change_words,
+    counted,
+    decay_words,
+    errors_words,
+    growth_words,
+    point_words,
+    seconds_words,
+    times_words,
+)
 
 KEPT = 5e-5
 """Of the largest kinetic energy in a run, or of a motion's in a second: less is no change that anybody sees."""
@@ -243,18 +252,6 @@ def costs_words(judged: Judgement) -> str | None:
         f"with {least}: {errors_words(times)}. They are {cost.total_error:.1e} of the motion's amplitude{in_units} "
         f"and {cost.velocity_error:.1e} of its velocity's."
     )
-
-
-def errors_words(times: tuple[float, float]) -> str:
-    """Return by how many times the errors of constraint and velocity are larger or smaller."""
-    of_constraint, of_velocity = map(_ratio_words, times)
-    return f"constraint error {of_constraint}, velocity error {of_velocity}"
-
-
-def _ratio_words(times: float) -> str:
-    """Return how one error compares with another that it is so many times as large as."""
-    words = times_words(max(times, 1 / times))
-    return "unchanged" if words == "1" else f"{words} times {'larger' if times > 1 else 'smaller'}"
 
 
 def motion_words(motion: ReferenceMotion) -> str:
