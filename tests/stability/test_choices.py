@@ -9,7 +9,7 @@ from bezstab.methods.registry import lookup
 from bezstab.stability.best_points import best_point
 from bezstab.stability.choices import choose, describe_point
 from bezstab.stability.closed_loop import spectral_radius
-from bezstab.stability.margins import stability_margins
+from bezstab.stability.path_ends import stability_margins
 from tests.methods.kinds import sampled
 from tests.reference.made_methods import multistep
 from tests.reference.robust_decay import worst_decay
