@@ -4,14 +4,13 @@ import re
 import tomllib
 from collections import defaultdict
 from pathlib import Path
-from typing import Any, get_args
+from typing import Any
 
 import pytest
 
 from bezstab.mechanism.equations import compiled_mechanism
 from bezstab.mechanism.runner import simulate
 from bezstab.mechanism.scene_files import parse_scene
-from bezstab.mechanism.scenes import Joint
 from bezstab.methods.derivation import closed_loop_polynomial
 from bezstab.methods.method_files import read_method
 from bezstab.methods.orders import accuracy
@@ -87,9 +86,3 @@ def test_the_page_of_scenes_has_every_key_of_every_table_and_no_other(asked_keys
     assert set(asked_keys) == {"scene", "body", "joint", "force", "spring", "initial"}
     for place, keys in asked_keys.items():
         assert documented_keys(section(SCENES_PAGE, place)) == keys
-
-
-def test_the_example_of_a_scene_has_every_kind_of_joint() -> None:
-    page_kinds = set(re.findall(r'^- `"([\w-]+)"`: ', section(SCENES_PAGE, "joint"), re.MULTILINE))
-    example_kinds = {joint["type"] for joint in tomllib.loads(examples(SCENES_PAGE)[0])["joint"]}
-    assert page_kinds == example_kinds == {getattr(kind, "kind", "driver") for kind in get_args(Joint)}

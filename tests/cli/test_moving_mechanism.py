@@ -2,9 +2,6 @@
 
 import pytest
 
-from bezstab.mechanism.constraint_normals import constraint_motion
-from bezstab.mechanism.equations import compiled_mechanism
-from bezstab.mechanism.scene_files import load_scene
 from tests.cli.running import rows, run
 
 FOUR_BAR = "--scene driven_four_bar"
@@ -19,17 +16,6 @@ def test_poles_print_what_the_motion_does() -> None:
         assert row["kappa"] == pytest.approx(3.22, abs=0.01)  # 1/s: half of omega
     assert [row["moving_verdict"] for row in moving] == ["converges", "not settled"]
     assert [row["safe"] for row in (*at_rest, *moving)] == [True, True, True, False]
-
-
-@pytest.mark.slow
-def test_a_scenes_own_motion_is_taken_and_omega_instead_of_it() -> None:
-    motion = constraint_motion(compiled_mechanism(load_scene("driven_four_bar")), 1.0)
-    asked = f"check --method RK4 --alpha 0.5 --beta 0.1 --h 0.002 {FOUR_BAR}"
-    own = rows(asked)[0]
-    assert own["omega_h"] == pytest.approx(0.002 * motion.omega, rel=1e-12)
-    assert rows(asked, "--omega 5")[0]["omega_h"] == 0.01
-    in_units = float(str(own["total_error"])) * motion.amplitude
-    assert f"of the motion's amplitude ({in_units:.1e} m or rad)" in run(asked).stdout.replace("\n", " ")
 
 
 @pytest.mark.slow

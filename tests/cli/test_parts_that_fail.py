@@ -28,14 +28,6 @@ def _forget_what_failed() -> Iterator[None]:
     feedback_costs._least_at.cache_clear()  # else there would be no least error for tests that follow
 
 
-def test_without_an_alternative_check_still_answers(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(choices, "region", failing)
-    for alpha, status, said in (("1/2", 0, "α̂ = 0.5, β̂ = 0.1: safe at rest."), ("5", 1, "α̂ = 5, β̂ = 0.1: not safe.")):
-        result = run(f"check --method B4 --alpha {alpha} --beta 1/10 --instead")
-        assert (result.exit_code, result.stdout.startswith(said)) == (status, True)
-        assert f"nothing instead: {REASON}" in result.stderr
-
-
 def test_without_margins_check_still_answers_and_claims_no_limit(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(judgement, "stability_margins", failing)
     result = run("check", POINT, "--h 0.001")

@@ -73,15 +73,6 @@ def test_it_is_what_a_loop_does_once_the_start_has_died(energy_class: EnergyClas
         assert np.log(rate / seen[0]) == pytest.approx(np.log(seen[-1] / seen[0]), rel=0.03)  # the next order of theta
 
 
-def test_each_class_has_its_sign_and_its_order() -> None:
-    theta = 0.01
-    assert spin_change("beside", 1, 1, theta) == pytest.approx(-(theta**2) / 2, rel=1e-4)
-    assert spin_change("projected", 1, 1, theta) == pytest.approx(-(theta**2), rel=1e-3)
-    assert spin_change("bias", 1, 0.2, theta) < 0 < spin_change("acceleration", 1, 0.2, theta)
-    # a share e of the error in the velocity brakes with 1 / e^2
-    assert spin_change("bias", 1, 0.1, theta) / spin_change("bias", 1, 0.4, theta) == pytest.approx(16, rel=0.25)
-
-
 @pytest.mark.parametrize("energy_class", get_args(EnergyClass))
 def test_what_does_not_spin_is_refused(energy_class: EnergyClass) -> None:
     with pytest.raises(InputError, match="omega h = 0 rad a step"):

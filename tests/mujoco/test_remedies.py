@@ -7,7 +7,6 @@ import pytest
 
 from bezstab.mujoco.linting import lint
 from tests.mujoco.models import FLAT, UNSAFE, WEIGHTLESS, mjcf
-from tests.mujoco.test_states import ARM
 from tests.mujoco.test_steps import model_of
 
 mujoco: Any = pytest.importorskip("mujoco")
@@ -66,17 +65,6 @@ def test_where_only_a_change_of_all_that_are_to_blame_helps_they_are_changed_tog
     found = lint(model_of(mjcf(LINK.format("") + other, f"<actuator>{drives}</actuator>")))
     together = [remedy for remedy in found.remedies if remedy.element == "actuator 'x', actuator 'y'"]
     assert [remedy.write for remedy in together] == ['kv="21", kv="21"']
-
-
-def test_at_the_arms_own_keyframe_the_least_armature_is_the_joints_there() -> None:
-    found = lint(model_of(ARM))
-    by_write = {remedy.write.split("=")[0]: remedy for remedy in found.remedies}
-    assert by_write["integrator"].write == 'integrator="implicitfast"'
-    for remedy in found.remedies:
-        if remedy.write.startswith("armature"):
-            joint = remedy.element.split("'")[1]
-            text = ARM.replace(f'<joint name="{joint}"', f'<joint name="{joint}" {remedy.write}')
-            assert lint(model_of(text)).status == 0
 
 
 def test_a_gain_of_the_wrong_sign_pushes_away_at_any_step() -> None:

@@ -14,7 +14,7 @@ from bezstab.mujoco.growth import growth_at
 from bezstab.mujoco.reading import loaded_model
 from bezstab.mujoco.robots import Robot, State
 from bezstab.mujoco.steps import step_at
-from tests.mujoco.models import mjcf, random_model
+from tests.mujoco.models import random_model
 from tests.reference.mujoco_steps import grown, step_moduli
 
 mujoco: Any = pytest.importorskip("mujoco")
@@ -61,16 +61,6 @@ def test_forty_five_random_models() -> None:
     """Free bodies, balls and arms, of every integrator, connected and welded."""
     rng = np.random.default_rng(45)
     assert {agrees(model_of(random_model(rng))) for _ in range(45)} == {"decays", "unsafe"}
-
-
-def test_free_motions_are_left_out_and_what_only_brakes_is_the_velocitys() -> None:
-    """A free body has nothing else; a damper multiplies the velocity by 1 - h d, or implicitly by 1 / (1 + h d)."""
-    body = '<body>{}<geom size=".1" mass="1" pos="0 0 .2"/></body>'
-    free = robot_of(model_of(mjcf(body.format("<freejoint/>"), gravity=-10)))
-    assert growth_at(free, at_qpos0(free)).z_abs is None
-    for flags, velocity in (("", 1 / (1 + 0.004 * 2)), ('eulerdamp="disable"', 1 - 0.004 * 2)):
-        damped = robot_of(model_of(mjcf(body.format('<joint type="slide" damping="2"/>'), flags=flags)))
-        assert step_at(damped, at_qpos0(damped)).moduli() == pytest.approx([velocity], rel=1e-9)
 
 
 ARM = """<mujoco><option timestep="0.002" integrator="{integrator}" gravity="0 0 0"/><compiler angle="radian"/>
