@@ -39,12 +39,3 @@ def test_without_its_folder_a_command_is_gone_and_the_others_answer(folder: str,
     assert {*SUBJECTS.values(), "region", "check"} - set(listed) == {SUBJECTS[folder]}
     assert answer(root, "region", "--method", "B4", "--figure", "none").startswith("B4")
     assert ": safe at rest." in answer(root, *["check", "--method", "SYM", "--alpha", "0.5", "--beta", "0.1"])
-
-
-@pytest.mark.slow
-def test_without_these_folders_types_are_right(tmp_path: Path) -> None:
-    root = without(set(SUBJECTS), tmp_path)
-    shutil.copy(PACKAGE.parent / "pyproject.toml", root)
-    mypy = [sys.executable, "-m", "mypy", "bezstab"]
-    found = subprocess.run(mypy, cwd=root, capture_output=True, text=True, check=False)
-    assert found.returncode == 0, found.stdout
