@@ -1,7 +1,7 @@
 """One planar mechanism in engines that are not ours, made by their modules: pymunk (Chipmunk), Box2D 2.3, PyBullet."""
 
 from collections.abc import Sequence
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -31,25 +31,12 @@ class Joint(NamedTuple):
     motor: str = ""
 
 
-class World(Protocol):
-    """A mechanism that steps of h (s) move. Its joints take back a share of their errors; None: as by default."""
-
-    bodies: list[Any]
-
-    def step(self) -> object: ...
-
-    def places(self) -> FloatArray:
-        """Return x, y and angle, body by body."""
-        ...
-
-    def rates(self) -> FloatArray: ...
-
-    def kick(self, rates: ArrayLike) -> None:
-        """Give each body these rates."""
-        ...
-
-
 class Pymunk:
+    """Steps of h (s); joints take back a share of their errors, None: as by default. `kick` gives each body its rates.
+
+    Places and rates are x, y and angle, body by body.
+    """
+
     def __init__(
         self,
         pymunk: Any,
@@ -196,3 +183,6 @@ class Bullet:
     def kick(self, rates: ArrayLike) -> None:
         for body, (vx, vy, turn) in zip(self.bodies, np.array(rates).tolist(), strict=True):
             self.client.resetBaseVelocity(body, [vx, vy, 0], [0, 0, turn])
+
+
+World = Pymunk | Box2d | Bullet
