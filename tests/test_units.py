@@ -53,9 +53,9 @@ def test_a_negative_beta_hat_has_gains_but_no_beta(beta_hat: float) -> None:
 
 
 def test_alpha_and_beta_of_one_point_are_what_was_typed() -> None:
-    exactly = to_dimensionless(Fraction(60), Fraction(30), Fraction(1, 240))
-    assert alpha_and_beta(*exactly, Fraction(1, 240)) == (60, 30)
+    exactly = to_dimensionless(Fraction(1, 3), Fraction(30), Fraction(1, 240))
+    assert alpha_and_beta(*exactly, Fraction(1, 240)) == (1 / 3, 30)
     for back in (alpha_and_beta, from_dimensionless):
-        assert back(float(exactly[0]), float(exactly[1]), 1 / 240) == pytest.approx((60, 30), rel=1e-15)
+        assert back(float(exactly[0]), float(exactly[1]), 1 / 240) == pytest.approx((1 / 3, 30), rel=1e-15)
     assert alpha_and_beta(0.1, -0.1, 0.002)[1] is None
     assert alpha_and_beta(1.0, 1.0, 1e-310)[1] == math.inf

@@ -9,7 +9,7 @@ import pytest
 from bezstab.errors import NumericalError
 from bezstab.feedback import checking, judgement
 from bezstab.regions import answer as regions
-from bezstab.stability import best_points, choices, feedback_costs
+from bezstab.stability import best_points, feedback_costs
 from bezstab.stability.regions import region
 from tests.cli.running import rows, run
 
