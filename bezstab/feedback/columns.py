@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from bezstab.feedback.checking import CheckAnswer
-from bezstab.feedback.choosing import Alternative, ChooseAnswer
+from bezstab.feedback.choosing import ChooseAnswer
 from bezstab.feedback.judgement import Judgement
 from bezstab.feedback.largest_steps import StepAnswer
 from bezstab.feedback.poles import PoleAnswer
@@ -300,17 +300,13 @@ def trade_words(answer: ChooseAnswer) -> Iterator[str]:
     else:
         moduli = f"|z_p| {faster.z_abs:.4f} instead of {abs(answer.pole):.4f}"
         yield f"Faster decay: --goal {faster.goal} gives {moduli}, {errors_words(faster.times_the_errors)}."
-    if slower is not None:
-        yield _slower_words(answer, slower)
-
-
-def _slower_words(answer: ChooseAnswer, slower: Alternative) -> str:
-    assert slower.settle
+    if slower is None or slower.settle is None:
+        return
     if min(slower.times_the_errors) >= GAIN:
-        return "Slower decay would not be more accurate."
-    goal = "" if answer.goal == "accurate" else "--goal accurate "
-    gives = errors_words(slower.times_the_errors)
-    return f"Slower decay: {goal}--settle {typed_number(slower.settle)} gives {gives}."
+        yield "Slower decay would not be more accurate."
+        return
+    goal, settle = "" if answer.goal == "accurate" else "--goal accurate ", typed_number(slower.settle)
+    yield f"Slower decay: {goal}--settle {settle} gives {errors_words(slower.times_the_errors)}."
 
 
 def spare_words(answer: ChooseAnswer) -> str | None:

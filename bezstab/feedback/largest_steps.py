@@ -33,9 +33,15 @@ class StepAnswer:
 
 
 def step_answer(method: Method, alpha: Fraction | float, beta: Fraction | float, h_limit: float) -> StepAnswer:
-    """Return the answer of a step that was found, as `largest_step` finds it."""
-    rates = float(alpha), float(beta)
-    return StepAnswer(method, *rates, h_limit, h_limit > 0, _sentence(*rates, h_limit))
+    """Return the answer of a step (s) that was found: infinite if every one is stable, zero if none is.
+
+    In its sentence it is rounded down.
+    """
+    safe = "not safe at small steps"
+    if h_limit:
+        safe = "safe at any h" if math.isinf(h_limit) else f"safe up to h = {rounded_down(h_limit, 4)} s"
+    sentence = f"α = {float(alpha):.6g} 1/s, β = {float(beta):.6g} 1/s: {safe}."
+    return StepAnswer(method, float(alpha), float(beta), h_limit, h_limit > 0, sentence)
 
 
 @in_keywords()
@@ -64,11 +70,3 @@ def largest_step(method: str | Method, *, alpha: Number, beta: Number) -> float:
     The path of all steps through the plane of the paper's Eq. 17.
     """
     return stable_up_to(method_named(method), exact_number(alpha, "alpha"), exact_number(beta, "beta"))
-
-
-def _sentence(alpha: float, beta: float, h_limit: float) -> str:
-    """Return up to which step (s) alpha and beta (1/s) are safe, rounded down: infinite if all are, zero if none is."""
-    judged = f"α = {alpha:.6g} 1/s, β = {beta:.6g} 1/s"
-    if not h_limit:
-        return f"{judged}: not safe at small steps."
-    return f"{judged}: safe {'at any h' if math.isinf(h_limit) else f'up to h = {rounded_down(h_limit, 4)} s'}."

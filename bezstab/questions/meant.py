@@ -22,10 +22,11 @@ def meant_in_seconds(methods: Sequence[Method], point: Point, h: Fraction | None
     """
     if max(point) > LARGE and not any(verdict(method, *point) == "converges" for method in methods):
         return True
-    return h is not None and any(_settles(method, to_dimensionless(*point, h), h) for method in methods)
-
-
-def _settles(method: Method, point: Point, h: Fraction) -> bool:
-    """Return whether errors fall to a thousandth in less than SLOWLY, with steps of h (s)."""
-    at_point = describe_point(method, "as given", *point)
-    return at_point.settle_steps is not None and at_point.settle_steps * h * method.step_multiple < SLOWLY
+    if h is None:
+        return False
+    in_seconds = to_dimensionless(*point, h)
+    for method in methods:
+        steps = describe_point(method, "as given", *in_seconds).settle_steps
+        if steps is not None and steps * h * method.step_multiple < SLOWLY:
+            return True
+    return False
