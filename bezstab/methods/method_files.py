@@ -1,5 +1,6 @@
 """Methods in TOML files, own ones and built-in ones; configs/methods/README.md documents the format."""
 
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from fractions import Fraction
 from functools import partial
@@ -31,10 +32,13 @@ def read_method(path: Path) -> Method:
     return read_toml("method file", path, lambda data: _parse_method(data, path.stem, str(path)))
 
 
-def built_in_group(key: str, heading: str, note: str = "") -> MethodGroup:
-    """Return the methods that a table of built_in.toml has."""
+def built_in_group(
+    key: str, heading: str, note: str = "", others: Mapping[str, Callable[[], Method]] | None = None
+) -> MethodGroup:
+    """Return the methods that a table of built_in.toml has, and others."""
     tables = read_toml("methods", Path(__file__).with_name("built_in.toml"), lambda data: data[key])
-    return MethodGroup(heading, {name: partial(_built_in, name, **table) for name, table in tables.items()}, note)
+    methods = {name: partial(_built_in, name, **table) for name, table in tables.items()}
+    return MethodGroup(heading, {**methods, **(others or {})}, note)
 
 
 def _built_in(name: str, digits: int | None = None, **data: Any) -> Method:

@@ -10,7 +10,7 @@ from bezstab.errors import InputError, shown
 from bezstab.methods.aliases import ALIASES, folded, unknown_method
 from bezstab.methods.method_files import built_in_group, read_method
 from bezstab.methods.multistep_methods import EXPLICIT_MULTISTEP, IMPLICIT_MULTISTEP
-from bezstab.methods.runge_kutta_methods import IMPLICIT_RUNGE_KUTTA
+from bezstab.methods.runge_kutta_methods import SOLVED_FOR
 from bezstab.methods.schemes import Method
 from bezstab.methods.second_order_methods import NEWMARK_AND_ALPHA, PARAMETRIC, ParametricMethod
 from bezstab.rationals import rational
@@ -27,7 +27,7 @@ GROUPS = (
     NEWMARK_AND_ALPHA,
     built_in_group("velocity", "Implicit in the velocity, of physics engines and control"),
     IMPLICIT_MULTISTEP,
-    IMPLICIT_RUNGE_KUTTA,
+    built_in_group("implicit", "Runge-Kutta, implicit", others=SOLVED_FOR),
 )
 """The built-in methods as they are listed."""
 

@@ -1,4 +1,4 @@
-"""Implicit Runge-Kutta methods by their tableaux; explicit ones are in built_in.toml.
+"""Runge-Kutta methods whose tableaux are solved for; others are in built_in.toml.
 
 Where coefficients are irrational, a rational good to 40 digits stands for the irrational number; what else the method
 must satisfy (the weights' sum, order two) is then solved for exactly.
@@ -8,32 +8,11 @@ from fractions import Fraction
 
 from bezstab.methods.algebraic_numbers import DIGITS, decimal_root
 from bezstab.methods.polynomials import integrals
-from bezstab.methods.schemes import Coefficients, Method, MethodGroup, RungeKutta
+from bezstab.methods.schemes import Coefficients, Method, RungeKutta
 from bezstab.rationals import ONE, ZERO
 
 HALF = Fraction(1, 2)
 WANNER = "Hairer & Wanner II"
-
-
-def implicit_midpoint() -> Method:
-    """Return K = f(y_k + h/2 K), y_{k+1} = y_k + h K: the Gauss method of one stage."""
-    return Method("implicit-midpoint", _collocation((HALF,)), f"{WANNER}, Table IV.5.1 (Gauss, s = 1)")
-
-
-def sdirk2() -> Method:
-    """Return the L-stable, stiffly accurate SDIRK method of two stages and order two, gamma = 1 - 1/sqrt 2.
-
-        gamma     | gamma
-        1         | 1 - gamma   gamma
-        ----------+------------------
-                  | 1 - gamma   gamma
-
-    It is A-stable if and only if 2 gamma^2 - 4 gamma + 1 <= 0: gamma is rounded up, so that it stays so.
-    """
-    gamma = decimal_root(lambda g: 2 * g**2 - 4 * g + 1, ZERO, ONE)
-    tableau = ((gamma, ZERO), (1 - gamma, gamma))
-    source = "Alexander, SIAM J. Numer. Anal. 14, 1977 (SDIRK of order 2)"
-    return Method("sdirk2", RungeKutta(tableau, tableau[-1]), source, digits=DIGITS)
 
 
 def dirk3() -> Method:
@@ -54,12 +33,6 @@ def dirk3() -> Method:
     tableau = ((gamma, ZERO, ZERO), ((1 - gamma) / 2, gamma, ZERO), (first, second, gamma))
     source = "Alexander, SIAM J. Numer. Anal. 14, 1977 (stiffly accurate SDIRK of order 3)"
     return Method("dirk3", RungeKutta(tableau, tableau[-1]), source, digits=DIGITS)
-
-
-def radau3() -> Method:
-    """Return Radau IIA of two stages, order three; fully implicit."""
-    scheme = _collocation((Fraction(1, 3), ONE))
-    return Method("radau3", scheme, f"{WANNER}, Table IV.5.5 (Radau IIA, s = 2)")
 
 
 def radau5() -> Method:
@@ -88,14 +61,4 @@ def _collocation(nodes: Coefficients) -> RungeKutta:
     return RungeKutta(tuple(tableau), weights)
 
 
-IMPLICIT_RUNGE_KUTTA = MethodGroup(
-    "Runge-Kutta, implicit",
-    {
-        "implicit-midpoint": implicit_midpoint,
-        "sdirk2": sdirk2,
-        "dirk3": dirk3,
-        "radau3": radau3,
-        "radau5": radau5,
-        "gauss4": gauss4,
-    },
-)
+SOLVED_FOR = {"dirk3": dirk3, "radau5": radau5, "gauss4": gauss4}

@@ -119,7 +119,7 @@ class Lines:
         at = (places, one) if self.axis == 0 else (one, places)
         found = paths(self.method, *at, (ALONG_BETA, ALONG_ALPHA)[self.axis], self.level).stretches()
         ends = np.stack([found.low, found.high], axis=-1)
-        return np.split(ends, np.cumsum(found.counts(len(places)))[:-1])
+        return np.split(ends, np.searchsorted(found.path, np.arange(1, len(places))))
 
     def strips(self) -> list[Strip]:
         """Return all strips, from the weakest lines on: what belongs to the region is kept."""

@@ -88,10 +88,6 @@ class Stretches:
     low: FloatArray
     high: FloatArray
 
-    def counts(self, paths: int) -> NDArray[np.intp]:
-        """Return how many stretches each of so many paths has, shape (paths,)."""
-        return np.bincount(self.path, minlength=paths)
-
 
 @dataclass(frozen=True, eq=False)
 class Paths:
