@@ -87,11 +87,3 @@ def test_an_example_keeps_to_its_keys_and_the_width_of_the_terminal(
         assert re.search(r"^\|[-| ]+\|$", printed(example, "--format", "markdown"), re.MULTILINE)
     for columns in (80, 120):
         assert widest(printed(example, columns=columns)) <= columns
-
-
-def test_help_wraps_at_80_columns_and_explains_every_option() -> None:
-    context = click.Context(main)
-    for name in ("", *main.list_commands(context)):
-        assert max(widest(printed(f"{name} --help", columns=columns)) for columns in (80, 200)) <= 80, name
-        for option in getattr(main.get_command(context, name), "params", []):
-            assert not isinstance(option, click.Option) or option.help, (name, option.opts)

@@ -6,6 +6,7 @@ from click.testing import CliRunner
 
 from bezstab.cli.command_group import main
 from bezstab.cli.grouped_help import GroupedCommand, grouped
+from bezstab.show.tables import shown_width
 
 SCREENS = 50
 """Lines of help, at 80 columns."""
@@ -28,8 +29,13 @@ def test_options_stand_below_their_headings_in_the_order_in_which_they_are_writt
 
 
 @pytest.mark.parametrize("command", main.list_commands(click.Context(main)))
-def test_help_fits_two_screens_and_its_example_a_line(command: str) -> None:
-    lines = CliRunner().invoke(main, [command, "--help"], terminal_width=WIDTH).output.splitlines()
+def test_help_fits_two_screens_its_example_a_line_and_every_option_is_explained(command: str) -> None:
+    """At 80 columns and in wider terminals."""
+    outputs = [CliRunner(env={"COLUMNS": width}).invoke(main, [command, "--help"]).output for width in ("80", "200")]
+    lines = outputs[0].splitlines()
     assert len(lines) <= SCREENS
+    assert max(shown_width(line) for text in outputs for line in text.splitlines()) <= 80
     (place,) = [place for place, line in enumerate(lines) if line.startswith(f"  Example: bezstab {command}")]
     assert not lines[place + 1]  # an example that is broken into two lines does not work as typed
+    for option in getattr(main.get_command(click.Context(main), command), "params", []):
+        assert not isinstance(option, click.Option) or option.help, option.opts
