@@ -50,20 +50,11 @@ def test_values_that_an_engine_clamps_are_told(
 @pytest.mark.parametrize(
     ("name", "point"),
     [
-        ("bullet", ("1/2", "1/2")),
         ("bullet", ("999999/1000000", "1/2")),
         ("box2d", ("1", "3/4")),
-        ("rapier", ("1/2", "1/2")),
         ("xpbd", ("1", "0")),
     ],
 )
 def test_a_point_that_an_engine_cannot_reach_is_refused_with_what_it_can(name: str, point: tuple[str, str]) -> None:
     with pytest.raises(InputError, match="^(--engine )?" + name + ".*[α̂β̂(]"):
         ENGINES[name].setting((Fraction(point[0]), Fraction(point[1])), H)
-
-
-def test_what_is_typed_is_told_with_what_may_follow() -> None:
-    assert ENGINES["mujoco"].words().startswith("solref[0],solref[1][,solimp[0][,solimp[1][,solimp[2]")
-    assert ENGINES["bullet"].words() == "ERP"
-    assert ENGINES["drake-sap"].words() == "[k[,tau[,w]]]"
-    assert ENGINES["chrono-explicit"].words() == ""

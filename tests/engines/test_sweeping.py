@@ -5,8 +5,6 @@ from fractions import Fraction
 import pytest
 
 from bezstab.engines.engine_list import ENGINES
-from bezstab.engines.sweeping import check_iterations
-from bezstab.errors import InputError
 from bezstab.methods.registry import lookup
 from bezstab.stability.closed_loop import spectral_radius
 from bezstab.stability.sweeps import chain, swept_growth
@@ -22,16 +20,6 @@ def test_one_constraint_swept_is_the_engines_point(name: str) -> None:
     growth = swept_growth(chain(1), engine.sweeping.step(engine.sweeping.iterations, h, *values))
     point = engine.applied(values, h).point
     assert growth.factor == pytest.approx(float(spectral_radius(lookup(engine.method), *map(float, point))), abs=1e-7)
+    assert engine.sweeps
     assert engine.sweeping.source
     assert engine.sweeping.excludes
-
-
-def test_an_engine_that_says_how_it_sweeps_sweeps() -> None:
-    assert all(engine.sweeps for engine in ENGINES.values() if engine.sweeping)
-
-
-@pytest.mark.parametrize("iterations", [0, -1, 10_001])
-def test_a_number_of_sweeps_out_of_range_is_refused(iterations: int) -> None:
-    with pytest.raises(InputError, match=f"--iterations {iterations}: expected 1 to 10000"):
-        check_iterations(iterations)
-    assert check_iterations(10_000) == 10_000
