@@ -27,16 +27,13 @@ def test_runs_are_compiled_where_that_pays_or_is_asked_for(monkeypatch: pytest.M
         assert runs_compiled(lookup("SYM"), count) is expected
         assert not runs_compiled(lookup("bdf2"), count)
         assert not runs_compiled(lookup("SYM"), count, after=after_step("projection"))
-    monkeypatch.delenv(COMPILED_CHOICE)
+    monkeypatch.delenv(COMPILED_CHOICE, raising=False)
     assert not runs_compiled(lookup("SYM"), 10**6, together=True)
     monkeypatch.setenv(COMPILED_CHOICE, "maybe")
     with pytest.raises(InputError, match="BEZSTAB_COMPILED=maybe: expected auto, yes or no"):
         runs_compiled(lookup("SYM"), 10)
-
-
-def test_without_numba_runs_are_pythons(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv(COMPILED_CHOICE)
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
-    monkeypatch.delenv(COMPILED_CHOICE, raising=False)
     assert not runs_compiled(lookup("SYM"), 10**8)
 
 

@@ -35,15 +35,19 @@ def test_a_drivers_work_is_the_energy_that_the_motion_has_in_closed_form() -> No
 
 
 @pytest.mark.parametrize(("sequence", "within"), [((), 1e-9), ((1e-3, 2e-3), 1e-5)])  # then by trapezia
-def test_a_constant_force_does_its_way_times_itself(sequence: tuple[float, ...], within: float) -> None:
+def test_a_constant_force_and_torque_do_their_way_times_themselves(sequence: tuple[float, ...], within: float) -> None:
     scene = {
-        **pendulum(force=[{"body": "bob", "force": [3.0, -4.0]}]),
-        "initial": {"position": {"bob.x": 1.0, "bob.y": 0.0}, "velocity": {"bob.y": 0.0}},
+        **pendulum(force=[{"body": "bob", "force": [3.0, -4.0], "torque": 2.0}]),
+        "body": [{"name": "bob", "mass": 1.0, "inertia": 0.5, "free": ["x", "y", "theta"]}],
+        "initial": {
+            "position": {"bob.x": 1.0, "bob.y": 0.0, "bob.theta": 0.0},
+            "velocity": {f"bob.{axis}": 0.0 for axis in ("x", "y", "theta")},
+        },
     }
     run = run_of(parse_scene(scene), sequence=sequence)
-    assert run.force_work == pytest.approx((run.q - run.q[0]) @ [3, -4], abs=within)
+    assert run.force_work == pytest.approx((run.q - run.q[0]) @ [3, -4, 2], abs=within)
+    assert run.q[:, 2] == pytest.approx(2 * run.t**2)  # 2 N m on 0.5 kg m^2
     assert np.ptp(run.force_work) > 1
-    assert run.energy == pytest.approx((run.v**2).sum(axis=1) / 2, rel=1e-14)  # no gravity: kinetic alone
     assert np.abs(run.energy_drift).max() < within  # of 3 J
 
 

@@ -3,9 +3,9 @@ import pytest
 
 from bezstab.mechanism.equations import compiled_mechanism
 from bezstab.mechanism.generated_code import accelerations
-from bezstab.mechanism.observation import observe, singular_passages
-from bezstab.mechanism.runner import simulate
+from bezstab.mechanism.observation import observe
 from bezstab.mechanism.scene_files import load_scene, shipped_scenes
+from bezstab.mechanism.simulation import simulated
 from bezstab.mechanism.start import initial_state
 from bezstab.methods.registry import lookup
 from tests.mechanism.four_bar_chains import four_bars
@@ -34,17 +34,16 @@ def test_the_generated_code_solves_the_literal_equation_9(name: str) -> None:
 @pytest.mark.parametrize("h", [1e-3, 7e-3, 2e-2])
 def test_every_passage_through_a_singular_configuration_is_seen_whatever_the_step(h: float) -> None:
     """The rods lie along the ground whenever their angle is a multiple of pi; found by the angles alone."""
-    mechanism, gains = compiled_mechanism(four_bars(3)), (20.0, 100.0)
-    run = simulate(mechanism, lookup("RK4"), h, 5.0, gains)
-    halves = np.floor(run.q[:, 0] / np.pi)
-    expected = run.t[np.flatnonzero(np.diff(halves))] + h / 2
-    found = run.t[singular_passages(observe(mechanism, run.t, run.q, run.v, *gains).pivots)]
+    mechanism = compiled_mechanism(four_bars(3))
+    run = simulated(mechanism, lookup("RK4"), h=h, duration=5.0, alpha_hat=20 * h, beta_hat=100 * h**2)
+    expected = run.t[np.flatnonzero(np.diff(np.floor(run.q[:, 0] / np.pi)))] + h / 2
     assert len(expected) == 5
-    assert found == pytest.approx(expected, abs=h)
+    assert run.singular_times == pytest.approx(expected, abs=h)
 
 
 @pytest.mark.parametrize("name", ["four_bar", "pendulum"])
 def test_where_nothing_is_singular_no_passage_is_seen(name: str) -> None:
-    mechanism, gains = compiled_mechanism(load_scene(name)), (20.0, 100.0)
-    run = simulate(mechanism, lookup("RK4"), 1e-2, 10.0, gains)
-    assert not len(singular_passages(observe(mechanism, run.t, run.q, run.v, *gains).pivots))
+    run = simulated(
+        compiled_mechanism(load_scene(name)), lookup("RK4"), h=1e-2, duration=10.0, alpha_hat=0.2, beta_hat=0.01
+    )
+    assert not run.singular_times.size

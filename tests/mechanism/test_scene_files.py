@@ -44,12 +44,6 @@ def test_a_bad_scene_takes_one_line_that_names_the_key(changes: dict[str, Any], 
         parse_scene(pendulum(**changes))
 
 
-def test_a_mere_damper_needs_no_free_length() -> None:
-    damper = {**{key: SPRING[key] for key in ("bodies", "points")}, "damping": 2.0}
-    (spring,) = parse_scene(pendulum(spring=[damper])).springs
-    assert (spring.stiffness, spring.free_length, spring.damping) == (0, 0, 2)
-
-
 PENDULUM = (shipped_scenes()["pendulum"]).read_bytes()
 HOSTILE = (
     b"name = " + b"1" * 5000,
@@ -64,24 +58,9 @@ HOSTILE = (
 )
 
 
-def refusal(path: Path) -> str:
-    with pytest.raises(InputError) as caught:
+def assert_refused(path: Path) -> None:
+    with pytest.raises(InputError, match=rf"\A.*{re.escape(str(path))}.*\Z"):
         read_scene(path)
-    message = str(caught.value)
-    assert len(message.splitlines()) == 1
-    return message
-
-
-@pytest.mark.slow
-def test_a_hostile_file_is_refused_in_one_line_that_names_it(tmp_path: Path) -> None:
-    for content in HOSTILE:
-        (path := tmp_path / "scene.toml").write_bytes(content)
-        assert str(path) in refusal(path)
-
-
-@pytest.mark.parametrize("name", ["a\nb.toml", "a\0b.toml", "x" * 300 + ".toml", "missing.toml", "."])
-def test_a_path_that_cannot_be_read_is_refused_in_one_line(name: str, tmp_path: Path) -> None:
-    refusal(tmp_path / name)
 
 
 @settings(deadline=None)  # the file system has no bounded time
@@ -100,6 +79,13 @@ def test_any_bytes_are_a_scene_or_one_line_of_refusal(tmp_path_factory: pytest.T
     try:
         scene = read_scene(path)
     except InputError:
-        assert str(path) in refusal(path)
+        assert_refused(path)
     else:
         assert scene.coordinates
+
+
+@pytest.mark.slow
+def test_a_hostile_file_is_refused(tmp_path: Path) -> None:
+    for content in HOSTILE:
+        (path := tmp_path / "scene.toml").write_bytes(content)
+        assert_refused(path)

@@ -58,13 +58,12 @@ def test_twice_the_speed_doubles_every_velocity_of_the_start(name: str) -> None:
 def test_a_faster_driver_takes_the_same_course_in_less_time() -> None:
     course = {"offset": 0.5, "rate": 2.0, "acceleration": -1.0, "amplitude": 0.3, "frequency": 7.0, "phase": 0.4}
     data = {
-        **pendulum(),
+        **pendulum(initial={"position": {"bob.y": 0.0}, "velocity": {"bob.y": 0.0}}),
         "joint": [{"type": "driver", "coordinate": "bob.x", **course}],
-        "initial": {"position": {"bob.y": 0.0}, "velocity": {"bob.y": 0.0}},
     }
-    slow, fast = (compiled_mechanism(at_speed(parse_scene(data), factor)) for factor in (1.0, 4.0))
-    whole = simulate(slow, lookup("RK4"), 1e-3, 1.0, (0.0, 0.0))
-    quarter = simulate(fast, lookup("RK4"), 2.5e-4, 0.25, (0.0, 0.0))
-    expected = 0.5 + 2 * whole.t - whole.t**2 / 2 + 0.3 * np.sin(7 * whole.t + 0.4)
-    for run in (whole, quarter):
+    for factor in (1.0, 4.0):
+        mechanism = compiled_mechanism(at_speed(parse_scene(data), factor))
+        run = simulate(mechanism, lookup("RK4"), 1e-3 / factor, 1.0 / factor, (0.0, 0.0))
+        t = factor * run.t
+        expected = 0.5 + 2 * t - t**2 / 2 + 0.3 * np.sin(7 * t + 0.4)
         assert run.q[:, 0] == pytest.approx(expected, abs=1e-11)  # RK4's

@@ -54,14 +54,14 @@ def test_errors_follow_the_product_of_the_step_matrices(name: str, hold: bool) -
 @pytest.mark.slow
 def test_compiled_runs_are_those_of_python(monkeypatch: pytest.MonkeyPatch) -> None:
     """Those that last, their gains held and not, and those that end."""
-    pendulum = compiled_mechanism(load_scene("pendulum"))
+    pendulum, method = compiled_mechanism(load_scene("pendulum")), lookup("verlet-half")
     lasting = {"sequence": [1e-3, 2.5e-3, 1e-3, 2e-3], "h": 1e-3, "duration": 1.0, "alpha_hat": 0.3, "beta_hat": 0.04}
     ending = {"sequence": [0.1, 0.2], "h": 0.1, "duration": 200.0, "alpha_hat": -1.0, "beta_hat": 0.1}
-    points: list[dict[str, Any]] = [{**lasting, "hold": False}, {**lasting, "hold": True}, ending]
+    points: list[dict[str, Any]] = [lasting, lasting | {"hold": True}, ending]
     for point in points:
-        monkeypatch.setenv(COMPILED_CHOICE, "no")
-        by_python = simulated(pendulum, lookup("verlet-half"), perturb=1e-6, **point)
-        monkeypatch.setenv(COMPILED_CHOICE, "yes")
-        compiled = simulated(pendulum, lookup("verlet-half"), perturb=1e-6, **point)
-        assert_alike(by_python, compiled)
-        assert bool(compiled.failure) is (point is ending)
+        runs = []
+        for choice in ("no", "yes"):
+            monkeypatch.setenv(COMPILED_CHOICE, choice)
+            runs.append(simulated(pendulum, method, perturb=1e-6, **point))
+        assert_alike(runs[0], runs[1])
+        assert bool(runs[0].failure) is (point is ending)
