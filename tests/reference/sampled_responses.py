@@ -4,9 +4,6 @@ import numpy as np
 
 from bezstab.stability.arrays import ComplexArray, FloatArray
 
-KICKS = (1e-4, 1e-6, 1e-8, 1e-11)
-"""SI units; a linear system's responses to them differ by a factor only."""
-
 
 def two_poles(count: int, modulus: float, angle: float, phase: float, ratio: float) -> FloatArray:
     """Return Re(z^k) with z = modulus exp(i angle), shifted in phase, plus a real pole at ratio times its modulus."""
@@ -19,12 +16,6 @@ def geometric(count: int, pole: float) -> FloatArray:
     """Return pole^k."""
     response: FloatArray = pole ** np.arange(float(count))
     return response
-
-
-def for_every_kick(response: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return a response that all kicks share, shape (steps, kicks), and its size."""
-    responses = np.multiply.outer(response, KICKS)
-    return responses, np.abs(responses)
 
 
 def of_poles(z: ComplexArray, count: int, seed: int) -> FloatArray:

@@ -12,7 +12,6 @@ from bezstab.mechanism.scene_files import load_scene
 from bezstab.methods.orders import accuracy
 from bezstab.methods.registry import lookup
 from bezstab.methods.schemes import evaluations
-from bezstab.rationals import exact
 from bezstab.runs.accuracy_costs import (
     NO_FEEDBACK,
     measured_runs,
@@ -22,21 +21,26 @@ from bezstab.runs.accuracy_costs import (
 )
 from bezstab.runs.tradeoff_command import METHODS
 from bezstab.stabilising import after_step
-from bezstab.stability.choices import choose
 from tests.reference.undominated import Point, undominated
 from tests.runs.samples import of_campaign
-from tests.runs.small_sweeps import DURATION, OMEGA, SOFT, cost_for, small_sweep, swept
+from tests.runs.small_sweeps import DURATION, SOFT, cost_for, small_sweep, swept
 
 QUICK = ("B4", "ABM4", "RK4", "SYM")
 """One of each kind."""
 
 
-@pytest.mark.parametrize("name", [*of_campaign(METHODS, ("B2", *QUICK)), "trapezoid", "verlet-predicted"])
+@pytest.mark.parametrize(
+    ("name", "point"),
+    [
+        *((name, SOFT) for name in (*of_campaign(METHODS, ("B2", *QUICK)), "trapezoid", "verlet-predicted")),
+        *((name, None) for name in ("RK4", "B4")),  # its own choice at each step costs no order
+    ],
+)
 @pytest.mark.slow
-def test_a_run_knows_its_error_its_cost_and_its_order(name: str) -> None:
-    coarse, fine = swept(name, (8e-4, 1.6e-3), SOFT)
+def test_a_run_knows_its_error_its_cost_and_its_order(name: str, point: tuple[float, float] | None) -> None:
+    coarse, fine = swept(name, (8e-4, 1.6e-3), point)
     assert (coarse.h, fine.h) == (1.6e-3, 8e-4)
-    assert fine.order == pytest.approx(accuracy(lookup(name))[0], abs=0.2)  # with alpha, beta fixed none is lost
+    assert fine.order == pytest.approx(accuracy(lookup(name))[0], abs=0.2)
     assert 0 < fine.c_rms <= fine.c_max
     assert 0 < fine.cdot_rms <= fine.cdot_max
     assert fine.seconds_min <= fine.seconds <= fine.seconds_max
@@ -44,15 +48,6 @@ def test_a_run_knows_its_error_its_cost_and_its_order(name: str) -> None:
     least, most = (3, 6) if name == "trapezoid" else (evaluations(lookup(name)), evaluations(lookup("RK4")))
     for run in (coarse, fine):
         assert least <= run.evaluations / round(DURATION / run.h) <= most
-
-
-@pytest.mark.parametrize("name", ["RK4", "B4"])
-@pytest.mark.slow
-def test_its_own_choice_at_each_step_costs_no_order(name: str) -> None:
-    *_, fine = swept(name, (8e-4, 1.6e-3))
-    assert fine.order == pytest.approx(accuracy(lookup(name))[0], abs=0.2)
-    chosen = choose(lookup(name), "accurate", omega_h=OMEGA * exact(fine.h))
-    assert (fine.alpha_hat, fine.beta_hat) == (chosen.alpha_hat, chosen.beta_hat)
 
 
 @pytest.mark.parametrize(("name", "within"), [("AB2", 0.03), ("B4", 0.03), ("AB4", 0.03), ("SYM", 0.2)])
@@ -75,13 +70,6 @@ def test_in_the_later_half_of_a_run_the_constraint_error_is_the_predicted_one(na
         assert run.measured_error
         assert run.measured_error == pytest.approx(run.predicted_error, rel=within)
         assert run.measured_error <= run.c_max
-
-
-def test_strong_feedback_costs_rk4_what_the_page_of_stability_says() -> None:
-    robust = choose(lookup("RK4"), "robust")
-    (strong,), (own,) = swept("RK4", (0.005,), (robust.alpha_hat, robust.beta_hat)), swept("RK4", (0.005,))
-    assert strong.c_max / own.c_max == pytest.approx(2500, rel=0.05)
-    assert (strong.trajectory_error or 0) / (own.trajectory_error or 1) == pytest.approx(700, rel=0.05)
 
 
 @pytest.mark.slow

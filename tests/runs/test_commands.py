@@ -7,7 +7,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import bezstab
 from tests.cli.running import DATA, arrays, rows, run
 
 NOTHING = "--figure none --table none"
@@ -63,18 +62,12 @@ def test_tradeoff_writes_a_table_without_times_and_two_figures_and_the_same_agai
     assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == written
 
 
-def test_tradeoff_in_python_runs_what_the_command_runs() -> None:
-    answer = bezstab.tradeoff("pendulum", ["SYM"], steps=["0.01", "0.02"], duration="0.1", alpha_hat=1, beta_hat=1)
-    found = rows(f"tradeoff --scene pendulum --method SYM --h 0.01 --h 0.02 --time 0.1 --alpha 1 --beta 1 {NOTHING}")
-    assert [(run.h, run.trajectory_error, run.c_max) for run in answer.runs] == [
-        (row["h"], row["trajectory_error"], row["c_max"]) for row in found
-    ]
-
-
 MAP = "verify --scene pendulum --method SYM --map 3 --figure none"
 
 
-def test_without_joblib_one_process_draws_a_map(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_without_joblib_one_process_draws_a_map_and_what_needs_it_is_refused_in_a_line(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
     assert run(MAP, "--workers 1").exit_code == 0
     (table,) = tmp_path.iterdir()
     written = table.read_bytes()
@@ -82,16 +75,12 @@ def test_without_joblib_one_process_draws_a_map(monkeypatch: pytest.MonkeyPatch,
     monkeypatch.setitem(sys.modules, "joblib", None)
     assert run(MAP).exit_code == 0
     assert [path.read_bytes() for path in tmp_path.iterdir()] == [written]
-
-
-@pytest.mark.parametrize("more", ["--workers 2", "--scheduler tcp://127.0.0.1:1", "--resume"])
-def test_without_joblib_what_needs_it_is_refused_in_a_line(more: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(sys.modules, "joblib", None)
-    refused = run(MAP, more)
-    assert refused.exit_code == 2
-    assert refused.stderr == (
-        "bezstab: --workers, --scheduler and --resume need an optional package: pip install 'bezstab[parallel]'\n"
-    )
+    for more in ("--workers 2", "--scheduler tcp://127.0.0.1:1", "--resume"):
+        refused = run(MAP, more)
+        assert refused.exit_code == 2
+        assert refused.stderr == (
+            "bezstab: --workers, --scheduler and --resume need an optional package: pip install 'bezstab[parallel]'\n"
+        )
 
 
 @pytest.mark.parametrize("command", ["simulate", "paper"])
@@ -110,16 +99,3 @@ def test_what_is_thrown_apart_at_once_diverges_and_seconds_are_understood() -> N
     (in_seconds,) = rows(at, "--alpha 400 --beta 500 --h 0.001 --physical")
     assert (in_seconds["alpha_hat"], in_seconds["beta_hat"]) == (0.8, 0.25)
     assert in_seconds["floquet_z_abs"] is None  # nothing exact is computed unless it is asked for
-
-
-@pytest.mark.parametrize(
-    ("scene", "method", "said"),
-    [
-        ("driven_four_bar", "bdf2", "Exact rates of bdf2: along the motion of the mechanism."),  # implicit
-        ("four_bar", "B4", "No rate of B4 is exact: the motion does not begin anew."),
-    ],
-)
-@pytest.mark.slow
-def test_exact_rates_are_said_to_be_along_which_motion(scene: str, method: str, said: str) -> None:
-    asked = f"verify --scene {scene} --method {method} --alpha 0.5 --beta 0.1 --h 0.01 --floquet"
-    assert said in run(asked).stdout.replace("\n", " ")

@@ -1,4 +1,8 @@
-"""The default choice, held against runs at gains of all sizes: none beats it threefold in both errors at once."""
+"""The default choice, held against runs at gains of all sizes: none beats it threefold in both errors at once.
+
+Its trajectory stands beside those of a grid of stable points with at most twice its |c|, all of them multiples of the
+motion's own rate: the later half of 40 rad, 50 steps a radian.
+"""
 
 from fractions import Fraction
 from functools import cache
@@ -16,26 +20,11 @@ from bezstab.mechanism.start import constraint_errors, initial_state
 from bezstab.methods.registry import lookup
 from bezstab.questions.trial_runs import TURNED
 from bezstab.rationals import exact
-from bezstab.stability.arrays import BoolArray, FloatArray
+from bezstab.stability.arrays import FloatArray
 from bezstab.stability.choices import THOUSANDFOLD, search_box
 from bezstab.stability.choices import choose as choose_point
 from bezstab.stability.closed_loop import spectral_radius
 from bezstab.stability.regions import region
-from tests.runs.gain_grids import grid
-
-FEW = {("B4", "driven_four_bar"), ("bs3", "slider_crank_light"), ("RK4", "driven_four_bar"), ("SYM", "andrews")}
-
-
-@pytest.mark.parametrize(("name", "scene"), sorted(FEW))
-@pytest.mark.slow
-def test_no_stable_point_is_three_times_better_in_both_errors_at_once(name: str, scene: str) -> None:
-    found = grid(scene, name, ("accurate",))
-    assert len(found.points) >= 18  # of 24: what is left out is not stable
-    assert found.beaten("accurate") < 3
-
-
-# The trajectory of the choice beside that of a grid of stable points with at most twice its |c|, all of them multiples
-# of the motion's own rate: the later half of 40 rad, 50 steps a radian.
 
 OMEGA_H = Fraction(1, 50)
 STEPS = 2000
@@ -60,7 +49,6 @@ def stable_points(name: str, scene: str) -> FloatArray:
     return np.column_stack([points[:, spectral_radius(method, *points) < 1], [chosen.alpha_hat, chosen.beta_hat]])
 
 
-@cache
 def worse_than_the_choice(scene: str, name: str) -> FloatArray:
     """Return errors of constraints, coordinates and velocities, a row each, over those at the choice."""
     mechanism, method = compiled_mechanism(load_scene(scene)), lookup(name)
@@ -84,21 +72,16 @@ def worse_than_the_choice(scene: str, name: str) -> FloatArray:
     return largest[:, :-1] / largest[:, -1:]
 
 
-def three_times_better(scene: str, name: str) -> BoolArray:
-    of_c, of_q, _ = worse_than_the_choice(scene, name)
-    return np.asarray((of_c <= 2) & (of_q < 1 / 3))
-
-
 @pytest.mark.slow
-@pytest.mark.parametrize("scene", ["driven_four_bar", "four_bar"])
+@pytest.mark.parametrize("scene", ["driven_four_bar", "four_bar", "slider_crank_light"])
 @pytest.mark.parametrize("name", ["SYM", "verlet-half", "bs3", "AB2", "AB4", "ABM4", "B4", "heun", "RK2", "SIE", "RK4"])
-def test_none_that_settles_is_three_times_nearer_with_velocities_no_worse(scene: str, name: str) -> None:
+def test_none_that_settles_is_three_times_nearer_with_velocities_no_worse(name: str, scene: str) -> None:
     """Of those that settle within the runs: others are not looked at."""
     alpha_hat, beta_hat = stable_points(name, scene)[:, :-1]
     settles = spectral_radius(lookup(name), alpha_hat, beta_hat) < THOUSANDFOLD ** (float(OMEGA_H) / TURNED)
-    no_worse = worse_than_the_choice(scene, name)[2] <= 1
+    of_c, of_q, of_v = worse_than_the_choice(scene, name)
     assert settles.sum() > 100
-    assert not (three_times_better(scene, name) & settles & no_worse).any()
+    assert not (settles & (of_c <= 2) & (of_q < 1 / 3) & (of_v <= 1)).any()
 
 
 def test_what_runs_choose_is_nearer_at_other_steps_and_in_longer_runs() -> None:
@@ -118,28 +101,7 @@ def test_what_runs_choose_is_nearer_at_other_steps_and_in_longer_runs() -> None:
 
 def farthest(scene: str, h: float, seconds: float, point: tuple[float, float]) -> float:
     """Return how far (m or rad) RK4 is off in the later half of a run."""
-    mechanism = compiled_mechanism(load_scene(scene))
-    duration = h * round(seconds / h)
+    mechanism, duration = compiled_mechanism(load_scene(scene)), h * round(seconds / h)
     run = simulate(mechanism, lookup("RK4"), h, duration, (point[0] / h, point[1] / h**2))
     exactly = simulate(mechanism, lookup("tsit5"), h / 4, duration, (0.0, 0.0))
     return float(np.abs(run.q - exactly.q[::4])[len(run.q) // 2 :].max())
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(("name", "gain"), [("RK4", 20), ("dopri5", 20), ("bs3", 5), ("heun", 4)])
-def test_runs_of_a_free_four_bar_find_feedback_far_nearer_to_its_motion(name: str, gain: float) -> None:
-    """Than a rule that knows a method and a rate."""
-    found = choice_on("four_bar", name)
-    assert found.trials
-    assert found.trials.times_nearer > gain
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", ["heun", "RK2"])
-def test_where_the_leading_error_of_positions_vanishes_velocities_are_off_by_part_of_a_step(name: str) -> None:
-    """Near alpha_hat = 2 positions win up to thirtyfold, and velocities lose as much."""
-    better = three_times_better("driven_four_bar", name)
-    assert better.any()
-    alpha_hat, _ = stable_points(name, "driven_four_bar")[:, :-1]
-    assert np.abs(alpha_hat[better] - 2).max() < 0.7
-    assert worse_than_the_choice("driven_four_bar", name)[2][better].min() > 20

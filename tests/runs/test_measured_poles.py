@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from bezstab.mechanism.equations import Mechanism, compiled_mechanism
+from bezstab.mechanism.equations import compiled_mechanism
 from bezstab.mechanism.scene_files import load_scene
 from bezstab.methods.registry import lookup
 from bezstab.methods.schemes import LinearMultistep, PredictorCorrector, implicit
@@ -69,25 +69,6 @@ def test_the_measured_pole_is_the_predicted_one(name: str, scene: str, count: in
         assert np.abs(angles).max() < 0.01
 
 
-def slider_crank(rpm: float) -> Mechanism:
-    """Return the slider-crank whose crank starts with so many revolutions a minute."""
-    return compiled_mechanism(replace(load_scene("slider_crank"), velocity={"crank.theta": rpm * np.pi / 30}))
-
-
-@pytest.mark.parametrize("name", ["SYM", "verlet-half"])
-@pytest.mark.slow
-def test_what_is_left_on_a_moving_mechanism_shrinks_with_its_speed_times_the_step(name: str) -> None:
-    """So it is the motion's doing, not the fit's: what turns much with it is off by 2e-5 at 10 rpm and 1 ms."""
-    method = lookup(name)
-    points = random_points(method, 12)
-    medians = [
-        np.median(errors(measure_poles(slider_crank(rpm), method, h, *points)))
-        for rpm, h in ((10, H), (5, H), (10, H / 2))
-    ]
-    assert medians[0] < 3e-5
-    assert medians[0] / np.array(medians[1:]) == pytest.approx(2, rel=0.25)
-
-
 @pytest.mark.parametrize(
     ("name", "point", "z_abs", "verdict"),
     [
@@ -106,12 +87,11 @@ def test_cases_of_the_paper_are_seen(name: str, point: tuple[float, float], z_ab
 
 def test_errors_and_verdicts_are_counted() -> None:
     """A verdict is that of the pole, else of the kick's error."""
-    at = compiled_mechanism(load_scene("pendulum")), lookup("SYM"), 0.001
+    at = compiled_mechanism(load_scene("pendulum")), lookup("SYM"), H
     good, far = measure_poles(*at, np.array([1.0, 14217.0]), np.array([0.5, 16544.0]))
-    assert good.measured is not None
     assert (far.measured, far.measured_verdict) == (None, "diverges")
-    off = replace(good, difference_abs=0.5 * abs(good.predicted), verdicts_agree=False)
+    off = replace(good, difference_abs=0.5, verdicts_agree=False)
     lost = replace(good, difference_abs=None, verdicts_agree=None)
     summary = measurement_summary([good, off, lost])
     assert (summary.points, summary.measured, summary.called, summary.wrong) == (3, 2, 2, 1)
-    assert summary.largest_error == pytest.approx(0.5 * abs(good.predicted), abs=1e-6)
+    assert summary.largest_error == 0.5

@@ -1,5 +1,7 @@
 """Simulated verdicts over the plane against the exact region, and how their agreement is counted."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -48,49 +50,24 @@ def test_where_the_motion_turns_a_verdict_it_is_that_of_the_exact_rate(name: str
     assert not ((verdicts.diverges != (exact > 1)) & ~verdicts.undecided).any()
 
 
-@pytest.mark.parametrize(
-    ("scene", "name", "h", "judged"),
-    [
-        ("four_bar", "B4", 5e-3, 0.8),
-        ("slider_crank_300rpm", "RK4", 5e-3, 0.6),  # forced by millimetres at once
-    ],
-)
-@pytest.mark.slow
-def test_free_mechanisms_at_coarse_steps_give_no_wrong_verdict(scene: str, name: str, h: float, judged: float) -> None:
-    verdicts = whole_map(scene, name, h, 7)
-    assert verdicts.disagreements_beyond_band == 0
-    assert verdicts.judged >= judged * verdicts.undecided.size
-    assert (verdicts.diverges & ~verdicts.undecided).any()
-    assert (~verdicts.diverges & ~verdicts.undecided & ~verdicts.too_close).any()
-
-
 def test_agreement_is_of_what_was_judged_and_beyond_the_band_of_what_the_motion_does_not_move() -> None:
-    undecided = np.array([[False, False, False, True, False, False]])
-    made_up, nothing = (
-        compared(
-            scene=load_scene("pendulum"),
-            method=lookup("SYM"),
-            h=H,
-            run=2000,
-            alpha_hat=np.arange(6.0),
-            beta_hat=np.ones(1),
-            z_abs=np.array([[0.9, 0.9, 1.1, 1.1, 1.004, 1.02]]),
-            diverges=np.array([[False, True, True, False, False, False]]),
-            undecided=of_runs,
-            moved=np.array([[0, 0, 0, 0, 0, 0.03]]),
-        )
-        for of_runs in (undecided, np.ones_like(undecided))
+    of_map: dict[str, Any] = {"scene": load_scene("pendulum"), "method": lookup("SYM"), "h": H, "run": 2000}
+    of_map |= {"alpha_hat": np.arange(6.0), "beta_hat": np.ones(1)}
+    made_up = compared(
+        **of_map,
+        z_abs=np.array([[0.9, 0.9, 1.1, 1.1, 1.004, 1.02]]),
+        diverges=np.array([[False, True, True, False, False, False]]),
+        undecided=np.array([[False, False, False, True, False, False]]),
+        moved=np.array([[0, 0, 0, 0, 0, 0.03]]),
     )
     assert (made_up.judged, made_up.agreeing) == (5, 2)
     assert made_up.farthest_disagreement == pytest.approx(0.1)
     assert (made_up.band, made_up.too_close.sum(), made_up.disagreements_beyond_band) == (0.005, 2, 1)
-    assert (nothing.judged, nothing.farthest_disagreement) == (0, None)
 
 
 @pytest.mark.parametrize("count", [3, 60])
 def test_the_rows_are_the_whole_window_once(count: int) -> None:
-    method = lookup("SYM")
-    chunks = map_rows(load_scene("pendulum"), method, H, count)
+    chunks = map_rows(load_scene("pendulum"), lookup("SYM"), H, count)
     beta_hat = np.concatenate([rows.beta_hat for rows in chunks])
     assert len(beta_hat) == len(chunks[0].alpha_hat) == count
     assert (np.diff(beta_hat) > 0).all()
