@@ -5,7 +5,6 @@ from fractions import Fraction
 from math import sqrt
 from typing import Any
 
-import numpy as np
 import pytest
 
 from bezstab.engines.conversions import Point
@@ -41,18 +40,6 @@ def test_an_answer_is_complete_when_made() -> None:
         assert own <= {field.name for field in fields(kind)}, kind
 
 
-def test_what_is_not_asked_for_is_not_looked_for(monkeypatch: pytest.MonkeyPatch) -> None:
-    def refuse(*_: object, **__: object) -> None:
-        raise AssertionError("looked for")
-
-    monkeypatch.setattr("bezstab.feedback.choosing.choose_point", refuse)
-    assert check(SYM, **AT).instead is None
-    monkeypatch.setattr("bezstab.feedback.judgement.feedback_cost", refuse)
-    monkeypatch.setattr("bezstab.feedback.judgement.stability_margins", refuse)
-    answer = check(SYM, **AT, margins=False, cost=False)
-    assert (answer.margins, answer.cost, answer.safe) == (None, None, True)
-
-
 def test_an_answer_begins_with_its_sentence_and_is_true_where_it_is_safe() -> None:
     """RK2 at α̂ = β̂ = 1 has |z| = 1/2: 2^-10 is below a thousandth; β alone may grow by √(1 + √3)."""
     place = "α̂ = 1, β̂ = 1 (α = 50 1/s, β = 100 1/s at h = 0.01 s)"
@@ -74,36 +61,30 @@ def test_an_answer_begins_with_its_sentence_and_is_true_where_it_is_safe() -> No
     assert not bool(unsafe)
 
 
-def test_of_one_constraint_alone_nothing_is_said_to_grow_without_limit() -> None:
-    """A chain of them has other limits."""
-    answer = check(engine="brax-positional=0.5", h="1/100")
-    assert ": safe for one constraint alone. An error falls to a thousandth in 0.2 s (20 steps)." in answer.sentence
-    assert "grow" not in answer.sentence
-
-
 def test_instead_is_what_choose_gives() -> None:
     instead, chosen = check(SYM, **AT, instead=True).instead, choose(SYM)
     assert instead is not None
-    assert (instead.role, instead.goal) == ("instead", "accurate")
-    assert (instead.alpha_hat, instead.beta_hat) == (chosen.alpha_hat, chosen.beta_hat)
+    assert (instead.goal, instead.alpha_hat, instead.beta_hat) == ("accurate", chosen.alpha_hat, chosen.beta_hat)
     wanting = check(RK4, **AT, h="0.05", instead=True)
     assert wanting.instead is None
     assert "RK4: α = 0.56 ω, β = 0.83 ω, ω the rate of your motion in rad/s" in str(wanting.instead_reason)
 
 
-def all_points(engine: str, values: str, h: str, **asked: Any) -> list[CheckAnswer]:
-    """Return the answers for every point that an engine makes of its values."""
-    setup = Setup(h=Fraction(h), engine=ENGINES[engine], **asked)
+def all_points(values: str, h: str, **asked: Any) -> list[CheckAnswer]:
+    """Return the answers for every point that MuJoCo makes of its values."""
+    setup = Setup(h=Fraction(h), engine=ENGINES["mujoco"], **asked)
     given = given_feedback(setup, None, tuple(map(rational, values.split(","))))
-    return checks(methods_for((), ENGINES[engine]), given, conditions(setup), instead=True)
+    return checks(methods_for((), ENGINES["mujoco"]), given, conditions(setup))
 
 
-def test_an_engine_answers_for_every_point_that_it_takes() -> None:
-    small, large = all_points("mujoco", "-135000,-920", "0.002")  # what solimp makes of large errors is another point
-    assert (small.verdict, large.verdict) == ("converges", "diverges")
-    assert small.setting is None
-    assert small.instead is not None
-    assert "solref" in str(small.instead.setting)
+def test_an_engine_answers_for_every_point_that_it_takes_with_its_impedance_there() -> None:
+    """What solimp makes of large errors is another point; (0.2, 0.2) is neutral at d = 0.87."""
+    assert [each.verdict for each in all_points("-135000,-920", "0.002")] == ["converges", "diverges"]
+    soft, past = all_points("-720,-12,0.8,0.95", "1/60", omega=Fraction(6))
+    assert (soft.impedance, past.impedance) == (0.8, 0.95)
+    assert soft.energy_rate is not None
+    assert past.energy_rate is not None
+    assert soft.energy_rate[0] < 0 < past.energy_rate[0]
 
 
 def test_a_given_point_is_compared_with_the_least_error_where_the_motion_is_known() -> None:
@@ -112,11 +93,9 @@ def test_a_given_point_is_compared_with_the_least_error_where_the_motion_is_know
     told = check(RK4, **at).cost
     assert told
     assert (told.times_least, told.times_least_velocity, told.least_at) == (None, None, None)
-    rates: list[dict[str, Any]] = [{"omega": 10}, {"omega_h": "0.1"}]
-    for known in rates:
-        compared = check(RK4, **at, **known).cost
-        assert compared
-        assert compared.times_least == pytest.approx(4.9, rel=0.01)
+    compared = check(RK4, **at, omega=10).cost
+    assert compared
+    assert compared.times_least == pytest.approx(4.9, rel=0.01)
 
 
 def test_the_largest_step_of_alpha_and_beta_ends_where_they_do() -> None:
@@ -161,29 +140,6 @@ def test_a_scene_that_the_feedback_pumps_is_not_safe(name: str, safe: bool) -> N
     assert ("breaks down after about 27.8 s" in answer.sentence) is not safe
 
 
-@pytest.mark.parametrize(
-    ("engine", "sign"), [("chipmunk", -1), ("box2d-v2", -1), ("pbd=1", -1), ("mujoco=-720,-60", 1)]
-)
-def test_an_engine_says_what_its_step_does_to_a_spinning_body(engine: str, sign: int) -> None:
-    answer = check(engine=engine, h="1/60", omega=6)
-    assert answer.energy_rate is not None
-    assert np.sign(answer.energy_rate[0]) == sign
-    assert f"{'gains' if sign > 0 else 'loses'}" in answer.sentence
-    if engine == "box2d-v2":  # minus h omega^2
-        assert answer.energy_rate[0] == pytest.approx(-0.6, rel=1e-3)
-
-
-def test_mujocos_impedance_counts_at_each_of_its_points() -> None:
-    """(0.2, 0.2) pumps at d = 0.95 and brakes at 0.8: neutral at 0.87."""
-    soft, past = all_points("mujoco", "-720,-12,0.8,0.95", "1/60", omega=Fraction(6))
-    assert (soft.impedance, past.impedance) == (0.8, 0.95)
-    assert soft.energy_rate is not None
-    assert past.energy_rate is not None
-    assert soft.energy_rate[0] < 0 < past.energy_rate[0]
-    assert check(engine="mujoco", h="1/60", omega=6).impedance == 0.9
-    assert check(engine="chipmunk", h="1/60", omega=6).impedance is None
-
-
 def test_a_run_says_that_it_has_no_soft_impedance() -> None:
     words = "The run is of hard constraints: an impedance d of 0.95 brakes besides."
     soft, hard = (
@@ -217,11 +173,9 @@ def test_an_engine_with_another_integrator_is_judged_by_that_integrator() -> Non
     ("name", "alpha", "beta", "h", "meant"),
     [
         ("SYM", "50", "50.5", None, True),
-        ("SYM", "1.5", "0.9", None, False),
         ("SYM", "4", "3", None, False),  # unstable, but no numbers of 1/s
         ("implicit-euler", "50", "50.5", None, False),  # stable as typed
         ("RK4", "5", "5", "1/100", True),  # a thousandth in 1.4 s
-        ("RK4", "1", "1", "1/100", True),  # stable as typed, and in 6.9 s
         ("RK4", "1/2", "1/10", "1/100", False),  # in 700 s: a feedback that nobody has
         ("RK4", "5", "5", "1", False),  # unstable in 1/s, too
     ],
@@ -240,9 +194,3 @@ def test_points_at_the_ends_of_float64_are_judged_in_silence(size: str) -> None:
     answer = check("implicit-euler", alpha_hat=size, beta_hat=size)
     assert answer.safe
     assert abs(answer.pole) == pytest.approx(0.5 if size == "1e150" else 1)
-
-
-def test_what_is_printed_without_all_is_at_most_eight_lines() -> None:
-    brief = [column.heading for column in columns.CHOSEN if column.brief]
-    assert "stable from sweeps" in brief  # of an engine that sweeps over many: it has no factors
-    assert len(set(brief) - {"stable from sweeps"}) <= 8

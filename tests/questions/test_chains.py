@@ -1,61 +1,18 @@
-from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
-from typing import ClassVar, cast
 
 import pytest
-import sympy as sp
 
 from bezstab.engines.engine_list import ENGINES
 from bezstab.feedback.checking import check
-from bezstab.mechanism import equations
 from bezstab.mechanism.scene_files import parse_scene
-from bezstab.mechanism.scenes import Between, Body, Distance, Joint, Scene
+from bezstab.mechanism.scenes import Scene
 from bezstab.questions.chains import SweptConstraints, constraints_of
 from bezstab.stability.sweeps import chain, swept_growth
 
 CHIPMUNK = ENGINES["chipmunk"]
 DEFAULT = (Fraction("0.9") ** 60,)
 H = Fraction(1, 240)
-
-
-@dataclass(frozen=True)
-class Slider(Between):
-    """A joint of nobody's: the second body slides along the first one's x axis and does not turn: two constraints."""
-
-    kind: ClassVar = "slider"
-
-
-def test_a_joint_is_known_by_its_constraints_alone(monkeypatch: pytest.MonkeyPatch) -> None:
-    """How many it has is said where they are, once: sweeps go over all of them, and each has a name."""
-    known = equations._constraints
-
-    def constraints_with_sliders(
-        joint: Joint, frames: dict[str, equations.Frame], symbol_of: dict[str, sp.Symbol]
-    ) -> list[sp.Expr]:
-        if isinstance(joint, Slider):
-            first, second = (frames[name] for name in joint.bodies)
-            return [second.y - first.y, second.theta - first.theta]
-        return known(joint, frames, symbol_of)
-
-    monkeypatch.setattr(equations, "_constraints", constraints_with_sliders)
-    block, bob = (Body(name, ("x", "y", "theta"), 1.0, 1.0, {}, (0.0, 0.0)) for name in ("block", "bob"))
-    nowhere = ((0.0, 0.0), (0.0, 0.0))
-    joints = (Slider(("ground", "block"), nowhere), Distance(("block", "bob"), ((0.0, 0.0), (-1.0, 0.0)), 1.0))
-    at_rest = dict.fromkeys(("block.x", "block.y", "block.theta", "bob.y", "bob.theta"), 0.0)
-    position, velocity = {**at_rest, "bob.x": 2.0}, {**at_rest, "bob.x": 0.0}
-    scene = Scene("slides", (0, 0), (block, bob), cast("tuple[Joint, ...]", joints), (), (), position, velocity, {})
-    found = constraints_of(scene, Fraction(1))
-    assert found.joints == (0, 0, 1)
-    assert found.inverse_masses.shape == (3, 3)
-    assert equations.compiled_mechanism(scene).constraint_names == (
-        "1 of joint 1 (slider, ground and block)",
-        "2 of joint 1 (slider, ground and block)",
-        "joint 2 (distance, block and bob)",
-    )
-    answer = check(engine="chipmunk", h="1/60", scene=scene)
-    assert answer.swept
-    assert answer.swept_over == "slides at its start, with its 3 constraints"
 
 
 def links(bodies: int, ratio: float) -> Scene:
