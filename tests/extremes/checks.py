@@ -20,6 +20,7 @@ from bezstab.mechanism.observation import observe
 from bezstab.mechanism.programs import even_steps
 from bezstab.mechanism.runner import march, simulate
 from bezstab.mechanism.scene_files import load_scene
+from bezstab.mechanism.simulation import simulated
 from bezstab.mechanism.start import constraint_errors, initial_state
 from bezstab.methods.registry import lookup
 from bezstab.runs.kicks import kicked_fates
@@ -103,8 +104,9 @@ def step(name: str, times: float) -> Found:
 
 def passage(h: float) -> Found:
     """The crank turns through the singular angle: the run names the step in which it came nearest, or fails."""
-    mechanism = compiled_mechanism(load_scene("slider_crank_equal"))
-    run = simulate(mechanism, lookup("B4"), h, 2.0, feedback_gains(*POINT, h))
+    run = simulate(
+        compiled_mechanism(load_scene("slider_crank_equal")), lookup("B4"), h, 2.0, feedback_gains(*POINT, h)
+    )
     if run.failure:
         return Found(run.failure, 1.0)
     passed = float(np.interp(SINGULAR_ANGLE, run.q[:, 0], run.t))
@@ -116,13 +118,9 @@ def speed(rpm: int) -> Found:
     """However fast the crank turns, c stays within what truncation errors of order three make of it."""
     h, rate = 1e-4, rpm * np.pi / 30
     mechanism = compiled_mechanism(replace(load_scene("slider_crank"), velocity={"crank.theta": rate}))
-    gains = feedback_gains(*POINT, h)
-    run = simulate(mechanism, lookup("B4"), h, 0.5, gains)
-    if run.failure:
-        return Found(run.failure, -1.0)
-    c = float(observe(mechanism, run.t, run.q, run.v, *gains).c_max)
+    run = simulated(mechanism, lookup("B4"), h=h, duration=0.5, alpha_hat=POINT[0], beta_hat=POINT[1])
     allowed = 100 * (h * max(rate, 10.0)) ** 3  # m: local errors of order three, amplified by 1 / beta_hat = 25
-    return Found(f"|c| at most {c:.0e} m", 1 - c / allowed)
+    return Found(run.failure or f"|c| at most {run.c_max:.0e} m", -1.0 if run.failure else 1 - run.c_max / allowed)
 
 
 def mass_ratio(ratio: float) -> Found:

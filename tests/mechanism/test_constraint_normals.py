@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 
 from bezstab.errors import InputError
-from bezstab.mechanism.constraint_normals import constraint_motion, turned_across, turning_normals
+from bezstab.mechanism.constraint_normals import constraint_motion, turning_normals
 from bezstab.mechanism.equations import compiled_mechanism
-from bezstab.mechanism.motions import motion
 from bezstab.mechanism.scene_files import load_scene, parse_scene
 from tests.mechanism.test_scenes import pendulum
 
@@ -25,14 +24,6 @@ def test_theory_gives_the_largest_rates() -> None:
     assert four_bar.kappa / OMEGA == pytest.approx(0.5, abs=0.05)
     andrews = turning_normals(compiled_mechanism(load_scene("andrews")), 0.03)
     assert andrews.kappa == pytest.approx(281, rel=0.01)  # 1/s, as its benchmark page says
-
-
-def test_of_a_mass_on_a_circle_what_lies_along_it_comes_across_as_its_normal_turns() -> None:
-    """C_q = r / l turns at v / l: the velocity itself, all along the circle, gives v^2 / l, and r gives nothing."""
-    mechanism = compiled_mechanism(load_scene("pendulum"))
-    along = motion(mechanism, 1.0)
-    assert turned_across(mechanism, along, along.v)[:, 0] == pytest.approx((along.v**2).sum(axis=1), rel=1e-9)
-    assert np.abs(turned_across(mechanism, along, along.q)).max() < 1e-9  # the motion's own error
 
 
 def test_a_driven_crank_moves_its_constraints_about_as_fast_as_it_turns() -> None:

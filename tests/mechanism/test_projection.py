@@ -82,14 +82,6 @@ def test_the_cost_is_counted(name: str) -> None:
     assert implicit(method) or run.evaluations == count * evaluations(method)
 
 
-def test_more_iterations_come_closer() -> None:
-    """Each iteration of Newton's method squares what is left."""
-    at = scene("driven_four_bar"), lookup("SYM"), 0.02, 1.0
-    once, twice = (abs(projected(*at, after).c).max() for after in (ONCE, TWICE))
-    assert once > 1e-7
-    assert twice < once**1.5
-
-
 def test_a_position_from_which_newtons_method_finds_none_ends_a_run() -> None:
     """The crank is driven half a revolution on in a step; so many iterations as are asked for are no promise."""
     mechanism = scene("driven_four_bar")
