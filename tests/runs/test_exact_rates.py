@@ -45,30 +45,34 @@ def test_a_run_without_a_driver_has_the_rate_of_its_constraint_errors() -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "count", "at", "apart"),
+    ("name", "count", "at", "apart", "moved"),
     [
-        ("AB4", 203, (0.3, 0.115), 3e-8),
-        ("AB4", 203, (0.05, 0.01), 3e-8),
-        ("AB2", 203, (0.54165581, 0.68299639), 1e-5),  # truncation errors give a run a motion of its own
+        ("AB4", 203, (0.3, 0.115), 3e-8, 3e-7),
+        ("AB4", 203, (0.05, 0.01), 3e-8, 3e-7),
+        ("AB2", 203, (0.54165581, 0.68299639), 1e-5, 1e-4),  # truncation errors give a run a motion of its own
         # implicit: what truncation errors leave falls with the order
-        ("trapezoid", 60, (0.03, 0.03), 2e-5),
-        ("sdirk2", 60, (0.03, 0.03), 1e-5),
-        ("gauss4", 60, (0.03, 0.03), 3e-8),
+        ("trapezoid", 60, (0.03, 0.03), 2e-5, 0.0),
+        ("sdirk2", 60, (0.03, 0.03), 1e-5, 0.0),
+        ("gauss4", 60, (0.03, 0.03), 3e-8, 0.0),
     ],
 )
 @pytest.mark.slow
-def test_disturbed_runs_show_the_exact_rate(name: str, count: int, at: tuple[float, float], apart: float) -> None:
-    """Beside the motion that a run makes, found by the runner alone."""
-    shows_the_rate(four_bar(), name, count, at, apart)
+def test_disturbed_runs_show_the_exact_rate(
+    name: str, count: int, at: tuple[float, float], apart: float, moved: float
+) -> None:
+    """Beside the motion that a run makes, found by the runner alone; `moved`: at least so far from at rest."""
+    shows_the_rate(four_bar(), name, count, at, apart, moved)
 
 
 def test_drivers_that_turn_and_oscillate_have_a_rate_over_their_common_period() -> None:
-    shows_the_rate(swinging_four_bar(2 * np.pi, 4 * np.pi), "AB4", 60, (0.3, 0.115), 1e-5)
+    shows_the_rate(swinging_four_bar(2 * np.pi, 4 * np.pi), "AB4", 60, (0.3, 0.115), 1e-5, 1e-3)
 
 
-def shows_the_rate(mechanism: Mechanism, name: str, count: int, at: tuple[float, float], apart: float) -> None:
+def shows_the_rate(
+    mechanism: Mechanism, name: str, count: int, at: tuple[float, float], apart: float, moved: float
+) -> None:
     found = runner_motion(mechanism, lookup(name), count, *at)
     assert found is not None
     (exact,) = exact_rates(mechanism, lookup(name), 1 / count, np.array(at[:1]), np.array(at[1:]), 1.0)
     assert exact == pytest.approx(found[1], abs=apart)
-    assert abs(spectral_radius(lookup(name), *at) - exact) > 10 * apart
+    assert abs(spectral_radius(lookup(name), *at) - exact) > moved
