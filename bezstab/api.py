@@ -12,7 +12,7 @@ from fractions import Fraction
 
 from numpy.typing import ArrayLike
 
-from bezstab.arguments import Number, exact_number, in_keywords, plane_point
+from bezstab.arguments import Number, exact_or_none, in_keywords, plane_point
 from bezstab.methods.registry import method as method_named
 from bezstab.methods.schemes import Method
 from bezstab.methods.schur import Verdict
@@ -244,11 +244,11 @@ def feedback_cost(
     The test equation of Prothero and Robinson, Math. Comp. 28, 1974.
     """
     motion = motion_of(
-        exact_number(omega, "omega"),
+        exact_or_none(omega, "omega"),
         None,
         Fraction(1),
-        exact_number(h, "h"),
-        omega_h=exact_number(omega_h, "omega_h"),
+        exact_or_none(h, "h"),
+        omega_h=exact_or_none(omega_h, "omega_h"),
     )
     first, second = plane_point(alpha_hat, beta_hat, alpha, beta, h)
     return feedback_costs.feedback_cost(method_named(method), first, second, motion.omega_h)

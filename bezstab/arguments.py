@@ -4,7 +4,7 @@ import re
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from fractions import Fraction
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 
@@ -14,9 +14,6 @@ from bezstab.units import to_dimensionless
 
 Number = int | float | str | Fraction
 """A number that is read exactly: a float as the decimal it shows, a text as a decimal or a fraction such as "6/11"."""
-
-Missing = TypeVar("Missing", bound=None)
-"""None, of a number that may be missing."""
 
 
 @contextmanager
@@ -33,13 +30,8 @@ def _keyword(option: re.Match[str]) -> str:
     return {"time": "duration", "filter": "filter_seconds"}.get(option[1], option[1].replace("-", "_"))
 
 
-def exact_number(value: Number | Missing, name: str) -> Fraction | Missing:
-    """Return one number exactly as it is written, a float as the decimal it shows; None where it is missing.
-
-    InputError for what is none.
-    """
-    if value is None:
-        return value
+def exact_number(value: Number, name: str) -> Fraction:
+    """Return one number exactly as it is written, a float as the decimal it shows; InputError for what is none."""
     if isinstance(value, np.ndarray | np.generic) and value.ndim == 0 and not isinstance(value, np.ma.MaskedArray):
         value = value.item()
     if isinstance(value, bool) or not isinstance(value, int | float | str | Fraction):
@@ -50,9 +42,14 @@ def exact_number(value: Number | Missing, name: str) -> Fraction | Missing:
         raise InputError(f"{name}: {error}") from None
 
 
-def whole_number(value: int | Missing, name: str) -> int | Missing:
-    """Return a whole number, or None where it is missing; InputError for what is none."""
-    if value is not None and (isinstance(value, bool) or not isinstance(value, int)):
+def exact_or_none(value: Number | None, name: str) -> Fraction | None:
+    """Return the same of a number that may be missing."""
+    return None if value is None else exact_number(value, name)
+
+
+def whole_number(value: int, name: str) -> int:
+    """Return a whole number; InputError for what is none."""
+    if isinstance(value, bool) or not isinstance(value, int):
         raise InputError(f"{name} = {shown(value)}: expected a whole number")
     return value
 

@@ -8,7 +8,7 @@ from fractions import Fraction
 
 import numpy as np
 
-from bezstab.arguments import Number, exact_number, in_keywords, whole_number
+from bezstab.arguments import Number, exact_number, exact_or_none, in_keywords, whole_number
 from bezstab.chains.links import Links, Load, links
 from bezstab.engines.conversions import Engine
 from bezstab.engines.engine_list import engine_and_values
@@ -122,7 +122,7 @@ def chain(
         Rounding leaves open whether errors decay.
     """
     named, values = engine_and_values(engine)
-    pulls: Load | None = "gravity" if load == "gravity" else exact_number(load, "load")
+    pulls: Load | None = "gravity" if load == "gravity" else exact_or_none(load, "load")
     whole = links(
         whole_number(bodies, "bodies"),
         exact_number(mass_ratio, "mass_ratio"),
@@ -131,7 +131,7 @@ def chain(
         motor=None if motor is None else motor_named(motor),
         load=pulls,
     )
-    sweeps = whole_number(iterations, "iterations")
+    sweeps = None if iterations is None else whole_number(iterations, "iterations")
     return judge_chain(named, values, exact_number(h, "h"), whole, sweeps, pulls)
 
 

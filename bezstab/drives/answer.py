@@ -13,7 +13,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from bezstab.arguments import Number, exact_number, in_keywords, whole_number
+from bezstab.arguments import Number, exact_number, exact_or_none, in_keywords, whole_number
 from bezstab.drives.held_torque import dominant_pole, verdict
 from bezstab.drives.limits import Limits, Stretch, limits
 from bezstab.engines.drives import DRIVE_METHODS, FRESH, Drive, Timing, timing_of
@@ -151,7 +151,7 @@ def drive(
     )
     gains = Drive(*(exact_number(gain, name) for gain, name in zip((kp, kd, inertia, ki), GAINS, strict=True)))
     named = method if isinstance(method, Method) else lookup(method)
-    return judge_drive(gains, step, named, timing, exact_number(load, "load"))
+    return judge_drive(gains, step, named, timing, exact_or_none(load, "load"))
 
 
 def rates(

@@ -111,7 +111,7 @@ def check(
     """
     named, values = (None, None) if engine is None else engine_and_values(engine)
     setup = setup_in_python(
-        named, scene, spread, h=h, omega=omega, omega_h=omega_h, speed=speed, duration=duration, load=load
+        named, scene, speed, spread, h=h, omega=omega, omega_h=omega_h, duration=duration, load=load
     )
     point = plane_point(alpha_hat, beta_hat, alpha, beta, h, needed=named is None)
     given = given_feedback(setup, point, values, as_typed=as_typed)

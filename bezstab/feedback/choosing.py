@@ -6,7 +6,7 @@ method, Wish (a goal), Conditions   →   choose_answer   →   ChooseAnswer
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
-from bezstab.arguments import Number, exact_number, in_keywords
+from bezstab.arguments import Number, exact_or_none, in_keywords
 from bezstab.engines.conversions import READ_BACK, Curve, Engine
 from bezstab.engines.engine_list import engine_named
 from bezstab.errors import InputError, NumericalError
@@ -177,10 +177,10 @@ def choose(
     """
     named = None if engine is None else engine_named(engine)
     setup = setup_in_python(
-        named, scene, spread, h=h, h_max=h_max, omega=omega, omega_h=omega_h, speed=speed, duration=duration, load=load
+        named, scene, speed, spread, h=h, h_max=h_max, omega=omega, omega_h=omega_h, duration=duration, load=load
     )
     given = () if method is None else (method_named(method),)
-    within, at_most = exact_number(settle, "settle"), exact_number(sag, "sag")
+    within, at_most = exact_or_none(settle, "settle"), exact_or_none(sag, "sag")
     methods, wish, asked = asked_to_choose(given, setup, goal, settle=within, equal=equal, sag=at_most)
     return choose_answer(methods[0], wish, asked, margins=margins, cost=cost, trades=trades)
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
-from bezstab.arguments import Number, exact_number, real_number
+from bezstab.arguments import Number, exact_number, exact_or_none, real_number
 from bezstab.engines.conversions import Applied, Engine, Point
 from bezstab.errors import InputError
 from bezstab.mechanism.constraint_normals import TurningNormals
@@ -67,12 +67,17 @@ class Setup:
 
 
 def setup_in_python(
-    engine: Engine | None, scene: str | Scene | None, spread: Number, **numbers: Number | None
+    engine: Engine | None, scene: str | Scene | None, speed: Number, spread: Number, **others: Number | None
 ) -> Setup:
     """Return a setup from the arguments of a function in Python, its numbers read exactly."""
-    exact: dict[str, Any] = {name: exact_number(value, name) for name, value in numbers.items()}
-    named = None if scene is None else scene_named(scene)
-    return Setup(engine=engine, scene=named, spread=real_number(spread, "spread"), **exact)
+    exact: dict[str, Any] = {name: exact_or_none(value, name) for name, value in others.items()}
+    return Setup(
+        engine=engine,
+        scene=None if scene is None else scene_named(scene),
+        speed=exact_number(speed, "speed"),
+        spread=real_number(spread, "spread"),
+        **exact,
+    )
 
 
 @dataclass(frozen=True)

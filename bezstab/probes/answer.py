@@ -9,7 +9,7 @@ from fractions import Fraction
 
 from numpy.typing import ArrayLike
 
-from bezstab.arguments import Number, exact_number, in_keywords, plane_point, whole_number
+from bezstab.arguments import Number, exact_or_none, in_keywords, plane_point, whole_number
 from bezstab.engines.conversions import Point
 from bezstab.errors import InputError, shown
 from bezstab.methods.registry import lookup
@@ -167,8 +167,8 @@ def probe(
         plane_point(alpha_hat, beta_hat, alpha, beta, h, needed=False),
         tuple(map(method_named, methods or ())),
         whole_number(every, "every"),
-        exact_number(h, "h"),
-        exact_number(turning, "turning"),
+        exact_or_none(h, "h"),
+        exact_or_none(turning, "turning"),
     )
     c = real_array(c, "c")
     minus = None if minus is None else real_array(minus, "minus")

@@ -12,7 +12,7 @@ from itertools import chain
 import numpy as np
 from numpy.typing import NDArray
 
-from bezstab.arguments import Number, exact_number, in_keywords, plane_point
+from bezstab.arguments import Number, exact_number, exact_or_none, in_keywords, plane_point
 from bezstab.engines.conversions import Point
 from bezstab.errors import InputError
 from bezstab.mechanism.compiled_stepping import runs_compiled
@@ -174,7 +174,7 @@ def tradeoff(
         [exact_number(step, "steps") for step in steps],
         duration=exact_number(duration, "duration"),
         numbers=plane_point(alpha_hat, beta_hat, None, None, None, needed=False),
-        omega=exact_number(omega, "omega"),
+        omega=exact_or_none(omega, "omega"),
         stabilise=stabilise,
         against=against,
         tolerance=exact_number(tolerance, "tolerance"),

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from itertools import groupby
 
-from bezstab.arguments import Number, exact_number, in_keywords
+from bezstab.arguments import Number, exact_number, exact_or_none, in_keywords
 from bezstab.engines.conversions import Engine, Point
 from bezstab.engines.engine_list import engine_and_values
 from bezstab.errors import InputError
@@ -114,7 +114,9 @@ def steps(
     named, values = (None, None) if engine is None else engine_and_values(engine)
     given = () if method is None else (method if isinstance(method, Method) else lookup(method),)
     asked = Steps(exact_number(h_min, "h_min"), exact_number(h_max, "h_max"), hold)
-    found = answers(given, asked, exact_number(alpha, "alpha"), exact_number(beta, "beta"), engine=named, values=values)
+    found = answers(
+        given, asked, exact_or_none(alpha, "alpha"), exact_or_none(beta, "beta"), engine=named, values=values
+    )
     return next((answer for answer in found if not answer), found[0])
 
 

@@ -13,15 +13,16 @@ from bezstab.errors import InputError
 from bezstab.feedback import columns
 from bezstab.feedback.checking import CheckAnswer, check, checks
 from bezstab.feedback.choosing import ChooseAnswer
-from bezstab.feedback.conditions import Setup, conditions, given_feedback
+from bezstab.feedback.conditions import Conditions, Given, Setup, conditions, given_feedback
 from bezstab.feedback.judgement import Judgement
-from bezstab.feedback.largest_steps import largest_step, step_answer
+from bezstab.feedback.largest_steps import StepAnswer, largest_step, step_answer
 from bezstab.feedback.poles import PoleAnswer
 from bezstab.methods.registry import lookup
 from bezstab.motion.spinning_bodies import spin_change
 from bezstab.questions.energy import engine_energy_rate
 from bezstab.questions.meant import meant_in_seconds
 from bezstab.questions.methods import methods_for
+from bezstab.questions.scene_runs import SceneRun
 from bezstab.rationals import rational
 from bezstab.stability.choices import Choice, choose
 from tests.reference.engine_steps import STEPS, matrix
@@ -34,7 +35,7 @@ AT: dict[str, Any] = {"alpha_hat": ONE, "beta_hat": Fraction(1, 2)}
 
 def test_an_answer_is_complete_when_made() -> None:
     """Nothing of it is computed when it is touched: no property, nothing cached, nothing lazy."""
-    for kind in (Choice, Judgement, CheckAnswer, ChooseAnswer, PoleAnswer):
+    for kind in (Choice, Judgement, CheckAnswer, ChooseAnswer, PoleAnswer, StepAnswer, Conditions, Given, SceneRun):
         assert is_dataclass(kind)
         own = {name for base in kind.__mro__[:-1] for name in vars(base) if not name.startswith("_")}
         assert own <= {field.name for field in fields(kind)}, kind
@@ -113,6 +114,8 @@ def test_the_largest_step_of_alpha_and_beta_ends_where_they_do() -> None:
         ({}, "a point is given as alpha_hat= and beta_hat="),
         ({**AT, "h": 0}, "h = 0 s: expected"),
         ({**AT, "alpha": 1}, "a point is given as"),
+        ({**AT, "spread": None}, "spread = None: expected one real number"),
+        ({**AT, "speed": None}, "speed = None: expected one real number"),
         ({**AT, "engine": "mujoco=0.02,1", "h": 1}, "engine takes the place of alpha, beta"),
     ],
 )
