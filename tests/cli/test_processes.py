@@ -5,7 +5,6 @@ import random
 import resource
 import shutil
 import signal
-import subprocess
 import time
 from functools import partial
 from pathlib import Path
@@ -106,43 +105,36 @@ def test_a_closed_pipe_is_no_error_to_read_and_no_verdict(tmp_path: Path) -> Non
         assert source.wait(timeout=60) == 141
 
 
-SIGNALS = {signal.SIGINT: ("interrupted", 130), signal.SIGTERM: ("terminated", 143), signal.SIGHUP: ("hung up", 129)}
-
-
 def chunks_in(path: Path) -> set[Path]:
     """Return the parts of runs that are kept in a folder."""
     return set(path.glob("*.chunks/[0-9]*.joblib"))
 
 
-def check_stopped(number: signal.Signals, running: "subprocess.Popen[bytes]", path: Path, kept: set[Path]) -> None:
-    """Assert that a run which was told to end has: by its line and status, or because it was just finished."""
-    _, errors = running.communicate(timeout=60)
-    wait_until(lambda: not group_members(running.pid))  # no worker is left
-    word, status = SIGNALS[number]
-    if running.returncode != 0:
-        assert running.returncode == status
-        *before, last = errors.decode().splitlines()
-        assert last == f"bezstab: {word}"
-        assert not [line for line in before if "--resume goes on" not in line and not line.startswith("wrote ")]
-        assert bool(chunks_in(path) - kept) <= bool(before)  # it says so if it has added to them
-    assert not [name for name in files_below(path) if Path(name).name.startswith(".")]
-
-
-@pytest.mark.parametrize(("number", "to_all"), [(signal.SIGINT, True), (signal.SIGTERM, False)])
+@pytest.mark.parametrize(
+    ("number", "said", "to_all"), [(signal.SIGINT, "interrupted", True), (signal.SIGTERM, "terminated", False)]
+)
 @pytest.mark.slow
 def test_a_signal_ends_a_run_at_any_moment_and_resume_goes_on(
-    number: signal.Signals, to_all: bool, whole: bytes, tmp_path: Path
+    number: signal.Signals, said: str, to_all: bool, whole: bytes, tmp_path: Path
 ) -> None:
     """To all: as a terminal sends Ctrl-C, to the workers too."""
-    moments = random.Random(str(number))
+    moments = random.Random(said)
     for most in (0.02, 0.5, 2.0):  # s after its start, at random
         kept = chunks_in(tmp_path)
         with started(*SMALL[:-1], "2", "--resume", cwd=tmp_path) as running:
-            wait_until(lambda: catches(signal.SIGHUP, running.pid), running)  # until then Python alone starts
+            wait_until(partial(catches, signal.SIGHUP, running.pid), running)  # until then Python alone starts
             time.sleep(moments.uniform(0, most))
             if running.poll() is None:
                 os.killpg(running.pid, number) if to_all else running.send_signal(number)
-            check_stopped(number, running, tmp_path, kept)
+            _, errors = running.communicate(timeout=60)
+            wait_until(partial(lambda leader: not group_members(leader), running.pid))  # no worker is left
+        if running.returncode:  # else it had just finished
+            assert running.returncode == 128 + number
+            *before, last = errors.decode().splitlines()
+            assert last == f"bezstab: {said}"
+            assert all("--resume goes on" in line or line.startswith("wrote ") for line in before)
+            assert bool(chunks_in(tmp_path) - kept) <= bool(before)  # it says so if it has added to them
+        assert not [name for name in files_below(tmp_path) if Path(name).name.startswith(".")]
     assert_resumes_to(whole, tmp_path)
 
 
