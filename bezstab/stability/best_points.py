@@ -29,7 +29,7 @@ from bezstab.stability.arrays import DOUBLE, ROUNDING, SAME, FloatArray
 from bezstab.stability.closed_loop import converges, largest_at_mu, mu_table, poles, spectral_radius
 from bezstab.stability.root_finding import roots_of_rows
 from bezstab.stability.searches import lowest_minima, zoom_on_minimum
-from bezstab.stability.stretches import ALONG_BETA, float_table, paths
+from bezstab.stability.stretches import ALONG_BETA, float_table, middle_of, paths
 
 SIZES: FloatArray = np.geomspace(1e-4, 1e4, 129)  # of alpha h, beta h: 15 % from one to the next
 FAR_OUT = 1e3  # of beta h: what is there as low as the limit comes near it
@@ -236,10 +236,8 @@ def _narrowed(method: Method, alpha_hat: float, beta_hat: float, level: float, r
             if stable.path.size:
                 _, first = np.unique(stable.path, return_index=True)
                 middle = int(first[len(first) // 2])
-                alpha_hat, beta_hat = (
-                    float(lines[stable.path[middle]]),
-                    _inside(stable.low[middle], stable.high[middle]),
-                )
+                alpha_hat = float(lines[stable.path[middle]])
+                beta_hat = float(middle_of(stable.low[middle], stable.high[middle]))
                 lines, fall, level = lines[stable.path[first]], 2 * fall, tried
                 least = level
             else:
@@ -254,10 +252,6 @@ def _narrowed(method: Method, alpha_hat: float, beta_hat: float, level: float, r
     ):
         return found[0], abs(found[1])
     return (alpha_hat if alpha_hat > ROUNDING else 0.0, beta_hat), least
-
-
-def _inside(low: float, high: float) -> float:
-    return (low + high) / 2 if high < math.inf else 2 * low + 1
 
 
 def _far_limit(method: Method) -> FarLimit:

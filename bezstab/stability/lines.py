@@ -27,7 +27,7 @@ from numpy.polynomial import Legendre
 from bezstab.errors import NumericalError
 from bezstab.methods.schemes import Method
 from bezstab.stability.arrays import FloatArray
-from bezstab.stability.stretches import ALONG_ALPHA, ALONG_BETA, paths
+from bezstab.stability.stretches import ALONG_ALPHA, ALONG_BETA, middle_of, paths
 
 FIRST_LINES: FloatArray = np.concatenate([[1e-12], np.geomspace(1e-5, 1e6, 177)])
 """alpha h and beta h of the method's own step, 15 % apart: a region from the first on begins at zero, one that is there
@@ -73,8 +73,7 @@ class Strip:
     def middle(self) -> tuple[float, float]:
         """Return the place of the middle line, and the middle of the stretch there."""
         line = len(self.places) // 2
-        low, high = self.ends[line].tolist()
-        return self.places[line], (low + high) / 2 if high < np.inf else 2 * low + 1
+        return self.places[line], float(middle_of(*self.ends[line]))
 
 
 class MoreStripsError(Exception):

@@ -60,11 +60,8 @@ def _positive(polynomial: PolyElement) -> bool:
 def _nowhere_negative(polynomial: PolyElement) -> bool:
     """Return whether a polynomial in one variable is >= 0 for all positive ones: no simple crossing of zero there."""
     crossing = [factor for factor, multiplicity in polynomial.factor_list()[1] if multiplicity % 2]
-    return polynomial.LC > 0 and not any(factor.const() and _has_positive_root(factor) for factor in crossing)
-
-
-def _has_positive_root(polynomial: PolyElement) -> bool:
-    return bool(sp.Poly(polynomial.as_expr(), domain=sp.QQ).count_roots(0, None))
+    positive_roots = (sp.Poly(each.as_expr(), domain=sp.QQ).count_roots(0, None) for each in crossing if each.const())
+    return polynomial.LC > 0 and not any(positive_roots)
 
 
 def crossing_polynomials(coefficients: Sequence[PolyElement]) -> list[PolyElement]:

@@ -37,7 +37,7 @@ from math import comb, inf
 
 import numpy as np
 from numpy.polynomial.polynomial import polymul, polypow, polyval
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from bezstab.errors import NumericalError
 from bezstab.methods.derivation import closed_loop_table
@@ -134,7 +134,7 @@ class Paths:
         places = np.pad(self.places(), ((0, 0), (1, 0)))
         ends = np.pad(places, ((0, 0), (0, 1)), constant_values=inf)
         low, high = ends[:, :-1], ends[:, 1:]
-        between = np.where(np.isinf(high), 2 * low + 1, (low + high) / 2)
+        between = middle_of(low, high)
         stable = self.within(between) & np.isfinite(low)
         turns = np.diff(np.pad(stable, ((0, 0), (1, 1))).astype(int), axis=1)
         path, first = np.nonzero(turns == 1)
@@ -165,6 +165,12 @@ class Paths:
             end[wrong] = bisected_ends
         found[asked] = end
         return found
+
+
+def middle_of(low: ArrayLike, high: ArrayLike) -> FloatArray:
+    """Return a point between two ends, of which the upper one may be infinite."""
+    low, high = np.asarray(low), np.asarray(high)
+    return np.where(np.isinf(high), 2 * low + 1, (low + high) / 2)
 
 
 def paths(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray, powers: Powers, level: float = 1.0) -> Paths:
