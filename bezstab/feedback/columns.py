@@ -7,14 +7,14 @@ from dataclasses import replace
 from bezstab.feedback.checking import CheckAnswer
 from bezstab.feedback.choosing import ChooseAnswer
 from bezstab.feedback.judgement import Judgement
-from bezstab.feedback.largest_steps import StepAnswer
+from bezstab.feedback.largest_steps import StepAnswer, limit_words
 from bezstab.feedback.poles import PoleAnswer
 from bezstab.feedback.sentences import sag_words
 from bezstab.methods.schemes import implicit
 from bezstab.methods.steady_errors import velocity_lag
 from bezstab.questions.chains import SweptAnswer
 from bezstab.questions.scene_runs import SceneRun
-from bezstab.rationals import rounded_down, typed_number
+from bezstab.rationals import typed_number
 from bezstab.show.cells import between, modulus_words, up_to
 from bezstab.show.columns import METHOD, POINT, POLE, RATES, SENTENCE, Column, of_part
 from bezstab.stability.feedback_costs import FeedbackCost
@@ -273,7 +273,7 @@ STEPS: Sequence[Column[StepAnswer]] = (
         lambda answer: answer.h_limit,
         "step up to which every step is stable, 0 where small ones are not; null where any is",
         "s",
-        lambda limit: UNLIMITED if math.isinf(limit) else rounded_down(limit, 4) if limit else "none",
+        lambda limit: UNLIMITED if math.isinf(limit) else limit_words(limit) if limit else "none",
         brief=True,
     ),
     SENTENCE,

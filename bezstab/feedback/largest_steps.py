@@ -39,9 +39,14 @@ def step_answer(method: Method, alpha: Fraction | float, beta: Fraction | float,
     """
     safe = "not safe at small steps"
     if h_limit:
-        safe = "safe at any h" if math.isinf(h_limit) else f"safe up to h = {rounded_down(h_limit, 4)} s"
+        safe = "safe at any h" if math.isinf(h_limit) else f"safe up to h = {limit_words(h_limit)} s"
     sentence = f"α = {float(alpha):.6g} 1/s, β = {float(beta):.6g} 1/s: {safe}."
     return StepAnswer(method, float(alpha), float(beta), h_limit, h_limit > 0, sentence)
+
+
+def limit_words(h_limit: float) -> str:
+    """Return such a step (s) to four digits, rounded down; it is known to a part in 1e9, so 0.04 is not 0.03999."""
+    return rounded_down(float(f"{h_limit:.9g}"), 4)
 
 
 @in_keywords()

@@ -106,6 +106,8 @@ def test_the_largest_step_of_alpha_and_beta_ends_where_they_do() -> None:
     assert not step_answer(SYM, 0, 1, largest_step(SYM, alpha=0, beta=1)).safe
     rounded = next(column for column in columns.STEPS if column.key == "h_limit")
     assert rounded.text(step_answer(SYM, 1, 1, 0.0123456)) == "0.01234"  # it is safe
+    twice_minus_two = step_answer(lookup("RK2"), 50, 50, largest_step("RK2", alpha=50, beta=50))  # mu = -50 h
+    assert twice_minus_two.sentence == "α = 50 1/s, β = 50 1/s: safe up to h = 0.04 s."
 
 
 @pytest.mark.parametrize(
