@@ -87,3 +87,8 @@ def test_what_was_typed_is_shown_as_typed() -> None:
     ):
         given = rows("check", asked)[0]
         assert tuple(given[key] for key in keys) == typed
+
+
+def test_a_step_is_taken_as_often_as_typed() -> None:
+    (row,) = rows("simulate --scene pendulum --method SYM --steps 3*0.01,0.02 --time 0.05 --figure none --table none")
+    assert (row["time"], row["evaluations"]) == (pytest.approx(0.05), 4)
