@@ -58,28 +58,20 @@ Table = tuple[Sequence[Column[Any]], Sequence[Any]]
 def show_answers(
     columns: Sequence[Column[Item]],
     answers: Sequence[Item],
-    sentences: Sequence[str] | None = None,
     *,
     in_blocks: bool = False,
     below: Sequence[Table] = (),
 ) -> None:
     """Print answers on standard output: every column as JSON and CSV, else the brief ones, or with --all every one.
 
-    As text each answer is its sentence, by default that of its columns, with a line for each column below; several are
-    a table, if that is not wider than the terminal, unless they are to be `in_blocks`. A command without --all shows
+    As text each answer is its sentence, if a column has one, with a line for each other column below; several are a
+    table, if that is not wider than the terminal, unless they are to be `in_blocks`. A command without --all shows
     every one. Tables of another kind follow `below`, as `show_tables` has them.
     """
     if not for_reading():
         _show_for_programs([(columns, answers), *below])
         return
-    shown = _shown(columns, answers, _every_column())
-    if sentences is None:
-        told = [each for each in columns if each.key == SENTENCE.key]
-        sentences = ["".join(each.text(answer) for each in told) for answer in answers]
-    if in_blocks and chosen_format() == "text":
-        click.echo(_blocks(shown, answers, sentences))
-    else:
-        click.echo(_table_or_blocks(shown, answers, sentences, table_of_one=False))
+    click.echo(_text((columns, answers), _every_column(), in_blocks=in_blocks or len(answers) == 1))
     show_tables(below)
 
 
@@ -92,10 +84,9 @@ def show_tables(tables: Sequence[Table], *, every_column: bool | None = None) ->
     if not for_reading():
         _show_for_programs(tables)
         return
-    for columns, answers in tables:
-        shown = _shown(columns, answers, _every_column() if every_column is None else every_column)
-        if answers and shown:
-            click.echo(f"\n{_table_or_blocks(shown, answers, [''] * len(answers), table_of_one=True)}")
+    for each in tables:
+        if text := _text(each, _every_column() if every_column is None else every_column):
+            click.echo(f"\n{text}")
 
 
 def _every_column() -> bool:
@@ -110,37 +101,35 @@ def _show_for_programs(tables: Sequence[Table]) -> None:
     click.echo(for_programs(rows, "csv" if chosen_format() == "csv" else "json"))
 
 
-def _shown(columns: Sequence[Column[Item]], answers: Sequence[Item], every_column: bool) -> list[Column[Item]]:
-    """Return the columns that people see: every one, or the brief ones and those that tell several answers apart."""
-    many = len(answers) > 1
-    return [each for each in columns if each.heading and (every_column or each.brief or (each.apart and many))]
+def _text(table: Table, every_column: bool, *, in_blocks: bool = False) -> str:
+    """Return a table of answers; or of each, where that is wider than the terminal, its sentence and a line a column.
 
-
-def _table_or_blocks(
-    columns: Sequence[Column[Item]], answers: Sequence[Item], sentences: Sequence[str], *, table_of_one: bool
-) -> str:
-    """Return a table of answers; or of one, and where a table is wider than the terminal, a line for each column."""
-    if table_of_one or len(answers) > 1 or chosen_format() == "markdown":
-        as_table = _table_of(columns, answers)
+    People see every column, or the brief ones and those that tell several answers apart.
+    """
+    columns, answers = table
+    shown = [
+        each for each in columns if each.heading and (every_column or each.brief or (each.apart and len(answers) > 1))
+    ]
+    if chosen_format() == "markdown" or not in_blocks:
+        as_table = _table_of(shown, answers)
         if chosen_format() == "markdown" or fits(as_table, text_width()):
             return as_table
-    return _blocks(columns, answers, sentences)
-
-
-def _blocks(columns: Sequence[Column[Item]], answers: Sequence[Item], sentences: Sequence[str]) -> str:
-    """Return of each answer a line for each column, below its sentence."""
+    sentences = [each for each in columns if each.key == SENTENCE.key]
     return "\n\n".join(
-        lines_below(sentence, [(each.heading, each.text(answer)) for each in columns], text_width())
-        for sentence, answer in zip(sentences, answers, strict=True)
+        lines_below(
+            "".join(each.text(answer) for each in sentences),
+            [(each.heading, each.text(answer)) for each in shown],
+            text_width(),
+        )
+        for answer in answers
     )
 
 
 def _table_of(columns: Sequence[Column[Item]], answers: Sequence[Item]) -> str:
-    """Return a table of those columns that have something to show of some answer."""
-    cells = [[each.text(answer) for each in columns] for answer in answers]
-    known = [place for place in range(len(columns)) if any(row[place] != MISSING for row in cells)]
-    headings = [each.heading for each in columns]
-    return table([[row[place] for place in known] for row in (headings, *cells)], chosen_format())
+    """Return a table of those columns that have something to show of some answer; nothing without answers."""
+    rows = [[each.text(answer) for each in columns] for answer in answers]
+    known = [(each.heading, *cells) for each, *cells in zip(columns, *rows, strict=True) if {*cells} - {MISSING}]
+    return table(list(zip(*known, strict=True)), chosen_format()) if known else ""
 
 
 def show_groups(columns: Sequence[Column[Item]], groups: Sequence[tuple[str, Sequence[Item]]]) -> None:

@@ -51,8 +51,14 @@ STATES: Sequence[Column[Judged]] = (
         ".3g",
     ),
     Column("falls (1/s)", "", lambda judged: judged.rate, "", form=".3g"),
-    Column("safe up to h (s)", "", _largest_step, ""),
-    Column("", "h_limit", lambda judged: judged.h_limit, "largest safe step; null where there is none, or any is", "s"),
+    Column(
+        "safe up to h (s)",
+        "h_limit",
+        lambda judged: judged.h_limit,
+        "largest safe step; null where there is none, or any is",
+        "s",
+        words=_largest_step,
+    ),
 )
 
 SUSPECTS: Sequence[Column[Suspect]] = (
@@ -90,13 +96,13 @@ SAGS: Sequence[Column[Sag]] = (
     Column("", "role", lambda _: "sag", "what the row is about"),
     Column("from", "at", lambda sag: sag.at, "qpos0, a keyframe, a row of a log"),
     Column("element", "element", lambda sag: sag.element, "element of the model"),
-    Column("off by", "", _sag_words, ""),
     Column(
-        "",
+        "off by",
         "sag",
         lambda sag: sag.length if sag.angle is None else sag.angle,
         "how far it is off where the model comes to rest; of a drive at its joint",
         "m or rad",
+        words=_sag_words,
     ),
 )
 

@@ -87,8 +87,14 @@ REGION: Sequence[Column[RegionAnswer]] = (
         "what |z_p| is below; 1 where the method is stable",
         apart=True,
     ),
-    Column("area", "", _area_words, "", brief=True),
-    Column("", "area", lambda answer: answer.region.area, "area of the region in α̂ and β̂; null where it is infinite"),
+    Column(
+        "area",
+        "area",
+        lambda answer: answer.region.area,
+        "area of the region in α̂ and β̂; null where it is infinite",
+        brief=True,
+        words=_area_words,
+    ),
     Column(
         "",
         "uncertainty",
@@ -112,12 +118,13 @@ REGION: Sequence[Column[RegionAnswer]] = (
         brief=True,
     ),
     Column("approached far out", "", _approached, "", brief=True),
-    Column("βh to (α = β)", "", _critical_words, "", brief=True),
     Column(
-        "",
+        "βh to (α = β)",
         "critical_damping_limit",
         lambda answer: answer.critical_damping_limit,
         "largest βh on α = β up to which all are stable; null if all are",
+        brief=True,
+        words=_critical_words,
     ),
     *of_part(RegionAnswer, lambda answer: answer.inside, BEST),
     Column(
@@ -132,15 +139,10 @@ REGION: Sequence[Column[RegionAnswer]] = (
     ),
     Column(
         "every h stable from α/β",
-        "",
-        lambda answer: formatted(answer.unconditional_damping_ratio).replace(MISSING, "none"),
-        "",
-    ),
-    Column(
-        "",
         "unconditional_damping_ratio",
         lambda answer: answer.unconditional_damping_ratio,
         "damping ratio α/β above which every step is stable; null if there is none",
+        words=lambda answer: formatted(answer.unconditional_damping_ratio).replace(MISSING, "none"),
     ),
     Column("", "sentence", region_sentence, "the answer in words"),
 )
@@ -200,8 +202,7 @@ def _constant_words(about: MethodAnswer) -> str:
 
 
 LISTED: Sequence[Column[MethodAnswer]] = (
-    Column("method", "", _name_and_alias, "", brief=True),
-    Column("", "method", lambda about: about.name, "integration method"),
+    Column("method", "method", lambda about: about.name, "integration method", brief=True, words=_name_and_alias),
     Column("steps", "steps", lambda about: about.steps, "number of steps of the method", brief=True),
     Column(
         "f calls",
@@ -210,10 +211,22 @@ LISTED: Sequence[Column[MethodAnswer]] = (
         "evaluations of the right-hand side in a step, of an implicit method in an iteration",
         brief=True,
     ),
-    Column("order", "", order_words, "", brief=True),
-    Column("", "order", lambda about: about.order, "order of accuracy, computed from the coefficients"),
-    Column("error constant", "", _constant_words, "", brief=True),
-    Column("", "error_constant", lambda about: float(about.error_constant), "error constant of the method"),
+    Column(
+        "order",
+        "order",
+        lambda about: about.order,
+        "order of accuracy, computed from the coefficients",
+        brief=True,
+        words=order_words,
+    ),
+    Column(
+        "error constant",
+        "error_constant",
+        lambda about: float(about.error_constant),
+        "error constant of the method",
+        brief=True,
+        words=_constant_words,
+    ),
     Column(
         "added damping",
         "added_damping",

@@ -244,7 +244,7 @@ def _motion_map_figure(answer: MapAnswer, omega_h: float) -> Figure:
         bar.ax.minorticks_off()
         share = drawing.growth if energy else drawing.errors
         assert share is not None
-        contours = (_energy_contours if energy else _error_contours)(axes, x, y, share)
+        contours = _draw_shares(axes, x, y, share, energy=energy)
         boundary = plot.region(region, axes, h, color="black", linestyle="-", label="$|z_p| = 1$")
         boundary.set_data(np.transpose(Path(boundary.get_xydata()).interpolated(PARTS).vertices))
         for number, level in enumerate(drawing.levels, start=1):
@@ -287,29 +287,28 @@ def _powers(values: FloatArray) -> FloatArray:
     return every * np.arange(math.ceil(low / every), math.floor(high / every) + 1, dtype=np.float64)
 
 
-def _error_contours(axes: Axes, x: FloatArray, y: FloatArray, errors: FloatArray) -> list[tuple[QuadContourSet, str]]:
-    """Draw powers of ten of the forced error; return the lines, and how their labels are written."""
-    powers = np.log10(errors)
-    contours = axes.contour(x, y, powers, levels=_powers(powers), colors="white", linewidths=0.7, linestyles="-")
-    contours.set_path_effects(HALO)
-    _key(axes, "added error / motion", color="white", linewidth=0.7, path_effects=HALO)
-    return [(contours, "$10^{%d}$")]
+def _draw_shares(
+    axes: Axes, x: FloatArray, y: FloatArray, shares: FloatArray, *, energy: bool
+) -> list[tuple[QuadContourSet, str]]:
+    """Draw powers of ten of shares of a motion; return the lines, and how their labels are written.
 
-
-def _energy_contours(axes: Axes, x: FloatArray, y: FloatArray, growth: FloatArray) -> list[tuple[QuadContourSet, str]]:
-    """Draw powers of ten of the growth of energy in a revolution, dashed where it falls, and where it is nought."""
+    They are of the forced error, or of the energy gained in a revolution: dashed where it falls, and where it is kept.
+    """
+    kinds: list[tuple[int, Any, str, str]] = [(1, "-", "added error / motion", "$10^{%d}$")]
+    if energy:
+        kinds = [(1, "-", "energy that is gained", "$+10^{%d}$"), (-1, DASHES[1], "energy that is lost", "$-10^{%d}$")]
     drawn = []
-    for sign, dashes, what in ((1, "-", "gained"), (-1, DASHES[1], "lost")):
+    for sign, dashes, label, form in kinds:
         with np.errstate(invalid="ignore", divide="ignore"):
-            powers = np.log10(np.where(sign * growth > 0, sign * growth, np.nan))
-        if np.isfinite(powers).sum() < growth.size / 100:  # nothing to see
+            powers = np.log10(np.where(sign * shares > 0, sign * shares, np.nan))
+        if np.isfinite(powers).sum() < shares.size / 100:  # nothing to see
             continue
         lines = axes.contour(x, y, powers, levels=_powers(powers), colors="white", linewidths=0.7, linestyles=[dashes])
         lines.set_path_effects(HALO)
-        _key(axes, f"energy that is {what}", color="white", linewidth=0.7, linestyle=dashes, path_effects=HALO)
-        drawn.append((lines, "$+10^{%d}$" if sign > 0 else "$-10^{%d}$"))
+        _key(axes, label, color="white", linewidth=0.7, linestyle=dashes, path_effects=HALO)
+        drawn.append((lines, form))
     if len(drawn) == 2:
-        kept = axes.contour(x, y, growth, levels=[0.0], colors="black", linewidths=1.2)
+        kept = axes.contour(x, y, shares, levels=[0.0], colors="black", linewidths=1.2)
         kept.set_path_effects(WHITE_HALO)
         _key(axes, "energy is kept", color="black", linewidth=1.2, path_effects=WHITE_HALO)
     return drawn

@@ -34,11 +34,10 @@ def methods(methods: Sequence[Method], latex: bool, **_: object) -> None:
     """
     from bezstab.regions.columns import LISTED, WHOLE
     from bezstab.regions.methods import method_answer, whole_method
-    from bezstab.regions.sentences import whole_method_sentence
 
     if methods:
         found = [whole_method(method, latex=latex) for method in methods]
-        show_answers(WHOLE, found, list(map(whole_method_sentence, found)), in_blocks=True)
+        show_answers(WHOLE, found, in_blocks=True)
         show_text("\nSteady errors are shares of a motion of ω rad/s, to leading order in θ = iωh.")
         return
     listed = [(group, [method_answer(lookup(name), name) for name in group.methods]) for group in GROUPS]

@@ -98,7 +98,6 @@ def region(
     from bezstab.questions.methods import methods_for
     from bezstab.regions.answer import map_conditions, region_answer
     from bezstab.regions.columns import MOVING, ON_A_MOTION, REGION
-    from bezstab.regions.sentences import region_sentence
     from bezstab.show.result_sentences import combined_words, energy_words
     from bezstab.stability.best_points import best_point_or_reason
     from bezstab.stability.closed_loop import QUALITY
@@ -128,7 +127,7 @@ def region(
     if compare:
         regions = [region_answer(method, *asked.levels) for method in methods]
         _write_boundaries(regions, asked, files)
-        show_answers(REGION, regions, list(map(region_sentence, regions)))
+        show_answers(REGION, regions)
     else:
         kind = "accuracy" if accuracy else "motion" if energy else scene
         answers, status = of_each(methods, lambda method: [_map(method, asked, files, kind)])
@@ -137,7 +136,7 @@ def region(
             (ON_A_MOTION, [point for answer in answers for point in answer.on_motion]),
             (MOVING, [moving for answer in answers for moving in answer.speeds]),
         ]
-        show_answers(REGION, regions, list(map(region_sentence, regions)), below=below)
+        show_answers(REGION, regions, below=below)
     if asked.motion:
         show_text((energy_words if energy else combined_words)(asked.motion))
     known = not any(best_point_or_reason(method)[1] for method in methods)

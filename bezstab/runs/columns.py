@@ -8,6 +8,7 @@ from typing import NamedTuple
 from bezstab.mechanism.simulation import Simulation
 from bezstab.runs.accuracy_costs import Run, SweptRuns
 from bezstab.runs.measured_poles import Measurement, MeasurementSummary
+from bezstab.runs.sentences import measurement_sentence, run_sentence, verdict_map_sentence
 from bezstab.runs.verdict_maps import VerdictMap
 from bezstab.show.cells import modulus_words
 from bezstab.show.columns import METHOD, POINT, POLE, Column, of_part
@@ -61,6 +62,7 @@ RUN: Sequence[Column[Simulation]] = (
         "Newton's iterations", "iterations", lambda run: run.iterations, "in the whole run; null for an explicit method"
     ),
     Column("failure", "remark", lambda run: run.failure, "why the run ended early; null if it did not", brief=True),
+    Column("", "sentence", run_sentence, "the answer in words"),
 )
 
 
@@ -116,6 +118,7 @@ MEASURED: Sequence[Column[Measurement]] = (
         "why nothing could be measured, or what disturbs it; empty where nothing does",
         apart=True,
     ),
+    Column("", "sentence", measurement_sentence, "the answer in words"),
 )
 
 SUMMARY: Sequence[Column[MeasurementSummary]] = (
@@ -142,6 +145,7 @@ VERDICT_MAP: Sequence[Column[VerdictMap]] = (
         "runs not too close to call that disagree",
         brief=True,
     ),
+    Column("", "sentence", verdict_map_sentence, "the answer in words"),
 )
 
 
@@ -177,17 +181,12 @@ COSTS: Sequence[Column[Ranked]] = (
     Column("|z_p|", "z_abs", lambda it: it.run.z_abs, "modulus of the dominant pole", form=modulus_words),
     Column(
         "trajectory error (m, rad)",
-        "",
-        lambda it: "diverged" if it.run.failure else formatted(it.run.trajectory_error, ".2e"),
-        "",
-        brief=True,
-    ),
-    Column(
-        "",
         "trajectory_error",
         lambda it: it.run.trajectory_error,
         "largest error of the coordinates; null if the run failed",
         "m or rad",
+        brief=True,
+        words=lambda it: "diverged" if it.run.failure else formatted(it.run.trajectory_error, ".2e"),
     ),
     Column(
         "order seen",

@@ -56,8 +56,9 @@ SEED = 2024
 
 @dataclass(frozen=True, repr=False)
 class Measurement:
-    """Predicted and measured dominant pole at one point; `measured` is None, and `reason` says why, if it cannot be.
+    """Predicted and measured dominant pole at one point, for steps of h (s).
 
+    `measured` is None if it cannot be, and `reason` says why.
     `predicted` and its verdict are those of the mechanism at rest, `moving` has bounds for the motion. `floquet_abs` is
     the exact rate over the motion, not a number unless asked for. Where the motion is not `periodic` that is no exact
     rate, but a growth over the run. `measured` is what the first steps after the kick show; `difference_abs` is its
@@ -66,6 +67,7 @@ class Measurement:
     """
 
     method: Method
+    h: float
     alpha_hat: float
     beta_hat: float
     predicted: complex
@@ -163,6 +165,7 @@ def measure_poles(
         found.append(
             Measurement(
                 method=method,
+                h=h,
                 alpha_hat=a,
                 beta_hat=b,
                 predicted=predicted,

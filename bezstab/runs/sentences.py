@@ -43,13 +43,13 @@ def passages_words(times: Sequence[float]) -> str:
     return f"{where}: there the motion can branch, and which way it goes is left to rounding"
 
 
-def measurement_sentence(found: Measurement, h: float) -> str:
+def measurement_sentence(found: Measurement) -> str:
     """Return where a pole was measured, the predicted and the measured modulus, and whether the verdicts agree.
 
     RK4 at α̂ = 1, β̂ = 1 (α = 50 1/s, β = 100 1/s at h = 0.01 s): predicted |z| 0.5, measured 0.5: the verdicts agree.
     """
     ends = {True: "the verdicts agree", False: "the verdicts DISAGREE", None: "too close to call"}
-    judged = f"{found.method.name} at {point_words(found.alpha_hat, found.beta_hat, h)}"
+    judged = f"{found.method.name} at {point_words(found.alpha_hat, found.beta_hat, found.h)}"
     agree = found.verdicts_agree
     if found.measured is None:
         verdict = "" if agree is None else f" The run {found.measured_verdict}: {ends[agree]}."

@@ -94,7 +94,7 @@ def simulate(
     from bezstab.questions.motions import scene_at_speed
     from bezstab.runs.columns import RUN
     from bezstab.runs.figures import history_figure
-    from bezstab.runs.sentences import passages_words, run_sentence
+    from bezstab.runs.sentences import passages_words
     from bezstab.runs.simulating import run_of
     from bezstab.runs.tables import history_arrays
 
@@ -123,7 +123,7 @@ def simulate(
     files.write(files.path("simulate", scene, method.name), lambda: history_figure(run), lambda: history_arrays(run))
     if not sequence:  # which may be to let errors grow
         say_if_units_were_mistaken([method], typed, given_h)
-    show_answers(RUN, [run], [run_sentence(run)])
+    show_answers(RUN, [run])
     if compiled_choice() == "yes" and (implicit(method) or run.after.projecting):
         say("bezstab: this run was not compiled: only runs of explicit methods without projection are")
     if len(run.singular_times):

@@ -76,7 +76,7 @@ def verify(
     from bezstab.questions.motions import scene_at_speed
     from bezstab.runs.columns import MEASURED, SUMMARY, VERDICT_MAP
     from bezstab.runs.measured_poles import measurement_summary
-    from bezstab.runs.sentences import exact_rate_words, measurement_sentence, verdict_map_sentence
+    from bezstab.runs.sentences import exact_rate_words
     from bezstab.runs.verifying import check_points, measurements
 
     typed, h = TypedPoint(alpha, beta, physical), given_h or USUAL_STEP
@@ -87,14 +87,14 @@ def verify(
     if across:
         size, work, files = across, Work(workers, scheduler, resume), Files(output, figure, table)
         maps, status = of_each(methods, lambda method: [_map(scene, moving, method, float(h), size, work, files)])
-        show_answers(VERDICT_MAP, maps, [verdict_map_sentence(found) for found in maps])
+        show_answers(VERDICT_MAP, maps)
         return status
     say_if_units_were_mistaken(methods, typed, given_h)
     of_methods = [
         measurements(mechanism, method, h, point, points, floquet=floquet) for method in progress(methods, "verify")
     ]
     measured = [found for of_method in of_methods for found in of_method]
-    show_answers(MEASURED, measured, [measurement_sentence(found, float(h)) for found in measured])
+    show_answers(MEASURED, measured)
     if for_reading():
         for of_method in of_methods if floquet else ():
             show_text(f"\n{exact_rate_words(of_method[0])}")

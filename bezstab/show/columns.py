@@ -13,15 +13,16 @@ from bezstab.show.fields import MISSING, Form, Row, Value, formatted, visible
 Answer = TypeVar("Answer")
 Answer_contra = TypeVar("Answer_contra", contravariant=True)
 Part = TypeVar("Part")
+Found = TypeVar("Found")
 
 
 @dataclass(frozen=True)
 class Column(Generic[Answer_contra]):
     """One value of an answer: its heading in text, its key in CSV and JSON, how it is found, its unit and meaning.
 
-    `form` is a format, or a function from the value to its text. A `brief` column is printed without --all; one that
-    tells answers `apart` is printed where there are several. Without a heading it is for programs alone, without a key
-    for people.
+    `form` is a format, or a function from the value to its text; `words` are the text itself where that takes more of
+    the answer. A `brief` column is printed without --all; one that tells answers `apart` is printed where there are
+    several. Without a heading it is for programs alone, without a key for people.
     """
 
     heading: str
@@ -32,9 +33,12 @@ class Column(Generic[Answer_contra]):
     form: Form = ""
     brief: bool = False
     apart: bool = False
+    words: Callable[[Answer_contra], str | None] | None = None
 
     def text(self, answer: Answer_contra) -> str:
         """Return what a table shows of an answer, on one line; a dash where there is no value."""
+        if self.words:
+            return visible(self.words(answer) or MISSING)
         value = self.value(answer)
         return MISSING if isinstance(value, float) and math.isnan(value) else visible(formatted(value, self.form))
 
@@ -44,15 +48,11 @@ def of_part(
 ) -> list[Column[Answer]]:
     """Return columns of a part of such an answer as columns of the answer, without a value where it has no part."""
 
-    def lifted(column: Column[Part]) -> Callable[[Answer], Value]:
-        def value(answer: Answer) -> Value:
-            found = part(answer)
-            return None if found is None else column.value(found)
-
-        return value
+    def lifted(of: Callable[[Part], Found]) -> Callable[[Answer], Found | None]:
+        return lambda answer: None if (found := part(answer)) is None else of(found)
 
     return [
-        Column(each.heading, each.key, lifted(each), each.meaning, each.unit, each.form, each.brief, each.apart)
+        Column(**{**vars(each), "value": lifted(each.value), "words": each.words and lifted(each.words)})
         for each in columns
     ]
 

@@ -35,7 +35,7 @@ def _comma_separated(rows: Sequence[Row], keys: Sequence[str]) -> str:
     return text.getvalue().rstrip("\n")
 
 
-def table(lines: list[list[str]], form: Format) -> str:
+def table(lines: Sequence[Sequence[str]], form: Format) -> str:
     """Return lines of cells, the first the headings, with each cell as wide as its column."""
     if form == "markdown":
         lines = [[cell.replace("|", "\\|") for cell in line] for line in lines]
