@@ -199,14 +199,12 @@ def resume(
     steps: Steps,
     history: Sequence[ArrayLike],
     compiled: bool = False,
-    undisturbed: ArrayLike | None = None,
     after: AfterStep = NOTHING,
 ) -> Iterator[Block]:
     """Yield steps after `history`, as `march` does; its last state may have been tampered with: kicked.
 
     `history` holds the states before the steps, (2n, *batch) each, as far apart as they are. What a method remembers of
-    accelerations is those of the states, at the last one those of what it was before (`undisturbed`, by default
-    itself). The lanes are those of the batch, one after the other.
+    accelerations is those of the states. The lanes are those of the batch, one after the other.
 
     Inside a second-order scheme h = 1, where positions, h v and h^2 a are carried: a step r times as long as the one
     before begins with r times that h v and r^2 times that h^2 a. The acceleration itself is what it was, whatever the
@@ -214,11 +212,11 @@ def resume(
     """
     if not len(steps.lengths):
         return
-    given = [np.asarray(state) for state in (*history, history[-1] if undisturbed is None else undisturbed)]
+    given = [np.asarray(state) for state in history]
     batch = np.broadcast_shapes(*(state.shape[1:] for state in given))
-    *states, calm = (np.stack([np.broadcast_to(row, batch).ravel() for row in state]) for state in given)
+    states = [np.stack([np.broadcast_to(row, batch).ravel() for row in state]) for state in given]
     program, h = program_of(method.scheme.second_order), float(steps.lengths[0])
-    carried, evaluated = carried_quantities(mechanism, method, steps, states, calm)
+    carried, evaluated = carried_quantities(mechanism, method, steps, states)
     if compiled and not (program.implicit or after.projecting):
         taken = compiled_steps(mechanism, program, carried, steps)
     else:
@@ -255,11 +253,7 @@ def _steps_taken(stepper: Stepper, steps: Steps, alone: bool) -> Iterator[tuple[
 
 
 def carried_quantities(
-    mechanism: Mechanism,
-    method: Method,
-    steps: Steps,
-    history: Sequence[FloatArray],
-    undisturbed: FloatArray,
+    mechanism: Mechanism, method: Method, steps: Steps, history: Sequence[FloatArray]
 ) -> tuple[FloatArray, int]:
     """Return what a method carries into its first turn after `history`, as on a motion through its states.
 
@@ -273,10 +267,9 @@ def carried_quantities(
     found: dict[int, FloatArray] = {}
     for shares, step in zip(remembered.shares, remembered.state_steps, strict=True):
         by_q, by_v, by_a = (float(share) * h**power for power, share in enumerate(shares))
-        if by_a and step not in found:
-            q, v = np.split(history[step - 1] if step else undisturbed, 2)
-            found[step] = accelerations(mechanism, steps.times[0] + step * h, two_alpha, beta_squared, q, v)
         q, v = np.split(history[step - 1], 2)
+        if by_a and step not in found:
+            found[step] = accelerations(mechanism, steps.times[0] + step * h, two_alpha, beta_squared, q, v)
         carried.append(by_q * q + by_v * v + by_a * found.get(step, 0.0))
     counted = implicit(method) or isinstance(method.scheme, SecondOrder)
     return np.array(carried), counted * len(found)

@@ -94,9 +94,10 @@ def kicked_motions(
 
     They have the shape (steps, constraints or coordinates, 2 for up and down, kicks, points). The kick of the first
     constraint (SI units) comes after as many steps as the method has; the first block is the kick itself. h in s,
-    alpha_hat and beta_hat of shape (points,). What a multistep method remembers of before the kick is left alone, and
-    so is what a second-order scheme remembers of accelerations: its recursion is linear, and its poles are the same
-    from any first values. InputError for a scene that cannot start, and where runs are to be `compiled` without numba.
+    alpha_hat and beta_hat of shape (points,). What a method remembers of before the kick is left alone, and what a
+    second-order scheme remembers of the acceleration is that of the kicked state: its recursion is linear, and its
+    poles are the same from any first values. InputError for a scene that cannot start, and where runs are to be
+    `compiled` without numba.
     """
     step, gains = h * float(method.step_multiple), feedback_gains(alpha_hat, beta_hat, h)
     q, v = initial_state(mechanism)
@@ -106,10 +107,10 @@ def kicked_motions(
     history = [start, *(state for block in before for state in block.states)]
     by_a_unit = np.concatenate([perturbed_state(mechanism, 1.0)[0] - q, 0 * v])  # linear in the constraint error
     displaced = np.multiply.outer(by_a_unit, kicks)[:, :, np.newaxis]
-    *past, undisturbed = history
-    kicked = undisturbed[:, np.newaxis, np.newaxis] + np.stack([displaced, -displaced], axis=1)
+    *past, last = history
+    kicked = last[:, np.newaxis, np.newaxis] + np.stack([displaced, -displaced], axis=1)
     following = even_steps(step, count, gains, kicked.shape[1:], first=len(past))
-    blocks = resume(mechanism, method, following, [*past, kicked], compiled, undisturbed)
+    blocks = resume(mechanism, method, following, [*past, kicked], compiled)
     k = len(past)
     for states in chain([kicked[np.newaxis]], (block.states for block in blocks)):
         times = step * np.arange(k, k + len(states), dtype=np.float64)
