@@ -39,7 +39,7 @@ Modulus = Callable[[FloatArray, FloatArray], FloatArray]
 """|z_p|, or what takes its place and is to be least, over arrays of alpha_hat and beta_hat of one shape."""
 
 QUALITY = {"fast": 50, "balanced": 200, "fine": 1000}
-"""Points per axis of a map (tests/stability/test_map_quality.py): B4's boundary is read off to 1e-4, 4e-6, 2e-7."""
+"""Points per axis of a map: B4's boundary was read off to 1e-4, 4e-6, 2e-7."""
 
 
 def verdict(method: Method, alpha_hat: Fraction, beta_hat: Fraction) -> Verdict:

@@ -21,7 +21,7 @@ H = Fraction(1, 60)
 
 def test_a_chain_decides_whether_an_answer_is_safe() -> None:
     unsafe, safe = (chain("chipmunk", h=H, bodies=10, mass_ratio=10, iterations=sweeps) for sweeps in (None, 12))
-    assert (unsafe.safe, unsafe.stable_iterations, safe.safe) == (False, 12, True)
+    assert (unsafe.safe, unsafe.stable_iterations, safe.safe, unsafe.iterations) == (False, 12, True, 10)
     assert unsafe.z_abs == pytest.approx(1.00494, abs=1e-5)  # as pymunk's own
     assert unsafe.alone_z_abs == pytest.approx(0.9)
     assert "multiplies the error by 1.005, most at link 1 from the world." in unsafe.sentence  # as in pymunk's own run
@@ -29,22 +29,6 @@ def test_a_chain_decides_whether_an_answer_is_safe() -> None:
     assert unsafe.tenth_steps is None
     assert safe.tenth_steps == pytest.approx(log(0.1) / log(safe.z_abs), abs=1)
     assert repr(safe).startswith("chipmunk, a chain of 10 with the last body 10 times as heavy, 12 sweeps: safe.")
-
-
-def test_the_engines_own_sweeps_are_taken_unless_others_are_asked_about() -> None:
-    answer = chain("ode=0.2", h=H, bodies=2)
-    assert answer.iterations == 20
-    assert answer.alone_z_abs == pytest.approx(0.8, abs=1e-9)
-
-
-@pytest.mark.slow
-def test_a_chain_that_settles_slowly_is_said_to() -> None:
-    """A hundred times the mass at the end of six bodies in Jolt: minutes."""
-    answer = chain("jolt=0.2", h=H, bodies=6, mass_ratio=100)
-    assert answer.safe
-    seconds = log(1e-3) / log(answer.z_abs) / 60
-    assert f"An error falls slowly: to a thousandth in {seconds:.3g} s (" in answer.sentence
-    assert seconds > 200
 
 
 @pytest.mark.parametrize("name", [name for name, each in ENGINES.items() if each.sweeping and each.defaults])
@@ -85,34 +69,16 @@ def test_a_chain_between_two_walls_is_what_loops_over_its_links_do(masses: tuple
         assert answer.growing == pytest.approx(errors / errors.max(), abs=1e-6)
 
 
-@pytest.mark.parametrize(
-    "engine",
-    [
-        "rapier=10,1",
-        "jolt-spring=3,1",
-        "bepu=8,0.3",
-        "box2d=5,1",
-        "ode=0.3,0.02",
-        "pbd=0.6",
-        "physx",
-        "godot",
-        "jolt=0.2",
-    ],
-)
+@pytest.mark.parametrize("engine", ["rapier=10,1", "ode=0.3,0.02", "physx"])
 def test_one_body_rests_where_the_engines_own_step_leaves_it(engine: str) -> None:
     """Forces first change the velocity, then the step of tests/reference/engine_steps.py is taken."""
     named, values = engine_and_values(engine)
     c, v = 0.0, 0.0
     for _ in range(3000):
         c, v = STEPS[named.name](c, v + 9.81 / 60, 1 / 60, *map(float, values))
-    answer = chain(engine, h=Fraction(1, 60), bodies=1, load="gravity")
+    answer = chain(engine, h=H, bodies=1, load="gravity")
     assert answer.sag == pytest.approx(c, rel=1e-6, abs=1e-9)
     assert (f"sags by {1e3 * c:.3g} mm" if answer.sag else "does not sag") in answer.sentence
-
-
-def test_one_body_in_chipmunk_rests_at_its_place_and_in_p2_by_load_over_stiffness() -> None:
-    for engine, seconds_squared in (("chipmunk", 0), ("p2=1e4,4", 1e-4)):
-        assert chain(engine, h=H, bodies=1, load="gravity").sag == pytest.approx(9.81 * seconds_squared, rel=1e-6)
 
 
 @pytest.mark.parametrize("load", ["gravity", 50])

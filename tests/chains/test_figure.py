@@ -26,16 +26,8 @@ def test_the_line_of_chains_parts_what_decays_from_what_grows() -> None:
         assert (z_abs[round(bodies) - 1, round(sweeps) - 1] < 1) == (word == "stable")
 
 
-@pytest.mark.parametrize(
-    ("fraction", "word", "label"),
-    [
-        ("2.1", "diverges", "no number of sweeps up to 50 is stable"),
-        ("1.9", "stable", "every number of sweeps is stable"),
-    ],
-)
-def test_a_figure_without_an_edge_says_why(fraction: str, word: str, label: str) -> None:
-    """Bullet's steps take so large a fraction of an error away that its size is multiplied by 1.1, or by 0.9."""
-    axes = chain_figure(chain(f"bullet={fraction}", h="1/60", bodies=3)).axes[0]
-    assert [text.get_text() for text in axes.texts] == [word]
-    edge = axes.get_lines()[0]
-    assert (edge.get_label(), edge.get_linestyle()) == (label, "None")
+def test_a_figure_without_an_edge_says_why() -> None:
+    """Bullet's steps take so large a fraction of an error away that its size is multiplied by 1.1."""
+    axes = chain_figure(chain("bullet=2.1", h="1/60", bodies=3)).axes[0]
+    assert [text.get_text() for text in axes.texts] == ["diverges"]
+    assert axes.get_lines()[0].get_label() == "no number of sweeps up to 50 is stable"

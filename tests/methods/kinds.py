@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from bezstab.methods.registry import REGISTRY, lookup
-from bezstab.methods.schemes import LinearMultistep, PredictorCorrector, RungeKutta, implicit
+from bezstab.methods.schemes import implicit
 from bezstab.methods.second_order import SecondOrder
 
 SECOND_ORDER = [name for name in REGISTRY if isinstance(lookup(name).scheme, SecondOrder)]
@@ -20,10 +20,6 @@ EXPLICIT = [name for name in MU_METHODS if not implicit(lookup(name))]
 
 IMPLICIT = [name for name in MU_METHODS if implicit(lookup(name))]
 """Methods with pi(z, mu) that solve equations in each step."""
-
-MULTISTEP = [name for name in MU_METHODS if isinstance(lookup(name).scheme, LinearMultistep)]
-RUNGE_KUTTA = [name for name in MU_METHODS if isinstance(lookup(name).scheme, RungeKutta)]
-PECE = [name for name in MU_METHODS if isinstance(lookup(name).scheme, PredictorCorrector)]
 
 SAMPLE = ("B1", "B2", "B4", "B6", "AB2", "AB4", "AB8", "ABM3", "RK1", "RK4", "SIE", "dopri5")
 """Of the explicit methods some of each family, the smallest and the largest among them."""

@@ -10,6 +10,7 @@ from bezstab.methods.derivation import closed_loop_at
 from bezstab.methods.formulas import added_damping_text
 from bezstab.methods.registry import REGISTRY, lookup
 from bezstab.methods.schemes import Method
+from tests.methods.kinds import FEW, SOLVED, sampled
 
 
 def damping_ratio(method: Method, theta: Fraction) -> mpmath.mpf:
@@ -23,12 +24,7 @@ def damping_ratio(method: Method, theta: Fraction) -> mpmath.mpf:
         return -exponent.real / abs(exponent)
 
 
-QUICK = ["SYM", "implicit-euler", "RK4", "heun", "AB3", "ABM4", "bdf2", "hht", "B2", "B2@2", "verlet-kdk", "tsit5"]
-
-
-@pytest.mark.parametrize(
-    "name", [*QUICK, *(pytest.param(name, marks=pytest.mark.slow) for name in REGISTRY if name not in QUICK)]
-)
+@pytest.mark.parametrize("name", sampled([*REGISTRY, "B2@2"], quick=[*FEW, *SOLVED, "B2@2"]))
 def test_it_is_the_leading_term_of_the_pole_nearest_to_the_motion(name: str) -> None:
     """To twenty theta, at a thousandth of a rad; where decimals stand for irrational coefficients at a hundredth."""
     method = lookup(name)
@@ -42,7 +38,6 @@ def test_it_is_the_leading_term_of_the_pole_nearest_to_the_motion(name: str) -> 
 
 
 WRITTEN = {
-    "implicit-euler": "θ/2",  # |z|^2 = 1 / (1 + theta^2)
     "RK4": "θ^5/144",  # |z|^2 = 1 - theta^6 / 72 + theta^8 / 576
     "heun": "-θ^3/8",  # |z|^2 = 1 + theta^4 / 4
     "trapezoid": "0, up to θ^6",

@@ -1,6 +1,5 @@
 """Method files: read exactly, or refused in one line."""
 
-from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
@@ -10,9 +9,8 @@ from hypothesis import strategies as st
 
 from bezstab.errors import InputError
 from bezstab.methods.method_files import read_method
-from bezstab.methods.orders import accuracy
 from bezstab.methods.registry import lookup
-from bezstab.methods.schemes import Method, RungeKutta, steps
+from bezstab.methods.schemes import Method, steps
 from tests.methods.random_recipes import VERLET
 
 AB2 = 'rho = ["1", "-1", 0]\nsigma = [0, "3/2", "-0.5"]\n'
@@ -37,10 +35,8 @@ def test_a_file_is_read_exactly_whatever_it_is_called(tmp_path: Path) -> None:
 
 DIGITS = "1" * 5000
 REFUSED: dict[str, tuple[str | bytes, str]] = {
-    "empty A": ("A = []\nb = []", ""),
     "floats": ("rho = [1.0, -1.0]\nsigma = [0.0, 1.0]", "rational strings"),
     "truth": ("rho = [true, -1]\nsigma = [0, 1]", "whole numbers and rational strings"),
-    "code": ('rho = ["__import__(\'os\')", "-1"]\nsigma = ["0", "1"]', "rho"),
     "huge digits": (f'rho = ["{DIGITS}", "-{DIGITS}"]\nsigma = ["0", "{DIGITS}"]', "rho"),
     "squares beyond float64": ('A = [["0", "0"], ["1e200", "0"]]\nb = ["1/2", "1/2"]', "0 or a size of 1e-50 to 1e50"),
     "deep nesting": ("rho = " + "[" * 20000 + "]" * 20000 + "\nsigma = []", "brackets nested too deeply"),
@@ -49,8 +45,6 @@ REFUSED: dict[str, tuple[str | bytes, str]] = {
     "both kinds": (AB2 + HEUN, "found A, b, rho, sigma"),
     "no keys": ("", "found none"),
     "update: number": ("[update]\nx1 = 3", "update: 'x1' = 3: expected a text like 'x0"),
-    "update: empty": ("[update]", "no equation"),
-    "update: line breaks in a key": ('[update]\n"a\\nb\\u2028" = "x0"', ""),
     "update: 20000 equations": ("[update]\n" + "\n".join(f'w{i} = "x0"' for i in range(20_000)), "20000 equations"),
 }
 """Contents, and a part of what is said of each. What a text cannot say is in test_recipes and test_second_order."""
@@ -69,27 +63,6 @@ def refusal(path: Path) -> str:
 def test_a_bad_file_is_refused_in_one_line_that_names_it_and_what_is_wrong(case: str, tmp_path: Path) -> None:
     content, why = REFUSED[case]
     assert why in refusal(written(tmp_path, content))
-
-
-RADAU = """
-A = [
-  ["(88 - 7*sqrt(6))/360", "(296 - 169*sqrt(6))/1800", "(-2 + 3*sqrt(6))/225"],
-  ["(296 + 169*sqrt(6))/1800", "(88 + 7*sqrt(6))/360", "(-2 - 3*sqrt(6))/225"],
-  ["(16 - sqrt(6))/36", "(16 + sqrt(6))/36", "1/9"],
-]
-b = ["(16 - sqrt(6))/36", "(16 + sqrt(6))/36", "1/9"]
-"""
-"""Hairer & Wanner II, Table IV.5.6."""
-
-
-def test_coefficients_with_roots_are_those_of_the_book(tmp_path: Path) -> None:
-    """Weights that add up to one by way of the roots do so exactly, or the file would be refused."""
-    own, built_in = read_method(written(tmp_path, RADAU)), lookup("radau5")
-    assert isinstance(own.scheme, RungeKutta)
-    assert isinstance(built_in.scheme, RungeKutta)
-    assert np.abs(np.array(own.scheme.tableau) - np.array(built_in.scheme.tableau)).max() < Fraction(1, 10**38)
-    assert own.digits == built_in.digits == 40
-    assert accuracy(own)[0] == 5
 
 
 def test_equations_with_roots_are_reckoned_exactly(tmp_path: Path) -> None:

@@ -55,12 +55,6 @@ def test_orders_need_the_conditions_of_nonlinear_problems() -> None:
     assert [accuracy(method)[0] for method in (equal, JAMESON, kutta)] == [2, 2, 4]  # on linear problems JAMESON has 4
 
 
-def test_rooted_trees_are_as_many_as_there_are() -> None:
-    """1, 1, 2, 4, 9, 20, 48: Cayley's numbers, OEIS A000081. What two trees make of a full tableau differs."""
-    tableau = tuple(tuple(Fraction(1, 3 + i + j * j) for j in range(3)) for i in range(3))
-    assert [len(stage_weights(tableau, order)) for order in range(1, 8)] == [1, 1, 2, 4, 9, 20, 48]
-
-
 BY_FORCE = {  # of position, of velocity
     "verlet-half": ((2, Fraction(1, 24)), (1, Fraction(1, 2))),
     "verlet-predicted": ((2, Fraction(1, 24)), (2, Fraction(5, 12))),  # damping: AB2

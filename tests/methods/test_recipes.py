@@ -17,11 +17,8 @@ F = Fraction
 SAME = {
     "-0.5e-1": "-1/20",
     "sqrt(72)": "6*sqrt(2)",
-    "sqrt(2)/2": "sqrt(0.5)",
-    "sqrt(2)*sqrt(3)": "sqrt(6)",
     "sqrt(sqrt(81/16))": "1.5",
     "(1 + sqrt(2))*(sqrt(2) - 1)": "1",
-    "sqrt(2) - sqrt(8)/2": "0",
     "2 - 3 - -4": "3",
     "8/4/-2": "-1",
 }
@@ -40,12 +37,10 @@ def test_a_root_is_good_to_forty_digits_and_rounded_up_and_rational_numbers_stay
 
 SUMS = {
     "+ x0 - - v0 -v0 - v0": {"x0": 1, "v0": -1},
-    "3 a0 / 2 / 5": {"a0": F(3, 10)},
     "x0 / -2 - 3 (-v0) / (1 - 3)": {"x0": F(-1, 2), "v0": F(-3, 2)},
     "1/2 (x0 - 1/3 (v0 + a0))": {"x0": F(1, 2), "v0": F(-1, 6), "a0": F(-1, 6)},
     "x0 - x0 + vh + vh[0] + vh[ -1 ]": {"vh": 1, "vh[0]": 1, "vh[-1]": 1},
     "1e-3 x0 + sqrt(4) (v0 - sqrt(2)*sqrt(8)/8 a0)": {"x0": F(1, 1000), "v0": 2, "a0": -1},
-    "0.3333333333333333333333333333333333333333 a0": {"a0": F(int("3" * 40), 10**40)},
 }
 
 
@@ -56,10 +51,6 @@ def test_sums_are_read_exactly(text: str) -> None:
     assert {str(quantity): coefficient for coefficient, quantity in equation.value} == SUMS[text]
 
 
-def test_a_result_may_be_written_with_brackets() -> None:
-    assert recipe({"x[1]" if name == "x1" else name: text for name, text in VERLET.items()}) == recipe(VERLET)
-
-
 SUM = "expected a number such as (16 - sqrt(6))/36 or, in an equation, a sum such as x0 + 1/2 (v0 - a[-1])"
 STEP = "expected one step with it, such as x0, x1 or x[-1]"
 WORDS = "expected numbers, names, + - * / and parentheses"
@@ -68,12 +59,12 @@ DIVISOR = "expected to divide by a fraction other than 0, as in sqrt(2)/2"
 REFUSED = {
     "x": f"'x': {STEP}",
     "x0[1]": f"'x0[1]': {STEP}",
-    "__import__('os')": WORDS,
-    "٢ x0": WORDS,
+    **dict.fromkeys(("__import__('os')", "٢ x0"), WORDS),
     **dict.fromkeys(("1/0 x0", "x0/(sqrt(2) - sqrt(2))", "x0/sqrt(2)"), DIVISOR),
     **dict.fromkeys(("sqrt(-1) x0", "sqrt(sqrt(2)) x0", "sqrt(1e9) x0"), ROOT),
-    **dict.fromkeys(("", "x0 v0", "x0 * v0", "x0 + 1", "x0 (v0 + 1)", "x0 / v0", "x0 1", "1 2 x0", "(x0", "x0)"), SUM),
-    **dict.fromkeys(("x0 // 2", "x0 ** 2", "lambda", "acceleration(x0)", "acceleration(x0, v0) + x0", "sqrt(x0)"), SUM),
+    **dict.fromkeys(
+        ("", "x0 v0", "x0 + 1", "x0 / v0", "1 2 x0", "(x0", "x0 // 2", "acceleration(x0)", "sqrt(x0)"), SUM
+    ),
 }
 
 
@@ -82,14 +73,6 @@ def test_what_is_not_a_sum_is_refused_with_the_equation(text: str) -> None:
     with pytest.raises(InputError) as caught:
         recipe(VERLET | {"w": text})
     assert str(caught.value) == f"'w' = {text!r}: {REFUSED[text]}"
-
-
-@pytest.mark.parametrize("result", ["", "2", "x", "w v", "acceleration", "x0[0]", "a\nb", "é", "w" * 31, "(w)"])
-def test_what_is_no_quantity_is_no_result(result: str) -> None:
-    with pytest.raises(InputError) as caught:
-        recipe(VERLET | {result: "x0"})
-    assert len(str(caught.value).splitlines()) == 1
-    assert len(str(caught.value)) < 200
 
 
 TOO_MUCH = {
@@ -107,12 +90,13 @@ def test_what_would_take_too_long_is_refused_in_one_short_line(why: str) -> None
     assert len(str(caught.value)) < 200
 
 
+RESULTS = st.sampled_from(["", "2", "x", "w v", "acceleration", "x0[0]", "a\nb", "é", "w" * 31, "(w)", "x[1]"])
 ANYTHING = st.text(max_size=60) | st.text(alphabet="xva01[]-+*/(). ,acceleration", max_size=80)
 
 
 @pytest.mark.slow
-@settings(deadline=None, max_examples=20)
-@given(ANYTHING, ANYTHING)
+@settings(deadline=None, max_examples=60)
+@given(RESULTS | ANYTHING, ANYTHING)
 def test_any_text_is_a_scheme_or_one_short_line(result: str, text: str) -> None:
     try:
         recipe(VERLET | {result: text})

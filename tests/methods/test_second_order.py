@@ -1,6 +1,5 @@
 """Second-order schemes: P is what their own step matrix has, what is implicit is found, what cannot be is refused."""
 
-import graphlib
 from fractions import Fraction
 
 import pytest
@@ -12,7 +11,6 @@ from bezstab.methods.derivation import closed_loop_at
 from bezstab.methods.recipes import recipe
 from bezstab.methods.registry import lookup
 from bezstab.methods.schemes import Method, RungeKutta
-from bezstab.methods.second_order import SecondOrder
 from tests.methods import kinds
 from tests.methods.random_recipes import RECIPES, VERLET
 from tests.reference.made_methods import multistep
@@ -37,17 +35,6 @@ def test_p_is_the_characteristic_polynomial_of_the_step(name: str) -> None:
         assert is_shifted(polynomial, closed_loop_at(Method("form", form, ""), *point))
 
 
-def has_a_circle(scheme: SecondOrder) -> bool:
-    """Return whether some result of the step waits for itself, by Python's own sorting of graphs."""
-    results = {equation.result for equation in scheme.equations}
-    needed = {equation.result: results & set(equation.used) for equation in scheme.equations}
-    try:
-        graphlib.TopologicalSorter(needed).prepare()
-    except graphlib.CycleError:
-        return True
-    return False
-
-
 @settings(deadline=None, max_examples=60)  # the determinant's time is not bounded by its input's length
 @given(RECIPES, st.sampled_from(POINTS))
 @pytest.mark.slow
@@ -55,7 +42,6 @@ def test_p_of_a_random_recipe_is_that_of_its_own_step(
     equations: dict[str, str], point: tuple[Fraction, Fraction]
 ) -> None:
     scheme = recipe(equations)
-    assert scheme.implicit == has_a_circle(scheme)
     p = closed_loop_at(Method("own", scheme, ""), *point)
     polynomial = step_polynomial(scheme, *point)
     assert (polynomial is None) == (p[-1] == 0)
@@ -73,16 +59,13 @@ DOUBLED = {"x1": "x0 + 1/2 v0", "v1": "v0 + 2 a0", "a0": "acceleration(x0, 1/2 v
     [
         (VERLET | {"x1": "x0 + v0 + 1/2 a0 + w"}, "x1: no equation gives w"),
         (VERLET | {"a1": "acceleration(x2, vh)"}, "a1: uses x2, but x1 is the latest there is"),
-        (VERLET | {"w[3]": "x0"}, r"w\[3\]: expected an equation for step 0, 1 or 2"),
         (VERLET | {"a0": "acceleration(x0, v0)"}, "a0: a second equation for a"),
         (VERLET | {"x1": "x1"}, "do not determine x1 and v1"),
-        (VERLET | {"x1": "x0 + 2 v0"}, "inconsistent"),
         (VERLET | {"v1": "vh"}, "an acceleration does not act in full"),
         (VERLET | {"a1": "acceleration(x1, 2 vh)"}, "feedback not as feedback"),
         (VERLET | {"x1": "3 x0 - 2 x[-1] - v0 + 1/2 a0"}, "zero-unstable: .* outside the unit circle"),
         (VERLET | {"w": "0 x0 - w[0] + u[0]", "u": "0 x0 - u[0]"}, "zero-unstable"),  # -1 twice; once it is allowed
         (DOUBLED, "v1 is not the velocity of x1"),
-        ({"v1": "v0 + a0", "a0": "acceleration(x0, v0)"}, "no equation gives x1"),
         ({"x1": "x0 + v0", "v1": "v0"}, "no equation evaluates the acceleration"),
     ],
 )

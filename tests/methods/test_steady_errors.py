@@ -57,7 +57,7 @@ def test_normals_that_turn_add_something_of_the_leading_order_to_gauss_alone() -
     assert [name for name in names if turning_error(lookup(name)) is not None] == ["gauss4"]
 
 
-@pytest.mark.parametrize("name", ["AB3", "ABM2", "RK4", "verlet-half", "radau3"])
+@pytest.mark.parametrize("name", ["ABM2", "verlet-half"])
 @pytest.mark.parametrize("part", ["x", "v"])
 def test_a_step_of_several_h_forces_what_its_own_parameters_do(name: str, part: Part) -> None:
     """E of m h at (a, b) is m^k times E of h at (m a, m^2 b), in theta of h."""

@@ -1,14 +1,12 @@
 """Figures and tables of regions, lists of methods and families."""
 
 import csv
-from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from bezstab.methods.registry import lookup
-from bezstab.stability.forced_errors import combined_error
 from bezstab.stability.regions import region
 from tests.cli.running import arrays, rows, run
 
@@ -27,34 +25,17 @@ def test_region_writes_what_is_asked_for_where_it_is_asked_for(tmp_path: Path) -
 
 
 def test_the_tables_of_a_map_and_of_compared_boundaries(tmp_path: Path) -> None:
-    assert run("region --quality fast --figure none --table csv").exit_code == 0
+    assert run("region --quality fast --accuracy --figure none --table csv").exit_code == 0
     compared = "region --compare --method B4 --method RK4@5 --figure none --table csv"
     (row, _) = rows(compared, "--level 0.9")
     assert row["z_abs_below"] == 0.9
     points, boundaries = (
         list(csv.DictReader((tmp_path / name).read_text(encoding="utf-8").splitlines()))
-        for name in ("region_B4.csv", "compare_B4_RK4@5.csv")
+        for name in ("region_B4_accuracy.csv", "compare_B4_RK4@5.csv")
     )
-    assert list(points[0]) == ["alpha_hat", "beta_hat", "z_abs", "z_angle_deg"]
+    assert list(points[0]) == ["alpha_hat", "beta_hat", "z_abs", "z_angle_deg", "combined_error"]
+    assert all((point["combined_error"] in ("", "nan")) == (float(point["z_abs"]) >= 1) for point in points)
     assert len(points) == 50**2
     for name in ("B4", "RK4@5"):
         drawn = [[float(row["alpha_hat"]), float(row["beta_hat"])] for row in boundaries if row["method"] == name]
         assert drawn == np.concatenate(region(lookup(name), 0.9).boundary).tolist()
-
-
-@pytest.mark.slow
-def test_the_map_of_errors_is_written_as_figure_and_table(tmp_path: Path) -> None:
-    options = "--alpha-range 0.001 6 --beta-range 1e-5 9 --grid 20 --level 0.9 --table npz -o out"
-    region, level, fastest, accurate = rows("region --method RK4 --accuracy", options)
-    assert {path.name for path in (tmp_path / "out").iterdir()} == {
-        "region_RK4_accuracy.png",
-        "region_RK4_accuracy.npz",
-    }
-    assert (region["z_abs_below"], level["z_abs_below"]) == (1, 0.9)
-    assert (fastest["goal"], accurate["goal"]) == ("fastest", "accurate")
-    assert accurate["combined_error"] < fastest["combined_error"]
-    assert fastest["z_abs"] == region["z_abs"]
-    table = arrays(tmp_path / "out" / "region_RK4_accuracy.npz")
-    assert table["alpha_hat"][:20] == pytest.approx(np.geomspace(1e-3, 6, 20))
-    expected = combined_error(lookup("RK4"), table["alpha_hat"], table["beta_hat"], Fraction(1, 100))
-    assert table["combined_error"] == pytest.approx(np.where(table["z_abs"] < 1, expected, np.nan), nan_ok=True)

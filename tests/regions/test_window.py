@@ -6,8 +6,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from bezstab.methods.registry import lookup
 from bezstab.regions.answer import MapConditions, map_answer
-from bezstab.regions.figure import comparison_figure, map_figure
-from bezstab.stability.regions import region
+from bezstab.regions.figure import map_figure
 from tests.cli.running import run
 
 
@@ -18,13 +17,6 @@ def test_the_point_under_the_mouse_has_its_gains_its_pole_and_its_proven_verdict
     two_alpha, beta_squared = 1 / 0.01, 0.5 / 0.01**2
     assert axes.format_coord(two_alpha, beta_squared) == words.format(1, 0.5, 50, 70.7107, "0.707107", "converges")
     assert axes.format_coord(70, 7000) == words.format(0.7, 0.7, 35, 83.666, "1.000000", "marginal")
-
-
-def test_compared_methods_are_told_one_below_the_other() -> None:
-    figure = comparison_figure([region(lookup(name)) for name in ("B1", "SYM")], MapConditions())
-    first, *others = figure.axes[0].format_coord(1.0, 2.0).splitlines()
-    assert first == "α̂ = 1, β̂ = 2"
-    assert others == ["B1: |z_p| = 1.414214, diverges (proven)", "SYM: |z_p| = 1.000000, marginal (proven)"]
 
 
 REGION = "region --method SYM --quality fast --figure window"

@@ -1,22 +1,31 @@
+"""What a goal chooses: no point is better by another route, and what is said of a point holds."""
+
 from fractions import Fraction
+from typing import Any
 
 import numpy as np
 import pytest
 
 from bezstab.errors import InputError
 from bezstab.goals import Goal
-from bezstab.methods.registry import lookup
+from bezstab.methods.registry import REGISTRY, lookup
+from bezstab.stability.accurate_points import default_rate
+from bezstab.stability.arrays import FloatArray
 from bezstab.stability.best_points import best_point
 from bezstab.stability.choices import choose, describe_point
 from bezstab.stability.closed_loop import spectral_radius
-from bezstab.stability.path_ends import stability_margins
+from bezstab.stability.feedback_costs import feedback_cost, follows_motion
+from bezstab.stability.forced_errors import combined_error
 from tests.methods.kinds import sampled
 from tests.reference.made_methods import multistep
 from tests.reference.robust_decay import worst_decay
 from tests.reference.settling import settling
 
+F = Fraction
+SYM = lookup("SYM")
 
-@pytest.mark.parametrize("name", sampled(["RK1", "SYM", "B4", "RK4"], quick=["RK1", "SYM"]))
+
+@pytest.mark.parametrize("name", sampled(["RK1", "SYM", "B4", "RK4"], quick=["SYM"]))
 def test_no_point_is_more_robust(name: str) -> None:
     """Second route: compass search from random points, on other shares of the step and other offsets."""
     chosen = choose(lookup(name), "robust", spread=0.1)
@@ -30,88 +39,69 @@ def test_no_point_is_more_robust(name: str) -> None:
                 assert worst_decay(lookup(name), a, b, shares, 0.1) > best * (1 - 2e-6)
 
 
-def test_the_most_robust_feedback_of_a_method_whose_step_is_five_is_that_of_its_own_step() -> None:
-    """alpha and beta in 1/s are the same when five steps of h are one of 5 h, and so is the decay a step."""
-    of_step, of_five = choose(lookup("RK4"), "robust"), choose(lookup("RK4@5"), "robust")
-    assert (5 * of_five.alpha_hat, 25 * of_five.beta_hat) == pytest.approx((of_step.alpha_hat, of_step.beta_hat), 1e-6)
-    assert of_five.worst == pytest.approx(of_step.worst, 1e-9)
+@pytest.mark.parametrize("name", ["RK4", "B4", "SYM", "gauss4", "verlet-half"])
+@pytest.mark.slow
+def test_the_accurate_point_decays_as_asked_within_the_spread_and_no_sampled_point_forces_less(name: str) -> None:
+    method, omega_h = lookup(name), F(1, 50)
+    chosen = choose(method, "accurate", omega_h=omega_h)
+    assert chosen.worst <= default_rate(method, omega_h) * (1 + 1e-9)
+    off = 1 + np.array([-0.1, 0.0, 0.1])[:, np.newaxis]
 
+    def error(alpha_hat: Any, beta_hat: Any) -> FloatArray:
+        """Return the largest error over the spread, infinite where it does not decay as asked."""
+        a, b = alpha_hat * off, beta_hat * off[:, np.newaxis] ** 2
+        slow = spectral_radius(method, a, b).max(axis=(0, 1)) > default_rate(method, omega_h)
+        return np.where(slow, np.inf, combined_error(method, a, b, omega_h).max(axis=(0, 1)))
 
-def test_the_critical_choice_is_where_an_opposite_pole_is_as_large() -> None:
-    """Of B4 that is the best point of all; a ten-millionth of mu beside it the real and positive pole is larger."""
-    chosen, best = choose(lookup("B4"), "critical"), best_point(lookup("B4"))
-    assert best
-    assert (chosen.alpha_hat, chosen.beta_hat) == pytest.approx((best.alpha_hat, best.beta_hat), rel=3e-7)
-    assert chosen.pole.real == pytest.approx(best.z_abs, rel=1e-6)
-
-
-def test_the_critical_choice_of_rk4_is_the_minimum_of_its_stability_function() -> None:
-    mu = np.roots([1 / 6, 1 / 2, 1, 1])
-    (real,) = mu[np.abs(mu.imag) < 1e-12].real
-    chosen = choose(lookup("RK4"), "critical")
-    assert abs(chosen.pole) == pytest.approx(1 + real + real**2 / 2 + real**3 / 6 + real**4 / 24, abs=1e-7)
-    assert chosen.alpha_hat == pytest.approx(-2 * real, rel=1e-3)  # flat there
+    random = np.random.default_rng(0)
+    beta_h, ratio = np.exp(random.uniform((-5, np.log(0.004)), (1.3, np.log(4)), (1000, 2))).T
+    here = error(chosen.alpha_hat, np.array([chosen.beta_hat * (1 - 1e-9)]))
+    assert error(2 * ratio * beta_h, beta_h**2).min() > here[0] * (1 - 1e-2)
 
 
 @pytest.mark.slow
-def test_a_goal_out_of_reach_is_refused() -> None:
-    with pytest.raises(InputError, match="critical is known on alpha = beta alone"):
-        choose(lookup("SYM"), "critical")
-    assert choose(lookup("B4"), "critical", equal=True) == choose(lookup("B4"), "critical")
-    with pytest.raises(InputError, match="settle"):
-        choose(lookup("B4"), "gentle", h=Fraction(1), settle=settling(0.5))
+def test_where_nothing_decays_as_the_accurate_point_should_it_is_half_as_fast_as_robust() -> None:
+    chosen = choose(lookup("AB8"), "accurate", omega_h=F(6, 100))
+    assert chosen.worst <= choose(lookup("AB8"), "robust").worst ** 0.5 * (1 + 1e-9)
 
 
-@pytest.mark.parametrize("goal", ["robust", "fastest"])
-def test_alpha_and_beta_can_be_kept_equal(goal: Goal) -> None:
-    chosen = choose(lookup("RK4"), goal, equal=True)
+@pytest.mark.parametrize(
+    ("name", "multiple", "goal"), [("RK4", 5, "robust"), ("implicit-euler", 2, "fastest"), ("RK2", 2, "accurate")]
+)
+def test_a_method_of_a_longer_step_has_the_choice_of_its_own_step(name: str, multiple: int, goal: Goal) -> None:
+    """alpha and beta in 1/s are the same when five steps of h are one of 5 h, and so is the decay a step."""
+    omega_h = F(1, 50)
+    of_step = choose(lookup(name), goal, omega_h=omega_h)
+    of_many = choose(lookup(f"{name}@{multiple}"), goal, omega_h=omega_h / multiple)
+    own = (multiple * of_many.alpha_hat, multiple**2 * of_many.beta_hat, of_many.worst)
+    assert own == pytest.approx((of_step.alpha_hat, of_step.beta_hat, of_step.worst), rel=1e-6)
+
+
+def test_the_critical_choice_is_where_an_opposite_pole_is_as_large_or_the_double_one_least() -> None:
+    """Of B4 that is the best point of all; of RK4 the minimum of its stability function."""
+    chosen, best = choose(lookup("B4"), "critical"), best_point(lookup("B4"))
+    assert best
+    # a ten-millionth of mu beside it the real and positive pole is larger
+    assert (chosen.alpha_hat, chosen.beta_hat) == pytest.approx((best.alpha_hat, best.beta_hat), rel=3e-7)
+    assert chosen.pole.real == pytest.approx(best.z_abs, rel=1e-6)
+    mu = np.roots([1 / 6, 1 / 2, 1, 1])
+    (least,) = np.polyval([1 / 24, 1 / 6, 1 / 2, 1, 1], mu[np.abs(mu.imag) < 1e-12].real)
+    assert abs(choose(lookup("RK4"), "critical").pole) == pytest.approx(least, abs=1e-7)
+
+
+def test_alpha_and_beta_can_be_kept_equal() -> None:
+    chosen, t = choose(lookup("RK4"), "fastest", equal=True), np.linspace(0.01, 2.7, 2000)
     assert chosen.beta_hat == pytest.approx(chosen.alpha_hat**2 / 4, rel=1e-12)
-    t = np.linspace(0.01, 2.7, 2000)
-    if goal == "fastest":
-        assert abs(chosen.pole) <= spectral_radius(lookup("RK4"), 2 * t, t**2).min() + 1e-9
+    assert abs(chosen.pole) <= spectral_radius(lookup("RK4"), 2 * t, t**2).min() + 1e-9
 
 
-def test_a_point_that_is_not_safe_is_described() -> None:
-    unsafe = describe_point(lookup("SYM"), "as given", Fraction(2), Fraction(2))
-    assert (unsafe.verdict, unsafe.settle_steps) == ("diverges", None)
-    assert describe_point(lookup("SYM"), "as given", Fraction(1), Fraction(2)).verdict == "marginal"
-
-
-def test_after_the_steps_to_settle_a_thousandth_is_left_and_not_before() -> None:
-    found = describe_point(lookup("B4"), "", Fraction(1, 5), Fraction(1, 50))
-    for z_abs, count in ((abs(found.pole), found.settle_steps), (found.worst, found.settle_steps_at_worst)):
-        assert count
-        assert z_abs**count <= 1e-3 < z_abs ** (count - 1)
-
-
-def test_the_steps_to_settle_where_every_pole_is_zero_or_next_to_one() -> None:
-    # pi(z, -2) = z^2 - 3/2 z + 1/2 + 2 (3/4 z - 1/4) = z^2, hence P(z) = z^4 at alpha_hat = beta_hat = 4
-    deadbeat = multistep("deadbeat", "1 -3/2 1/2", "0 3/4 -1/4")
-    assert describe_point(deadbeat, "", Fraction(4), Fraction(4)).settle_steps == 4
-    # |z_p| = 1 - 5e-14: rounding leaves no digits
-    slow = describe_point(lookup("B4"), "", Fraction("1e-13"), Fraction("2.5e-27"))
-    assert (slow.verdict, slow.settle_steps) == ("converges", None)
-
-
-def test_where_the_spread_reaches_unstable_points_errors_do_not_settle_at_worst() -> None:
-    edge = describe_point(lookup("SYM"), "", Fraction(1), Fraction(199, 100))
-    assert edge.worst > 1
-    assert edge.settle_steps
-    assert edge.settle_steps_at_worst is None
-
-
-def test_a_choice_for_larger_steps_is_the_same_alpha_and_beta_at_a_smaller_step() -> None:
-    h, h_max, omega_h, settle = Fraction(1, 1000), Fraction(1, 250), Fraction(1, 50), Fraction(2)
-    smaller = choose(lookup("RK4"), "accurate", h=h, h_max=h_max, settle=settle, omega_h=omega_h)
-    largest = choose(lookup("RK4"), "accurate", h=h_max, settle=settle, omega_h=omega_h)
-    assert 4 * smaller.alpha_hat == pytest.approx(largest.alpha_hat, rel=1e-14)
-    assert 16 * smaller.beta_hat == pytest.approx(largest.beta_hat, rel=1e-14)
-    assert largest.worst ** float(settle / h_max) <= 1e-3 * (1 + 1e-9)
-
-
-def test_a_time_to_settle_goes_with_the_goal_gentle_and_is_met() -> None:
-    h, settle = Fraction(1, 1000), Fraction(1, 20)
-    gentle = choose(lookup("RK2@2"), "gentle", h=h, settle=settle)  # 25 steps of 2 ms
+def test_a_choice_for_larger_steps_is_the_same_alpha_and_beta_at_a_smaller_step_and_settles_in_time() -> None:
+    asked: dict[str, Any] = {"settle": F(2), "omega_h": F(1, 50)}
+    smaller = choose(lookup("RK4"), "accurate", h=F(1, 1000), h_max=F(1, 250), **asked)
+    largest = choose(lookup("RK4"), "accurate", h=F(1, 250), **asked)
+    assert (4 * smaller.alpha_hat, 16 * smaller.beta_hat) == pytest.approx((largest.alpha_hat, largest.beta_hat), 1e-14)
+    assert largest.worst**500 <= 1e-3 * (1 + 1e-9)
+    gentle = choose(lookup("RK2@2"), "gentle", h=F(1, 1000), settle=F(1, 20))  # 25 steps of 2 ms
     assert abs(gentle.pole) ** 25 == pytest.approx(1e-3, rel=1e-6)
 
 
@@ -120,17 +110,97 @@ def test_a_time_to_settle_goes_with_the_goal_gentle_and_is_met() -> None:
 @pytest.mark.slow
 def test_where_the_region_goes_on_a_choice_says_how_far_it_looked(name: str, goal: Goal) -> None:
     choice = choose(lookup(name), goal)
-    assert choice.verdict == "converges"
     found_anywhere = goal == "fastest" and best_point(lookup(name)) is not None
-    assert choice.searched == (None if found_anywhere else 4)
+    assert (choice.verdict, choice.searched) == ("converges", None if found_anywhere else 4)
     if not found_anywhere:  # up to rounding within alpha h, beta h <= 4
         assert choice.alpha_hat <= 8 * (1 + 1e-12)
         assert choice.beta_hat <= 16 * (1 + 1e-12)
 
 
-def test_of_implicit_euler_the_strongest_feedback_that_is_looked_at_is_the_fastest() -> None:
-    choice = choose(lookup("implicit-euler"), "fastest")  # |z| = 1 / |1 - mu|, for a double mu = -4 a fifth
-    assert abs(choice.pole) == pytest.approx(1 / 5, abs=1e-7)
-    assert np.isinf(stability_margins(choice.method, *choice.point).h)
-    of_two_h = choose(lookup("implicit-euler@2"), "fastest")
-    assert (2 * of_two_h.alpha_hat, 4 * of_two_h.beta_hat) == pytest.approx((choice.alpha_hat, choice.beta_hat))
+# pi(z, -2) = z^2 - 3/2 z + 1/2 + 2 (3/4 z - 1/4) = z^2, hence P(z) = z^4 at alpha_hat = beta_hat = 4
+DEADBEAT = multistep("deadbeat", "1 -3/2 1/2", "0 3/4 -1/4")
+
+
+def test_after_the_steps_to_settle_a_thousandth_is_left_and_not_before() -> None:
+    found = describe_point(lookup("B4"), "", F(1, 5), F(1, 50))
+    for z_abs, count in ((abs(found.pole), found.settle_steps), (found.worst, found.settle_steps_at_worst)):
+        assert count
+        assert z_abs**count <= 1e-3 < z_abs ** (count - 1)
+    assert describe_point(DEADBEAT, "", F(4), F(4)).settle_steps == 4
+    edge = describe_point(SYM, "", F(1), F(199, 100))
+    assert edge.worst > 1
+    assert (edge.settle_steps is None, edge.settle_steps_at_worst) == (False, None)
+    unsafe = describe_point(SYM, "", F(2), F(2))
+    assert (unsafe.verdict, unsafe.settle_steps) == ("diverges", None)
+    slow = describe_point(lookup("B4"), "", F("1e-13"), F("2.5e-27"))  # 1 - 5e-14: rounding leaves no digits
+    assert (slow.verdict, slow.settle_steps) == ("converges", None)
+
+
+# Along a curve, as an engine has one
+
+
+def one_step(share: Any) -> tuple[Any, Any]:
+    """Return alpha_hat = 1, where symplectic Euler's poles are 0 and 1 - beta_hat; beta_hat to 1.5."""
+    return 1.0, 1.5 * share
+
+
+def weak(share: Any) -> tuple[Any, Any]:
+    return 1.0, 0.1 * share
+
+
+def test_a_choice_keeps_to_its_curve_and_of_equal_points_is_the_mildest() -> None:
+    def chosen(goal: Goal, z_abs: float) -> tuple[float, float]:
+        found = choose(SYM, goal, h=F(1), settle=settling(z_abs), along=one_step)
+        return found.alpha_hat, found.beta_hat
+
+    assert chosen("gentle", 0.8) == pytest.approx((1, 0.2), abs=1e-9)
+    assert chosen("fastest", 0.8) == pytest.approx((1, 1), abs=1e-9)
+    alike = choose(SYM, "fastest", along=one_step, modulus=lambda a, b: np.maximum(spectral_radius(SYM, a, b), 0.5))
+    assert alike.point == pytest.approx((1, 0.5), abs=1e-9)  # up to 1.5 all are as good
+    accurate = choose(SYM, "accurate", h=F(1), settle=settling(0.9), along=one_step)
+    assert (accurate.alpha_hat, accurate.worst <= 0.9) == (1, True)
+    with pytest.raises(InputError, match=r"with any setting of the engine SYM has at best \|z_p\| = 0.9, needed 0.8"):
+        choose(SYM, "gentle", h=F(1), settle=settling(0.8), along=weak)
+
+
+# What accuracy a feedback costs
+
+
+@pytest.mark.parametrize(("name", "left", "order"), [("RK4", 2, 4), ("AB4", 4, 4)])
+def test_the_order_that_is_left_is_at_most_the_methods_own(name: str, left: int, order: int) -> None:
+    cost = feedback_cost(lookup(name), 0.1, 0.01)
+    assert (cost.order_left, cost.order) == (left, order)
+
+
+FOLLOWING = (*("RK3", "RK4", "ssprk3", "bs3", "dopri5", "tsit5", "cash-karp", "rkn4"), *("dirk3", "radau5", "gauss4"))
+"""Explicit methods with stages, of order three and more, and implicit ones whose velocities strong feedback spoils."""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", REGISTRY)
+def test_which_methods_take_the_least_damping_that_settles(name: str) -> None:
+    """Then alpha and beta are the same multiples of the motion's rate, however fast it is for the step."""
+    method = lookup(name)
+    assert follows_motion(method) is (name in FOLLOWING)
+    if follows_motion(method):
+        slow, fast = (
+            (chosen.alpha_hat / 2 / rate, chosen.beta_hat**0.5 / rate)
+            for rate in (0.01, 0.05)
+            for chosen in [choose(method, omega_h=F(str(rate)))]
+        )
+        assert fast == pytest.approx(slow, rel=0.05)
+        assert slow[0] == pytest.approx(0.5 / 0.9, rel=1e-3)  # e^(-1/2) in a radian, with a tenth less than that
+
+
+@pytest.mark.parametrize(
+    ("name", "alpha_hat", "beta_hat", "known"),
+    [
+        ("SYM", 1.0, 2.0, False),  # marginal
+        ("RK4", 1e-17, 1e-34, True),  # |z_p| = 1 - 5e-18 is one in float64
+        ("SYM", F(1), 2 + F(1, 10**20), False),
+        ("SYM", F(1), 2 - F(1, 10**20), True),
+    ],
+)
+def test_errors_are_told_where_decay_is_proven(name: str, alpha_hat: Any, beta_hat: Any, known: bool) -> None:
+    cost = feedback_cost(lookup(name), alpha_hat, beta_hat, least=False)
+    assert (cost.forced_error is not None) is (cost.total_error is not None) is known

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from numpy.polynomial.polynomial import polyroots, polyval
 
-from bezstab.errors import InputError
 from bezstab.methods.registry import lookup
 from bezstab.methods.steady_errors import forced_errors, turning_error
 from bezstab.stability.arrays import FloatArray
@@ -63,16 +62,6 @@ def test_the_worst_lower_harmonic_is_that_of_a_search_that_zooms_in(name: str) -
             reach /= 10
         at_own = size(np.array([multiple * float(omega)]))[0]
         assert total == pytest.approx(position * at_own / min(at_own, size(places).min()), rel=1e-6)
-
-
-def test_of_no_points_there_are_no_errors() -> None:
-    assert forced_error(lookup("B4"), [], []).total.shape == (0,)
-
-
-@pytest.mark.parametrize("omega", [Fraction(0), Fraction(1), Fraction(1, 10**7)])
-def test_a_motion_that_no_step_follows_or_that_is_none_is_refused(omega: Fraction) -> None:
-    with pytest.raises(InputError, match="rad a step: expected 1e-06 to 1"):
-        forced_error(lookup("RK4"), 0.5, 0.1, omega)
 
 
 @pytest.mark.parametrize("multiple", [1, 5])

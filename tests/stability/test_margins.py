@@ -8,11 +8,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from bezstab.errors import InputError, NumericalError
+from bezstab.errors import InputError
 from bezstab.methods.registry import lookup
 from bezstab.stability import path_ends
 from bezstab.stability.closed_loop import verdict
-from bezstab.stability.path_ends import Margins, largest_stable_step, stability_margins, stable_up_to
+from bezstab.stability.path_ends import largest_stable_step, stability_margins
 from bezstab.stability.regions import region, window
 from tests.methods.kinds import sampled
 from tests.reference.made_methods import runge_kutta
@@ -20,23 +20,16 @@ from tests.reference.made_methods import runge_kutta
 PART = Fraction(1, 10**9)
 
 
-def outer_ends(margins: Margins) -> list[tuple[float, int, int, int]]:
-    """Return every end, the powers with which its factor enters alpha_hat and beta_hat, and the way outwards."""
-    ends = [(margins.h, 1, 2, 1), (margins.alpha[1], 1, 0, 1), (margins.alpha[0], 1, 0, -1)]
-    return [*ends, (margins.beta[1], 0, 2, 1), (margins.beta[0], 0, 2, -1)]
-
-
 def assert_each_end_is_proven(name: str, alpha_hat: Fraction, beta_hat: Fraction) -> None:
     """One part in 1e9 nearer the point converges, one part further does not, in exact arithmetic."""
     method = lookup(name)
-    for end, of_alpha_hat, of_beta_hat, outwards in outer_ends(stability_margins(method, alpha_hat, beta_hat)):
+    found = stability_margins(method, alpha_hat, beta_hat)
+    ends = [(found.h, 1, 2, 1), (found.alpha[1], 1, 0, 1), (found.alpha[0], 1, 0, -1)]
+    for end, i, j, outwards in [*ends, (found.beta[1], 0, 2, 1), (found.beta[0], 0, 2, -1)]:
         if 0 < end < math.inf:
             nearer, further = (Fraction(end) * (1 + outwards * side * PART) for side in (-1, 1))
-            inside, outside = (
-                verdict(method, alpha_hat * factor**of_alpha_hat, beta_hat * factor**of_beta_hat)
-                for factor in (nearer, further)
-            )
-            assert (inside, outside) == ("converges", "diverges")
+            assert verdict(method, alpha_hat * nearer**i, beta_hat * nearer**j) == "converges"
+            assert verdict(method, alpha_hat * further**i, beta_hat * further**j) == "diverges"
 
 
 @given(st.floats(0.05, 1.9), st.floats(0.05, 0.95))
@@ -56,21 +49,10 @@ def test_margins_of_symplectic_euler_are_those_of_its_triangle(a: float, share: 
     sampled(["B4", "B12", "ABM3", "RK4@5", "bdf3", "verlet-kdk", "yoshida4"], quick=["B4", "RK4@5", "verlet-kdk"]),
 )
 def test_each_end_of_a_margin_lies_between_two_proven_verdicts(name: str) -> None:
+    """The last of weak feedback: rounding cannot tell such a mu from the imaginary axis; factors are 1e-20 to 1e8."""
     (_, alpha_hat_max), (_, beta_hat_max) = window(region(lookup(name)))
-    alpha_hat, beta_hat = Fraction(0.4 * alpha_hat_max), Fraction(0.2 * beta_hat_max)
-    if verdict(lookup(name), alpha_hat, beta_hat) != "converges":
-        beta_hat = Fraction(0.05 * beta_hat_max)
-    assert verdict(lookup(name), alpha_hat, beta_hat) == "converges"
-    assert_each_end_is_proven(name, alpha_hat, beta_hat)
-
-
-@pytest.mark.parametrize(("name", "exponent"), [("B4", 7), ("RK4", 5)])
-def test_margins_of_weak_feedback_are_right_however_far(name: str, exponent: int) -> None:
-    """Rounding cannot tell such a mu from the imaginary axis; factors reach from 1e-20 to 1e8."""
-    alpha_hat, beta_hat = Fraction(2, 10**exponent), Fraction(1, 10 ** (2 * exponent))
-    found = stability_margins(lookup(name), alpha_hat, beta_hat)
-    assert found.alpha[1] > 10 ** (exponent - 1)
-    assert_each_end_is_proven(name, alpha_hat, beta_hat)
+    for a, b in ((0.4 * alpha_hat_max, 0.05 * beta_hat_max), (2e-7, 1e-14)):
+        assert_each_end_is_proven(name, Fraction(a), Fraction(b))
 
 
 @pytest.mark.slow
@@ -98,13 +80,6 @@ def test_the_largest_step_of_a_setting_is_that_of_all_its_points_and_may_be_none
     assert largest_stable_step(method, until_one, 0.01) is None
 
 
-def test_small_steps_are_stable_only_with_damping_and_stiffness() -> None:
-    assert stable_up_to(lookup("SYM"), Fraction(0), Fraction(1)) == 0
-    assert stable_up_to(lookup("SYM"), Fraction(1), Fraction(0)) == 0
-    assert stable_up_to(lookup("SYM"), Fraction(-1), Fraction(1)) == 0
-    assert stable_up_to(lookup("implicit-euler"), Fraction(1), Fraction(1)) == math.inf
-
-
 def test_a_gap_is_no_margin_however_mildly_errors_grow_in_it() -> None:
     """R = 1 + mu + 3/25 mu^2 is below -1 from mu = -10/3 to -5, by a twelfth at most; at -25/3 it is one again."""
     gap = runge_kutta("gap", "3/25", "0 1")
@@ -115,8 +90,3 @@ def test_a_place_that_eigenvalues_miss_is_found_by_verdicts(monkeypatch: pytest.
     true = stability_margins(lookup("B4"), 0.3, 0.06)
     monkeypatch.setattr(path_ends, "places", lambda path: path_ends.WAYPOINTS)
     assert stability_margins(lookup("B4"), 0.3, 0.06).h == pytest.approx(true.h, rel=2e-9)
-
-
-def test_an_unstable_point_has_no_margin() -> None:
-    with pytest.raises(NumericalError, match="B4 is not stable there"):
-        stability_margins(lookup("B4"), 3, 1)

@@ -27,10 +27,3 @@ def test_a_narrow_dip_is_found_and_what_only_touches_zero_is_left_open() -> None
     assert (found - THIRD) ** 2 <= depth
     assert positivity([[THIRD**2 + depth, -2 * THIRD, ONE]], ZERO, ONE) is True
     assert positivity([[THIRD**2, -2 * THIRD, ONE]], ZERO, ONE) is False
-
-
-def test_every_row_counts_and_a_point_is_an_interval() -> None:
-    rows = [[ONE], [Fraction(1, 2), -ONE]]
-    assert positivity(rows, ZERO, THIRD) is True
-    assert repr(positivity(rows, ZERO, ONE)) == "Fraction(1, 1)"  # which True is equal to
-    assert positivity(rows, Fraction(1, 4), Fraction(1, 4)) is True
