@@ -4,7 +4,7 @@ import math
 from dataclasses import replace
 from fractions import Fraction
 
-from bezstab.methods.orders import accuracy, accuracy_by_force, stage_weights
+from bezstab.methods.orders import accuracy, accuracy_by_force
 from bezstab.methods.registry import REGISTRY, lookup
 from tests.reference.made_methods import runge_kutta
 from tests.reference.orders import JAMESON, adams_constant
