@@ -80,7 +80,7 @@ def test_it_predicts_runs(name: str, alpha_hat: float, beta_hat: float, harmonic
 
 @pytest.mark.parametrize("name", REGISTRY)
 def test_a_uniform_rotation_gains_what_the_stages_torque_says(name: str) -> None:
-    method, theta = lookup(name), 0.01
+    method, theta = lookup(name), 0.015
     multiple = float(method.step_multiple)
     found = stage_torque(method, (Fraction(1), Fraction(1, 4)))
     rotation = float(motion_energy(method, 1 / multiple, 0.25 / multiple**2, theta / multiple).rotation)
