@@ -34,6 +34,10 @@ def roots_of_rows(coefficients: NDArray[np.inexact]) -> ComplexArray:
     with np.errstate(all="ignore"):
         if len(coefficients) == 2:
             return np.asarray(-coefficients[:1] / coefficients[1], complex)
+        if len(coefficients) == 3 and not np.iscomplexobj(coefficients):  # keeps plain numbers plain
+            larger, product = largest_root(coefficients), coefficients[0] / coefficients[2]
+            other = np.divide(product, larger, out=np.zeros_like(larger), where=larger != 0)
+            return np.stack([larger, np.where(larger.imag == 0, other, larger.conj())])
         at_once = 4 * CHUNK // len(coefficients)
         chunks = [
             _aberth(coefficients[:, start : start + at_once].astype(complex))
