@@ -9,7 +9,7 @@ from bezstab.chains.figure import chain_figure
 
 @pytest.mark.slow
 def test_the_line_of_chains_parts_what_decays_from_what_grows() -> None:
-    answer = chain("chipmunk", h="1/60", bodies=7, mass_ratio=10)
+    answer = chain("chipmunk", h="1/60", bodies=7, mass_ratio=40)
     z_abs = chain_map(answer.engine, answer.values, answer.h, answer.links)
     axes = chain_figure(answer).axes[0]
     boundary, own = axes.get_lines()
