@@ -1,6 +1,6 @@
 import re
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import pytest
 from hypothesis import example, given, settings
@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 
 from bezstab.errors import InputError
 from bezstab.mechanism.scene_files import parse_scene, read_scene, shipped_scenes
+from bezstab.mechanism.scenes import Joint
 from tests.mechanism.test_scenes import pendulum
 
 SPRING = {"bodies": ["ground", "bob"], "points": [[0, 2], [0, 0]], "stiffness": 3.0, "free_length": 1.0}
@@ -42,6 +43,13 @@ LINE = {"type": "point-on-line", "bodies": ["ground", "bob"], "points": [[0, 0],
 def test_a_bad_scene_takes_one_line_that_names_the_key(changes: dict[str, Any], named: str) -> None:
     with pytest.raises(InputError, match=rf"\A.*{re.escape(named)}.*\Z"):
         parse_scene(pendulum(**changes))
+
+
+def test_every_kind_of_joint_is_one_that_a_file_may_have() -> None:
+    kinds = [getattr(joint, "kind", "driver") for joint in get_args(Joint)]
+    with pytest.raises(InputError) as refused:
+        parse_scene(pendulum(joint__type="weld"))
+    assert set(re.split(r", | or ", str(refused.value).partition("expected ")[2])) == set(kinds)
 
 
 PENDULUM = (shipped_scenes()["pendulum"]).read_bytes()

@@ -56,5 +56,15 @@ def _lines() -> Iterator[tuple[str, str, str, str]]:
         yield from ((command, column.key, column.unit, column.meaning) for column in columns.values())
 
 
+def untold(before: str, now: str) -> set[tuple[str, str]]:
+    """Return each command and key that went from one page to another, though the table of renamed keys says nothing."""
+    renamed = csv.DictReader(PAGE.with_name("renamed_keys.csv").read_text(encoding="utf-8").splitlines())
+    told = {(command, key) for row in renamed for command in row["command"].split() for key in row["key"].split()}
+    old, new = ({(row["command"], row["key"]) for row in csv.DictReader(it.splitlines())} for it in (before, now))
+    return old - new - told
+
+
 if __name__ == "__main__":
+    if gone := untold(PAGE.read_text(encoding="utf-8"), page()):
+        raise SystemExit(f"renamed_keys.csv does not say where these are now: {sorted(gone)}")
     PAGE.write_text(page(), encoding="utf-8")
