@@ -48,18 +48,15 @@ def motion_of(
     if omega is not None and omega_h is not None:
         raise InputError("the motion is given as omega= in 1/s with h= in s, or as omega_h= in rad a step, not as both")
     longer, amplitude = h_max / h if h and h_max else Fraction(1), None
+    assumed = omega is None and omega_h is None and scene is None
+    whose = "one"
     if omega_h is not None:
         turned, given = omega_h / longer, "--omega-h"
-        words = f"one with ωh = {float(omega_h):.3g}"
-    elif omega is None and scene is None:
+    elif assumed:
         turned, given = OMEGA_H / longer, "--h and --h-max"
-        at_longest = "" if longer == 1 else " at --h-max"
-        whose = "--omega says" if h else "--omega and --h say"
-        words = f"one with ωh = {float(OMEGA_H):g}{at_longest} ({whose} how fast yours is)"
     elif h is None:
         raise InputError(f"{'--scene' if omega is None else '--omega'} needs --h: the step in s, to make ωh of it")
     else:
-        whose = "one"
         if omega is None:
             assert scene
             of_scene = _motion_of_scene(scene, speed, duration)
@@ -68,13 +65,19 @@ def motion_of(
         else:
             given = f"--omega {typed_number(omega)}"
         turned = omega * h
-        words = f"{whose} with ω = {float(omega):.3g} 1/s, ωh = {float(turned):.3g}"
     try:
         check_omega_h(turned)
         check_omega_h(turned * longer)
     except InputError as error:
         raise InputError(f"{given}: {error}") from None
-    assumed = omega is None and omega_h is None
+    if assumed:
+        at_longest = "" if longer == 1 else " at --h-max"
+        says = "--omega says" if h else "--omega and --h say"
+        words = f"one with ωh = {float(OMEGA_H):g}{at_longest} ({says} how fast yours is)"
+    elif omega is None:
+        words = f"one with ωh = {float(turned * longer):.3g}"
+    else:
+        words = f"{whose} with ω = {float(omega):.3g} 1/s, ωh = {float(turned):.3g}"
     return ReferenceMotion(turned, turned * longer, words, amplitude, assumed)
 
 

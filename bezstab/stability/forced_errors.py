@@ -18,6 +18,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
 from math import comb
+from sys import float_info
 
 import numpy as np
 from numpy.polynomial.polynomial import polyder, polyval, polyval2d
@@ -109,7 +110,8 @@ def combined_error(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike, om
 def check_omega_h(omega_h: Fraction) -> None:
     """Refuse a motion that cannot be asked about: InputError unless 1e-6 <= omega_h < 1."""
     if not SLOWEST <= omega_h < 1:
-        raise InputError(f"omega h = {float(omega_h):g} rad a step: expected {float(SLOWEST):g} to 1")
+        turned = f"= {float(omega_h):g}" if omega_h <= float_info.max else f"> {float_info.max:g}"
+        raise InputError(f"omega h {turned} rad a step: expected {float(SLOWEST):g} to 1")
 
 
 LARGEST_OMEGA_H = 0.6
