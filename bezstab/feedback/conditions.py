@@ -4,8 +4,10 @@ h, engine, scene, omega, ...   →   Setup         →   conditions   →   Cond
 a point, or an engine's values →   given_feedback   →   Given
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import partial
 from typing import Any
 
 from bezstab.arguments import Number, exact_number, exact_or_none, real_number
@@ -131,7 +133,7 @@ def conditions(setup: Setup) -> Conditions:
     InputError as `motion_of` and `turning_of`.
     """
     h, scene, speed = setup.h, setup.scene, setup.speed
-    swept = _swept(setup, constraints_of(scene, speed)) if setup.engine and scene is not None else None
+    swept = None if scene is None else _swept(setup, partial(constraints_of, scene, speed))
     turning = turning_of(scene, speed, h)
     try:
         motion = motion_of(setup.omega, scene, speed, h, setup.h_max, omega_h=setup.omega_h)
@@ -152,7 +154,9 @@ def conditions(setup: Setup) -> Conditions:
 
 def for_choosing(asked: Conditions) -> Conditions:
     """Return the same with USUAL_CHAIN to sweep over, where the engine sweeps and nobody says over what."""
-    return replace(asked, swept=_swept(asked, constraints_of_chain(USUAL_CHAIN))) if asked.scene is None else asked
+    if asked.scene is not None:
+        return asked
+    return replace(asked, swept=_swept(asked, partial(constraints_of_chain, USUAL_CHAIN)))
 
 
 def at_step(asked: Conditions, h: Fraction) -> Conditions:
@@ -160,9 +164,10 @@ def at_step(asked: Conditions, h: Fraction) -> Conditions:
     return replace(asked, h=h, motion=motion_of(asked.omega, asked.scene, asked.speed, h, omega_h=asked.omega_h))
 
 
-def _swept(setup: Setup, constraints: Constraints) -> SweptConstraints | None:
-    """Return constraints over which an engine sweeps; None where it does not, and where there is only one."""
+def _swept(setup: Setup, find: Callable[[], Constraints]) -> SweptConstraints | None:
+    """Return constraints over which an engine sweeps, found where it does; None too where there is only one."""
     engine, h = setup.engine, setup.h
-    if engine is None or engine.sweeping is None or h is None or len(constraints.joints) == 1:
+    if engine is None or engine.sweeping is None or h is None:
         return None
-    return SweptConstraints(engine, h, constraints, engine.sweeping.iterations)
+    constraints = find()
+    return SweptConstraints(engine, h, constraints, engine.sweeping.iterations) if len(constraints.joints) > 1 else None

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from fractions import Fraction
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
@@ -36,9 +36,13 @@ def built_in_group(
     key: str, heading: str, note: str = "", others: Mapping[str, Callable[[], Method]] | None = None
 ) -> MethodGroup:
     """Return the methods that a table of built_in.toml has, and others."""
-    tables = read_toml("methods", Path(__file__).with_name("built_in.toml"), lambda data: data[key])
-    methods = {name: partial(_built_in, name, **table) for name, table in tables.items()}
+    methods = {name: partial(_built_in, name, **table) for name, table in _built_in_tables()[key].items()}
     return MethodGroup(heading, {**methods, **(others or {})}, note)
+
+
+@cache
+def _built_in_tables() -> dict[str, Any]:
+    return read_toml("methods", Path(__file__).with_name("built_in.toml"), dict)
 
 
 def _built_in(name: str, digits: int | None = None, **data: Any) -> Method:

@@ -83,7 +83,6 @@ class Region(ReadOnlyArrays):
         return inside
 
 
-@cache
 def region(method: Method, level: float = 1.0) -> Region:
     """Return the region |z_p| < level, 0 < level <= 1, dimensionless.
 
@@ -91,7 +90,12 @@ def region(method: Method, level: float = 1.0) -> Region:
     areas by lines of constant alpha_hat and of constant beta_hat differ by more than DISAGREE.
     """
     check_level(level)
-    across, upwards = _lines(method, float(level))
+    return _region(method, float(level))
+
+
+@cache
+def _region(method: Method, level: float) -> Region:
+    across, upwards = _lines(method, level)
     before, extent = None, _extent(across, upwards)
     area: float | None = 0.0
     error, view, boundary = 0.0, before, tuple[FloatArray, ...]()
@@ -106,7 +110,7 @@ def region(method: Method, level: float = 1.0) -> Region:
     if extent:
         goes_on = [isinf(end) for _, end in extent]
         approached = ((False, goes_on[1] and _approached(across)), (False, goes_on[0] and _approached(upwards)))
-    return Region(method, float(level), area, error, extent, view, boundary, approached, tuple(across.islands()))
+    return Region(method, level, area, error, extent, view, boundary, approached, tuple(across.islands()))
 
 
 def _extent(across: Lines, upwards: Lines) -> Extent | None:

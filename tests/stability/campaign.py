@@ -19,7 +19,7 @@ from bezstab.methods.schemes import Method
 from bezstab.rationals import exact
 from bezstab.stability.closed_loop import converges
 from bezstab.stability.lines import Lines
-from bezstab.stability.regions import Region, _lines, region
+from bezstab.stability.regions import Region, _lines, _region, region
 from tests.reference.random_methods import other_random_method, random_method
 
 METHODS = 5_000  # of either half
@@ -38,7 +38,7 @@ def verdict_on(method: Method) -> str:
     except NumericalError as error:
         return f"refused: {error}"
     finally:
-        region.cache_clear()
+        _region.cache_clear()
     wrong = _wrong_end(method)
     if not wrong and shape.area and not shape.islands:
         wrong = _wrong_area(shape)
