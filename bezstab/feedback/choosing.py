@@ -410,7 +410,8 @@ def _trades(judged: Judgement, wish: Wish) -> Trades | None:
     """
     if judged.cost is None or judged.cost.total_error is None:
         return None
-    goals: tuple[Goal, ...] = ("robust", "fastest")
+    at_fastest = wish.goal == "fastest" and not judged.moving  # as it moves another pole is the least
+    goals: tuple[Goal, ...] = () if at_fastest else ("robust", "fastest")
     stronger = (_alternative(judged, Wish(goal, None, wish.equal)) for goal in goals)
     faster = next((each for each in stronger if each and each.z_abs < abs(judged.pole)), None)
     steps, h, slower = judged.settle_steps_at_worst, judged.conditions.h, None
