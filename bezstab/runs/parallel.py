@@ -2,7 +2,6 @@
 
 import importlib.util
 import logging
-import multiprocessing
 import multiprocessing.resource_tracker
 import os
 import signal
@@ -140,14 +139,15 @@ def _numbered(
 @contextmanager
 def _processes() -> Iterator[None]:
     """Let no process outlive what is inside; NumericalError if one is lost."""
+    from joblib.externals.loky import get_reusable_executor
+
     _start_cleaners()
     try:
         yield
     except BrokenProcessPool:
         raise NumericalError(LOST_WORKER) from None
-    finally:
-        for process in multiprocessing.active_children():
-            process.terminate()
+    finally:  # through the pool, which else would give its dead workers to the next job
+        get_reusable_executor(reuse=True).shutdown(kill_workers=True)
 
 
 @contextmanager

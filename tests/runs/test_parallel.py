@@ -60,6 +60,12 @@ def test_a_resumed_job_does_only_what_is_missing_or_damaged(tmp_path: Path) -> N
 
 
 @pytest.mark.slow
+def test_a_job_gets_workers_of_its_own_right_after_another(tmp_path: Path) -> None:
+    for number in range(20):  # workers that are dead without their pool's knowledge met every fourth
+        assert arrived([Job(1), Job(2), Job(3)], tmp_path / str(number), workers=2) == [1, 4, 9]
+
+
+@pytest.mark.slow
 def test_a_lost_worker_is_one_line_and_what_is_done_is_kept(tmp_path: Path) -> None:
     jobs = [Job(0), Job(1, (tmp_path / "death",)), Job(2)]
     kept_in(tmp_path).save(0, {"square": np.array(-9)})
