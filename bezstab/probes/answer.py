@@ -84,7 +84,7 @@ def compared_with(
 
 @dataclass(frozen=True, repr=False)
 class Probe:
-    """The pole in a column of a log, and what has it.
+    """The pole in a column of a log, per row, and what has it; None if none can be told.
 
     `likenesses`: how near it is to the pole of each method at the point, the nearest first; `fitting`: the names of the
     methods that have it there, none where more is allowed than methods differ by. Without a point `points`: where each
@@ -92,6 +92,7 @@ class Probe:
     """
 
     column: str
+    pole: complex | None
     found: ProbedPole
     likenesses: Sequence[Likeness]
     fitting: tuple[str, ...]
@@ -101,11 +102,6 @@ class Probe:
 
     def __repr__(self) -> str:
         return f"Probe({self.sentence})"
-
-    @property
-    def pole(self) -> complex | None:
-        """The dominant pole per row; None if none can be told."""
-        return self.found.pole
 
 
 @in_keywords()
@@ -242,7 +238,8 @@ def probe_response(column: str, found: ProbedPole, compared: Compared) -> Probe:
         points = [point for point in candidates if point]
     fitting = tuple(one.method.name for one in told(alike))
     reason = _reason(found, compared, alike, fitting, points)
-    return Probe(column, found, alike, fitting, points, reason, _sentence(column, found, compared, fitting, reason))
+    sentence = _sentence(column, found, compared, fitting, reason)
+    return Probe(column, found.pole, found, alike, fitting, points, reason, sentence)
 
 
 def _reason(

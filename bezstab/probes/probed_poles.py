@@ -61,7 +61,7 @@ ITERATIONS = 40
 """Of Newton's method: it settles within some twenty, or nowhere."""
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True)
 class ProbedPole:
     """The dominant pole in one response, per row of the log; `pole` is None, and `reason` says why, if none is claimed.
 
@@ -75,35 +75,23 @@ class ProbedPole:
     poles: tuple[complex, ...]
     reason: str = ""
 
-    def __repr__(self) -> str:
-        if self.pole is None:
-            return f"ProbedPole(none: {self.reason})"
-        return f"ProbedPole({self.pole:.6g} to {self.uncertainty:.1g}, from {self.samples} rows)"
 
-
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True)
 class Likeness:
     """How far a probed pole is from a method's dominant one at a point, `predicted`, per row of the log.
 
-    `allowed` is the error of the fit and what the motion of the mechanism may do.
+    `allowed` is the error of the fit and what the motion of the mechanism may do; where the pole `fits` it is no
+    farther, and the log may be the method's.
     """
 
     method: Method
     predicted: complex
     distance: float
     allowed: float
-
-    def __repr__(self) -> str:
-        fit = "fits" if self.fits else "does not fit"
-        return f"Likeness({self.method.name} {fit}: {self.distance:.3g} of {self.allowed:.3g} allowed)"
-
-    @property
-    def fits(self) -> bool:
-        """Whether the log may be this method's."""
-        return self.distance <= self.allowed
+    fits: bool
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True)
 class LikePoint:
     """A point at which a method has the probed pole for its dominant one; errors by the error of the fit."""
 
@@ -112,9 +100,6 @@ class LikePoint:
     beta_hat: float
     alpha_hat_error: float
     beta_hat_error: float
-
-    def __repr__(self) -> str:
-        return f"LikePoint({self.method.name}: alpha_hat = {self.alpha_hat:.6g}, beta_hat = {self.beta_hat:.6g})"
 
 
 def probed_pole(c: ArrayLike, minus: ArrayLike | None = None, differenced: bool = False) -> ProbedPole:
@@ -210,8 +195,8 @@ def likenesses(
             moved = steps * (
                 moving.z_abs ** (steps - 1) * (moving.z_abs - moving.at_least) + abs(predicted) * turned**2
             )
-            allowed = probed.uncertainty + moved
-            found.append(Likeness(method, predicted, abs(predicted - probed.pole), allowed))
+            distance, allowed = abs(predicted - probed.pole), probed.uncertainty + moved
+            found.append(Likeness(method, predicted, distance, allowed, distance <= allowed))
     return sorted(found, key=lambda one: one.distance)
 
 
