@@ -60,20 +60,16 @@ def test_check_says_what_an_impedance_does_to_a_spinning_body(a: float, b: float
 
 @pytest.mark.parametrize(("a", "b"), [(0.2, 0.2), (0.4, 0.04), (1, 0.2)])
 def test_check_says_what_a_closed_four_bar_gains(a: float, b: float) -> None:
-    """By its own run, of hard constraints, strong and gentle: to 3 %, ten seconds at 1/240 s. A soft solimp brakes."""
+    """By its own run, of hard constraints, strong and gentle: to 3 %, ten seconds at 1/240 s."""
     h, scene = Fraction(1, 240), replace(load_scene("four_bar"), gravity=(0.0, 0.0))
     mechanism = compiled_mechanism(scene)
-    hard = model_xml(scene, "Euler", float(h), a, b)
+    model = mujoco.MjModel.from_xml_string(model_xml(scene, "Euler", float(h), a, b))
+    data = mujoco.MjData(model)
     q, v = initial_state(mechanism)
-    gained = []
-    for text in (hard, hard.replace("0.9999 0.9999 1 0.5 1", "0.9 0.95")):
-        model = mujoco.MjModel.from_xml_string(text)
-        data = mujoco.MjData(model)
-        data.qpos[:], data.qvel[:] = q, v
-        mujoco.mj_step(model, data, 2400)
-        gained.append(float(mechanism.mass @ data.qvel**2 / (mechanism.mass @ v**2)) - 1)
+    data.qpos[:], data.qvel[:] = q, v
+    mujoco.mj_step(model, data, 2400)
+    gained = float(mechanism.mass @ data.qvel**2 / (mechanism.mass @ v**2)) - 1
     values = f"mujoco={-b / float(h) ** 2},{-a / float(h)},0.9999,0.9999"
     run = check(engine=values, h=h, scene=scene).run
     assert run
-    assert run.gained == pytest.approx(gained[0], rel=0.03)
-    assert gained[1] < 0.5 * gained[0]
+    assert run.gained == pytest.approx(gained, rel=0.03)
