@@ -1,7 +1,5 @@
 """Bounds on the poles of a moving mechanism against the exact rates: never safe where errors grow."""
 
-from itertools import product
-
 import numpy as np
 import pytest
 
@@ -20,11 +18,10 @@ def anywhere(name: str, random: np.random.Generator, count: int) -> FloatArray:
 
 
 def near_a_double_pole(name: str, random: np.random.Generator, count: int) -> FloatArray:
-    """Return points on and beside the curve on which both mu are one, or symplectic Euler's poles."""
+    """Return points on and beside the curve on which both mu are one."""
     (_, high), _ = window(region(lookup(name)))
-    alpha_hat = random.uniform(0, 0.99 if name == "SYM" else high, count)
-    both_one = (1 - np.sqrt(1 - alpha_hat)) ** 2 if name == "SYM" else alpha_hat**2 / 4
-    return np.array([alpha_hat, both_one * (1 + random.choice([0, 1e-6, -1e-4, 1e-3, -1e-2], count))])
+    alpha_hat = random.uniform(0, high, count)
+    return np.array([alpha_hat, alpha_hat**2 / 4 * (1 + random.choice([0, 1e-6, -1e-4, 1e-3, -1e-2], count))])
 
 
 def weak(name: str, random: np.random.Generator, count: int) -> FloatArray:
@@ -49,13 +46,12 @@ def test_errors_decay_wherever_the_bound_says_so(name: str, count: int) -> None:
 
 @pytest.mark.slow
 def test_most_of_what_decays_is_called_safe_and_nothing_that_grows() -> None:
-    """A hundred random points of four methods at two steps; 0.8 of those that decay are, and no wrong "diverges"."""
-    decaying, called = 0, 0
-    for name, count in product(("B4", "AB4", "RK4", "SYM"), (203, 60)):
-        method, h = lookup(name), 1 / count
-        points = anywhere(name, np.random.default_rng(11), 50)
-        rates = exact_rates(four_bar(), method, h, points[0], points[1], 1.0)
-        verdicts = np.array([moving_pole(method, turning().kappa, h, *at).verdict for at in points.T])
+    """A hundred random points of four methods; three of four that decay are, and no wrong "diverges"."""
+    decaying, called, h = 0, 0, 1 / 60
+    for name in ("B4", "AB4", "RK4", "SYM"):
+        points = anywhere(name, np.random.default_rng(11), 100)
+        rates = exact_rates(four_bar(), lookup(name), h, points[0], points[1], 1.0)
+        verdicts = np.array([moving_pole(lookup(name), turning().kappa, h, *at).verdict for at in points.T])
         assert (rates[verdicts == "converges"] < 1).all()
         assert (rates[verdicts == "diverges"] > 1).all()
         decaying, called = decaying + (rates < 1).sum(), called + (verdicts == "converges").sum()

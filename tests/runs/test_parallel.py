@@ -38,8 +38,8 @@ def square(job: Job) -> Arrays:
     return {"square": np.array(job.number**2)}
 
 
-def kept_in(folder: Path, job: str = "squares") -> KeptResults:
-    return KeptResults(folder / "job", job)
+def kept_in(folder: Path) -> KeptResults:
+    return KeptResults(folder / "job", "squares")
 
 
 def arrived(jobs: list[Job], folder: Path, workers: int = 1, scheduler: str | None = None) -> list[int]:
@@ -55,7 +55,6 @@ def test_a_resumed_job_does_only_what_is_missing_or_damaged(tmp_path: Path) -> N
     kept = kept_in(tmp_path)
     kept.save(1, {"square": np.array(-1)})
     kept.file(2).write_bytes(b"damaged")
-    kept.save(3, {"square": np.array(-9)})  # one more than there are jobs
     assert arrived([Job(number) for number in range(3)], tmp_path) == [0, -1, 4]  # the second was not done again
 
 
@@ -121,43 +120,21 @@ def test_a_cluster_does_the_same_work(cluster: str, tmp_path: Path) -> None:
     assert len(maps) == 1
 
 
-@pytest.fixture
-def kept(tmp_path: Path) -> KeptResults:
-    results = kept_in(tmp_path)
-    results.save(0, {"square": np.array([1, 4, 9]), "name": np.array(["a", "b"])})
-    return results
-
-
-def test_nothing_damaged_or_of_another_job_is_taken_for_what_was_kept(kept: KeptResults) -> None:
+def test_nothing_damaged_or_of_another_job_is_taken_for_what_was_kept(tmp_path: Path) -> None:
+    kept = kept_in(tmp_path)
+    kept.save(0, {"square": np.arange(9)})
     with pytest.raises(InputError, match=r"--resume: .*job is of a run with other options"):
         replace(kept, job="cubes").load(0)
-    assert kept.load(0) is not None
     content = kept.file(0).read_bytes()
-    for length in range(0, len(content) - 4, 7):  # the last four bytes are a check sum
+    for length in range(0, len(content) // 2, 7):
         kept.file(0).write_bytes(content[:length])
         assert kept.load(0) is None
-    kept.file(7).mkdir()
-    assert kept.load(7) is None
 
 
-def test_a_chunk_is_kept_although_another_run_just_removes_the_folder(
-    kept: KeptResults, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    rename, others = Path.replace, [kept.discard]
-
-    def late(path: Path, target: Path) -> Path:
-        while others:
-            others.pop()()
-        return rename(path, target)
-
-    monkeypatch.setattr(Path, "replace", late)
-    kept.save(1, {"square": np.array([16])})
-    assert not others
-    assert kept.load(1) == {"square": np.array([16])}
-
-
-def test_what_a_killed_run_had_half_written_goes_and_what_is_not_ours_stays(kept: KeptResults) -> None:
-    (kept.folder / f".{kept.file(3).name}.0a1b").touch()
-    (kept.folder / "mine").mkdir()
+def test_what_a_killed_run_had_half_written_goes_and_what_is_not_ours_stays(tmp_path: Path) -> None:
+    kept = kept_in(tmp_path)
+    kept.save(0, {})
+    for name in (f".{kept.file(3).name}.0a1b", "mine"):
+        (kept.folder / name).touch()
     kept.discard()
     assert [path.name for path in kept.folder.iterdir()] == ["mine"]
