@@ -31,7 +31,6 @@ def test_a_drivers_work_is_the_energy_that_the_motion_has_in_closed_form() -> No
     assert np.ptp(energy) > 1  # J, of 30
     assert run.driver_work == pytest.approx(energy - energy[0], abs=1e-8)  # the run is off by RK4's error
     assert run.energy_drift == pytest.approx(np.zeros(len(run.t)), abs=1e-8)
-    assert np.array_equal(run.force_work, np.zeros(len(run.t)))
 
 
 @pytest.mark.parametrize(("sequence", "within"), [((), 1e-9), ((1e-3, 2e-3), 1e-5)])  # then by trapezia
@@ -47,7 +46,6 @@ def test_a_constant_force_and_torque_do_their_way_times_themselves(sequence: tup
     run = run_of(parse_scene(scene), sequence=sequence)
     assert run.force_work == pytest.approx((run.q - run.q[0]) @ [3, -4, 2], abs=within)
     assert run.q[:, 2] == pytest.approx(2 * run.t**2)  # 2 N m on 0.5 kg m^2
-    assert np.ptp(run.force_work) > 1
     assert np.abs(run.energy_drift).max() < within  # of 3 J
 
 
@@ -61,3 +59,16 @@ def test_a_damper_takes_what_the_oscillation_loses() -> None:
     rate = -np.exp(-run.t) * np.sin(3 * run.t) * 10 / 3
     assert run.force_work == pytest.approx(rate**2 / 2 + 10 * x**2 / 2 - 5, abs=1e-10)
     assert run.energy_drift == pytest.approx(np.zeros(len(run.t)), abs=1e-10)
+
+
+@pytest.mark.parametrize("name", ["SYM", "B4"])
+@pytest.mark.parametrize("scene", ["four_bar", pytest.param("slider_crank_light", marks=pytest.mark.slow)])
+def test_what_feedback_adds_to_the_drift_is_the_work_of_the_multipliers(scene: str, name: str) -> None:
+    """What is left is the same at all gains, to 3 % of it; of methods whose stages have no torque."""
+    mechanism, by_feedback, left = compiled_mechanism(load_scene(scene)), [], []
+    for alpha, beta in ((10, 10), (30, 30), (30, 60), (100, 100)):  # 1/s
+        alpha_hat, beta_hat = 2 * alpha * H, (beta * H) ** 2
+        run = simulated(mechanism, lookup(name), h=H, duration=2.0, alpha_hat=alpha_hat, beta_hat=beta_hat)
+        by_feedback.append(run.multiplier_work[-1])
+        left.append(run.energy_drift[-1] - run.multiplier_work[-1])
+    assert np.ptp(left) < 0.03 * np.ptp(by_feedback)

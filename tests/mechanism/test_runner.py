@@ -16,16 +16,8 @@ from bezstab.methods.orders import accuracy
 from bezstab.methods.registry import lookup
 from bezstab.stabilising import NOTHING, AfterStep
 from bezstab.units import feedback_gains
-from tests.mechanism.four_bar_chains import four_bars
 from tests.methods.kinds import FEW, SOLVED
-from tests.reference.one_coordinate_motion import (
-    distance,
-    four_bar_chain_energies,
-    motion,
-    shared_angles,
-    shown_order,
-    slider_crank_energies,
-)
+from tests.reference.one_coordinate_motion import distance, shared_angles, shown_order, slider_crank_energies
 
 FloatArray = NDArray[np.float64]
 
@@ -75,7 +67,6 @@ def test_a_run_that_ends_says_when_and_why(
     run = simulate(compiled_mechanism(load_scene(scene)), lookup(method), h, 50.0, gains, state)
     assert str(run.failure).startswith(f"at t = {run.t[-1] + h:.6g} s: {cause}")
     assert np.isfinite(run.q).all()
-    assert len(run.t) == len(run.q) == len(run.v)
 
 
 def errors(run: Trajectory) -> FloatArray:
@@ -91,21 +82,16 @@ def test_strong_feedback_does_not_answer_the_steps_of_the_start() -> None:
 
 
 def test_from_a_state_off_the_constraints_the_feedback_acts_at_once() -> None:
-    """Off in place, and in velocity: without feedback c grows by h cdot_1 in each step of the start, by 3e-4 m."""
+    """In velocity: without feedback c grows by h cdot_1 in each step of the start, by 3e-4 m."""
     at_rest, v = perturbed_state(MECHANISM, 0.0)
-    direction = perturbed_state(MECHANISM, 1.0)[0] - at_rest
-    for state, gains, most in (
-        ((at_rest + 1e-4 * direction, v), (600.0, 9e4), 0.9e-4),
-        ((at_rest, v + 0.1 * direction), (200.0, 1e4), 2.4e-4),
-    ):
-        run = simulate(MECHANISM, lookup("AB4"), h=0.001, duration=0.003, gains=gains, state=state)
-        assert errors(run)[3] < most
+    off = v + 0.1 * (perturbed_state(MECHANISM, 1.0)[0] - at_rest)
+    run = simulate(MECHANISM, lookup("AB4"), h=0.001, duration=0.003, gains=(200.0, 1e4), state=(at_rest, off))
+    assert errors(run)[3] < 2.4e-4
 
 
-@pytest.mark.parametrize("family", ["B", "AB"])
-def test_a_ramp_takes_its_familys_members(family: str) -> None:
+def test_a_ramp_takes_its_familys_members() -> None:
     of_four, of_three = (
-        simulate(MECHANISM, lookup(f"{family}{n}"), H, 0.01, (20.0, 100.0), start="ramp").q for n in (4, 3)
+        simulate(MECHANISM, lookup(name), H, 0.01, (20.0, 100.0), start="ramp").q for name in ("B4", "B3")
     )
     assert np.array_equal(of_four[:4], of_three[:4])
     assert not np.array_equal(of_four[4], of_three[4])
@@ -141,9 +127,6 @@ def test_iterations_and_evaluations_of_an_implicit_run_are_counted() -> None:
     assert 300 <= run.iterations <= 400  # a correction, one to see that it was enough, and one more: a hundred times
     jacobians = (run.evaluations - 1 - run.iterations) / MECHANISM.size  # and one evaluation for the first acceleration
     assert jacobians in range(1, 20)  # one serves as long as the crank, at 6 degrees in a hundred steps, hardly turns
-    explicit = simulate(MECHANISM, lookup("verlet-half"), H, 0.1, (20.0, 100.0))
-    assert explicit.iterations is None
-    assert explicit.evaluations == 101
 
 
 @pytest.mark.parametrize("start", ["rk4", "ramp", "euler"])
@@ -170,28 +153,3 @@ def test_a01_the_pendulum_keeps_its_energy_and_its_place() -> None:
     run = simulated(pendulum, lookup("ABM4"), h=H, duration=10.0, alpha_hat=0.1, beta_hat=0.01)
     assert run.q[-1] == pytest.approx(A01_AT_10_S, abs=1e-8)
     assert np.abs(run.energy_drift).max() < 1e-8
-
-
-CLEAR_STEP = 9e-4
-"""In s: with it no stage of RK4 comes closer than 9e-4 rad to any of the 20 positions where the four-bars are singular.
-
-Where a stage lands on such a position by chance, at d rad from it, the four-bars part by their rounding over d, and the
-next passage multiplies what they parted by: with steps of 1 ms one stage lands at 5e-5 rad and one at 8e-6, and the
-energy is off by 2e-4 J on one processor and by half a joule on another. At 9e-4 rad the run is the same on all.
-"""
-
-
-@pytest.mark.slow
-def test_a02_the_four_bars_go_through_their_singular_positions() -> None:
-    """The benchmark has N = 40, runs for 20 s and allows errors of 1e-3 at most; its exact motion by quadrature."""
-    count = 5
-    run = simulated(
-        compiled_mechanism(four_bars(count)), lookup("RK4"), h=CLEAR_STEP, duration=1.5, alpha_hat=0.02, beta_hat=1e-4
-    )
-    times = run.t[::100]  # close: the quadrature has a sharp peak where the rods turn over
-    reference = motion(four_bar_chain_energies(count), np.pi / 2, -1.0, times.tolist(), digits=20)
-    assert run.q[::100, 0] == pytest.approx(reference, abs=1e-6)  # rad, on rods of 1 m; measured 5e-8
-    assert np.ptp(run.q[:, : count + 1], axis=1).max() < 1e-8  # rad: no four-bar has branched
-    assert np.abs(run.energy_drift).max() < 1e-6  # J, of hundreds; measured 1.5e-7
-    assert len(run.singular_times) == 2
-    assert run.least_pivot < 1e-5

@@ -6,10 +6,9 @@ import pytest
 from bezstab.mechanism.equations import compiled_mechanism
 from bezstab.mechanism.runner import simulate
 from bezstab.mechanism.scene_files import load_scene, parse_scene
-from bezstab.mechanism.scenes import Scene, at_speed
+from bezstab.mechanism.scenes import at_speed
 from bezstab.mechanism.start import initial_state
 from bezstab.methods.registry import lookup
-from tests.mechanism.four_bar_chains import four_bars
 
 
 def pendulum(**changes: Any) -> dict[str, Any]:
@@ -29,15 +28,6 @@ def pendulum(**changes: Any) -> dict[str, Any]:
     return {key: [value] if key in ("body", "joint") else value for key, value in data.items()}
 
 
-MANY = "three four-bars"
-"""Beside the shipped scenes: many bodies and loops."""
-
-
-def scene_of(name: str) -> Scene:
-    """Return the shipped scene of that name, or three four-bars in a row."""
-    return four_bars(3) if name == MANY else load_scene(name)
-
-
 def test_a_pin_is_at_one_place_of_both_bodies_that_it_holds() -> None:
     scene = load_scene("slider_crank")
     q, _ = initial_state(compiled_mechanism(scene))
@@ -48,9 +38,9 @@ def test_a_pin_is_at_one_place_of_both_bodies_that_it_holds() -> None:
     assert any(place == pytest.approx(pin, abs=1e-12) for place in places["rod"])
 
 
-@pytest.mark.parametrize("name", ["four_bar", "driven_four_bar", MANY])
+@pytest.mark.parametrize("name", ["four_bar", "driven_four_bar"])
 def test_twice_the_speed_doubles_every_velocity_of_the_start(name: str) -> None:
-    slow, fast = (initial_state(compiled_mechanism(at_speed(scene_of(name), factor))) for factor in (1.0, 2.0))
+    slow, fast = (initial_state(compiled_mechanism(at_speed(load_scene(name), factor))) for factor in (1.0, 2.0))
     assert np.array_equal(slow[0], fast[0])
     assert fast[1] == pytest.approx(2 * slow[1], rel=1e-14)
 

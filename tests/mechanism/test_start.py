@@ -60,18 +60,9 @@ def test_states_that_do_not_fit_are_refused(initial: dict[str, dict[str, float]]
 STRING = {"type": "distance", "bodies": ["ground", "bob"], "points": [[0, 0], [0, 0]], "length": 1.0}
 
 
-@pytest.mark.parametrize(
-    ("position", "beside"),
-    [
-        *(({"bob.x": 1.0, "bob.y": 0.0}, 0.0), ({"bob.y": 0.8}, 0.0)),
-        ({"bob.x": 1.0, "bob.y": 0.0}, 1e-11),  # m: to solve with them would leave five digits
-    ],
-)
-def test_a_joint_given_twice_is_refused_by_name_however_much_of_the_position_is_given(
-    position: dict[str, float], beside: float
-) -> None:
-    twice = [STRING, {**STRING, "points": [[0, beside], [0, 0]]}]
-    scene = {**pendulum(initial={"position": position, "guess": {"bob.x": 0.7}}), "joint": twice}
+@pytest.mark.parametrize("beside", [0.0, 1e-11])  # m: to solve with them would leave five digits
+def test_a_joint_given_twice_is_refused_by_name(beside: float) -> None:
+    scene = {**pendulum(), "joint": [STRING, {**STRING, "points": [[0, beside], [0, 0]]}]}
     expected = "joint 2 (distance, ground and bob) follows from joint 1 (distance, ground and bob)"
     with pytest.raises(InputError, match=re.escape(f"none follows from others: 2 constraints, rank 1: {expected}")):
         initial_state(compiled_mechanism(parse_scene(scene)))

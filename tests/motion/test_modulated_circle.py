@@ -120,17 +120,6 @@ def test_the_multipliers_work_of_methods_of_order_two(name: str) -> None:
     assert float(found.multiplier) == pytest.approx(2 * power, rel=0.01)  # of omega^2 / 2, per radian at 1 rad/s
 
 
-@pytest.mark.parametrize("name", ["AB2", "bdf2", "trapezoid", "B4", "AB3", "bdf3", "am3"])
-def test_the_ripple_of_multistep_methods_follows_their_law(name: str) -> None:
-    """c'' + 2 alpha c' + beta^2 c = -2 C h^p (G' + alpha G) with G = C_q q^(p+1); the rate is 1 + small sin(t)."""
-    h, (order, constant) = 0.002, accuracy(lookup(name))
-    g = {2: -3j * OMEGA, 3: 4 + 4 * OMEGA**2}[order]  # the part along q of the derivatives of e^(i phi), to first order
-    resonance = BETA**2 - OMEGA**2 + 2j * ALPHA * OMEGA
-    expected = -2 * float(constant) * h**order * (1j * OMEGA + ALPHA) * g / resonance
-    found = motion_energy(lookup(name), 2 * ALPHA * h, BETA**2 * h**2, OMEGA * h).ripple
-    assert complex(found) == pytest.approx(-1j * expected, rel=0.03)  # the next term is of theta
-
-
 def test_what_cannot_be_asked() -> None:
     with pytest.raises(InputError, match="omega h = 0 rad a step"):
         motion_energy(lookup("SYM"), 1, 0.5, 0)

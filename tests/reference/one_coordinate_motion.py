@@ -49,12 +49,6 @@ def slider_crank_energies(crank_inertia: str) -> Energies:
     return Energies(masses.dot(q.diff(ANGLE).applyfunc(lambda slope: slope**2)), ROD_MASS * GRAVITY * q[2])
 
 
-def four_bar_chain_energies(count: int) -> Energies:
-    """Return those of N parallel four-bars with rods of 1 m and 1 kg: N + 1 rods turn alike, N couplers translate."""
-    inertia = sp.Rational(count + 1, 3) + count
-    return Energies(inertia, (sp.Rational(count + 1, 2) + count) * GRAVITY * sp.sin(ANGLE))
-
-
 def motion(energies: Energies, angle: float, rate: float, times: Sequence[Any], digits: int = DIGITS) -> list[float]:
     """Return the angle at each time (s), ascending, from its value and rate at t = 0; the rate must keep its sign."""
     with mp.workdps(digits):
