@@ -21,6 +21,8 @@ def chain_figure(answer: ChainAnswer) -> Figure:
     """Return |z| over sweeps and bodies, up to those of an answer whose last body alone may be of another mass.
 
     The line is |z| = 1: to its right errors decay. The dashed line is at the number of sweeps that was asked about.
+
+    On a page: figures/chain_chipmunk.png
     """
     assert answer.engine.sweeping
     masses = answer.links.masses

@@ -20,6 +20,8 @@ def drive_figure(answer: DriveAnswer, points: int) -> Figure:
     """Return |z_p| over kd and kp (SI units), at so many points along each axis.
 
     The axes opposite show alpha_hat and beta_hat. Where the edge has a closed form, that is drawn over it.
+
+    On a page: figures/drive_SYM.png
     """
     drive, h = answer.drive, float(answer.h)
     alpha_hat, beta_hat = map(float, drive.point(answer.h))

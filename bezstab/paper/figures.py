@@ -54,17 +54,26 @@ Runs = Mapping[tuple[Start, str, float], Simulation]
 
 
 def faster_region_figure(name: str) -> Figure:
-    """Return a panel of Fig. 1: one method's map of |z_p|, its region S and the faster region H."""
+    """Return a panel of Fig. 1: one method's map of |z_p|, its region S and the faster region H.
+
+    On a page: bezstab paper -o figures
+    """
     return map_figure(map_answer(lookup(name), MapConditions(levels=(FASTER_LEVEL[name],)), drawn=True))
 
 
 def compared_regions_figure(*names: str, h: float | None = None) -> Figure:
-    """Return Fig. 2 or, in 2 alpha and beta^2 for a step of h (s), Fig. 3: the boundaries of several methods."""
+    """Return Fig. 2 or, in 2 alpha and beta^2 for a step of h (s), Fig. 3: the boundaries of several methods.
+
+    On a page: bezstab paper -o figures
+    """
     return comparison_figure([region(lookup(name)) for name in names], MapConditions(h=h))
 
 
 def mechanism_figure() -> Figure:
-    """Return Fig. 4: the slider-crank in its initial position."""
+    """Return Fig. 4: the slider-crank in its initial position.
+
+    On a page: bezstab paper -o figures
+    """
     scene = load_scene("slider_crank")
     q, _ = initial_state(compiled_mechanism(scene))
     with styled():
@@ -74,7 +83,10 @@ def mechanism_figure() -> Figure:
 
 
 def drift_figure(runs: Runs) -> Figure:
-    """Return the growth of |c_1| without stabilisation, a panel for each start (Figs. 5 and 6)."""
+    """Return the growth of |c_1| without stabilisation, a panel for each start (Figs. 5 and 6).
+
+    On a page: bezstab paper -o figures
+    """
     with styled():
         figure = column_figure(1.3)
         panels = dict(zip(START_NAMES, figure.subplots(len(START_NAMES), 1, sharex=True), strict=True))
@@ -102,7 +114,10 @@ def _draw_growth(axes: Axes, run: Simulation, label: str, line: Mapping[str, Any
 
 
 def histories_figure(derivative: bool) -> Figure:
-    """Return c_1, or its derivative, against time for the cases of Table 4 (Figs. 7 and 8)."""
+    """Return c_1, or its derivative, against time for the cases of Table 4 (Figs. 7 and 8).
+
+    On a page: bezstab paper -o figures
+    """
     symbol, unit = (r"\dot c_1", "m/s") if derivative else ("c_1", "m")
     with styled():
         figure = column_figure(1.3)
@@ -125,7 +140,10 @@ def histories_figure(derivative: bool) -> Figure:
 
 
 def compared_figure() -> Figure:
-    """Return |c_1| against time for the cases of Table 5, one-step and multistep methods apart (Fig. 9)."""
+    """Return |c_1| against time for the cases of Table 5, one-step and multistep methods apart (Fig. 9).
+
+    On a page: bezstab paper -o figures
+    """
     cases = list(TABLE_5)
     with styled():
         figure = column_figure(1.5)

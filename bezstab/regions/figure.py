@@ -82,6 +82,8 @@ def map_figure(answer: MapAnswer) -> Figure:
     alpha_hat and beta_hat. The label of an unbounded region says so, and arrows along the edges of the axes point to
     where it goes on. Of a scene that moves its own boundaries are drawn as well, by times its own speed. Where a motion
     is asked about it is `_motion_map_figure`.
+
+    On a page: figures/region_SYM.png
     """
     asked, region, drawing = answer.conditions, answer.regions[0].region, _drawn(answer)
     if asked.motion:
@@ -224,6 +226,8 @@ def _motion_map_figure(answer: MapAnswer, omega_h: float) -> Figure:
 
     They are of the forced error, which the feedback adds, as a share of the motion, or of the growth of its energy.
     Marked are both best points; dashed are further levels of |z_p|.
+
+    On a page: figures/region_RK4_accuracy.png
     """
     region, h, drawing = answer.regions[0].region, answer.conditions.h, _drawn(answer)
     z_abs, energy = np.abs(drawing.z), answer.conditions.energy
@@ -319,6 +323,8 @@ def comparison_figure(regions: Sequence[Region], asked: MapConditions) -> Figure
 
     Without a window all of every bounded region shows, and of an unbounded one its useful part: its label says that it
     is unbounded, and arrows along the edges of the axes point to where it goes on. Axes are as for `map_figure`.
+
+    On a page: bezstab region --compare
     """
     h = asked.h
     with styled():

@@ -82,6 +82,8 @@ def history_figure(simulation: Simulation) -> Figure:
 
     |c| is the largest over all constraints, on a logarithmic axis, where decay and growth are straight lines. Above
     stand scene, method, point and step and, in as many lines as it takes, why a run ended early.
+
+    On a page: bezstab simulate --scene own.toml
     """
     point = rf"$\hat\alpha$ = {simulation.alpha_hat:g}, $\hat\beta$ = {simulation.beta_hat:g}"
     title = [
@@ -108,6 +110,8 @@ def work_precision_figure(swept: SweptRuns, scene: str, error: ErrorOf) -> Figur
 
     Behind a method's runs are those of the others. Filled are those that no other run beats; crosses at the top are
     the costs of runs that failed. Of the trajectory the tolerance is drawn, too, and the cheapest run within it.
+
+    On a page: figures/tradeoff_slider_crank_light_trajectory.png
     """
     runs, methods = swept.runs, list(dict.fromkeys(run.method for run in swept.runs))
     best = [runs[number] for number in swept.fronts[error]]
@@ -157,6 +161,8 @@ def projection_figure(swept: SweptRuns, scene: str) -> Figure:
     They are the trajectory's, the largest |c| and the energy's drift. Colour and dashes are those of a method; its
     markers are hollow with feedback at the advised points, crosses with feedback at a given one, and filled with
     projection. Runs that failed are left out; the cheapest within the tolerance is marked.
+
+    On a page: figures/tradeoff_slider_crank_light_projection.png
     """
     methods = list(dict.fromkeys(run.method for run in swept.runs))
     ways = {held: look for held, look in TREATMENTS.items() if any(_held(run) == held for run in swept.runs)}
@@ -234,7 +240,10 @@ def trade_figures(swept: SweptRuns, scene: str) -> dict[str, Callable[[], Figure
 
 
 def verdict_figure(verdicts: VerdictMap, region: Region) -> Figure:
-    """Return the simulated verdicts as cells under the exact boundary; cells that disagree with it are crossed."""
+    """Return the simulated verdicts as cells under the exact boundary; cells that disagree with it are crossed.
+
+    On a page: figures/verify_slider_crank_AB4.png
+    """
     run = (verdicts.scene.name, verdicts.method.name, f"h = {verdicts.h:g} s", f"{verdicts.run} steps")
     given = f"{verdicts.judged} of {verdicts.undecided.size} runs gave a verdict"
     agreeing = f"{given}, {verdicts.agreeing} of them agree" if verdicts.judged else "no run gave a verdict"
