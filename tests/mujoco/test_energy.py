@@ -83,13 +83,6 @@ def test_states_that_move_are_run_and_others_are_not() -> None:
     assert turning.kept == pytest.approx(1, abs=1e-9)
 
 
-@pytest.mark.parametrize(
-    ("spin", "words"),
-    [
-        ({"crak": 1}, "spin crak: no hinge and no slide; there are: crank, coupler, rocker"),
-        ({"crank": 20, "rocker": 3}, "the loops do not allow this velocity at qpos0"),
-    ],
-)
-def test_a_rate_that_cannot_be_is_one_line(spin: dict[str, int], words: str) -> None:
-    with pytest.raises(InputError, match=words):
-        lint(four_bar(), spin=spin)
+def test_a_rate_that_the_loops_forbid_is_one_line() -> None:
+    with pytest.raises(InputError, match="the loops do not allow this velocity at qpos0"):
+        lint(four_bar(), spin={"crank": 20, "rocker": 3})

@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 from fractions import Fraction
-from math import log, sqrt
+from math import sqrt
 from typing import Any
 
 import numpy as np
@@ -29,19 +29,11 @@ def found(text: str, *gains: Gains, timing: Timing | None = None) -> tuple[Robot
 
 @pytest.mark.parametrize("integrator", INTEGRATORS)
 @pytest.mark.parametrize("h", [0.02, 0.01, 0.005])
-def test_an_inverted_pendulum_falls_by_itself_and_so_do_runs(integrator: str, h: float) -> None:
-    text = mjcf(POLE, integrator=integrator, h=h, gravity=-10)
-    _, growth = found(text)
+def test_an_inverted_pendulum_falls_by_itself(integrator: str, h: float) -> None:
+    _, growth = found(mjcf(POLE, integrator=integrator, h=h, gravity=-10))
     assert growth.kind == "falls by itself"
     assert growth.rate is not None
     assert growth.rate == pytest.approx(FALLS, rel=1e-2)
-    model = model_of(text)
-    data = mujoco.MjData(model)
-    data.qpos[:], data.qvel[:] = 1e-6, 1e-6 * FALLS
-    steps = int(1 / h)
-    for _ in range(steps):
-        mujoco.mj_step(model, data)
-    assert log(data.qpos[0] / 1e-6) == pytest.approx(growth.rate * steps * h, rel=1e-2)
 
 
 @pytest.mark.parametrize("integrator", INTEGRATORS)

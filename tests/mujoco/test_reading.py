@@ -9,7 +9,6 @@ import pytest
 from bezstab.errors import InputError
 from bezstab.mujoco.linting import lint
 from bezstab.mujoco.reading import loaded_model, mujoco_module
-from tests.mujoco.models import mjcf
 from tests.mujoco.test_steps import model_of
 
 mujoco: Any = pytest.importorskip("mujoco")
@@ -74,27 +73,6 @@ def test_a_rope_at_full_length_has_a_row_though_it_moves_nothing_there() -> None
     ((row),) = found.feedbacks
     assert row.kinds == "tendon limit, contact"
     assert row.z_abs == pytest.approx(0.930278, abs=1e-6)
-
-
-def test_a_filter_of_contacts_is_the_callers_own_again() -> None:
-    """lint leaves out pairs of geoms by it, to find which contact is to blame."""
-
-    def own(_model: Any, _data: Any, _first: int, _second: int) -> int:
-        return 0
-
-    world = """<geom type="plane" size="1 1 .1" solref=".0015 1"/>
-      <body pos="0 0 .0999"><freejoint/><geom type="box" size=".1 .1 .1" solref=".0015 1"/></body>
-      <body pos="0 0 .2997"><freejoint/><geom type="box" size=".1 .1 .1" solref=".0015 1"/></body>"""
-    model = model_of(mjcf(world, h=0.002, gravity=-9.81, flags='refsafe="disable"'))
-    model.opt.solver = mujoco.mjtSolver.mjSOL_PGS
-    mujoco.set_mjcb_contactfilter(own)
-    try:
-        found = lint(model)
-        assert mujoco.get_mjcb_contactfilter() is own
-    finally:
-        mujoco.set_mjcb_contactfilter(None)
-    assert {suspect.kind for suspect in found.suspects} == {"contact"}
-    assert model.opt.solver == mujoco.mjtSolver.mjSOL_PGS  # the model is left as it was
 
 
 def test_without_mujoco_or_with_an_old_one_the_message_says_what_to_get(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -7,7 +7,6 @@ from typing import Any
 import pytest
 
 from bezstab.engines.engine_list import ENGINES
-from bezstab.errors import InputError
 from bezstab.mujoco.linting import Linted, lint
 from bezstab.mujoco.sags import Sag
 from bezstab.stability.rest_offsets import offset_at_rest
@@ -83,16 +82,3 @@ def test_what_falls_for_ever_comes_to_no_rest() -> None:
     found = linted(FREE)
     assert found.sags is None
     assert "Under that load it does not come to rest within 60 s." in found.sentence
-
-
-@pytest.mark.parametrize(
-    ("load", "words"),
-    [
-        ({}, "load gravity: the model has none"),
-        ({"c": (0, 0, 1)}, "load c: no body; there are: b"),
-        ({"b": (1, 2)}, "load b: 2 numbers, expected FX,FY,FZ in N"),
-    ],
-)
-def test_a_load_that_is_none_is_one_line(load: dict[str, Any], words: str) -> None:
-    with pytest.raises(InputError, match=words):
-        linted(FREE, gravity=0, **load)

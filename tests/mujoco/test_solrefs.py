@@ -1,4 +1,4 @@
-"""Each solref as Baumgarte's point: what MuJoCo makes of it, exact verdicts, and that a run does as they say."""
+"""Each solref as Baumgarte's point: what MuJoCo makes of it, and exact verdicts."""
 
 from typing import Any
 
@@ -7,7 +7,6 @@ import pytest
 from bezstab.mujoco.solrefs import Feedback, feedbacks
 from tests.mujoco.models import FLAT, UNSAFE, mjcf
 from tests.mujoco.test_steps import model_of
-from tests.reference.mujoco_steps import grown
 
 mujoco: Any = pytest.importorskip("mujoco")
 
@@ -49,7 +48,7 @@ def test_kinds_with_the_same_setting_are_one_row_and_what_is_switched_off_is_non
     assert not found(limited, default, 'constraint="disable"')
 
 
-def test_past_its_width_a_setting_is_judged_if_asked_and_a_run_does_so() -> None:
+def test_past_its_width_a_setting_is_judged_if_asked() -> None:
     """Past solimp's width r = 1: b = 2.2 at a = 1 is outside, 0.947 of it inside."""
     setting = held(f"{-2.2 / H**2!r} {-1.0 / H!r}", "")
     (near,) = found(more=setting)
@@ -57,9 +56,6 @@ def test_past_its_width_a_setting_is_judged_if_asked_and_a_run_does_so() -> None
     near, far = found(more=setting, deep=True)
     assert (far.alpha_hat, far.beta_hat) == pytest.approx((1, 2.2))
     assert (near.unsafe, far.unsafe) == (False, True)
-    model = model_of(mjcf(SLIDE.format(""), setting, h=H))
-    small, large = (grown(mujoco, model, mujoco.MjData(model), kick, steps=300) for kick in (1e-6, 1e-2))
-    assert (small < 1e-3, large > 1e3) == (True, True)
 
 
 def test_friction_has_a_velocity_alone() -> None:

@@ -28,21 +28,12 @@ ARM = """<mujoco><option timestep="0.002"/><worldbody>
 
 
 def test_all_keyframes_are_looked_at_and_those_that_are_chosen() -> None:
-    """A run from the keyframe confirms it: 30.4 a step, until it saturates."""
     model = model_of(ARM)
     found = lint(model)
     assert [(each.at, each.kind) for each in found.judged] == [("qpos0", "decays"), ("home", "unsafe")]
     assert found.worst.z_abs == pytest.approx(30.3787, rel=1e-5)
     assert found.status == 1
     assert {each.element for each in found.suspects if each.blamed} == {"actuator 'elbow'", "actuator 'shoulder'"}
-    ends = []
-    for kick in (0.0, 1e-9):
-        data = mujoco.MjData(model)
-        mujoco.mj_resetDataKeyframe(model, data, 0)
-        data.qpos[1] += kick
-        mujoco.mj_step(model, data, nstep=5)
-        ends.append(data.qvel.copy())
-    assert np.abs(ends[1] - ends[0]).max() > 1e-9 * 30.0**4
     alone = lint(model, at=["qpos0"])
     assert ([each.at for each in alone.judged], alone.status) == (["qpos0"], 0)
 
@@ -79,24 +70,9 @@ def test_a_log_of_what_falls_by_itself_is_said_to_be_safe_numerically(tmp_path: 
     assert found.sentence.startswith(f"the model is numerically safe at all 5 states; {falls} (")
 
 
-@pytest.mark.parametrize(
-    ("at", "words"),
-    [
-        (["hom"], "--at hom: no keyframe and no file; the states of the model: qpos0, home"),
-        ([[1, 2, 3]], "the pose: 3 numbers, expected nq = 2, or nq . nv = 4"),
-        (["wide.csv"], "wide.csv row 2: 3 numbers, expected nq = 2, or nq . nv = 4"),
-        (["empty.csv"], "empty.csv: no rows"),
-        (["words.csv"], "words.csv, row 1: expected numbers"),
-        (["nan.csv"], "nan.csv, row 1: expected finite numbers"),
-    ],
-)
-def test_a_state_that_is_none_is_one_line(at: Any, words: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
-    files = {"wide": "1,2\n1,2,3", "empty": "a,b\n", "words": "a,b\nc,d", "nan": "1,nan"}
-    for name, text in files.items():
-        Path(f"{name}.csv").write_text(text, encoding="utf-8")
-    with pytest.raises(InputError, match=words):
-        chosen_states(mujoco, model_of(ARM), at)
+def test_a_log_with_what_is_no_number_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"nan.csv, row 1: expected finite numbers"):
+        chosen_states(mujoco, model_of(ARM), [logged(tmp_path / "nan.csv", "a,b", [(1, float("nan"))])])
 
 
 def test_a_foot_that_just_touches_is_judged_on_the_ground_and_in_the_air() -> None:

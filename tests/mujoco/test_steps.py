@@ -1,7 +1,6 @@
 """The matrix of a step is what MuJoCo's own runs do: of random models, of controllers that are held and late."""
 
 from fractions import Fraction
-from math import ceil
 from typing import Any
 
 import numpy as np
@@ -64,49 +63,33 @@ def test_forty_five_random_models() -> None:
 
 
 ARM = """<mujoco><option timestep="0.002" integrator="{integrator}" gravity="0 0 0"/><compiler angle="radian"/>
-<worldbody><body><joint name="hip" axis="0 1 0" damping=".02"/>
+<worldbody><body><joint name="hip" axis="0 1 0"/>
   <geom type="capsule" fromto="0 0 0 .3 0 0" size=".03" contype="0" conaffinity="0"/>
   <body pos=".3 0 0"><joint name="knee" axis="0 1 0"/>
-    <geom type="capsule" fromto="0 0 0 .3 0 0" size=".02" contype="0" conaffinity="0"/></body></body></worldbody>
-<actuator><motor name="hip_motor" joint="hip" gear="2"/><motor name="knee_motor" joint="knee" {delay}/></actuator>
-</mujoco>"""
+    <geom type="capsule" fromto="0 0 0 .3 0 0" size=".02" contype="0" conaffinity="0"/></body></body>
+</worldbody>{drives}</mujoco>"""
+MOTORS = """<actuator><motor name="hip_motor" joint="hip" gear="2"/><motor name="knee_motor" joint="knee" {}/>
+</actuator>"""
 
 
-def controlled_modulus(model: Any, kp: float, kd: float, timing: Timing) -> float:
-    """Return |z| a step of MuJoCo's own steps under a controller written as one would write it, by differences.
-
-    From one computation of the controls to the next: of positions, velocities and the controls still to be applied.
-    """
-    data = mujoco.MjData(model)
-    late, every = int(timing.late), timing.every
-    pending = ceil(late / every)
-
-    def advanced(state: Any) -> Any:
-        mujoco.mj_resetData(model, data)
-        data.qpos[:], data.qvel[:] = state[: model.nv], state[model.nv : 2 * model.nv]
-        mujoco.mj_forward(model, data)
-        now = -kp * data.actuator_length - kd * data.actuator_velocity
-        computed = [now, *state[2 * model.nv :].reshape(pending, model.nu)]  # latest first
-        for step in range(every):
-            age = max(0, ceil((late - step) / every))  # how many computations ago
-            data.ctrl[:] = computed[age]
-            mujoco.mj_step(model, data)
-        return np.concatenate([data.qpos, data.qvel, *computed[:pending]])
-
-    size, small = 2 * model.nv + pending * model.nu, 1e-6
-    changes = [advanced(small * unit) - advanced(-small * unit) for unit in np.eye(size)]
-    z = np.linalg.eigvals(np.array(changes).T / (2 * small))
-    return float(np.abs(z[np.abs(z - 1) > 1e-4]).max() ** (1 / every))
-
-
-@pytest.mark.parametrize("integrator", ["Euler", "RK4", "implicitfast"])
-@pytest.mark.parametrize("timing", [Timing(), Timing(4), Timing(1, Fraction(1)), Timing(4, Fraction(2))], ids=str)
-def test_controllers_that_are_held_and_late_are_mujocos_own_steps_with_them(integrator: str, timing: Timing) -> None:
-    model = model_of(ARM.format(integrator=integrator, delay=""))
+@pytest.mark.parametrize(("integrator", "way"), [("Euler", "SYM"), ("RK4", "RK4"), ("implicitfast", "SYM")])
+@pytest.mark.parametrize(
+    "timing", [Timing(), Timing(4), Timing(1, Fraction(1)), Timing(4, Fraction(2)), Timing(3, Fraction("1.5"))], ids=str
+)
+@pytest.mark.parametrize(("drives", "gears"), [(MOTORS.format(""), (2, 1)), ("", (1, 1))], ids=["motors", "joints"])
+def test_controllers_that_are_held_and_late_are_the_held_drives_of_check(
+    integrator: str, way: str, timing: Timing, drives: str, gears: tuple[int, int]
+) -> None:
+    """Of an arm without gravity, one drive on each eigenvalue of its inertia over the squares of its gears."""
+    model, kp = model_of(ARM.format(integrator=integrator, drives=drives)), 10
+    h = model.opt.timestep
     for kd in ("0.05", "0.2"):
-        robot = robot_of(model, Gains(".*", Fraction(10), Fraction(kd)), timing=timing)
-        found = step_at(robot, at_qpos0(robot)).moduli()[0]
-        assert found == pytest.approx(controlled_modulus(model, 10, float(kd), timing), abs=1e-6)
+        robot = robot_of(model, Gains(".*", Fraction(kp), Fraction(kd)), timing=timing)
+        state = at_qpos0(robot)
+        mass = robot.mass_at(robot.data_at(state))
+        per_torque = np.linalg.eigvals(np.diag(np.square(gears)) @ np.linalg.inv(mass)).real
+        held = spectral_radius(held_method(way, timing), float(kd) * h * per_torque, kp * h**2 * per_torque)
+        assert step_at(robot, state).moduli()[0] == pytest.approx(held.max(), rel=1e-9)
 
 
 def test_mujocos_own_delay_of_a_motor_adds_to_what_is_late() -> None:
@@ -116,21 +99,6 @@ def test_mujocos_own_delay_of_a_motor_adds_to_what_is_late() -> None:
     gains = Gains("knee_motor", Fraction(2), Fraction("0.05"))
     moduli = []
     for delay, timing in (('delay="0.006" nsample="10"', Timing()), ("", Timing(1, Fraction(3)))):
-        robot = robot_of(model_of(ARM.format(integrator="Euler", delay=delay)), gains, timing=timing)
+        robot = robot_of(model_of(ARM.format(integrator="Euler", drives=MOTORS.format(delay))), gains, timing=timing)
         moduli.append(step_at(robot, at_qpos0(robot)).moduli())
     assert moduli[0] == pytest.approx(moduli[1], abs=1e-6)  # some are next to zero, and double
-
-
-def test_a_joint_of_a_urdf_is_driven_by_its_name() -> None:
-    """On the inertia 0.003 kg m^2 without gravity it is the held drive of `check`, exactly."""
-    urdf = """<robot name="leg"><link name="hip"/><link name="shank"><inertial><origin xyz="0 0 -0.1"/>
-      <mass value="0.2"/><inertia ixx="0.001" iyy="0.001" izz="0.0001" ixy="0" ixz="0" iyz="0"/></inertial></link>
-      <joint name="knee" type="revolute"><parent link="hip"/><child link="shank"/><axis xyz="0 1 0"/>
-      <limit lower="-2" upper="2" effort="30" velocity="20"/></joint></robot>"""
-    model = model_of(urdf)
-    model.opt.gravity[:] = 0
-    for timing in (Timing(), Timing(3, Fraction("1.5"))):
-        robot = robot_of(model, Gains("knee", Fraction(20), Fraction("0.5")), timing=timing)
-        alpha_hat, beta_hat = 0.5 * 0.002 / 0.003, 20 * 0.002**2 / 0.003
-        expected = float(spectral_radius(held_method("SYM", timing), alpha_hat, beta_hat))
-        assert step_at(robot, at_qpos0(robot)).moduli()[0] == pytest.approx(expected, rel=1e-9)
