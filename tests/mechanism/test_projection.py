@@ -48,7 +48,7 @@ def test_after_each_step_the_constraints_hold(name: str, method: str) -> None:
 @pytest.mark.parametrize("name", ["B4", "AB4", "ABM3", "RK4", "SYM", "trapezoid", "bdf2", "hht"])
 @pytest.mark.slow
 def test_the_order_of_accuracy_stays(name: str) -> None:
-    """Against the motion in the crank's angle alone, by quadrature; RK4 loses half of its order by strong feedback."""
+    """Against the motion in the crank's angle alone; RK4 loses half of its order by strong feedback."""
     order, count = accuracy(lookup(name))[0], 200 if implicit(lookup(name)) else 400
     for after in (PROJECTED, ONCE):
         assert measured_order(name, count, lambda _: (0.0, 0.0), after) == pytest.approx(order, abs=0.1)

@@ -1,18 +1,19 @@
-"""The test equation q'' = phi'' - alpha_hat (q' - phi') - beta_hat (q - phi), phi = e^(i omega t), h = 1, step by step.
+"""The test equation q'' = phi'' - alpha_hat (q' - phi') - beta_hat (q - phi), phi = e^(i omega t), h = 1, at its end.
 
 In sixty digits, from a method's equations as they stand. Each evaluation finds its own time as the position of a clock,
 a second coordinate that nothing accelerates.
 """
 
 from fractions import Fraction
+from itertools import product
 from typing import Any
 
 import mpmath
+from sympy.polys.matrices import DomainMatrix
 
 from bezstab.methods.schemes import Method
-from bezstab.methods.second_order import SecondOrder
 from bezstab.methods.steady_errors import ExponentialSum
-from bezstab.methods.step_equations import Evaluation, Quantity
+from bezstab.methods.step_equations import Evaluation
 from tests.reference.second_order_steps import linear_step
 
 DIGITS = 60
@@ -30,53 +31,37 @@ def exact_value(
     )
 
 
-def steady_errors(
-    method: Method, alpha_hat: Fraction, beta_hat: Fraction, omega: Fraction, count: int
-) -> tuple[Any, Any]:
-    """Return the errors of x and v after `count` steps of the method from the exact solution, over e^(i omega t).
+def steady_errors(method: Method, alpha_hat: Fraction, beta_hat: Fraction, omega: Fraction) -> tuple[Any, Any]:
+    """Return the errors of x and v from the exact solution, over e^(i omega t), once the start has died away.
 
-    alpha_hat, beta_hat and omega are of the method's own step. What the start did must have died away by then.
+    Then each value is e^(i omega) times that of the step before. alpha_hat, beta_hat and omega are of the method's own
+    step.
     """
     with mpmath.workdps(DIGITS):
         scheme, theta = method.scheme.second_order, 1j * _number(omega)
         forcing = theta**2 + _number(alpha_hat) * theta + _number(beta_hat)
-        clock, motion = _Run(scheme, Fraction(0), Fraction(0)), _Run(scheme, alpha_hat, beta_hat)
-        for each in clock.state:
-            clock.state[each] = {"x": each.step, "v": 1}.get(each.name, 0)
-            motion.state[each] = {"x": 1, "v": theta, "a": theta**2}.get(each.name, 0) * mpmath.exp(theta * each.step)
-        for _ in range(count):
-            known = clock.step([0] * len(scheme.equations))
-            motion.step(
-                [
-                    forcing * mpmath.exp(theta * sum(_number(c) * known[q] for c, q in each.position))
-                    if isinstance(each, Evaluation)
-                    else 0
-                    for each in scheme.equations
-                ]
-            )
-        phi = mpmath.exp(theta * count)
-        return motion.state[Quantity("x", 0)] / phi - 1, motion.state[Quantity("v", 0)] / phi - theta
+        clock, motion = linear_step(scheme, Fraction(0), Fraction(0)), linear_step(scheme, alpha_hat, beta_hat)
+        assert clock
+        assert motion
+        known = {q: mpmath.mpf({"x": q.step, "v": 1}.get(q.name, 0)) for q in clock.kept}
+        known |= zip(clock.new, _matrix(clock.of_kept) * mpmath.matrix(list(known.values())), strict=True)
+        forces = [
+            forcing * mpmath.exp(theta * sum(_number(c) * known[q] for c, q in each.position))
+            if isinstance(each, Evaluation)
+            else 0
+            for each in scheme.equations
+        ]
+        names = [q.name for q in motion.new]
+        left = mpmath.diag([mpmath.exp(theta * q.step) for q in motion.new])
+        of_kept = _matrix(motion.of_kept)
+        for row, (column, q) in product(range(len(names)), enumerate(motion.kept)):
+            left[row, names.index(q.name)] -= of_kept[row, column] * mpmath.exp(theta * q.step)
+        values = mpmath.lu_solve(left, _matrix(motion.of_forces) * mpmath.matrix(forces))
+        return values[names.index("x")] - 1, values[names.index("v")] - theta
 
 
-class _Run:
-    """One coordinate: `state` has what a step starts from, by name and step, seen from the step that comes next."""
-
-    def __init__(self, scheme: SecondOrder, alpha_hat: Fraction, beta_hat: Fraction) -> None:
-        found = linear_step(scheme, alpha_hat, beta_hat)
-        assert found
-        self.new = found.new
-        self.of_kept, self.of_forces = (
-            mpmath.matrix([list(map(_number, row)) for row in matrix.to_list()])
-            for matrix in (found.of_kept, found.of_forces)
-        )
-        self.state = dict.fromkeys(found.kept, mpmath.mpf(0))
-
-    def step(self, forces: list[Any]) -> dict[Quantity, Any]:
-        """Return all values of the step that begins, under the forces of its evaluations."""
-        new = self.of_kept * mpmath.matrix(list(self.state.values())) + self.of_forces * mpmath.matrix(forces)
-        known = self.state | dict(zip(self.new, new, strict=True))
-        self.state = {q: known[Quantity(q.name, q.step + 1)] for q in self.state}
-        return known
+def _matrix(exact: DomainMatrix) -> Any:
+    return mpmath.matrix([list(map(_number, row)) for row in exact.to_list()])
 
 
 def _number(value: Fraction) -> Any:

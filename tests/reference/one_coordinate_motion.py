@@ -1,25 +1,19 @@
-"""Mechanisms of one freedom that keep their energy, by quadrature: no time stepping, as many digits as asked for.
+"""The paper's slider-crank by its crank's angle alone: its one equation, by scipy's eighth-order steps.
 
-With J(theta) theta'^2 / 2 + V(theta) = E, dt = dtheta / sqrt(2 (E - V) / J): the time that passes between two angles is
-an integral, and the angle at a given time the root of an equation, found by Newton's method.
+With J(theta) theta'^2 / 2 + V(theta) = E it is J theta'' = -J' theta'^2 / 2 - V'.
 """
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cache
-from itertools import pairwise
-from typing import Any
 
-import mpmath as mp
 import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
+from scipy.integrate import solve_ivp
 
 FloatArray = NDArray[np.float64]
 
-DIGITS = 30  # of the references: more than float64 has, so that they are exact beside runs
-SHARED = 10  # times, evenly spread over a run, at which it is compared with the reference
+TOLERANCE = 1e-13  # of a step, absolute and relative: what float64 has, so that they are exact beside runs
 ANGLE, RATE = sp.symbols("theta omega")
 GRAVITY = sp.Rational("9.81")  # m/s^2
 CRANK, ROD = sp.Rational("0.2"), sp.Rational("0.35")  # m
@@ -35,57 +29,27 @@ class Energies:
     potential: sp.Expr
 
 
-def slider_crank_coordinates() -> sp.Matrix:
-    """Return q of the paper's slider-crank (crank.theta, rod.x, rod.y, rod.theta, slider.x) as functions of ANGLE."""
-    rod_angle = -sp.asin(CRANK * sp.sin(ANGLE) / ROD)
-    across, along = CRANK * sp.cos(ANGLE), ROD * sp.cos(rod_angle)
-    return sp.Matrix([ANGLE, across + along / 2, CRANK * sp.sin(ANGLE) / 2, rod_angle, across + along])
-
-
 def slider_crank_energies(crank_inertia: str) -> Energies:
     """Return the energies of the paper's slider-crank with a crank of that inertia (kg m2)."""
-    q = slider_crank_coordinates()
-    masses = sp.Matrix([sp.Rational(crank_inertia), ROD_MASS, ROD_MASS, ROD_INERTIA, SLIDER_MASS])
-    return Energies(masses.dot(q.diff(ANGLE).applyfunc(lambda slope: slope**2)), ROD_MASS * GRAVITY * q[2])
+    rod_angle = -sp.asin(CRANK * sp.sin(ANGLE) / ROD)
+    across, along = CRANK * sp.cos(ANGLE), ROD * sp.cos(rod_angle)
+    x, y = across + along / 2, CRANK * sp.sin(ANGLE) / 2  # of the rod's middle
+    moving = zip((x, y, rod_angle, across + along), (ROD_MASS, ROD_MASS, ROD_INERTIA, SLIDER_MASS), strict=True)
+    inertia = sp.Rational(crank_inertia) + sum(mass * place.diff(ANGLE) ** 2 for place, mass in moving)
+    return Energies(inertia, ROD_MASS * GRAVITY * y)
 
 
-def motion(energies: Energies, angle: float, rate: float, times: Sequence[Any], digits: int = DIGITS) -> list[float]:
-    """Return the angle at each time (s), ascending, from its value and rate at t = 0; the rate must keep its sign."""
-    with mp.workdps(digits):
-        both = sp.lambdify(ANGLE, (energies.inertia, energies.potential), "mpmath", cse=True)
-        first_inertia, first_potential = both(mp.mpf(angle))
-        energy = first_inertia * mp.mpf(rate) ** 2 / 2 + first_potential
-
-        def rate_at(angle: Any) -> Any:
-            inertia, potential = both(angle)
-            return mp.sign(rate) * mp.sqrt(2 * (energy - potential) / inertia)
-
-        def after(angle: Any, time: Any) -> Any:
-            """Return the angle a time later."""
-
-            def late(new: Any) -> Any:
-                # between two times the rate is smooth, where Gauss's nodes are fewer than those of tanh-sinh
-                return mp.quad(lambda angle: 1 / rate_at(angle), [angle, new], method="gauss-legendre") - time
-
-            return mp.findroot(late, angle + time * rate_at(angle), solver="newton", df=lambda new: 1 / rate_at(new))
-
-        angles = [mp.mpf(angle)]
-        for before, time in pairwise([0, *times]):
-            angles.append(after(angles[-1], time - before))
-        return list(map(float, angles[1:]))
-
-
-@cache
-def shared_angles(energies: Energies, angle: float, rate: float, duration: float) -> list[float]:
-    """Return the angle (rad) at the shared times."""
-    return motion(energies, angle, rate, [duration * mp.mpf(k) / SHARED for k in range(SHARED + 1)])
-
-
-def distance(angles: FloatArray, reference: Sequence[float]) -> float:
-    """Return the root of the sum of squares of the differences at the shared times."""
-    return float(np.linalg.norm(angles[:: (len(angles) - 1) // SHARED] - reference))
-
-
-def shown_order(errors: Sequence[float]) -> float:
-    """Return the order that two errors show when the second is that of half the step."""
-    return math.log2(errors[0] / errors[1])
+def crank_angles(energies: Energies, angle: float, rate: float, times: Sequence[float]) -> FloatArray:
+    """Return the angle at each time (s), ascending, from its value and rate at t = 0."""
+    inertia, slope = energies.inertia, (energies.inertia * RATE**2 / 2 + energies.potential).diff(ANGLE)
+    acceleration_at = sp.lambdify((ANGLE, RATE), -slope / inertia, cse=True)
+    run = solve_ivp(
+        lambda _, y: (y[1], acceleration_at(*y)),
+        (0, times[-1]),
+        (angle, rate),
+        method="DOP853",
+        t_eval=times,
+        rtol=TOLERANCE,
+        atol=TOLERANCE,
+    )
+    return np.asarray(run.y[0])
