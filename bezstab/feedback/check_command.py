@@ -67,19 +67,17 @@ def check(
     from bezstab.feedback.conditions import Setup, conditions, given_feedback
     from bezstab.feedback.largest_steps import step_answer
     from bezstab.questions.methods import methods_for
-    from bezstab.stability.path_ends import stable_up_to
 
     typed, (named, values) = TypedPoint(alpha, beta, physical), engine or (None, None)
     setup = Setup(engine=named, **simulation)
     if physical and typed.numbers and setup.h is None and not (engine or setup.scene or setup.omega):
-        point = typed.numbers
-        found = [step_answer(method, *point, stable_up_to(method, *point)) for method in methods_for(methods, None)]
+        found = [step_answer(method, *typed.numbers) for method in methods_for(methods, None)]
         show_answers(columns.STEPS, found)
         return all(found)
     given = given_feedback(setup, typed.at(setup.h), values, as_typed=as_typed)
     methods, asked = methods_for(methods, named), worked_out(lambda: conditions(setup), simulation["scene"])
     say_each(asked.warnings)
-    answers = checks(methods, given, asked, instead=instead, instead_of_unsafe=True)
+    answers = checks(methods, given, asked, instead=instead or None)
     say_if_units_were_mistaken(methods, typed, setup.h)
     better = [each.instead for each in answers if each.instead is not None]
     if for_reading():
@@ -92,7 +90,6 @@ def check(
         if better:
             show_text("\nWhat `choose` gives instead:\n")
             show_answers(columns.CHECKED, better)
-            show_sentences(map(columns.spare_words, better))
         if every_column and not asked.motion.assumed:
             show_sentences([sentences.motion_words(asked.motion)])
     else:

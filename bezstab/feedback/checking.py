@@ -127,13 +127,12 @@ def checks(
     *,
     margins: bool = True,
     cost: bool = True,
-    instead: bool = False,
-    instead_of_unsafe: bool = False,
+    instead: bool | None = False,
 ) -> list[CheckAnswer]:
     """Return the answer of each method for the point, and for those that an engine also takes; errors as `judge`.
 
-    What to take instead stands in the first answer of a method: if asked for, or with `instead_of_unsafe` where one of
-    the method's answers is not safe.
+    What to take instead stands in the first answer of a method: if asked for, and with None where one of the method's
+    answers is not safe.
     """
     found = []
     for method in methods:
@@ -149,7 +148,7 @@ def checks(
             for label, point in ((AS_GIVEN, given.made.point), *given.made.also)
         ]
         better, reason = None, None
-        if instead or (instead_of_unsafe and not all(judged)):
+        if instead or (instead is None and not all(judged)):
             try:
                 better = _instead(method, asked)
             except (InputError, NumericalError) as error:  # the verdict stands without it

@@ -73,6 +73,7 @@ def choose(
     from bezstab.feedback.choosing import asked_to_choose, choose_answer
     from bezstab.feedback.conditions import Setup
     from bezstab.feedback.largest_steps import step_answer
+    from bezstab.rationals import exact
 
     setup = Setup(**simulation)
     methods, wish, asked = worked_out(
@@ -84,9 +85,7 @@ def choose(
     answers = (choose_answer(method, wish, asked, trades=for_reading()) for method in methods)
     chosen = list(progress(answers, wish.goal, len(methods)))
     if setup.h is None:
-        at_any_step = [
-            step_answer(each.method, each.alpha or 0.0, each.beta or 0.0, each.h_limit or 0.0) for each in chosen
-        ]
+        at_any_step = [step_answer(each.method, exact(each.alpha or 0), exact(each.beta or 0)) for each in chosen]
         show_answers(columns.STEPS, at_any_step)
         return all(chosen)
     show_answers(columns.CHOSEN, chosen)
@@ -96,7 +95,6 @@ def choose(
             show_sentences(["\n".join(f"{name}{line}" for line in columns.trade_words(answer))])
     if every_column:
         show_sentences([sentences.motion_words(asked.motion)])
-    show_sentences(map(columns.spare_words, chosen))
     say_each(answer.cost_reason for answer in chosen)
     if setup.engine and for_reading():
         say_what_is_left_out(setup.engine, many=asked.swept is not None)

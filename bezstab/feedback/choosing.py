@@ -3,6 +3,7 @@
 method, Wish (a goal), Conditions   →   choose_answer   →   ChooseAnswer
 """
 
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
@@ -28,9 +29,13 @@ from bezstab.stability.forced_errors import OMEGA_H
 from bezstab.stability.rest_offsets import least_feedback, offset_at_rest
 from bezstab.stability.turning import LAW_HOLDS, moving_modulus
 from bezstab.units import GRAVITY, from_dimensionless
+from bezstab.words import counted
 
 SHORTER = (2, 4)
 """A step may be so many times as short for a choice that is not safe: a mechanism then turns less in a step."""
+
+GAIN = 0.95
+"""Of an error: what is not below is called no gain."""
 
 SLOWER = 2
 """Slower decay takes this many times as long to settle."""
@@ -62,39 +67,18 @@ class Alternative:
     times_the_errors: tuple[float, float]
 
 
-@dataclass(frozen=True)
-class Trades:
-    """What a choice that decays faster costs, and what one that decays slower gains; None where there is none."""
-
-    faster: Alternative | None
-    slower: Alternative | None
-
-
-@dataclass(frozen=True)
-class Spare:
-    """From how many `sweeps` a choice is stable in an engine that sweeps, even if it were stronger by the spread.
-
-    alone: what the same goal would set for one constraint alone, and from how many sweeps that is stable here, None if
-    from none that is tried. None where it is the same.
-    """
-
-    sweeps: int
-    alone: tuple[str, int | None] | None
-
-
 @dataclass(frozen=True, kw_only=True, repr=False)
 class ChooseAnswer(Judgement):
     """The point that a goal asks for, judged.
 
-    safe_with: the option with which a choice is safe that is not. trades: None unless asked for, and where errors are
-    not known. trials: the runs of a scene that found the point; None where a goal alone did. spare: None where nothing
-    is swept over. sentence: the answer in words.
+    safe_with: the option with which a choice is safe that is not. trials: the runs of a scene that found the point;
+    None where a goal alone did. trades: what faster or slower decay would change; empty unless asked for. sentence: the
+    answer in words.
     """
 
     safe_with: str | None
     trials: Trials | None
-    trades: Trades | None
-    spare: Spare | None
+    trades: tuple[Alternative, ...]
     sentence: str
 
     def __repr__(self) -> str:
@@ -284,10 +268,13 @@ def choose_answer(
         **vars(judged),
         safe_with=safe_with,
         trials=trials,
-        trades=_trades(judged, wish) if trades and by_goal else None,
-        spare=_spare(judged, wish),
-        sentence=judgement_sentence(judged, safe_with)
-        + (trials_words(trials, chosen, asked.h) if trials and asked.h else ""),
+        trades=_trades(judged, wish) if trades and by_goal else (),
+        sentence=judgement_sentence(
+            judged,
+            _to_spare(judged),
+            safe_with and f"with {safe_with} it is safe",
+            trials_words(trials, chosen, asked.h) if trials and asked.h else None,
+        ),
     )
 
 
@@ -385,40 +372,32 @@ def _safe_with(judged: Judgement, wish: Wish) -> str | None:
     asked = judged.conditions
     if judged.run and not judged.run.decides:
         return None
-    if judged.goal != "robust" and _is_safe(judged.method, replace(wish, goal="robust", settle=None), asked):
-        return "--goal robust"
-    if asked.scene is None or asked.h is None or asked.h_max or asked.engine:
-        return None
-    for share in SHORTER:
-        if _is_safe(judged.method, wish, at_step(asked, asked.h / share)):
-            return f"--h {typed_number(asked.h / share)}"
+    tried = [("--goal robust", Wish("robust", None, wish.equal), asked)]
+    if asked.scene is not None and asked.h and not (asked.h_max or asked.engine):
+        steps = [asked.h / share for share in SHORTER]
+        tried += [(f"--h {typed_number(h)}", wish, at_step(asked, h)) for h in steps]
+    for option, other, there in tried:
+        with suppress(InputError, NumericalError):  # what cannot be found is not safe
+            if judge(there, _chosen(judged.method, other, there), "chosen", margins=False, cost=False).safe:
+                return option
     return None
 
 
-def _is_safe(method: Method, wish: Wish, asked: Conditions) -> bool:
-    """Return whether another choice is safe; it is not if it cannot be found."""
-    try:
-        return judge(asked, _chosen(method, wish, asked), "chosen", margins=False, cost=False).safe
-    except (InputError, NumericalError):
-        return False
-
-
-def _trades(judged: Judgement, wish: Wish) -> Trades | None:
-    """Return what a choice that decays faster would cost, and one that decays slower gain; None without errors.
+def _trades(judged: Judgement, wish: Wish) -> tuple[Alternative, ...]:
+    """Return a choice that decays faster, if there is one, and one that decays slower, if it gains anything.
 
     The slower one may take SLOWER times as long (s, to two digits) as the choice takes at worst.
     """
-    if judged.cost is None or judged.cost.total_error is None:
-        return None
     at_fastest = wish.goal == "fastest" and not judged.moving  # as it moves another pole is the least
     goals: tuple[Goal, ...] = () if at_fastest else ("robust", "fastest")
     stronger = (_alternative(judged, Wish(goal, None, wish.equal)) for goal in goals)
-    faster = next((each for each in stronger if each and each.z_abs < abs(judged.pole)), None)
-    steps, h, slower = judged.settle_steps_at_worst, judged.conditions.h, None
+    found = [next((each for each in stronger if each and each.z_abs < abs(judged.pole)), None)]
+    steps, h = judged.settle_steps_at_worst, judged.conditions.h
     if steps is not None and h is not None:
         settle = Fraction(f"{float(SLOWER * steps * h * judged.method.step_multiple):.2g}")
         slower = _alternative(judged, Wish("accurate", settle, wish.equal))
-    return Trades(faster, slower)
+        found += [slower if slower and min(slower.times_the_errors) < GAIN else None]
+    return tuple(filter(None, found))
 
 
 def _alternative(judged: Judgement, wish: Wish) -> Alternative | None:
@@ -435,15 +414,10 @@ def _alternative(judged: Judgement, wish: Wish) -> Alternative | None:
     return Alternative(wish.goal, wish.settle, abs(other.pole), times)
 
 
-def _spare(judged: Judgement, wish: Wish) -> Spare | None:
-    """Return what a choice leaves to spare in an engine that sweeps; None if nothing, or there is nothing to set."""
-    asked, swept = judged.conditions, judged.conditions.swept
-    if swept is None or asked.h is None or not (swept.engine.curve and swept.engine.parameters):
+def _to_spare(judged: Judgement) -> str | None:
+    """Return that a choice leaves some to spare in an engine that sweeps; None if not, or there is nothing to set."""
+    spread, swept = judged.conditions.spread, judged.conditions.swept
+    if swept is None or not (swept.engine.curve and swept.engine.parameters):
         return None
-    enough = swept.sweeps_to_spare(judged.point, asked.spread)
-    if enough is None or enough > swept.iterations:
-        return None
-    alone = _chosen_alone(judged.method, wish, asked).point
-    if alone == judged.point:
-        return Spare(enough, None)
-    return Spare(enough, (swept.engine.setting(alone, asked.h), swept.sweeps_to_spare(alone, asked.spread)))
+    spares = swept.spares(judged.point, spread)
+    return f"at {counted(swept.iterations, 'sweep')} it has {100 * spread:g} % to spare" if spares else None

@@ -8,7 +8,6 @@ from bezstab.feedback.checking import CheckAnswer
 from bezstab.feedback.choosing import ChooseAnswer
 from bezstab.feedback.judgement import Judgement
 from bezstab.feedback.largest_steps import StepAnswer, limit_words
-from bezstab.feedback.poles import PoleAnswer
 from bezstab.feedback.sentences import sag_words
 from bezstab.methods.schemes import implicit
 from bezstab.methods.steady_errors import velocity_lag
@@ -20,10 +19,7 @@ from bezstab.show.columns import METHOD, POINT, POLE, RATES, SENTENCE, Column, o
 from bezstab.stability.feedback_costs import FeedbackCost
 from bezstab.stability.path_ends import Margins
 from bezstab.stability.turning import MovingPole
-from bezstab.words import counted, errors_words, times_words
-
-GAIN = 0.95
-"""Of an error: what is not below is called no gain."""
+from bezstab.words import errors_words, times_words
 
 UNLIMITED, ANY = "unlimited", "any"
 
@@ -79,7 +75,7 @@ COST: Sequence[Column[FeedbackCost]] = (
         "error / least",
         "times_least",
         lambda cost: cost.times_least,
-        "constraint error over that of the goal accurate; null where the motion's rate is not given",
+        "constraint error over that of the goal accurate; null of a given point where the motion's rate is not given",
         form=times_words,
     ),
 )
@@ -175,7 +171,6 @@ JUDGED: Sequence[Column[Judgement]] = (
     Column(
         "steps to 1/1000", "settle_steps", lambda answer: answer.settle_steps, "steps until an error is a thousandth"
     ),
-    Column("a tenth in (s)", "", lambda answer: answer.tenth_seconds, "", form=".3g"),
     Column(
         "settles in (s)",
         "settle_seconds",
@@ -214,7 +209,6 @@ JUDGED: Sequence[Column[Judgement]] = (
     *of_part(Judgement, lambda answer: answer.cost, COST),
     *of_part(Judgement, lambda answer: answer.moving, MOVING),
     *of_part(Judgement, lambda answer: answer.run, RUN),
-    Column("holds for", "", lambda answer: answer.swept_over, ""),
     *of_part(Judgement, lambda answer: answer.swept, SWEPT),
     Column(
         "sag",
@@ -253,13 +247,9 @@ WITH_A_POLE = {
 }
 """Keys of a judged point that are printed with its poles, and whether without --all, too."""
 
-POLES: Sequence[Column[PoleAnswer]] = (
-    *of_part(
-        PoleAnswer,
-        lambda answer: answer.judged,
-        [replace(each, brief=WITH_A_POLE[each.key]) for each in JUDGED if each.key in WITH_A_POLE],
-    ),
-    *of_part(PoleAnswer, lambda answer: answer.z, [replace(each, brief=True) for each in POLE]),
+POLES: Sequence[Column[CheckAnswer]] = (
+    *(replace(each, brief=WITH_A_POLE[each.key]) for each in JUDGED if each.key in WITH_A_POLE),
+    *of_part(CheckAnswer, lambda answer: answer.pole, [replace(each, brief=True) for each in POLE]),
     SENTENCE,
 )
 
@@ -281,9 +271,7 @@ STEPS: Sequence[Column[StepAnswer]] = (
 
 
 def trade_words(answer: ChooseAnswer) -> Iterator[str]:
-    """Yield how long a disturbance of a choice lasts, and what faster or slower decay would change, where known."""
-    if answer.trades is None:
-        return
+    """Yield how long a disturbance of a choice lasts, and what faster or slower decay would change."""
     if answer.goal == "accurate":
         yield (
             "Errors of the start and of disturbances decay as slowly. If a run is short or often disturbed, give a "
@@ -294,33 +282,8 @@ def trade_words(answer: ChooseAnswer) -> Iterator[str]:
                 "Start with velocities half a step back, v − ½hq̈ (simulate --start steady): begun on the motion the "
                 "method moves as if they were half a step ahead."
             )
-    faster, slower = answer.trades.faster, answer.trades.slower
-    if faster is None:
-        yield "No other goal decays faster."
-    else:
-        moduli = f"|z_p| {faster.z_abs:.4f} instead of {abs(answer.pole):.4f}"
-        yield f"Faster decay: --goal {faster.goal} gives {moduli}, {errors_words(faster.times_the_errors)}."
-    if slower is None or slower.settle is None:
-        return
-    if min(slower.times_the_errors) >= GAIN:
-        yield "Slower decay would not be more accurate."
-        return
-    goal, settle = "" if answer.goal == "accurate" else "--goal accurate ", typed_number(slower.settle)
-    yield f"Slower decay: {goal}--settle {settle} gives {errors_words(slower.times_the_errors)}."
-
-
-def spare_words(answer: ChooseAnswer) -> str | None:
-    """Return what a choice leaves to spare in an engine that sweeps, and what one constraint alone would get.
-
-    The latter where it is another; None where no spare is known, as without sweeps.
-    """
-    spare, swept = answer.spare, answer.swept
-    if spare is None or swept is None:
-        return None
-    spread, sweeps = 100 * answer.conditions.spread, counted(swept.iterations, "sweep")
-    words = f"This leaves {spread:g} % to spare at {sweeps} over {swept.constraints.words}."
-    if spare.alone is None:
-        return words
-    setting, needed = spare.alone
-    takes = "more sweeps than were tried" if needed is None else counted(needed, "sweep")
-    return f"{words} A single constraint would get {setting}; here that needs {takes} for the same margin."
+    for other in answer.trades:
+        goal = "" if other.goal == answer.goal else f"--goal {other.goal} "
+        decay, settle = ("Slower", f"--settle {typed_number(other.settle)} ") if other.settle else ("Faster", "")
+        moduli = f"|z_p| {other.z_abs:.4f} instead of {abs(answer.pole):.4f}"
+        yield f"{decay} decay: {goal}{settle}gives {moduli}, {errors_words(other.times_the_errors)}."

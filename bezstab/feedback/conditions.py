@@ -4,10 +4,8 @@ h, engine, scene, omega, ...   →   Setup         →   conditions   →   Cond
 a point, or an engine's values →   given_feedback   →   Given
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import partial
 from typing import Any
 
 from bezstab.arguments import Number, exact_number, exact_or_none, real_number
@@ -17,7 +15,7 @@ from bezstab.mechanism.constraint_normals import TurningNormals
 from bezstab.mechanism.equations import Mechanism, compiled_mechanism
 from bezstab.mechanism.scene_files import scene as scene_named
 from bezstab.mechanism.scenes import Scene
-from bezstab.questions.chains import USUAL_CHAIN, Constraints, SweptConstraints, constraints_of, constraints_of_chain
+from bezstab.questions.chains import USUAL_CHAIN, SweptConstraints, constraints_of, constraints_of_chain
 from bezstab.questions.motions import (
     ReferenceMotion,
     check_speed,
@@ -133,7 +131,7 @@ def conditions(setup: Setup) -> Conditions:
     InputError as `motion_of` and `turning_of`.
     """
     h, scene, speed = setup.h, setup.scene, setup.speed
-    swept = None if scene is None else _swept(setup, partial(constraints_of, scene, speed))
+    swept = _swept(setup, bodies=1)
     turning = turning_of(scene, speed, h)
     try:
         motion = motion_of(setup.omega, scene, speed, h, setup.h_max, omega_h=setup.omega_h)
@@ -154,9 +152,7 @@ def conditions(setup: Setup) -> Conditions:
 
 def for_choosing(asked: Conditions) -> Conditions:
     """Return the same with USUAL_CHAIN to sweep over, where the engine sweeps and nobody says over what."""
-    if asked.scene is not None:
-        return asked
-    return replace(asked, swept=_swept(asked, partial(constraints_of_chain, USUAL_CHAIN)))
+    return replace(asked, swept=asked.swept or _swept(asked, USUAL_CHAIN))
 
 
 def at_step(asked: Conditions, h: Fraction) -> Conditions:
@@ -164,10 +160,11 @@ def at_step(asked: Conditions, h: Fraction) -> Conditions:
     return replace(asked, h=h, motion=motion_of(asked.omega, asked.scene, asked.speed, h, omega_h=asked.omega_h))
 
 
-def _swept(setup: Setup, find: Callable[[], Constraints]) -> SweptConstraints | None:
-    """Return constraints over which an engine sweeps, found where it does; None too where there is only one."""
+def _swept(setup: Setup, bodies: int) -> SweptConstraints | None:
+    """Return the constraints of the scene, else of a chain, where the engine sweeps over more than one; else None."""
     engine, h = setup.engine, setup.h
     if engine is None or engine.sweeping is None or h is None:
         return None
-    constraints = find()
+    scene = setup.scene
+    constraints = constraints_of_chain(bodies) if scene is None else constraints_of(scene, setup.speed)
     return SweptConstraints(engine, h, constraints, engine.sweeping.iterations) if len(constraints.joints) > 1 else None

@@ -32,11 +32,9 @@ class StepAnswer:
         return self.safe
 
 
-def step_answer(method: Method, alpha: Fraction | float, beta: Fraction | float, h_limit: float) -> StepAnswer:
-    """Return the answer of a step (s) that was found: infinite if every one is stable, zero if none is.
-
-    In its sentence it is rounded down.
-    """
+def step_answer(method: Method, alpha: Fraction, beta: Fraction) -> StepAnswer:
+    """Return up to which step every one is stable with alpha and beta (1/s). In its sentence it is rounded down."""
+    h_limit = stable_up_to(method, alpha, beta)
     safe = "not safe at small steps"
     if h_limit:
         safe = "safe at any h" if math.isinf(h_limit) else f"safe up to h = {limit_words(h_limit)} s"

@@ -74,7 +74,7 @@ def poles(
     say_each(asked.warnings)
     found = poles_at(methods, given, asked, every=all_poles)
     say_if_units_were_mistaken(methods, typed, setup.h)
-    show_point([each.judged for each in found])
+    show_point(found)
     show_answers(POLES, found)
     if for_reading():
         say_what_the_engine_did(given, asked)

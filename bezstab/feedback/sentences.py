@@ -37,11 +37,11 @@ COSTLY = 10.0
 """Times the least error: from here on a sentence says what the feedback costs."""
 
 
-def judgement_sentence(judged: Judgement, safe_with: str | None = None) -> str:
+def judgement_sentence(judged: Judgement, *more: str | None) -> str:
     """Return what was judged, whether it is safe, how fast an error falls, and how far each number alone may grow.
 
     With a scene also what happens over the motion; of an engine that solves its constraints one after another, for how
-    many that is. `safe_with` is the option with which a choice is safe that is not.
+    many that is. `more` is what else is known.
     """
     safe = "safe" if judged.safe else "not safe"
     if judged.swept_over:
@@ -52,7 +52,7 @@ def judgement_sentence(judged: Judgement, safe_with: str | None = None) -> str:
         *(_swept(judged, judged.swept) if judged.swept else _errors(judged)),
         _growth(judged),
         _at_rest(judged.sag),
-        safe_with and f"with {safe_with} it is safe",
+        *more,
         _assumed(judged),
     ]
     place = point_words(judged.alpha_hat, judged.beta_hat, judged.h)
@@ -63,9 +63,9 @@ def trials_words(trials: Trials, rule: Choice, h: Fraction) -> str:
     """Return that runs found a point, and what it gains over that of a rule, of a motion that was run."""
     alpha, beta = from_dimensionless(rule.alpha_hat, rule.beta_hat, float(h))
     return (
-        f" Chosen by {trials.runs:,} runs of {seconds_words(trials.seconds)}, steps up to {seconds_words(trials.h_max)}"
+        f"chosen by {trials.runs:,} runs of {seconds_words(trials.seconds)}, steps up to {seconds_words(trials.h_max)}"
         f": to this motion they come {times_words(trials.times_nearer)} times nearer than with the rule's "
-        f"α = {alpha:.3g} 1/s, β = {beta:.3g} 1/s."
+        f"α = {alpha:.3g} 1/s, β = {beta:.3g} 1/s"
     )
 
 

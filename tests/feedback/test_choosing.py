@@ -8,7 +8,7 @@ import pytest
 
 from bezstab.engines.conversions import Point
 from bezstab.engines.engine_list import ENGINES
-from bezstab.errors import InputError
+from bezstab.errors import InputError, NumericalError
 from bezstab.feedback import judgement
 from bezstab.feedback.checking import check
 from bezstab.feedback.choosing import choose
@@ -21,6 +21,7 @@ from bezstab.questions.scene_runs import SceneRun, scene_run
 from bezstab.rationals import exact
 from bezstab.stability.choices import choose as choose_point
 from bezstab.stability.sweeps import chain, swept_growth
+from tests.cli.running import run
 from tests.methods.kinds import sampled
 
 ASKED = r"RK4: α = 0\.56 ω, β = 0\.83 ω, ω the rate of your motion in rad/s: give omega or scene"
@@ -42,6 +43,14 @@ def test_the_rate_of_a_motion_alone_gives_alpha_and_beta_and_how_large_the_step_
     assert chosen.h_limit == pytest.approx(largest_step("RK4", alpha=exact(chosen.alpha), beta=exact(chosen.beta)))
     with pytest.raises(InputError, match="omega needs h"):
         choose("SYM", omega=10)
+
+
+def test_a_step_is_found_where_margins_are_not_known(monkeypatch: pytest.MonkeyPatch) -> None:
+    def fails(*_: object) -> None:
+        raise NumericalError("not found")
+
+    monkeypatch.setattr(judgement, "stability_margins", fails)
+    assert "safe up to h = 0.3229 s" in run("choose --method RK4 --omega 10").stdout
 
 
 @pytest.mark.slow
@@ -72,10 +81,7 @@ def test_a_choice_whose_run_fails_says_that_the_goal_robust_is_safe(monkeypatch:
 
 def test_faster_decay_costs_and_slower_decay_gains() -> None:
     chosen = choose("RK4", h="0.002", omega=5, trades=True)
-    assert chosen.trades
-    faster, slower = chosen.trades.faster, chosen.trades.slower
-    assert faster
-    assert slower
+    faster, slower = chosen.trades
     assert faster.z_abs < abs(chosen.pole) <= slower.z_abs
     assert min(faster.times_the_errors) > 1 > max(slower.times_the_errors)
     other = check("RK4", alpha_hat=chosen.point[0], beta_hat=chosen.point[1], h="0.002", omega=5).cost
