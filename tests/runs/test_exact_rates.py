@@ -12,20 +12,8 @@ from tests.reference.perturbed_revolutions import runner_motion
 from tests.runs.driven_four_bar import four_bar, swinging_four_bar
 
 
-@pytest.mark.parametrize(("name", "count"), [("B8", 1), ("RK4", 30)])
-def test_no_point_and_no_step_is_too_extreme_for_a_number(name: str, count: int) -> None:
-    """No feedback, and so much that a step multiplies errors by 1e38; fewer steps than are carried."""
-    gains = np.array([0.0, 0.3, 1e10])
-    assert np.isfinite(exact_rates(four_bar(), lookup(name), 1 / count, gains, gains, 1.0)).all()
-
-
-@pytest.mark.parametrize(
-    "name",
-    [
-        *("B4", "RK4", "SYM", "ABM3", "verlet-half"),
-        *(pytest.param(name, marks=pytest.mark.slow) for name in ("trapezoid", "newmark(1/4,1/2)")),
-    ],
-)
+@pytest.mark.parametrize("name", ["B4", "RK4", "SYM", "ABM3", "verlet-half", "newmark(1/4,1/2)"])
+@pytest.mark.slow
 def test_a_mechanism_that_hardly_moves_has_the_poles_at_rest(name: str) -> None:
     """What the motion does to a pole falls with omega h, like it or like its square: here from 0.13 to 0.013."""
     method = lookup(name)

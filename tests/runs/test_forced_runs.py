@@ -1,7 +1,5 @@
 """The constraint error that a method forces on a moving mechanism: predicted in metres, none fitted, and measured."""
 
-from itertools import product
-
 import numpy as np
 import pytest
 
@@ -12,9 +10,7 @@ from bezstab.mechanism.simulation import simulated
 from bezstab.methods.registry import lookup
 from bezstab.runs.forced_runs import predicted_errors, settled_error
 from bezstab.stability.choices import choose
-from tests.runs.samples import of_campaign
 
-METHODS = ("RK4", "dopri5", "bs3", "B4", "AB2", "AB4", "ABM4", "SYM", "verlet-half", "bdf2", "hht", "gauss4")
 SCENES = {
     "driven_four_bar": (0.003, 1.0, 0.05),
     "slider_crank_light": (0.002, 2.0, 0.25),
@@ -25,14 +21,18 @@ SCENES = {
 A driven mechanism without a freedom of its own follows its motion whatever the method; Andrews' has a spring.
 Without what turning normals add gauss4 would be off by half.
 """
+
 SHARES = (0.2, 0.3, 0.5, 0.7, 1.0)
 """Of the robust alpha and beta: what is forced changes some hundredfold over them."""
 
-FEW = [(name, "driven_four_bar") for name in ("RK4", "B4", "hht", "heun")]
-FEW += [("AB4", "andrews"), ("SYM", "slider_crank_light"), ("gauss4", "slider_crank_light")]
 
-
-@pytest.mark.parametrize(("name", "scene"), of_campaign([*product(METHODS, SCENES)], FEW))
+@pytest.mark.parametrize(
+    ("name", "scene"),
+    [
+        *((name, "driven_four_bar") for name in ("RK4", "B4", "hht", "heun")),
+        *(("AB4", "andrews"), ("SYM", "slider_crank_light"), ("gauss4", "slider_crank_light")),
+    ],
+)
 @pytest.mark.slow
 def test_measured_over_predicted_is_one_whatever_the_gains(name: str, scene: str) -> None:
     """Of constraints; of a driven mechanism of the trajectory, too, which is off as its constraints say."""

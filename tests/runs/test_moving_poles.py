@@ -7,7 +7,7 @@ from bezstab.methods.registry import lookup
 from bezstab.runs.exact_rates import exact_rates
 from bezstab.stability.arrays import FloatArray
 from bezstab.stability.regions import region, window
-from bezstab.stability.turning import moving_modulus, moving_pole, turn_limits
+from bezstab.stability.turning import moving_pole, turn_limits
 from tests.methods.kinds import sampled
 from tests.runs.driven_four_bar import four_bar, turning
 
@@ -68,4 +68,3 @@ def test_a_point_is_safe_up_to_the_speed_that_is_said(name: str, at: tuple[float
     slower, faster = (moving_pole(method, share * safe * kappa, h, *at) for share in (0.999, 1.001))
     assert (slower.verdict, faster.verdict) == ("converges", "not settled")
     assert slower.at_most < 1
-    assert moving_modulus(method, slower.turned)(np.array(at[0]), np.array(at[1])) == slower.at_most
