@@ -103,12 +103,9 @@ def step(name: str, times: float) -> Found:
 
 
 def passage(h: float) -> Found:
-    """The crank turns through the singular angle: the run names the step in which it came nearest, or fails."""
-    run = simulate(
-        compiled_mechanism(load_scene("slider_crank_equal")), lookup("B4"), h, 2.0, feedback_gains(*POINT, h)
-    )
-    if run.failure:
-        return Found(run.failure, 1.0)
+    """The crank turns through the singular angle: the run names the step in which it came nearest."""
+    mechanism = compiled_mechanism(load_scene("slider_crank_equal"))
+    run = simulate(mechanism, lookup("B4"), h, 2.0, feedback_gains(*POINT, h))
     passed = float(np.interp(SINGULAR_ANGLE, run.q[:, 0], run.t))
     seen = f"least pivot {run.least_pivot:.0e} at t = {run.pivot_time:.4g} s (passed at {passed:.4g} s)"
     return Found(seen, min(1 - run.least_pivot / h, 2 - abs(run.pivot_time - passed) / h))
@@ -165,7 +162,7 @@ EXTREMES = (
     ),
     Extreme(
         "a singular configuration passed, by the step (s)",
-        "a failure, or a least pivot below it in the step of the passage",
+        "a least pivot below it in the step of the passage",
         passage,
         cases=[(1e-2,), (1e-3,), (1e-4,)],
         sample=[(1e-2,), (1e-3,)],

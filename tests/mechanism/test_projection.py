@@ -57,8 +57,7 @@ def test_the_order_of_accuracy_stays(name: str) -> None:
 @pytest.mark.parametrize("name", ["driven_four_bar", "andrews"])
 def test_corrections_are_the_least_ones_in_the_metric_of_the_masses(name: str) -> None:
     mechanism, t, random = scene(name), 0.3, np.random.default_rng(1)
-    q, v = initial_state(mechanism)
-    q, v = q + 1e-3 * random.standard_normal(q.size), v + random.standard_normal(v.size)
+    q, v = (state + random.normal(0, 1e-3, mechanism.size) for state in initial_state(mechanism))
     found = state_function(mechanism, "corrections", math)([t, 0.0, 0.0, *q.tolist(), *v.tolist()])
     literal = literal_equation_9(mechanism, 0.0, 0.0)(t, q, v)
     of_both = np.reshape(found[: 2 * mechanism.size], (2, -1))

@@ -51,9 +51,8 @@ def test_a_faster_driver_takes_the_same_course_in_less_time() -> None:
         **pendulum(initial={"position": {"bob.y": 0.0}, "velocity": {"bob.y": 0.0}}),
         "joint": [{"type": "driver", "coordinate": "bob.x", **course}],
     }
-    for factor in (1.0, 4.0):
-        mechanism = compiled_mechanism(at_speed(parse_scene(data), factor))
-        run = simulate(mechanism, lookup("RK4"), 1e-3 / factor, 1.0 / factor, (0.0, 0.0))
-        t = factor * run.t
-        expected = 0.5 + 2 * t - t**2 / 2 + 0.3 * np.sin(7 * t + 0.4)
-        assert run.q[:, 0] == pytest.approx(expected, abs=1e-11)  # RK4's
+    mechanism = compiled_mechanism(at_speed(parse_scene(data), 4.0))
+    run = simulate(mechanism, lookup("RK4"), 2.5e-4, 0.25, (0.0, 0.0))
+    t = 4 * run.t
+    expected = 0.5 + 2 * t - t**2 / 2 + 0.3 * np.sin(7 * t + 0.4)
+    assert run.q[:, 0] == pytest.approx(expected, abs=1e-11)  # RK4's

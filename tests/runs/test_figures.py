@@ -65,6 +65,7 @@ def test_where_nothing_is_drawn_a_figure_says_why() -> None:
     figure = work_precision_figure(ranked_runs(runs, 1e-8, 1e-12), "made up", "trajectory")
     said = {axes.get_title(): " ".join(axes.texts[0].get_text().split()) for axes in figure.axes}
     assert said == {"B2": "errors below the reference's", "AB4": "every run diverged", "SYM": ""}
+    assert not any("cheapest" in text for text in legend_of(figure))  # none is within the tolerance
 
 
 def test_the_verdict_figure_shows_cells_boundary_and_disagreement() -> None:

@@ -1,14 +1,13 @@
-from dataclasses import replace
 from fractions import Fraction
 from functools import partial
 
 from bezstab.methods.registry import lookup
-from bezstab.runs.accuracy_costs import NO_FEEDBACK, measured_runs
-from bezstab.runs.trades import _all_compiled, ranked, trade
+from bezstab.runs.accuracy_costs import NO_FEEDBACK
+from bezstab.runs.trades import _all_compiled, trade
 from bezstab.stabilising import NOTHING, after_step
 
 SYM, STEPS, POINT = [lookup("SYM")], (Fraction("0.02"), Fraction("0.01")), (Fraction(1), Fraction("0.5"))
-small = partial(trade, "pendulum", SYM, STEPS, duration=Fraction("0.1"), numbers=POINT, repeats=1)
+small = partial(trade, "pendulum", SYM, STEPS, duration=Fraction("0.1"), numbers=POINT)
 
 
 def test_against_projection_each_method_runs_with_feedback_and_with_projection() -> None:
@@ -20,15 +19,6 @@ def test_against_projection_each_method_runs_with_feedback_and_with_projection()
         ((1, 0.5), NOTHING),
         (NO_FEEDBACK, after_step("projection")),
     ]
-
-
-def test_the_cheapest_within_the_tolerance_takes_the_largest_step_that_is_good_enough() -> None:
-    asked = small()
-    measured = [measured_runs(sweep) for sweep in asked.sweeps]
-    larger, smaller = (run.trajectory_error or 0.0 for run in ranked(asked, measured).runs)
-    for tolerance, h in ((larger, 0.02), (smaller, 0.01), (smaller / 2, None)):
-        cheapest = ranked(replace(asked, tolerance=Fraction(tolerance)), measured).cheapest
-        assert (cheapest.h if cheapest else None) == h
 
 
 def test_all_runs_of_a_sweep_are_compiled_or_none() -> None:
