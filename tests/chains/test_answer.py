@@ -14,7 +14,7 @@ from bezstab.engines.engine_list import ENGINES, engine_and_values
 from bezstab.errors import InputError
 from bezstab.stability.arrays import FloatArray
 from tests.reference.engine_steps import STEPS
-from tests.reference.swept_chains import arm_step, columns, hanging_errors, hard_step
+from tests.reference.swept_chains import arm_step, at_rest, columns, hanging_errors, hard_step
 
 H = Fraction(1, 60)
 
@@ -81,22 +81,17 @@ def test_one_body_rests_where_the_engines_own_step_leaves_it(engine: str) -> Non
     assert (f"sags by {1e3 * c:.3g} mm" if answer.sag else "does not sag") in answer.sentence
 
 
-@pytest.mark.parametrize("load", ["gravity", 50])
-def test_a_chain_without_kept_impulses_sags_as_loops_over_its_links_do(load: str | int) -> None:
+@pytest.mark.parametrize(("load", "pull"), [("gravity", [9.81] * 5), (50, [0, 0, 0, 0, 50 / 4])])
+def test_a_chain_without_kept_impulses_sags_as_loops_over_its_links_do(load: str | int, pull: list[float]) -> None:
     """Bullet's joints start each step with no impulse: few sweeps do not hold the chain."""
-    masses, sweeps, share = (1, 2, 1, 1, 4), 3, 0.2
-    step, state = hard_step([1 / mass for mass in masses], sweeps, share, kept=0), [0.0] * 15
-    falls = [9.81] * 5 if load == "gravity" else [0, 0, 0, 0, 50 / 4]
-    for _ in range(3000):
-        fallen = [v + each / 60**2 for v, each in zip(state[5:10], falls, strict=True)]
-        state = step(state[:5] + fallen + state[10:])
+    masses, sweeps = (1, 2, 1, 1, 4), 3
+    step = hard_step([1 / mass for mass in masses], sweeps, 0.2, kept=0, pull=[each / 60**2 for each in pull])
+    sag = at_rest(step, 5)[4]
     answer = chain("bullet=0.2", h=H, masses=masses, iterations=sweeps, load=load)
-    assert answer.sag == pytest.approx(state[4], rel=1e-6)
-    assert state[4] > 0.01
-    assert (
-        f"Under {load if load == 'gravity' else '50 N at its end'} along it, it sags by {1e3 * state[4]:.3g} mm"
-        in repr(answer)
-    )
+    assert answer.sag == pytest.approx(sag, rel=1e-6)
+    assert sag > 0.01
+    under = "gravity" if load == "gravity" else "50 N at its end"
+    assert f"Under {under} along it, it sags by {1e3 * sag:.3g} mm" in repr(answer)
 
 
 def motor_numbers(hertz: float, damping_ratio: float) -> tuple[float, float]:
@@ -121,10 +116,8 @@ def test_an_arm_grows_as_loops_over_its_pins_and_motors_do(
     engine: str, motor: str, settings: dict[str, Any], of_motor: tuple[float, float]
 ) -> None:
     """Angles that no motor holds are left out. Along its own line it is the chain without motors."""
-    count = 6 * len(MASSES)
     step = arm_step(MASSES, 4, motor=of_motor, **settings)
-    matrix = np.array([step(list(unit)) for unit in np.eye(count)]).T
-    values = np.abs(np.linalg.eigvals(matrix))
+    values = np.abs(np.linalg.eigvals(columns(step, 2 * len(MASSES))))
     along = chain(engine, h=H, masses=MASSES, iterations=4).z_abs
     largest = sorted(values)[-1 - len(MASSES) * (motor == "rate")]
     answer = chain(engine, h=H, masses=MASSES, iterations=4, motor=motor)
@@ -141,10 +134,7 @@ def test_an_arm_droops_as_loops_over_its_pins_and_motors_do(
     load: str | int,
     pull: tuple[float, float],
 ) -> None:
-    step = arm_step(MASSES, 40, motor=of_motor, pull=pull, **settings)
-    fallen = np.array(step([0.0] * 24))
-    matrix = np.array([step(list(unit)) for unit in np.eye(24)]).T - fallen[:, None]
-    state = np.linalg.solve(np.eye(24) - matrix, fallen)
+    state = at_rest(arm_step(MASSES, 40, motor=of_motor, pull=pull, **settings), 2 * len(MASSES))
     answer = chain(engine, h=H, masses=MASSES, iterations=40, motor=motor, load=load)
     assert answer.sag == pytest.approx(state[3] + 2.0 / 2 * state[7], rel=1e-7)
 

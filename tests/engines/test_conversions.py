@@ -45,16 +45,3 @@ def test_values_that_an_engine_clamps_are_told(
     applied = engine.applied(values, H)
     assert applied.point == engine.read(H, *map(Fraction, clamped)) != engine.read(H, *values)
     assert applied.notes == (note,)
-
-
-@pytest.mark.parametrize(
-    ("name", "point"),
-    [
-        ("bullet", ("999999/1000000", "1/2")),
-        ("box2d", ("1", "3/4")),
-        ("xpbd", ("1", "0")),
-    ],
-)
-def test_a_point_that_an_engine_cannot_reach_is_refused_with_what_it_can(name: str, point: tuple[str, str]) -> None:
-    with pytest.raises(InputError, match="^(--engine )?" + name + ".*[α̂β̂(]"):
-        ENGINES[name].setting((Fraction(point[0]), Fraction(point[1])), H)

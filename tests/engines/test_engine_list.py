@@ -126,13 +126,6 @@ def test_mujocos_defaults_are_its_solref_and_solimp() -> None:
     assert engine.applied(values, Fraction(1, 500)) == engine.applied(typed[1], Fraction(1, 500))
 
 
-def test_an_engine_says_where_its_formula_is_from_and_what_it_leaves_out() -> None:
-    for engine in ENGINES.values():
-        assert engine.source
-        assert engine.excludes
-        assert lookup(engine.method).name == engine.method if engine.method else engine.level == "acceleration"
-
-
 def test_who_is_said_to_be_witnessed_has_a_test_that_exists() -> None:
     root = Path(__file__).parents[2]
     assert set(WITNESSES) <= set(ENGINES)
@@ -153,9 +146,3 @@ def test_every_point_has_a_setting_or_is_refused(name: str, a: float, b: float, 
         return
     assert min(a, b) >= 0
     assert all(abs(float(value)) < math.inf for value in values(setting))
-
-
-def test_who_solves_all_constraints_together_below_acceleration_level() -> None:
-    """Of all others is said that they sweep: what holds for one constraint alone says little about a chain."""
-    together = {name for name, engine in ENGINES.items() if engine.level != "acceleration" and not engine.sweeps}
-    assert together == {"dart", "kamino", "drake-sap", "sofa"}

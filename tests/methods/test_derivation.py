@@ -42,6 +42,6 @@ def test_closed_loop_is_the_recursion_of_the_stabilised_constraint(name: str) ->
     assert n == 2 * steps(method)
     assert p[-1] == 1
     start = [np.array([Fraction((k * k + 1) % 5), Fraction((3 * k + 2) % 7)]) for k in range(1, steps(method) + 1)]
-    c = [y[0] for y in trajectory(method, stabilised, start, method.step_multiple, 4 * n, Fraction)]
+    c = [y[0] for y in trajectory(method, stabilised, start, method.step_multiple, 4 * n)]
     for k in range(3 * n):
         assert sum(p_i * c_i for p_i, c_i in zip(p, c[k : k + n + 1], strict=True)) == 0

@@ -1,11 +1,16 @@
 """Chains and arms whose constraints are solved one after another: loops over constraints, as engines do it.
 
-h = 1; numbers of any kind. No matrices.
+h = 1; numbers of any kind. A matrix is what a step makes of unit vectors.
 """
 
 from cmath import rect
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
 
 State = list[Any]
 """Positions, velocities and kept impulses, one after another."""
@@ -88,9 +93,9 @@ def links(count: int, *settings: Any) -> list[Constraint]:
     return [Constraint({link: 1, link - 1: -1} if link else {0: 1}, *settings) for link in range(count)]
 
 
-def hard_step(inverse: Sequence[Any], sweeps: int, share: Any, kept: Any = 1, relaxation: Any = 1) -> Step:
+def hard_step(inverse: Sequence[Any], sweeps: int, share: Any, **settings: Any) -> Step:
     """Return a step with a bias in the velocity: warm start, sweeps, move."""
-    return swept_step(links(len(inverse), share), inverse, sweeps, kept=kept, relaxation=relaxation)
+    return swept_step(links(len(inverse), share), inverse, sweeps, **settings)
 
 
 def soft_step(inverse: Sequence[Any], bias: float, mass_scale: float, relaxing: int) -> Step:
@@ -107,6 +112,13 @@ def columns(step: Step, bodies: int, one: Any = 1.0) -> list[State]:
     """Return what becomes of each unit vector: the columns of the step's matrix."""
     count = 3 * bodies
     return [step([one if i == j else 0 * one for i in range(count)]) for j in range(count)]
+
+
+def at_rest(step: Step, bodies: int) -> FloatArray:
+    """Return the state that a step with what pulls leaves as it is."""
+    fallen = np.array(step([0.0] * 3 * bodies))
+    matrix = np.array(columns(step, bodies)).T - fallen[:, np.newaxis]
+    return np.linalg.solve(np.eye(len(fallen)) - matrix, fallen)
 
 
 def arm_step(

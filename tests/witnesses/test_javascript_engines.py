@@ -91,10 +91,6 @@ def test_an_engine_grows_as_its_row_says(typed: str, h: str, grows: bool) -> Non
     assert (expected > 1) is grows
 
 
-def test_matter_js_leaves_no_error_of_a_stiffness_of_one() -> None:
-    assert np.abs(links("matter.js=1,2", 3, places=[1.1])[1:]).max() < 1e-12
-
-
 def test_matter_js_brakes_what_goes_round_as_its_class_of_energy_says() -> None:
     """To a hundredth of what is left of the rate, from the tenth step on: ten seconds at 6 rad/s lose 88 % of it."""
     h, start, steps = 1 / 60, 10, 600
