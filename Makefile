@@ -71,7 +71,7 @@ bench: .venv/benched  ## speed, as ratios measured in one run, into figures/benc
 	$(BIN)/python -m tests.bench.bench
 
 campaign: .venv/tested  ## regions of 10,000 random methods against verdicts in rationals and a plain rule, in hours
-	$(BIN)/python tests/stability/campaign.py
+	METHODS=5000 $(BIN)/python -m pytest -m slow tests/stability/test_campaign.py
 
 clean:  ## remove the virtual environments
 	rm -rf .venv .venv-oldest

@@ -10,7 +10,7 @@ import pytest
 from bezstab.errors import InputError, NumericalError
 from bezstab.methods.derivation import closed_loop_at
 from bezstab.methods.registry import lookup
-from bezstab.methods.schemes import Method, RungeKutta
+from bezstab.methods.schemes import Method
 from bezstab.rationals import exact
 from bezstab.stability.closed_loop import (
     all_within,
@@ -64,12 +64,12 @@ def test_poles_without_a_mu_are_eigenvalues_of_the_companion(method: Method) -> 
     assert np.abs(spectral_radius(method, alpha_hat, beta_hat) - z[..., 0]).max() < 1e-13
 
 
-@pytest.mark.parametrize(("name", "columns", "rows"), [("AB3", 57, 1201), ("RK4", 1, 5), ("SYM", 70000, 2)])
-def test_a_map_is_the_dominant_pole_on_the_mesh(name: str, columns: int, rows: int) -> None:
-    method, a, b = lookup(name), np.linspace(-0.2, 1.1, columns), np.linspace(0.01, 0.6, rows)
-    stacked = np.concatenate(list(pole_map(method, a, b)))
-    assert stacked.shape == (rows, columns)
-    assert np.abs(stacked - dominant_pole(method, a, b[:, None])).max() < 1e-9  # other starts of the iteration
+@pytest.mark.parametrize(("columns", "rows"), [(57, 2301), (140_000, 2)])
+def test_a_large_map_is_the_dominant_pole_on_the_mesh(columns: int, rows: int) -> None:
+    """By parts of rows: 131,072 points are found in one go."""
+    a, b = np.linspace(-0.2, 1.1, columns), np.linspace(0.01, 0.6, rows)
+    stacked = np.concatenate(list(pole_map(lookup("SYM"), a, b)))
+    assert (stacked == dominant_pole(lookup("SYM"), a, b[:, np.newaxis])).all()
 
 
 # from the end of one row, mu = -85, to the start of the next, mu = -5, the slopes at the former mean nothing
@@ -128,18 +128,11 @@ def test_where_a_step_has_no_solution_a_pole_is_infinite(method: Method, point: 
 
 
 def test_what_leaves_float64_is_reported_with_its_place() -> None:
-    huge, none = F(10) ** 90, F(0)
-    rows = tuple(tuple(huge if column == row - 1 else none for column in range(4)) for row in range(4))
-    method = Method("huge", RungeKutta(rows, (1 - huge, none, none, huge)), "constructed")  # R has huge^4 mu^4
-    with pytest.raises(NumericalError, match="huge: products of its coefficients"):
-        poles(method, 0.5, 0.1)
     with pytest.raises(NumericalError, match=r"alpha_hat = 1e\+308, beta_hat = 1.5e\+308 a pole leaves the range"):
         poles(lookup("verlet-old"), np.array([0.5, 1e308, 0.25]), np.array([0.1, 1.5e308, 0.3]))
 
 
-@pytest.mark.parametrize("values", [1j, np.ma.masked_array([1.0, 2.0], [False, True]), [[1], [1, 2]], None, True])
+@pytest.mark.parametrize("values", [1j, np.ma.masked_array([1.0, 2.0], [False, True]), None, True])
 def test_what_would_lose_a_part_or_is_no_number_is_refused_by_name(values: Any) -> None:
     with pytest.raises(InputError, match=r"^alpha_hat (=|is) .*: expected "):
         poles(lookup("SYM"), values, 0.1)
-    numbers: Any = [F(1), 1]
-    assert poles(lookup("SYM"), numbers, "0.5").shape == (2, 2)

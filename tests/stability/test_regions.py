@@ -1,7 +1,7 @@
 """Regions against closed forms, enclosed points by eigenvalues, and what other routes find stable."""
 
 from fractions import Fraction
-from math import atan, inf, pi, sin, sqrt
+from math import inf
 
 import numpy as np
 import pytest
@@ -34,17 +34,7 @@ def test_euler_and_its_shear_have_area_4_r_cubed(name: str, level: float) -> Non
     assert_area(region(lookup(name), level), 4 * level**3)
 
 
-@pytest.mark.parametrize("level", [1.0, 0.6, 0.3])
-def test_midpoint_has_the_area_of_a_disc_in_a_wedge(level: float) -> None:
-    # z = (w^2 + 1) / 2, w = mu + 1: z1 z2 < r^2 is the disc s^2 + (p - 1)^2 < 4 r^2; z = r, with k = 2r - 1, the wedge
-    # p + k > sqrt(k) |s| from the disc's lowest point (none if k <= 0); z = -r is never met. At r = 1: 4 + 2 pi.
-    phi = atan(sqrt(max(2 * level - 1, 0)))
-    assert_area(region(lookup("RK2"), level), 4 * level**2 * (pi - 2 * phi + sin(2 * phi)))
-
-
-@pytest.mark.parametrize(
-    ("theta", "level"), [("1/2", "0.99995"), ("1/2", "0.7"), ("1/2", "0.05"), ("2/5", "1"), ("1/10", "0.3")]
-)
+@pytest.mark.parametrize(("theta", "level"), [("1/2", "0.99995"), ("1/2", "0.05"), ("2/5", "1")])
 def test_a_theta_method_has_the_area_of_two_disc_halves(theta: str, level: str) -> None:
     # |1 + (1 - theta) mu| < r |1 - theta mu| is a disc of radius rho: 4 int int y over its half, and (2 rho)^3 / 6
     t, r = Fraction(theta), Fraction(level)
@@ -67,14 +57,11 @@ TWO_EVALUATIONS = {
         (lookup("SYM"), 1, (0, 2, 0, 4)),
         (lookup("RK1"), 0.5, (1, 3, 0.25, 2.25)),  # both z, 1 + mu, within 1/2: alpha_hat = 2 - s, beta_hat = 1 - s + p
         (lookup("AB2"), 1, (0, 2, 0, 1)),  # mu(-1) = -1 twice, and the line of z = -1
-        (lookup("RK2"), 1, (0, 4, 0, 2 + 2 * sqrt(2))),  # beta_hat = p - s + 1 over the disc s^2 + (p - 1)^2 < 4
         (lookup("ABM2"), 1, (0, 4, 0, 4)),  # a cusp on alpha = beta: mu = -2 twice
         # (a + 2) z^2 + (2 b - 4) z + 2 - a: a, b > 0 and P(-1) = 8 - 2 b > 0; within 1/2 |b - 2| < (10 - 3 a)/4
         (lookup("verlet-implicit"), 1, (0, inf, 0, 4)),
         (lookup("verlet-implicit"), 0.5, (6 / 5, 10 / 3, 2 / 5, 18 / 5)),
-        # (1 + a) z^2 + (2 b - a - 2) z + 1 - b: P(1) = b, P(-1) = 4 + 2 a - 3 b, and b < 2 + a
-        (lookup("stable-pd"), 1, (0, inf, 0, inf)),
-        *((lookup(name), 1, (0, inf, 0, inf)) for name in ("implicit-euler", "trapezoid", "bdf6", "radau3")),
+        *((lookup(name), 1, (0, inf, 0, inf)) for name in ("stable-pd", "trapezoid", "bdf6")),
         (Method("two evaluations", recipe(TWO_EVALUATIONS), ""), 1, (0, inf, 0, 4)),
     ],
     ids=str,
@@ -150,8 +137,6 @@ def test_an_island_is_mentioned_and_not_measured(method: Method) -> None:
 
 
 def test_parts_that_only_touch_are_refused() -> None:
-    """Two lobes of the first meet in a point; the locus |z| = 3/4 of the other is Bernoulli's lemniscate."""
+    """Two lobes meet in a point."""
     with pytest.raises(NumericalError, match="or only touch"):
         region(runge_kutta("two intervals", "1/9", "0 1"))
-    with pytest.raises(NumericalError, match="details without end"):
-        region(runge_kutta("touching itself", "2/7", "1/2 1/2"), 0.75)

@@ -55,13 +55,10 @@ def test_so_it_does_in_matter_js_where_a_little_less_than_all_pulls_too_far(stif
     [
         ("pinocchio=100,20", 0),
         ("chipmunk", 0),
-        ("kamino", 0),
         ("brax-spring=2000,5,2", 9.81 * 2 / 2000),
-        ("newton-semi-implicit=300,10,2", 9.81 * 2 / 300),
         ("box2d=60,2", 9.81 / (2 * pi * 15) ** 2),  # clamped to a quarter of the steps
         ("xpbd=0.002,0,4", 9.81 * 0.002 / 4),
         ("p2=1e4,3,2", 9.81 * 2 / 1e4),
-        ("cannon-es=1e4,3,1/60,2", 9.81 * 2 / 1e4),
         ("mujoco=-400,-40,0.95,0.95", 0.05 * 9.81 / 400),
         ("mujoco=0.001,1,0.9,0.9", 0.1 * 9.81 / 900),  # the time constant is raised to two steps
         ("genesis=0.2", 0.05 * 9.81 * 0.04),  # far past the width
@@ -72,9 +69,7 @@ def test_a_spring_rests_at_load_over_stiffness_and_a_hard_constraint_nowhere_els
 
 
 @pytest.mark.parametrize("solref", ["0.001 1", "-600 -40"])
-@pytest.mark.parametrize(
-    "solimp", ["0.9 0.95", "0.5 0.95 0.01 0.3 3", "0.2 0.95 0.01 0.7 1", "0.9 2 0.02", "0.6 0.8 0"]
-)
+@pytest.mark.parametrize("solimp", ["0.5 0.95 0.01 0.3 3", "0.2 0.95 0.01 0.7 1", "0.9 2 0.02", "0.6 0.8 0"])
 @pytest.mark.parametrize("load", ["9.81", "-200"])
 def test_mujoco_rests_where_it_is_said_to(solref: str, solimp: str, load: str) -> None:
     """Also within solimp's width, past it, and with clamps."""
@@ -121,21 +116,14 @@ def test_the_least_feedback_for_a_sag_is_that_of_its_formula_and_is_stable(name:
 
 
 @pytest.mark.parametrize(
-    ("name", "sag"),
+    ("name", "sag", "spread"),
     [
-        ("box2d", "0.00110"),  # at its fastest it sags by 1.1044 mm
-        ("brax-spring", "0.00068"),  # symplectic Euler ends at beta_hat = 4
-        ("genesis", "0.00067"),  # refsafe's floor, beta_hat = 1/4
+        ("box2d", "0.00110", 0),  # at its fastest it sags by 1.1044 mm
+        ("brax-spring", "0.00068", 0),  # symplectic Euler ends at beta_hat = 4
+        ("brax-spring", "0.00167", 0.1),  # 2.2 alpha_hat + 1.21 beta_hat = 4
+        ("genesis", "0.00067", 0),  # refsafe's floor, beta_hat = 1/4
     ],
 )
-def test_a_sag_that_no_stable_feedback_keeps_has_none_and_a_little_more_has(name: str, sag: str) -> None:
-    assert least(name, Fraction(sag)) is None
-    assert least(name, Fraction(sag) * Fraction(102, 100))
-
-
-def test_with_a_spread_it_is_stable_also_if_it_were_stronger() -> None:
-    sag = Fraction("0.00075")
-    point = least("brax-spring", sag)
-    assert point
-    assert not converges(lookup("SYM"), point[0] * Fraction(11, 10), point[1] * Fraction(121, 100))
-    assert least("brax-spring", sag, spread=0.1) is None
+def test_a_sag_that_no_stable_feedback_keeps_has_none_and_a_little_more_has(name: str, sag: str, spread: float) -> None:
+    assert least(name, Fraction(sag), spread) is None
+    assert least(name, Fraction(sag) * Fraction(102, 100), spread)

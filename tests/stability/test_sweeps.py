@@ -27,13 +27,9 @@ def test_soft_sweeps_and_moves_of_positions_are_what_loops_do(bodies: int) -> No
 def test_free_motions_and_units_change_nothing() -> None:
     """A planar chain that may swing, a body that nothing ties, other units: as before."""
     step = hard_velocity_step(0.3, 3, kept=1.0)
-    alone = swept_growth(chain(3), step).factor
-    jacobian = np.zeros((3, 8))
-    jacobian[:, :3] = np.eye(3) - np.eye(3, k=-1)
-    free = swept_growth(inverse_effective_masses(np.eye(8), jacobian), step)
-    assert free.factor == pytest.approx(alone, abs=1e-10)
-    scaled = swept_growth(inverse_effective_masses(1e6 * np.eye(8), np.diag([1e-8, 1, 1e5]) @ jacobian), step)
-    assert scaled.factor == pytest.approx(alone, rel=1e-9)
+    jacobian = np.eye(3, 8) - np.eye(3, 8, k=-1)
+    scaled = inverse_effective_masses(1e6 * np.eye(8), np.diag([1e-8, 1, 1e5]) @ jacobian)
+    assert swept_growth(scaled, step).factor == pytest.approx(swept_growth(chain(3), step).factor, rel=1e-9)
 
 
 def test_what_rounding_leaves_open_is_refused() -> None:
