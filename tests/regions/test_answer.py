@@ -1,7 +1,6 @@
 from fractions import Fraction
 from typing import Any
 
-import numpy as np
 import pytest
 
 from bezstab.engines.engine_list import ENGINES
@@ -38,20 +37,11 @@ def test_a_map_holds_the_best_point_and_marks_that_of_choose(name: str) -> None:
     assert answer.chosen.point == choose(name, margins=False, cost=False).point
 
 
-def test_axes_of_alpha_and_beta_are_even_in_beta() -> None:
-    asked = map_conditions(h=Fraction("0.001"), alpha_beta=True, points=21)
-    drawing = map_answer(lookup("SYM"), asked, drawn=True).drawing
-    assert drawing
-    assert np.diff(np.sqrt(drawing.beta_hat)) == pytest.approx(np.sqrt(drawing.beta_hat[-1]) / 20)
-
-
-@pytest.mark.parametrize(
-    "name", ["SYM", *(pytest.param(name, marks=pytest.mark.slow) for name in ("B4", "verlet-old"))]
-)
+@pytest.mark.parametrize("name", ["SYM", pytest.param("verlet-old", marks=pytest.mark.slow)])
 def test_the_region_of_a_moving_mechanism_shrinks_with_its_speed_from_that_at_rest(name: str) -> None:
     method = lookup(name)
-    moving, at_rest = moving_regions(method), region(method).area
-    assert moving.area(0.0) == pytest.approx(at_rest, rel=5e-3)  # by cells of a three hundredth
+    moving = moving_regions(method)
+    assert moving.area(0.0) == pytest.approx(region(method).area, rel=5e-3)  # by cells of a three hundredth
     areas = [moving.area(turned) for turned in (0.0, 0.01, 0.05, 0.1)]
     assert areas == sorted(areas, reverse=True)
     assert areas[-1] == 0  # nothing is settled beyond
@@ -62,14 +52,10 @@ def test_the_region_of_a_moving_mechanism_shrinks_with_its_speed_from_that_at_re
 
 def test_of_a_motion_the_most_accurate_point_forces_less_than_the_fastest() -> None:
     forced = answer_about("RK4", accuracy=True)
-    best = forced.regions[0].best
+    best, (fastest, accurate) = forced.regions[0].best, forced.on_motion
     assert best
-    assert forced.drawing
-    fastest, accurate = forced.on_motion
     assert accurate.error < fastest.error
-    assert (fastest.alpha_hat, fastest.beta_hat) == (best.alpha_hat, best.beta_hat)
     assert fastest.error == float(combined_error(lookup("RK4"), best.alpha_hat, best.beta_hat, Fraction(1, 100)))
-    assert min(forced.drawing.alpha_hat[0], forced.drawing.beta_hat[0]) > 0
 
 
 def test_the_marks_of_an_engine_are_stable_points_with_its_own_method() -> None:

@@ -25,17 +25,11 @@ def test_region_writes_what_is_asked_for_where_it_is_asked_for(tmp_path: Path) -
 
 
 def test_the_tables_of_a_map_and_of_compared_boundaries(tmp_path: Path) -> None:
-    assert run("region --quality fast --accuracy --figure none --table csv").exit_code == 0
-    compared = "region --compare --method B4 --method RK4@5 --figure none --table csv"
-    (row, _) = rows(compared, "--level 0.9")
-    assert row["z_abs_below"] == 0.9
-    points, boundaries = (
-        list(csv.DictReader((tmp_path / name).read_text(encoding="utf-8").splitlines()))
-        for name in ("region_B4_accuracy.csv", "compare_B4_RK4@5.csv")
-    )
-    assert list(points[0]) == ["alpha_hat", "beta_hat", "z_abs", "z_angle_deg", "combined_error"]
-    assert all((point["combined_error"] in ("", "nan")) == (float(point["z_abs"]) >= 1) for point in points)
-    assert len(points) == 50**2
-    for name in ("B4", "RK4@5"):
-        drawn = [[float(row["alpha_hat"]), float(row["beta_hat"])] for row in boundaries if row["method"] == name]
-        assert drawn == np.concatenate(region(lookup(name), 0.9).boundary).tolist()
+    run("region --quality fast --accuracy --figure none --table npz")
+    points = arrays(tmp_path / "region_B4_accuracy.npz")
+    assert list(points) == ["alpha_hat", "beta_hat", "z_abs", "z_angle_deg", "combined_error"]
+    assert (np.isnan(points["combined_error"]) == (points["z_abs"] >= 1)).all()
+    assert rows("region --compare --method B4 --figure none --table csv --level 0.9")[0]["z_abs_below"] == 0.9
+    with (tmp_path / "compare_B4.csv").open(encoding="utf-8") as file:
+        drawn = [[float(row["alpha_hat"]), float(row["beta_hat"])] for row in csv.DictReader(file)]
+    assert drawn == np.concatenate(region(lookup("B4"), 0.9).boundary).tolist()

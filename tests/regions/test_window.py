@@ -19,21 +19,18 @@ def test_the_point_under_the_mouse_has_its_gains_its_pole_and_its_proven_verdict
     assert axes.format_coord(70, 7000) == words.format(0.7, 0.7, 35, 83.666, "1.000000", "marginal")
 
 
-REGION = "region --method SYM --quality fast --figure window"
-
-
 def test_a_window_opens_on_the_map(monkeypatch: pytest.MonkeyPatch) -> None:
     opened = []
     pyplot.switch_backend("agg")
     monkeypatch.setattr(FigureCanvasAgg, "required_interactive_framework", "a screen")
     monkeypatch.setattr(pyplot, "show", lambda: opened.append(pyplot.gcf().axes[0].get_title()))
-    assert run(REGION).exit_code == 0
-    assert opened == ["SYM: what a step multiplies errors by"]
+    assert run("region --quality fast --figure window").exit_code == 0
+    assert opened == ["B4: what a step multiplies errors by"]
     pyplot.close("all")
 
 
 def test_without_a_screen_one_line_says_so() -> None:
     pyplot.switch_backend("agg")
-    result = run(REGION)
+    result = run("region --quality fast --figure window")
     assert (result.exit_code, result.stdout, result.stderr.count("\n")) == (2, "", 1)
     assert "window" in result.stderr
