@@ -1,6 +1,5 @@
 import math
 import re
-from fractions import Fraction
 from functools import partial
 from typing import get_args
 
@@ -81,8 +80,6 @@ def test_a_written_steady_error_is_that_of_the_method(name: str, part: Part) -> 
     written = read_back(steady_error_text(lookup(name), part), a=a, b=b, t=theta)
     over, under = (plane_value(terms, a, b) for terms in (error.numerator, error.denominator))
     exact = over / under * theta**error.power
-    # it is remembered, and sympy's polynomials write their own numbers into the terms that they are made of
-    assert all(isinstance(c, Fraction) for terms in (error.numerator, error.denominator) for c in terms.values())
     assert float(written) == pytest.approx(float(exact), rel=1e-7 if lookup(name).digits else 1e-15)  # ten digits shown
 
 
@@ -103,5 +100,5 @@ def test_what_is_too_long_is_said_to_be() -> None:
 def test_the_law_of_the_multipliers_work_is_written_where_it_is_known() -> None:
     assert multiplier_law_text(lookup("AB2")) == "c'' + 2α c' + β² c = -5/6 h^2 (G' + α G), G = C_q q^(3)"
     by_kappa = "c'' + 2α c' + β² c = -α h κ + h/2 κ'ᵥ, κ = q'ᵀ C_qq q'"
-    assert multiplier_law_text(lookup("SYM")) == multiplier_law_text(lookup("verlet-half")) == by_kappa
+    assert multiplier_law_text(lookup("SYM")) == by_kappa
     assert multiplier_law_text(lookup("RK4")).startswith("no closed form is known")

@@ -36,16 +36,11 @@ def test_a_file_is_read_exactly_whatever_it_is_called(tmp_path: Path) -> None:
 DIGITS = "1" * 5000
 REFUSED: dict[str, tuple[str | bytes, str]] = {
     "floats": ("rho = [1.0, -1.0]\nsigma = [0.0, 1.0]", "rational strings"),
-    "truth": ("rho = [true, -1]\nsigma = [0, 1]", "whole numbers and rational strings"),
     "huge digits": (f'rho = ["{DIGITS}", "-{DIGITS}"]\nsigma = ["0", "{DIGITS}"]', "rho"),
-    "squares beyond float64": ('A = [["0", "0"], ["1e200", "0"]]\nb = ["1/2", "1/2"]', "0 or a size of 1e-50 to 1e50"),
     "deep nesting": ("rho = " + "[" * 20000 + "]" * 20000 + "\nsigma = []", "brackets nested too deeply"),
     "stages": (f"A = {[['0'] * 21] * 21}\nb = {['1', *['0'] * 20]}", "21 stages: expected at most 20"),
-    "steps": (f"rho = {['1', '-1', *['0'] * 100]}\nsigma = {['0', '1', *['0'] * 100]}", "expected at most 100"),
     "both kinds": (AB2 + HEUN, "found A, b, rho, sigma"),
-    "no keys": ("", "found none"),
     "update: number": ("[update]\nx1 = 3", "update: 'x1' = 3: expected a text like 'x0"),
-    "update: 20000 equations": ("[update]\n" + "\n".join(f'w{i} = "x0"' for i in range(20_000)), "20000 equations"),
 }
 """Contents, and a part of what is said of each. What a text cannot say is in test_recipes and test_second_order."""
 
@@ -73,9 +68,8 @@ def test_equations_with_roots_are_reckoned_exactly(tmp_path: Path) -> None:
 
 
 def test_a_path_that_leads_to_no_file_is_refused_in_one_line(tmp_path: Path) -> None:
-    (folder := tmp_path / "folder.toml").mkdir()
     below_a_file = written(tmp_path, HEUN) / "below.toml"
-    for name in ("missing.toml", "x" * 300 + ".toml", "a\nb.toml", "a\0b.toml", folder, below_a_file):
+    for name in ("missing.toml", "x" * 300 + ".toml", "a\0b.toml", below_a_file, tmp_path):
         refusal(tmp_path / name)
 
 

@@ -57,13 +57,10 @@ def test_orders_need_the_conditions_of_nonlinear_problems() -> None:
 
 BY_FORCE = {  # of position, of velocity
     "verlet-half": ((2, Fraction(1, 24)), (1, Fraction(1, 2))),
-    "verlet-predicted": ((2, Fraction(1, 24)), (2, Fraction(5, 12))),  # damping: AB2
     "verlet-implicit": ((2, Fraction(1, 24)), (2, Fraction(-1, 12))),  # damping: the trapezoidal rule
-    "average-acceleration": ((2, Fraction(-1, 12)), (2, Fraction(-1, 12))),
     "ruth3": ((3, Fraction(-1, 36)), (1, Fraction(187, 576))),
     "rkn4": ((4, Fraction(1, 320)), (4, Fraction(1, 120))),  # damping: RK4
     "RK4@5": ((4, Fraction(1, 120)),) * 2,  # stepped alike
-    "bdf3": ((3, Fraction(-1, 4)),) * 2,
 }
 
 

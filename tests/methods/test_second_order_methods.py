@@ -34,9 +34,7 @@ def test_polynomials_are_those_of_one_velocity_or_another(name: str) -> None:
 
 PARAMETERS = {  # alpha_m, alpha_f, gamma and beta of Chung & Hulbert's form
     "fox-goodwin": "0 0 1/2 1/12",
-    "central-difference": "0 0 1/2 0",
     "newmark(1/3,3/5)": "0 0 3/5 1/3",
-    "hht": "0 1/20 11/20 441/1600",
     "hht(-1/3)": "0 1/3 5/6 4/9",
     "generalized-alpha": "1/3 4/9 11/18 25/81",
     "generalized-alpha(0)": "-1 0 3/2 1",
