@@ -3,7 +3,6 @@
 import math
 from collections.abc import Sequence
 from dataclasses import replace
-from itertools import chain, compress
 
 from bezstab.regions.answer import MotionPoint, MovingRegion, RegionAnswer
 from bezstab.regions.methods import Formulas, MethodAnswer, WholeMethod
@@ -18,9 +17,6 @@ from bezstab.show.cells import between
 from bezstab.show.columns import METHOD, POINT, Column, of_part
 from bezstab.show.fields import MISSING, formatted
 from bezstab.stability.best_points import BestPoint
-
-LIMITS = ("α̂ from below", "α̂ from above", "β̂ from below", "β̂ from above")
-"""The ends of a region's ranges that no edge may attain."""
 
 NAMES_ROOM = 22
 """Letters of the longest name in the list of methods."""
@@ -53,10 +49,6 @@ def _best_words(answer: RegionAnswer) -> str | None:
     return None
 
 
-def _approached(answer: RegionAnswer) -> str | None:
-    return ", ".join(compress(LIMITS, chain(*answer.region.approached))) or None
-
-
 def _critical_words(answer: RegionAnswer) -> str:
     """Return up to where all of α = β is stable, and the rational number that this is, if it is known to be one."""
     limit, exact = answer.critical_damping_limit, answer.critical_damping_limit_exact
@@ -79,7 +71,7 @@ BEST: Sequence[Column[BestPoint]] = (
 )
 
 REGION: Sequence[Column[RegionAnswer]] = (
-    Column("method", "method", lambda answer: answer.region.method.name, "integration method", apart=True),
+    *of_part(RegionAnswer, lambda answer: answer.region, [METHOD]),
     Column(
         "|z_p| up to",
         "z_abs_below",
@@ -117,7 +109,6 @@ REGION: Sequence[Column[RegionAnswer]] = (
         form=ENDS,
         brief=True,
     ),
-    Column("approached far out", "", _approached, "", brief=True),
     Column(
         "βh to (α = β)",
         "critical_damping_limit",

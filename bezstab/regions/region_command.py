@@ -53,7 +53,6 @@ Window = tuple[Fraction, Fraction]
         metavar="WORD",
         help="Points along an axis: fast 50, balanced 200, fine 1000.",
     ),
-    click.option("--grid", type=int, help="Points along an axis, in place of --quality."),
     shared.table,
     click.option(
         "--figure",
@@ -80,7 +79,6 @@ def region(
     alpha_range: Window | None,
     beta_range: Window | None,
     quality: str,
-    grid: int | None,
     table: str,
     figure: str,
     output: Path,
@@ -99,7 +97,6 @@ def region(
     from bezstab.regions.answer import map_conditions, region_answer
     from bezstab.regions.columns import MOVING, ON_A_MOTION, REGION
     from bezstab.show.result_sentences import combined_words, energy_words
-    from bezstab.stability.best_points import best_point_or_reason
     from bezstab.stability.closed_loop import QUALITY
 
     methods = methods_for(methods or (() if engine else (lookup("B4"),)), engine)
@@ -108,7 +105,7 @@ def region(
             levels=levels,
             alpha_range=alpha_range,
             beta_range=beta_range,
-            points=QUALITY[quality] if grid is None else grid,
+            points=QUALITY[quality],
             h=h,
             engine=engine,
             scene=scene,
@@ -139,8 +136,7 @@ def region(
         show_answers(REGION, regions, below=below)
     if asked.motion:
         show_text((energy_words if energy else combined_words)(asked.motion))
-    known = not any(best_point_or_reason(method)[1] for method in methods)
-    return status if known else NUMERICAL_TROUBLE
+    return NUMERICAL_TROUBLE if any(region.trouble for region in regions) else status
 
 
 def _map(method: Method, asked: "MapConditions", files: Files, kind: str | None) -> "MapAnswer":

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
 from matplotlib.path import Path
 from matplotlib.patheffects import AbstractPathEffect, withStroke
-from matplotlib.ticker import MaxNLocator
+from matplotlib.ticker import FixedLocator, MaxNLocator
 from numpy.typing import ArrayLike, NDArray
 
 from bezstab.show.file_forms import FIGURE_FORMS
@@ -118,26 +118,16 @@ def mark_in_alpha_and_beta(axes: Axes) -> None:
     What is drawn stays in 2 alpha and beta^2. Below beta^2 = 0 there is no real beta: the axis begins there.
     """
     low, high = np.sqrt(np.maximum(axes.get_ylim(), 0))
-    axes.set_yscale("function", functions=(_signed_root, _signed_square))
+    root, square = lambda y: np.sign(y) * np.abs(y) ** 0.5, lambda y: np.sign(y) * y**2
+    axes.set_yscale("function", functions=(root, square))
     axes.set_ylim(low**2, high**2)
-    left, right = np.divide(axes.get_xlim(), 2)
-    alpha, beta = (_round_values(*ends) for ends in ((left, right), (low, high)))
-    axes.set_xticks([2 * value for value in alpha], [f"{value:g}" for value in alpha])
-    axes.set_yticks([value**2 for value in beta], [f"{value:g}" for value in beta])
+    round_values = MaxNLocator(6, steps=[1, 2, 2.5, 5, 10]).tick_values
+    alpha, beta = round_values(*np.divide(axes.get_xlim(), 2)), round_values(low, high)
+    axes.xaxis.set(
+        major_locator=FixedLocator([2 * value for value in alpha]), major_formatter=lambda x, _: f"{x / 2:g}"
+    )
+    axes.yaxis.set(major_locator=FixedLocator([value**2 for value in beta]), major_formatter=lambda y, _: f"{y**0.5:g}")
     axes.set(xlabel=r"$\alpha$ (1/s)", ylabel=r"$\beta$ (1/s)")
-
-
-def _round_values(low: float, high: float) -> list[float]:
-    values = MaxNLocator(6, steps=[1, 2, 2.5, 5, 10]).tick_values(low, high)
-    return [float(value) for value in values if low <= value <= high]
-
-
-def _signed_root(values: FloatArray) -> FloatArray:
-    return np.sign(values) * np.sqrt(np.abs(values))
-
-
-def _signed_square(values: FloatArray) -> FloatArray:
-    return np.sign(values) * np.square(values)
 
 
 def title_lines(*parts: str) -> str:

@@ -162,7 +162,7 @@ def test_what_an_encoding_or_a_file_system_lacks_is_changed_and_json_is_not(tmp_
     assert text.stdout.decode("latin-1").startswith("?? = 0.5, ?? = 0.1: safe at rest.")
     as_json = finished(*poles, "--format", "json", cwd=tmp_path, environment={"PYTHONIOENCODING": "latin-1"})
     assert b'"\\u00e9\\u221e"' in as_json.stdout
-    region = ("region", "--method", "own.toml", "--grid", "9", "-o", "out")
+    region = ("region", "--method", "own.toml", "--quality", "fast", "-o", "out")
     drawn = finished(*region, cwd=tmp_path, environment={**OLD_LOCALE, "HOME": None, "MPLCONFIGDIR": "/dev/null"})
     assert (text.returncode, as_json.returncode, drawn.returncode) == (0, 0, 0)
     assert only_line(drawn.stderr).startswith("wrote out/region_")

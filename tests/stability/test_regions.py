@@ -69,7 +69,6 @@ TWO_EVALUATIONS = {
 def test_extents_in_closed_form(method: Method, level: float, extent: tuple[float, ...]) -> None:
     shape = region(method, level)
     assert np.ravel(np.array(shape.extent)) == pytest.approx(np.array(extent), rel=1e-8, abs=1e-9)
-    assert shape.approached == ((False, False), (False, method.name == "two evaluations"))
     assert shape.bounded is (inf not in extent)
     assert (shape.area is None) is not shape.bounded
     for (low, high), end in zip(window(shape), extent[1::2], strict=True):
@@ -81,7 +80,6 @@ def test_an_end_of_what_is_bounded_is_reached_however_far_out() -> None:
     """The last line of constant alpha_hat meets gauss4's region at beta_hat = 13,000."""
     found = region(lookup("gauss4"), 0.9)
     assert found.bounded
-    assert not np.array(found.approached).any()
 
 
 def assert_what_is_enclosed(shape: Region, off: float, right: float, top: float) -> None:
