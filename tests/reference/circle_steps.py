@@ -26,7 +26,7 @@ def last_gain(method: Method, point: tuple[Fraction, Fraction], theta: Fraction,
     the scheme remembers of accelerations is at first that of the places on the circle.
     """
     with mpmath.workdps(50):
-        alpha_hat, beta_hat, turned = map(number, (*point, theta))
+        alpha_hat, beta_hat, turned = map(mpmath.mpmathify, (*point, theta))
         known: dict[Quantity, Any] = defaultdict(int)
 
         def acceleration(q: Any, v: Any) -> Any:
@@ -35,7 +35,7 @@ def last_gain(method: Method, point: tuple[Fraction, Fraction], theta: Fraction,
             return -(abs(v) ** 2 + alpha_hat * along + beta_hat * (square - 1) / 2) / square * q
 
         def value(combination: Combination, start: int) -> Any:
-            return sum(number(c) * known[Quantity(q.name, start + q.step)] for c, q in combination)
+            return sum(mpmath.mpmathify(c) * known[Quantity(q.name, start + q.step)] for c, q in combination)
 
         def sweep(start: int) -> Any:
             """Take each equation once, and return the largest change."""
@@ -59,8 +59,3 @@ def last_gain(method: Method, point: tuple[Fraction, Fraction], theta: Fraction,
             assert any(sweep(start) <= SETTLED for _ in range(SWEEPS))
         before, after = (abs(known[Quantity("v", step)]) for step in (last + count - 1, last + count))
         return before, after / before - 1
-
-
-def number(of: Fraction) -> Any:
-    """Return a fraction in fifty digits."""
-    return mpmath.mpf(of.numerator) / of.denominator

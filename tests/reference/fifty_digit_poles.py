@@ -15,12 +15,12 @@ def poles_with_errors(method: Method, alpha_hat: float, beta_hat: float) -> list
     Rounding the coefficients of pi, mu and the evaluation by a few eps moves a root of multiplicity k by the k-th
     root of (rounding / |k-th derivative|).
     """
-    multiple = mpmath.mpf(method.step_multiple.numerator) / method.step_multiple.denominator
+    multiple = mpmath.mpmathify(method.step_multiple)
     p, q = multiple * mpmath.mpf(alpha_hat), multiple**2 * mpmath.mpf(beta_hat)
     root = mpmath.sqrt(p * p / 4 - q)
     pairs = []
     for mu in (-p / 2 + root, -p / 2 - root):
-        table = [[mpmath.mpf(x.numerator) / x.denominator for x in row] for row in method.scheme.mu_table]
+        table = [list(map(mpmath.mpmathify, row)) for row in method.scheme.mu_table]
         coefficients = [sum(x * mu**j for j, x in enumerate(row)) for row in table]
         sizes = [sum(abs(x * mu**j) for j, x in enumerate(row)) for row in table]
         while coefficients[0] == 0:  # exact zeros, which polyroots would only approach
