@@ -18,6 +18,7 @@ from bezstab.goals import SETTLING, UP_TO_LONGEST, Goal, one_of
 from bezstab.mechanism.scenes import Scene
 from bezstab.methods.registry import method as method_named
 from bezstab.methods.schemes import Method
+from bezstab.questions.chains import SweptConstraints
 from bezstab.questions.methods import methods_for, usual_goal
 from bezstab.questions.trial_runs import Trials, trial_runs
 from bezstab.rationals import rational, typed_number
@@ -252,17 +253,14 @@ def choose_answer(
 ) -> ChooseAnswer:
     """Return the point that a goal asks for, judged; errors as `choose`."""
     chosen = found = _chosen(method, wish, asked)
-    trials = None
-    if role == "chosen":
-        _check_expressed(asked, chosen)
-        trials = _trials(chosen, wish, asked)
+    trials = _trials(chosen, wish, asked) if role == "chosen" else None
     if trials:
         found = describe_point(method, wish.goal, *trials.point, asked.spread)
         found = replace(found, searched=chosen.searched)
     judged = judge(asked, found, role, margins=margins, cost=cost)
     if trials and not judged.safe:
         trials, judged = None, judge(asked, chosen, role, margins=margins, cost=cost)
-    by_goal = wish.sag is None
+    by_goal, swept = wish.sag is None, _limiting(wish, asked)
     safe_with = _safe_with(judged, wish) if role == "chosen" and by_goal and not judged.safe else None
     return ChooseAnswer(
         **vars(judged),
@@ -271,7 +269,7 @@ def choose_answer(
         trades=_trades(judged, wish) if trades and by_goal else (),
         sentence=judgement_sentence(
             judged,
-            _to_spare(judged),
+            f"at {counted(swept.iterations, 'sweep')} it has {100 * asked.spread:g} % to spare" if swept else None,
             safe_with and f"with {safe_with} it is safe",
             trials_words(trials, chosen, asked.h) if trials and asked.h else None,
         ),
@@ -298,22 +296,10 @@ def _trials(choice: Choice, wish: Wish, asked: Conditions) -> Trials | None:
     )
 
 
-def _check_expressed(asked: Conditions, chosen: Choice) -> None:
-    """Raise InputError if the engine has no values for a point: it says what to ask instead."""
-    if asked.engine is None or asked.h is None:
-        return
-    try:
-        asked.engine.setting(chosen.point, asked.h)
-    except InputError as error:
-        words = f"{asked.engine.name}={asked.engine.words()}"
-        raise InputError(f"{error}: ask `check --engine {words}` about values of yours") from None
-
-
 def _chosen(method: Method, wish: Wish, asked: Conditions) -> Choice:
     """Return the choice of a goal; if an engine sweeps over constraints, at most the strongest that they allow."""
-    found = _chosen_alone(method, wish, asked)
-    swept = asked.swept
-    if swept is None or not (swept.engine.parameters and _curve(wish, asked)):
+    found, swept = _chosen_alone(method, wish, asked), _limiting(wish, asked)
+    if swept is None:
         return found
     strongest = swept.strongest(asked.spread)
     if strongest is None:
@@ -364,6 +350,11 @@ def _curve(wish: Wish, asked: Conditions) -> Curve | None:
     return asked.engine.curve if asked.engine and wish.goal != "critical" and not wish.equal else None
 
 
+def _limiting(wish: Wish, asked: Conditions) -> SweptConstraints | None:
+    """Return the constraints that limit a choice, as an engine sweeps over them; None if it has nothing to set."""
+    return asked.swept if asked.engine and asked.engine.parameters and _curve(wish, asked) else None
+
+
 def _safe_with(judged: Judgement, wish: Wish) -> str | None:
     """Return the option with which a choice is safe that is not: --goal robust, else a shorter step; None if neither.
 
@@ -412,12 +403,3 @@ def _alternative(judged: Judgement, wish: Wish) -> Alternative | None:
         return None
     times = there.total_error / here.total_error, there.velocity_error / here.velocity_error
     return Alternative(wish.goal, wish.settle, abs(other.pole), times)
-
-
-def _to_spare(judged: Judgement) -> str | None:
-    """Return that a choice leaves some to spare in an engine that sweeps; None if not, or there is nothing to set."""
-    spread, swept = judged.conditions.spread, judged.conditions.swept
-    if swept is None or not (swept.engine.curve and swept.engine.parameters):
-        return None
-    spares = swept.spares(judged.point, spread)
-    return f"at {counted(swept.iterations, 'sweep')} it has {100 * spread:g} % to spare" if spares else None

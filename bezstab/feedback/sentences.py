@@ -12,7 +12,6 @@ from bezstab.questions.scene_runs import MOST_GAINED
 from bezstab.questions.trial_runs import Trials
 from bezstab.stability.choices import Choice, steps_to_settle
 from bezstab.stability.turning import MovingPole
-from bezstab.units import from_dimensionless
 from bezstab.words import (
     change_words,
     counted,
@@ -61,11 +60,10 @@ def judgement_sentence(judged: Judgement, *more: str | None) -> str:
 
 def trials_words(trials: Trials, rule: Choice, h: Fraction) -> str:
     """Return that runs found a point, and what it gains over that of a rule, of a motion that was run."""
-    alpha, beta = from_dimensionless(rule.alpha_hat, rule.beta_hat, float(h))
     return (
         f"chosen by {trials.runs:,} runs of {seconds_words(trials.seconds)}, steps up to {seconds_words(trials.h_max)}"
         f": to this motion they come {times_words(trials.times_nearer)} times nearer than with the rule's "
-        f"α = {alpha:.3g} 1/s, β = {beta:.3g} 1/s"
+        f"{point_words(rule.alpha_hat, rule.beta_hat, h)}"
     )
 
 
@@ -231,7 +229,7 @@ def _growth(judged: Judgement) -> str | None:
 def costs_words(judged: Judgement) -> str | None:
     """Return that a feedback costs accuracy, and how much; None where that is little, or not known.
 
-    The better point is given in 1/s where there is a step, and not at all where an engine has words of its own.
+    The better point is not given where an engine has words of its own.
     """
     cost, asked = judged.cost, judged.conditions
     if cost is None or cost.least_at is None or not (cost.times_least and cost.times_least_velocity):
@@ -242,11 +240,7 @@ def costs_words(judged: Judgement) -> str | None:
     assert cost.total_error is not None
     amplitude = asked.motion.amplitude
     in_units = "" if amplitude is None else f" ({cost.total_error * amplitude:.1e} m or rad)"
-    least = "the least"
-    if asked.engine is None and judged.h is None:
-        least = "α̂ = {:.3g}, β̂ = {:.3g}".format(*cost.least_at)
-    elif asked.engine is None and judged.h is not None:
-        least = "α = {:.3g} 1/s, β = {:.3g} 1/s".format(*from_dimensionless(*cost.least_at, judged.h))
+    least = "the least" if asked.engine else point_words(*cost.least_at, judged.h)
     return (
         f"This feedback costs accuracy: {judged.method.name} keeps order {cost.order_left} of {cost.order}. Compared "
         f"with {least}: {errors_words(times)}. They are {cost.total_error:.1e} of the motion's amplitude{in_units} "
