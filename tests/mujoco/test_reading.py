@@ -9,6 +9,7 @@ import pytest
 from bezstab.errors import InputError
 from bezstab.mujoco.linting import lint
 from bezstab.mujoco.reading import loaded_model, mujoco_module
+from tests.mujoco.models import UNSAFE, mjcf
 from tests.mujoco.test_steps import model_of
 
 mujoco: Any = pytest.importorskip("mujoco")
@@ -73,6 +74,18 @@ def test_a_rope_at_full_length_has_a_row_though_it_moves_nothing_there() -> None
     ((row),) = found.feedbacks
     assert row.kinds == "tendon limit, contact"
     assert row.z_abs == pytest.approx(0.930278, abs=1e-6)
+
+
+def test_a_filter_of_contacts_is_the_callers_own_again() -> None:
+    """lint leaves out pairs of geoms by it, to find which contact is to blame."""
+    box = '<body pos="0 0 {}"><freejoint/><geom type="box" size=".1 .1 .1" solref=".0015 1"/></body>'
+    world = '<geom type="plane" size="1 1 .1"/>' + box.format(0.0999) + box.format(0.2997)
+    mujoco.set_mjcb_contactfilter(own := lambda *_: 0)
+    try:
+        lint(model_of(mjcf(world, h=0.002, gravity=-9.81, flags=UNSAFE)))
+        assert mujoco.get_mjcb_contactfilter() is own
+    finally:
+        mujoco.set_mjcb_contactfilter(None)
 
 
 def test_without_mujoco_or_with_an_old_one_the_message_says_what_to_get(monkeypatch: pytest.MonkeyPatch) -> None:
