@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.path import Path
 from matplotlib.patheffects import AbstractPathEffect, withStroke
+from matplotlib.ticker import MultipleLocator
 
 from bezstab.methods.schemes import Method
 from bezstab.regions.answer import Drawing, MapAnswer, MapConditions
@@ -284,13 +285,6 @@ def _refine(axes: Axes) -> None:
         line.set_data(*_fine(np.asarray(line.get_xydata())).T)
 
 
-def _powers(values: FloatArray) -> FloatArray:
-    """Return which powers of ten to draw of the logarithms of shares: every second, or fewer."""
-    low, high = float(np.nanmin(values)), float(np.nanmax(values))
-    every = max(2, math.ceil((high - low) / MOST_CONTOURS))
-    return every * np.arange(math.ceil(low / every), math.floor(high / every) + 1, dtype=np.float64)
-
-
 def _draw_shares(
     axes: Axes, x: FloatArray, y: FloatArray, shares: FloatArray, *, energy: bool
 ) -> list[tuple[QuadContourSet, str]]:
@@ -307,7 +301,9 @@ def _draw_shares(
             powers = np.log10(np.where(sign * shares > 0, sign * shares, np.nan))
         if np.isfinite(powers).sum() < shares.size / 100:  # nothing to see
             continue
-        lines = axes.contour(x, y, powers, levels=_powers(powers), colors="white", linewidths=0.7, linestyles=[dashes])
+        decades = math.ceil(np.nanmax(powers) - np.nanmin(powers))
+        every = MultipleLocator(max(2, math.ceil(decades / MOST_CONTOURS)))  # every second power, or fewer
+        lines = axes.contour(x, y, powers, locator=every, colors="white", linewidths=0.7, linestyles=[dashes])
         lines.set_path_effects(HALO)
         _key(axes, label, color="white", linewidth=0.7, linestyle=dashes, path_effects=HALO)
         drawn.append((lines, form))
