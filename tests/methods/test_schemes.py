@@ -1,15 +1,12 @@
-"""Methods as data: what cannot be built, and two ways to the same P."""
+"""Methods as data: what a step needs, and what cannot be built."""
 
 from fractions import Fraction
 
 import pytest
-import sympy as sp
 
 from bezstab.errors import InputError
-from bezstab.methods.derivation import ALPHA_HAT, BETA_HAT, MU, Z, characteristic_polynomial, closed_loop_polynomial
 from bezstab.methods.registry import lookup
 from bezstab.methods.schemes import LinearMultistep, RungeKutta, evaluations, implicit, steps
-from tests.methods import kinds
 from tests.methods.exact_lists import fractions
 
 COUNTS = {  # steps, evaluations, whether equations are solved
@@ -54,18 +51,3 @@ def test_a_multistep_method_is_consistent_and_zero_stable(rho: str, sigma: str, 
 def test_a_runge_kutta_method_is_square_and_consistent(tableau: list[str], b: str, why: str) -> None:
     with pytest.raises(InputError, match=why):
         RungeKutta(tuple(map(fractions, tableau)), fractions(b))
-
-
-# The same step as equations for x, v and a
-
-
-@pytest.mark.parametrize("name", kinds.sampled(kinds.MU_METHODS, [*kinds.SAMPLE, *kinds.SOLVED, "radau5"]))
-def test_p_of_the_form_is_the_product_of_pi_over_both_mu_of_the_feedback(name: str) -> None:
-    """The resultant of pi and mu^2 + alpha_hat mu + beta_hat, whose roots are mu_1 and mu_2."""
-    pi = characteristic_polynomial(lookup(name))
-    by_pi = sp.Poly(sp.resultant(pi.as_expr(), MU**2 + ALPHA_HAT * MU + BETA_HAT, MU), Z, ALPHA_HAT, BETA_HAT)
-    of_form = sp.Poly(closed_loop_polynomial(lookup(name)).as_expr(), Z, ALPHA_HAT, BETA_HAT)
-    factor, rest = sp.div(by_pi, of_form)
-    assert rest.is_zero
-    assert len(factor.terms()) == 1  # a number, times z for each past value that no parameters bring in
-    assert factor.degree(ALPHA_HAT) == factor.degree(BETA_HAT) == 0

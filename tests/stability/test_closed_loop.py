@@ -21,7 +21,7 @@ from bezstab.stability.closed_loop import (
     spectral_radius,
     verdict,
 )
-from tests.methods.kinds import EXPLICIT, FEW, IMPLICIT, sampled
+from tests.methods.kinds import EXPLICIT, FEW, IMPLICIT, SOLVED, sampled
 from tests.reference.companion_poles import eigenvalues
 from tests.reference.fifty_digit_poles import poles_with_errors
 from tests.reference.made_methods import multistep
@@ -91,7 +91,7 @@ def test_a_map_follows_the_pole_that_is_largest_everywhere(name: str) -> None:
         assert (apart <= allowed).all()
 
 
-@pytest.mark.parametrize("name", [*FEW, "RK4@5", "bdf3", "radau3", "verlet-old"])
+@pytest.mark.parametrize("name", [*FEW, *SOLVED, "RK4@5", "bdf3", "gauss4", "verlet-old"])
 def test_all_poles_are_within_a_level_where_the_largest_is_and_so_it_is_proven(name: str) -> None:
     method = lookup(name)
     alpha_hat, beta_hat, level = np.random.default_rng(5).uniform(0, (3, 3, 1.2), (2000, 3)).T
