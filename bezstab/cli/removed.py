@@ -11,7 +11,6 @@ WENT: Mapping[str, str] = {
     "check --pd": "see `bezstab drive`",
     "choose --pd": "see `bezstab drive`",
     "choose --bandwidth": "see `bezstab drive`",
-    "region --grid": "see `region --quality`",
     "region --pd": "see `bezstab drive --figure png`",
     "poles --pd": "see `bezstab drive`",
     "poles --omega": "see `bezstab check --omega`, which tells the errors on a motion",

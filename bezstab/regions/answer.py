@@ -49,6 +49,9 @@ SLOWER = 10
 DECADES = 100
 """... and this many times weaker, at least, than where the map ends."""
 
+MOST_POINTS = 4000
+"""Along an axis of a map."""
+
 CELLS = 300
 """Along each axis of a map of moving mechanisms: what is narrower is not seen."""
 
@@ -192,6 +195,8 @@ def map_conditions(
     if h is None and (alpha_beta or engine):
         option = "--alpha-beta" if alpha_beta else "--engine"
         raise InputError(f"{option} needs --h: what it shows depends on the step in s")
+    if not 2 <= points <= MOST_POINTS:
+        raise InputError(f"--grid {points}: expected 2 to {MOST_POINTS} points along each axis")
     for level in levels:
         check_level(float(level))
     if alpha_beta and beta_range and beta_range[0] < 0:
