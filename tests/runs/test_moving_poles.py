@@ -51,7 +51,9 @@ def test_most_of_what_decays_is_called_safe_and_nothing_that_grows() -> None:
     for name in ("B4", "AB4", "RK4", "SYM"):
         points = anywhere(name, np.random.default_rng(11), 100)
         rates = exact_rates(four_bar(), lookup(name), h, points[0], points[1], 1.0)
-        verdicts = np.array([moving_pole(lookup(name), turning().kappa, h, *at).verdict for at in points.T])
+        moving = [moving_pole(lookup(name), turning().kappa, h, *at) for at in points.T]
+        verdicts = np.array([each.verdict for each in moving])
+        assert all(rate < each.at_most for rate, each in zip(rates, moving, strict=True) if each.verdict != "diverges")
         assert (rates[verdicts == "converges"] < 1).all()
         assert (rates[verdicts == "diverges"] > 1).all()
         decaying, called = decaying + (rates < 1).sum(), called + (verdicts == "converges").sum()
