@@ -8,8 +8,6 @@ of a TOML file, or what `scene` returns.
 
 from __future__ import annotations  # so that help() shows annotations as they are written
 
-from fractions import Fraction
-
 from numpy.typing import ArrayLike
 
 from bezstab.arguments import Number, exact_or_none, in_keywords, plane_point
@@ -246,7 +244,6 @@ def feedback_cost(
     motion = motion_of(
         exact_or_none(omega, "omega"),
         None,
-        Fraction(1),
         exact_or_none(h, "h"),
         omega_h=exact_or_none(omega_h, "omega_h"),
     )

@@ -200,7 +200,7 @@ JUDGED: Sequence[Column[Judgement]] = (
     Column(
         "energy gained a second",
         "energy_rate",
-        lambda answer: None if answer.energy_rate is None else answer.energy_rate[0],
+        lambda answer: answer.energy_rate and answer.energy_rate.gained,
         "share of its energy that a motion of rate ω gains in a second; in an engine a body that spins about a pin",
         "1/s",
         ".2e",

@@ -11,18 +11,17 @@ from typing import Any
 from bezstab.arguments import Number, exact_number, exact_or_none, real_number
 from bezstab.engines.conversions import Applied, Engine, Point
 from bezstab.errors import InputError
-from bezstab.mechanism.constraint_normals import TurningNormals
-from bezstab.mechanism.equations import Mechanism, compiled_mechanism
+from bezstab.mechanism.equations import Mechanism
 from bezstab.mechanism.scene_files import scene as scene_named
 from bezstab.mechanism.scenes import Scene
 from bezstab.questions.chains import USUAL_CHAIN, SweptConstraints, constraints_of, constraints_of_chain
 from bezstab.questions.motions import (
     ReferenceMotion,
     check_speed,
+    mechanism_of,
     motion_of,
-    scene_at_speed,
     turn_too_far,
-    turning_of,
+    turning_rate,
 )
 from bezstab.stability.choices import USUAL_SPREAD
 from bezstab.units import check_step
@@ -113,14 +112,14 @@ def given_feedback(
 class Conditions(Setup):
     """What answers depend on beside the feedback; made by `conditions`.
 
-    motion: the motion on which errors are told. mechanism: that of the scene; turning: how the normals of its
-    constraints turn. swept: the constraints over which the engine sweeps; None for one alone, and if it is not known
-    how it sweeps. warnings: what is to be known before any answer.
+    motion: the motion on which errors are told. mechanism: that of the scene; kappa: how fast its constraints turn
+    at most (1/s). swept: the constraints over which the engine sweeps; None for one alone, and if it is not known how
+    it sweeps. warnings: what is to be known before any answer.
     """
 
     motion: ReferenceMotion
     mechanism: Mechanism | None
-    turning: TurningNormals | None
+    kappa: float | None
     swept: SweptConstraints | None
     warnings: tuple[str, ...]
 
@@ -128,43 +127,42 @@ class Conditions(Setup):
 def conditions(setup: Setup) -> Conditions:
     """Return the conditions of a question, the scene loaded and its motion followed.
 
-    InputError as `motion_of` and `turning_of`.
+    InputError as `motion_of` and `mechanism_of`.
     """
-    h, scene, speed = setup.h, setup.scene, setup.speed
-    swept = _swept(setup, bodies=1)
-    turning = turning_of(scene, speed, h)
+    h = setup.h
+    mechanism = mechanism_of(setup.scene, setup.speed, h)
+    swept = _swept(setup, mechanism, bodies=1)
+    kappa = turning_rate(mechanism) if mechanism else None
     try:
-        motion = motion_of(setup.omega, scene, speed, h, setup.h_max, omega_h=setup.omega_h)
+        motion = motion_of(setup.omega, mechanism, h, setup.h_max, omega_h=setup.omega_h)
     except InputError:
-        at_rest = swept is not None and turning is not None and turning.kappa == 0
-        if setup.omega is not None or not at_rest:
+        if setup.omega is not None or swept is None or kappa != 0:
             raise
-        motion = motion_of(None, None, Fraction(1), h, setup.h_max)  # the sweeps are what is asked about
+        motion = motion_of(None, None, h, setup.h_max)  # the sweeps are what is asked about
     return Conditions(
         **vars(setup),
         motion=motion,
-        mechanism=None if scene is None else compiled_mechanism(scene_at_speed(scene, speed)),
-        turning=turning,
+        mechanism=mechanism,
+        kappa=kappa,
         swept=swept,
-        warnings=tuple(turn_too_far({speed: turning}, scene, h)),
+        warnings=tuple(turn_too_far(mechanism, h)) if mechanism and h else (),
     )
 
 
 def for_choosing(asked: Conditions) -> Conditions:
     """Return the same with USUAL_CHAIN to sweep over, where the engine sweeps and nobody says over what."""
-    return replace(asked, swept=asked.swept or _swept(asked, USUAL_CHAIN))
+    return replace(asked, swept=asked.swept or _swept(asked, asked.mechanism, USUAL_CHAIN))
 
 
 def at_step(asked: Conditions, h: Fraction) -> Conditions:
     """Return the same with another step (s)."""
-    return replace(asked, h=h, motion=motion_of(asked.omega, asked.scene, asked.speed, h, omega_h=asked.omega_h))
+    return replace(asked, h=h, motion=motion_of(asked.omega, asked.mechanism, h, omega_h=asked.omega_h))
 
 
-def _swept(setup: Setup, bodies: int) -> SweptConstraints | None:
-    """Return the constraints of the scene, else of a chain, where the engine sweeps over more than one; else None."""
+def _swept(setup: Setup, mechanism: Mechanism | None, bodies: int) -> SweptConstraints | None:
+    """Return the constraints of a mechanism, else of a chain, where the engine sweeps over more than one; else None."""
     engine, h = setup.engine, setup.h
     if engine is None or engine.sweeping is None or h is None:
         return None
-    scene = setup.scene
-    constraints = constraints_of_chain(bodies) if scene is None else constraints_of(scene, setup.speed)
+    constraints = constraints_of(mechanism) if mechanism else constraints_of_chain(bodies)
     return SweptConstraints(engine, h, constraints, engine.sweeping.iterations) if len(constraints.joints) > 1 else None

@@ -12,7 +12,7 @@ from typing import Literal
 from bezstab.errors import InputError, NumericalError
 from bezstab.feedback.conditions import AS_GIVEN, Conditions, Given
 from bezstab.questions.chains import ALONE, SweptAnswer
-from bezstab.questions.energy import EnergyRate, energy_rate, impedance, spins
+from bezstab.questions.energy import EnergyRate, energy_rate, impedance
 from bezstab.questions.scene_runs import SceneRun, scene_run
 from bezstab.rationals import rational
 from bezstab.stability.choices import Choice, steps_to_settle
@@ -37,8 +37,7 @@ class Judgement(Choice):
     constraints that are swept over, if there are. settle_seconds: until an error is a thousandth (s).
 
     cost: what accuracy the feedback costs on the motion; cost_reason: why that is not known. energy_rate: what a second
-    adds to the energy of a motion of rate omega, and its part by rotation alone, as shares; None without that rate.
-    spins: whether that is a body on a pin. impedance: MuJoCo's d.
+    adds to the energy of a motion of rate omega; None without that rate. impedance: MuJoCo's d.
 
     moving: bounds on the poles as the scene moves; run: what a run of it showed; None without a scene. swept: what the
     engine's sweeps do to many constraints; swept_over: for which constraints all this holds, in an engine that sweeps.
@@ -63,7 +62,6 @@ class Judgement(Choice):
     cost: FeedbackCost | None
     cost_reason: str | None
     energy_rate: EnergyRate | None
-    spins: bool
     impedance: float | None
     moving: MovingPole | None
     run: SceneRun | None
@@ -132,7 +130,6 @@ def judge(
         cost=found,
         cost_reason=reason,
         energy_rate=rate,
-        spins=spins(engine, method, point),
         impedance=hard,
         moving=moving,
         run=run,
@@ -152,9 +149,9 @@ def _as_it_moves(
 
     None of these without a scene. Where errors grow anyway, or constraints are swept over, it is not run.
     """
-    if asked.mechanism is None or asked.turning is None or asked.h is None:
+    if asked.mechanism is None or asked.kappa is None or asked.h is None:
         return None, None, True
-    moving = moving_pole(choice.method, asked.turning.kappa, float(asked.h), choice.alpha_hat, choice.beta_hat)
+    moving = moving_pole(choice.method, asked.kappa, float(asked.h), choice.alpha_hat, choice.beta_hat)
     if swept or choice.verdict != "converges" or moving.verdict == "diverges":
         return moving, None, moving.verdict == "converges"
     duration = None if asked.duration is None else float(asked.duration)

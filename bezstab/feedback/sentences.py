@@ -130,18 +130,18 @@ def _on_a_motion(judged: Judgement) -> str | None:
     Of a choice that does not weigh it, it is said anyway.
     """
     unweighed = judged.role == "chosen" and judged.goal != "accurate"
-    if judged.energy_rate is None or not (abs(judged.energy_rate[0]) >= MOVED or unweighed):
+    if judged.energy_rate is None or not (abs(judged.energy_rate.gained) >= MOVED or unweighed):
         return None
-    rate, by_rotation = judged.energy_rate
+    rate, by_rotation, spins = judged.energy_rate
     omega = float(judged.conditions.omega or 0)
-    motion = f"a body that spins about a pin at {omega:.3g} rad/s" if judged.spins else f"a motion of {omega:.3g} rad/s"
-    if judged.spins and judged.impedance:
+    motion = f"a body that spins about a pin at {omega:.3g} rad/s" if spins else f"a motion of {omega:.3g} rad/s"
+    if spins and judged.impedance:
         motion += f", with an impedance d of {judged.impedance:g},"
     if abs(rate) < KEPT:
         return f"{motion} keeps its energy"
     said = f"{motion} {'gains' if rate > 0 else 'loses'} {100 * abs(rate):.2g} % of its energy a second"
     # stages' torque grows as the cube of the rate
-    if judged.h and not judged.spins and by_rotation > MOVED and stage_torque(judged.method).power == 2:
+    if judged.h and not spins and by_rotation > MOVED and stage_torque(judged.method).power == 2:
         steps = steps_to_breakdown(judged.method, judged.alpha_hat, judged.beta_hat, omega * judged.h)
         said += f" and breaks down after about {seconds_words(steps * judged.h)}" if steps < math.inf else ""
         said += ": take heun or RK4, or gentler feedback"

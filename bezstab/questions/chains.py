@@ -10,10 +10,8 @@ import numpy as np
 from bezstab.engines.conversions import Engine, Point
 from bezstab.engines.sweeping import Motors, SweptStep
 from bezstab.errors import InputError
-from bezstab.mechanism.equations import compiled_mechanism
-from bezstab.mechanism.scenes import Scene
+from bezstab.mechanism.equations import Mechanism
 from bezstab.mechanism.start import constraint_jacobian, initial_state
-from bezstab.questions.motions import name_of, scene_at_speed
 from bezstab.rationals import rational
 from bezstab.stability.arrays import FloatArray
 from bezstab.stability.searches import first_where
@@ -58,15 +56,14 @@ def constraints_of_chain(bodies: int) -> Constraints:
     return Constraints(f"a chain of {bodies}{' equal bodies' * (bodies > 1)}", chain(bodies), tuple(range(bodies)))
 
 
-def constraints_of(scene: str | Scene, speed: Fraction) -> Constraints:
-    """Return the constraints of a scene at its start, in the order of the file, as if it were at rest there.
+def constraints_of(mechanism: Mechanism) -> Constraints:
+    """Return the constraints of a mechanism at its start, in the order of the file, as if it were at rest there.
 
-    A driver is one of them. InputError as `load_scene` and `initial_state`.
+    A driver is one of them. InputError as `initial_state`.
     """
-    mechanism = compiled_mechanism(scene_at_speed(scene, speed))
     q, _ = initial_state(mechanism)
     masses = inverse_effective_masses(np.diag(mechanism.mass), constraint_jacobian(mechanism, 0.0, q))
-    words = f"{name_of(scene)} at its start, with its {len(mechanism.joints)} constraints"
+    words = f"{mechanism.scene.name}, at its start, with its {len(mechanism.joints)} constraints"
     return Constraints(words, masses, mechanism.joints)
 
 

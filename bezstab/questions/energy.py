@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from fractions import Fraction
+from typing import NamedTuple
 
 from bezstab.engines.conversions import Engine, Point
 from bezstab.engines.engine_list import engine_and_values
@@ -15,24 +16,23 @@ from bezstab.questions.motions import motion_of
 from bezstab.rationals import rational
 from bezstab.stability.closed_loop import converges
 
-EnergyRate = tuple[float, float]
-"""What a second adds to the energy of a motion, and its part by rotation alone: shares of it."""
 
+class EnergyRate(NamedTuple):
+    """What a second adds to the energy of a motion, and its part by rotation alone: shares of it.
 
-def spins(engine: Engine | None, method: Method, point: Point) -> bool:
-    """Return whether energy is told of a body on a pin: in an engine of a known class, by its own steps."""
-    if engine is None or engine.energy_class is None or method.name != engine.method:
-        return False
-    damped = method.name == "implicit-euler" and point[0] > 0  # XPBD's damping has no map
-    return not (engine.energy_class == "projected" and damped)
+    spins: whether that is a body on a pin.
+    """
+
+    gained: float
+    by_rotation: float
+    spins: bool
 
 
 def impedance(engine: Engine | None, values: Sequence[Fraction], *, at_no_error: bool) -> float | None:
     """Return the share that soft constraints get of what they want, where the engine has such: MuJoCo's d."""
     if engine is None or engine.impedances is None:
         return None
-    of_small, of_large = engine.impedances(*values)
-    return float(of_small if at_no_error else of_large)
+    return float(engine.impedances(*values)[0 if at_no_error else 1])
 
 
 def energy_rate(
@@ -44,17 +44,19 @@ def energy_rate(
     pin, where constraints get the share `hard` of what they want. None where it is not known.
     """
     alpha_hat, beta_hat = map(float, point)
-    if engine and engine.energy_class and spins(engine, method, point):
+    if engine and engine.energy_class and method.name == engine.method:
         if method.name == "implicit-euler":  # what its step takes back, as shares of the step before
+            if engine.energy_class == "projected" and alpha_hat > 0:  # XPBD's damping has no map
+                return None
             whole = 1 + alpha_hat + beta_hat
             alpha_hat, beta_hat = (alpha_hat + beta_hat) / whole, beta_hat / whole
         rate = 2 * spin_change(engine.energy_class, alpha_hat, beta_hat, omega * h, hard) / h
-        return rate, rate
+        return EnergyRate(rate, rate, spins=True)
     if engine and engine.level != "acceleration":
         return None
     found = motion_energy(method, alpha_hat, beta_hat, omega * h)
-    growth, rotation = float(found.growth()), float(found.rotation)
-    return (omega * growth, omega * rotation) if math.isfinite(growth) else None
+    growth, rotation = omega * float(found.growth()), omega * float(found.rotation)
+    return EnergyRate(growth, rotation, spins=False) if math.isfinite(growth) else None
 
 
 def engine_energy_rate(engine: Engine, point: Point | None, h: Fraction, omega: Fraction) -> float | None:
@@ -70,10 +72,10 @@ def engine_energy_rate(engine: Engine, point: Point | None, h: Fraction, omega: 
         made = engine.applied(values, h).point
     except InputError:
         return None
-    motion_of(omega, None, Fraction(1), h)  # is checked
+    motion_of(omega, None, h)  # is checked
     method = lookup(engine.method)
     if not converges(method, *made):
         return None
     hard = impedance(engine, values, at_no_error=True) or 1.0
     rate = energy_rate(method, made, float(h), float(omega), engine, hard)
-    return None if rate is None else rate[0]
+    return rate and rate.gained

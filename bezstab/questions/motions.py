@@ -1,14 +1,13 @@
 """The motion that a question is about: how fast it is, and how the constraints of a scene turn with it."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 
 from bezstab.errors import InputError
-from bezstab.mechanism.constraint_normals import ConstraintMotion, TurningNormals, constraint_motion, turning_normals
-from bezstab.mechanism.equations import compiled_mechanism
-from bezstab.mechanism.scene_files import load_scene
-from bezstab.mechanism.scenes import Scene, at_speed
+from bezstab.mechanism.constraint_normals import constraint_motion, turning_normals
+from bezstab.mechanism.equations import Mechanism, compiled_mechanism
+from bezstab.mechanism.scene_files import scene as scene_named
+from bezstab.mechanism.scenes import Scene
 from bezstab.rationals import exact, typed_number
 from bezstab.stability.forced_errors import OMEGA_H, check_omega_h
 from bezstab.stability.turning import LAW_HOLDS
@@ -31,52 +30,49 @@ class ReferenceMotion:
 
 def motion_of(
     omega: Fraction | None,
-    scene: str | Scene | None,
-    speed: Fraction,
+    mechanism: Mechanism | None,
     h: Fraction | None,
     h_max: Fraction | None = None,
     duration: Fraction | None = None,
     omega_h: Fraction | None = None,
 ) -> ReferenceMotion:
-    """Return the motion of rate omega (1/s) or omega_h (rad a step of h_max), else a scene's, else one that is usual.
+    """Return the motion of rate omega (1/s) or omega_h (rad a step of h_max), else a mechanism's, else a usual one.
 
-    h and h_max in s; without h_max every step is h. A scene's motion that does not repeat itself is followed for a
-    `duration` (s), by default the scene's own. InputError for a speed without a scene, omega or a scene without h, both
-    omega and omega_h, a scene at rest, and unless 1e-6 <= omega h < 1.
+    h and h_max in s; without h_max every step is h. A motion that does not repeat itself is followed for a `duration`
+    (s), by default the scene's own. InputError for omega or a mechanism without h, both omega and omega_h, a mechanism
+    at rest, and unless 1e-6 <= omega h < 1.
     """
-    check_speed(scene, speed)
     if omega is not None and omega_h is not None:
         raise InputError("the motion is given as omega= in 1/s with h= in s, or as omega_h= in rad a step, not as both")
+    assumed = omega is None and omega_h is None and mechanism is None
     longer, amplitude = h_max / h if h and h_max else Fraction(1), None
-    assumed = omega is None and omega_h is None and scene is None
-    whose = "one"
-    if omega_h is not None:
-        turned, given = omega_h / longer, "--omega-h"
-    elif assumed:
-        turned, given = OMEGA_H / longer, "--h and --h-max"
+    if assumed or omega_h is not None:
+        of_longest = OMEGA_H if omega_h is None else omega_h
+        turned, given, words = of_longest / longer, "--omega-h", f"one with ωh = {float(of_longest):.3g}"
+        if assumed:
+            given, says = "--h and --h-max", "--omega says" if h else "--omega and --h say"
+            words += f"{'' if longer == 1 else ' at --h-max'} ({says} how fast yours is)"
     elif h is None:
-        raise InputError(f"{'--scene' if omega is None else '--omega'} needs --h: the step in s, to make ωh of it")
+        raise InputError("--omega needs --h: the step in s, to make ωh of it")
     else:
-        if omega is None:
-            assert scene
-            of_scene = _motion_of_scene(scene, speed, duration)
-            omega, amplitude, whose = exact(of_scene.omega), of_scene.amplitude, f"that of {name_of(scene)}"
-            given = f"--scene {name_of(scene)} moves with ω = {float(omega):.3g} 1/s"
+        if omega is not None:
+            whose, given = "one", f"--omega {typed_number(omega)}"
         else:
-            given = f"--omega {typed_number(omega)}"
+            assert mechanism
+            name = mechanism.scene.name
+            try:
+                of_scene = constraint_motion(mechanism, float(duration or mechanism.scene.duration))
+            except InputError as error:
+                raise InputError(f"--scene: {error}; --omega gives one") from None
+            omega, amplitude = exact(of_scene.omega), of_scene.amplitude
+            whose, given = f"that of {name}", f"--scene: {name} moves with ω = {of_scene.omega:.3g} 1/s"
         turned = omega * h
     try:
         check_omega_h(turned)
         check_omega_h(turned * longer)
     except InputError as error:
         raise InputError(f"{given}: {error}") from None
-    if assumed:
-        at_longest = "" if longer == 1 else " at --h-max"
-        says = "--omega says" if h else "--omega and --h say"
-        words = f"one with ωh = {float(OMEGA_H):g}{at_longest} ({says} how fast yours is)"
-    elif omega is None:
-        words = f"one with ωh = {float(turned * longer):.3g}"
-    else:
+    if omega is not None:
         words = f"{whose} with ω = {float(omega):.3g} 1/s, ωh = {float(turned):.3g}"
     return ReferenceMotion(turned, turned * longer, words, amplitude, assumed)
 
@@ -87,50 +83,30 @@ def check_speed(scene: str | Scene | None, speed: Fraction) -> None:
         raise InputError("--speed needs --scene: it says how fast that mechanism moves")
 
 
-def name_of(scene: str | Scene) -> str:
-    """Return what a scene is called where it was given: its name, or the path of its file as typed."""
-    return scene if isinstance(scene, str) else scene.name
+def mechanism_of(scene: str | Scene | None, speed: Fraction, h: Fraction | None) -> Mechanism | None:
+    """Return the mechanism of a scene that moves so many times as fast; None without a scene.
 
-
-def scene_at_speed(scene: str | Scene, speed: Fraction) -> Scene:
-    """Return a scene, loaded where its name or file is given, so many times as fast; errors as `load_scene`."""
-    return at_speed(load_scene(scene) if isinstance(scene, str) else scene, float(speed))
-
-
-def turning_of(scene: str | Scene | None, speed: Fraction, h: Fraction | None) -> TurningNormals | None:
-    """Return how the normals of a scene's constraints turn; None without a scene.
-
-    InputError for a scene without a step (h in s), or a speed without a scene; else errors as `load_scene` and
-    `regular_motion`.
+    InputError for a scene without a step (h in s), or a speed without a scene; else errors as `scene`.
     """
     check_speed(scene, speed)
     if scene is None:
         return None
     if h is None:
         raise InputError("--scene needs --h: how far the mechanism moves in a step depends on it")
-    moving = scene_at_speed(scene, speed)
-    return turning_normals(compiled_mechanism(moving), moving.duration)
+    return compiled_mechanism(scene_named(scene, speed))
 
 
-def turn_too_far(
-    turnings: Mapping[Fraction, TurningNormals | None], scene: str | Scene | None, h: Fraction | None
-) -> list[str]:
-    """Return a warning for each speed at which a scene turns too far in a step (h in s) for first order to say much."""
-    if scene is None or h is None:
+def turning_rate(mechanism: Mechanism) -> float:
+    """Return how fast its constraints turn at most as it moves (1/s); errors as `turning_normals`."""
+    return turning_normals(mechanism, mechanism.scene.duration).kappa
+
+
+def turn_too_far(mechanism: Mechanism, h: Fraction) -> list[str]:
+    """Return a warning if a mechanism turns too far in a step (h in s) for first order to say much."""
+    kappa_h = turning_rate(mechanism) * float(h)
+    if kappa_h <= LAW_HOLDS:
         return []
-    turned = {speed: turning.kappa * float(h) for speed, turning in turnings.items() if turning}
     return [
-        f"constraints of {scene_at_speed(scene, speed).name} turn by κh = {kappa_h:.2g} a step: beyond {LAW_HOLDS:g} "
-        "nothing is settled"
-        for speed, kappa_h in turned.items()
-        if kappa_h > LAW_HOLDS
+        f"constraints of {mechanism.scene.name} turn by κh = {kappa_h:.2g} a step: beyond {LAW_HOLDS:g} nothing is "
+        "settled"
     ]
-
-
-def _motion_of_scene(scene: str | Scene, speed: Fraction, duration: Fraction | None) -> ConstraintMotion:
-    """Return rate and amplitude of a scene's motion; InputError for one at rest, else as `load_scene` and `motion`."""
-    moving = scene_at_speed(scene, speed)
-    try:
-        return constraint_motion(compiled_mechanism(moving), float(duration or moving.duration))
-    except InputError as error:
-        raise InputError(f"--scene {name_of(scene)}: {error}; --omega gives one") from None

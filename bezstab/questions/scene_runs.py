@@ -25,9 +25,6 @@ USUAL_TIME = 10.0
 MOST_STEPS = 10**4
 """Of a run that nobody gave a time: a second or two in Python."""
 
-FIRST_LOOK = 0.1
-"""Of a run: whether it passes a singular configuration so soon; the rest would decide nothing either."""
-
 FURTHER = 4
 """Times as long a run is looked for its end that a torque of stages drives."""
 
@@ -69,9 +66,8 @@ class SceneRun:
 
 def run_time(mechanism: Mechanism, method: Method, h: float) -> float:
     """Return how long (s) a scene is run if nobody says: as its file says, else at most MOST_STEPS of the method."""
-    whole_step = h * float(method.step_multiple)
     given = mechanism.scene.duration
-    return given if given != DURATION else max(min(USUAL_TIME, MOST_STEPS * whole_step), whole_step)
+    return given if given != DURATION else min(USUAL_TIME, MOST_STEPS * h * float(method.step_multiple))
 
 
 def scene_run(mechanism: Mechanism, method: Method, h: Fraction, point: Point, time: float | None = None) -> SceneRun:
@@ -81,12 +77,8 @@ def scene_run(mechanism: Mechanism, method: Method, h: Fraction, point: Point, t
     """
     run_for = partial(simulated, mechanism, method, h=float(h), alpha_hat=float(point[0]), beta_hat=float(point[1]))
     duration = run_time(mechanism, method, float(h)) if time is None else time
-    whole_step = float(h * method.step_multiple)
-    check_duration(duration, whole_step)
-    for part in (max(FIRST_LOOK * duration, whole_step), duration):
-        run = run_for(duration=part)
-        if run.failure or len(run.singular_times):
-            break
+    check_duration(duration, float(h * method.step_multiple))
+    run = run_for(duration=duration)
     with np.errstate(all="ignore"):  # of a run that broke down
         kinetic = run.v**2 @ mechanism.mass / 2
         own = float(np.nanmax(kinetic - np.maximum(run.energy_drift, 0.0)))  # without what it gained

@@ -20,7 +20,7 @@ from bezstab.methods.registry import method as method_named
 from bezstab.methods.schemes import Method
 from bezstab.motion.modulated_circle import motion_energy
 from bezstab.questions.methods import usual_goal
-from bezstab.questions.motions import ReferenceMotion, check_speed, motion_of, turn_too_far, turning_of
+from bezstab.questions.motions import ReferenceMotion, mechanism_of, motion_of, turn_too_far, turning_rate
 from bezstab.stability.accurate_points import default_rate
 from bezstab.stability.arrays import ComplexArray, Extent, FloatArray
 from bezstab.stability.best_points import BestPoint, FarLimit, best_point_or_reason, falls_towards
@@ -175,7 +175,7 @@ def map_conditions(
 ) -> MapConditions:
     """Return what is asked of all methods; with `compare` that boundaries alone are drawn, at one level.
 
-    InputError for what does not go together, for numbers out of range, and as `motion_of` and `turning_of`.
+    InputError for what does not go together, for numbers out of range, and as `motion_of` and `mechanism_of`.
     """
     asked = {"--scene": scene, "--engine": engine, "--accuracy": accuracy or None, "--motion": energy or None}
     given = [name for name, value in asked.items() if value is not None]
@@ -206,9 +206,8 @@ def map_conditions(
         for option, ends in (("--alpha-range", alpha_range), ("--beta-range", beta_range))
     ]
     speeds = speeds or (Fraction(1),)
-    for speed in speeds:
-        check_speed(scene, speed)
-    turnings = {} if of_motion else {speed: turning_of(scene, speed, h) for speed in speeds}
+    mechanisms = {float(speed): mechanism_of(scene, speed, h) for speed in speeds}
+    turning = {} if of_motion else {speed: moving for speed, moving in mechanisms.items() if moving}
     marks = engine.marked(h) if engine and h else {}
     return MapConditions(
         levels=tuple(map(float, levels)),
@@ -218,12 +217,12 @@ def map_conditions(
         h=None if h is None else float(h),
         marks={label: (float(alpha_hat), float(beta_hat)) for label, (alpha_hat, beta_hat) in marks.items()},
         scene_name=load_scene(scene).name if scene else "",
-        kappas={float(speed): turning.kappa for speed, turning in turnings.items() if turning},
-        motion=motion_of(omega, scene, speeds[0], h) if of_motion else None,
+        kappas={speed: turning_rate(moving) for speed, moving in turning.items()},
+        motion=motion_of(omega, mechanisms[float(speeds[0])], h) if of_motion else None,
         energy=energy,
         alpha_beta=alpha_beta,
         engine=engine,
-        warnings=tuple(turn_too_far(turnings, scene, h)),
+        warnings=tuple(warning for moving in turning.values() if h for warning in turn_too_far(moving, h)),
     )
 
 

@@ -91,7 +91,7 @@ def simulate(
     Example: bezstab simulate --method AB4 --alpha 0.5 --beta 0.101 --time 2
     """
     from bezstab.mechanism.equations import compiled_mechanism
-    from bezstab.questions.motions import scene_at_speed
+    from bezstab.mechanism.scene_files import scene as scene_named
     from bezstab.runs.columns import RUN
     from bezstab.runs.figures import history_figure
     from bezstab.runs.sentences import passages_words
@@ -103,7 +103,7 @@ def simulate(
     point = typed.at(h) or (USUAL_POINT if held == "baumgarte" else None)
     files = Files(output, figure, table)
     files.check_output()
-    mechanism = worked_out(lambda: compiled_mechanism(scene_at_speed(scene, speed)), scene)
+    mechanism = worked_out(lambda: compiled_mechanism(scene_named(scene, speed)), scene)
     run = worked_out(
         lambda: run_of(
             mechanism,

@@ -16,11 +16,12 @@ from bezstab.arguments import Number, exact_number, exact_or_none, in_keywords, 
 from bezstab.engines.conversions import Point
 from bezstab.errors import InputError
 from bezstab.mechanism.compiled_stepping import runs_compiled
+from bezstab.mechanism.equations import compiled_mechanism
 from bezstab.mechanism.scene_files import scene as scene_named
 from bezstab.mechanism.scenes import Scene
 from bezstab.methods.registry import method as method_named
 from bezstab.methods.schemes import Method
-from bezstab.questions.motions import ReferenceMotion, motion_of, scene_at_speed
+from bezstab.questions.motions import ReferenceMotion, mechanism_of, motion_of
 from bezstab.rationals import exact
 from bezstab.runs.accuracy_costs import (
     NO_FEEDBACK,
@@ -101,11 +102,11 @@ def trade(
     treatments = _treatments(numbers, stabilise or "baumgarte", iterations, against)
     sizes = tuple(sorted({float(step) for step in steps or STEPS}))
     _check_duration(duration, sizes, methods)
-    moving = scene_at_speed(scene, speed)
+    moving = scene_named(scene, speed)
     rate = None
     if any(point is None for point, _ in treatments):
         shortest, longest = exact(sizes[0]), exact(sizes[-1])
-        rate = motion_of(omega, scene, speed, shortest, longest, duration=duration).omega_h / shortest
+        rate = motion_of(omega, compiled_mechanism(moving), shortest, longest, duration).omega_h / shortest
     reference = reference_run(moving, sizes[0], float(duration))
     compiled = _all_compiled(methods, treatments, repeats * sum(float(duration) / h for h in sizes))
     sweeps = [
@@ -241,7 +242,8 @@ def front_motion(
     if steps and scene is None and omega is None:
         needed = "they say how far the motion goes in a step"
         raise InputError(f"--predicted with --h needs --omega or --scene: {needed}")
-    return motion_of(omega, scene, speed, next(iter(steps), None))
+    h = next(iter(steps), None)
+    return motion_of(omega, mechanism_of(scene, speed, h), h)
 
 
 def fronts(

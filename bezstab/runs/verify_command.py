@@ -73,7 +73,7 @@ def verify(
     Example: bezstab verify --method AB4 --points 20
     """
     from bezstab.mechanism.equations import compiled_mechanism
-    from bezstab.questions.motions import scene_at_speed
+    from bezstab.mechanism.scene_files import scene as scene_named
     from bezstab.runs.columns import MEASURED, SUMMARY, VERDICT_MAP
     from bezstab.runs.measured_poles import measurement_summary
     from bezstab.runs.sentences import exact_rate_words
@@ -82,7 +82,7 @@ def verify(
     typed, h = TypedPoint(alpha, beta, physical), given_h or USUAL_STEP
     point = typed.at(h)
     check_points(point, points, across)
-    moving = scene_at_speed(scene, speed)
+    moving = scene_named(scene, speed)
     mechanism = worked_out(lambda: compiled_mechanism(moving), scene)
     if across:
         size, work, files = across, Work(workers, scheduler, resume), Files(output, figure, table)

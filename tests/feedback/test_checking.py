@@ -167,7 +167,8 @@ def test_a_row_says_what_the_engines_own_step_does_to_a_motion(name: str, point:
 def test_an_engine_with_another_integrator_is_judged_by_that_integrator() -> None:
     """The classes of engines are those of their own steps."""
     answer = check("RK2", engine="mujoco=-10000,-200", h="1/100", omega=10)
-    assert not answer.spins
+    assert answer.energy_rate
+    assert not answer.energy_rate.spins
     assert "a motion of 10 rad/s gains" in answer.sentence.lower()
 
 

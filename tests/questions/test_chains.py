@@ -5,7 +5,8 @@ import pytest
 
 from bezstab.engines.engine_list import ENGINES
 from bezstab.feedback.checking import check
-from bezstab.mechanism.scene_files import parse_scene
+from bezstab.mechanism.equations import compiled_mechanism
+from bezstab.mechanism.scene_files import load_scene, parse_scene
 from bezstab.mechanism.scenes import Scene
 from bezstab.questions.chains import SweptConstraints, constraints_of
 from bezstab.stability.sweeps import chain, swept_growth
@@ -36,19 +37,19 @@ def links(bodies: int, ratio: float) -> Scene:
 
 
 def test_a_chain_written_as_a_scene_is_the_chain() -> None:
-    assert constraints_of(links(5, 7.0), Fraction(1)).inverse_masses == pytest.approx(chain(5, 7.0), abs=1e-12)
+    assert constraints_of(compiled_mechanism(links(5, 7.0))).inverse_masses == pytest.approx(chain(5, 7.0), abs=1e-12)
     by_scene = check(engine="chipmunk", h="1/60", scene=links(10, 10.0))
     assert by_scene.swept
     assert by_scene.swept.growth.factor == pytest.approx(1.00494, abs=1e-5)  # pymunk's, run
     assert by_scene.swept.stable_iterations == 12
-    assert (by_scene.safe, by_scene.swept_over) == (False, "chain at its start, with its 10 constraints")
+    assert (by_scene.safe, by_scene.swept_over) == (False, "chain, at its start, with its 10 constraints")
 
 
 @pytest.mark.parametrize("name", ["four_bar", "slider_crank", "andrews"])
 def test_many_sweeps_over_a_scene_solve_it_exactly(name: str) -> None:
     """Then every one of its constraints has the pole of one alone, whatever the free motion, which has no error."""
     half = (Fraction("0.5") ** 240,)  # of the error is left after a step
-    constraints = constraints_of(name, Fraction(1))
+    constraints = constraints_of(compiled_mechanism(load_scene(name)))
     many, few = (SweptConstraints(CHIPMUNK, H, constraints, sweeps).growth(half).factor for sweeps in (10_000, 1))
     assert many == pytest.approx(0.5, abs=1e-9)
     assert few > 0.5 + 1e-3
@@ -56,7 +57,7 @@ def test_many_sweeps_over_a_scene_solve_it_exactly(name: str) -> None:
 
 def test_pins_are_swept_at_once_or_in_rows_as_the_engine_does() -> None:
     """Chipmunk solves the two constraints of a pin together, Bullet one after the other."""
-    pins = constraints_of("four_bar", Fraction(1))
+    pins = constraints_of(compiled_mechanism(load_scene("four_bar")))
     assert pins.joints == (0, 0, 1, 1)
     for name, values, joints in (("chipmunk", DEFAULT, pins.joints), ("bullet", (Fraction("0.2"),), None)):
         engine = ENGINES[name]

@@ -107,12 +107,6 @@ def test_a_singular_passage_decides_nothing() -> None:
     assert not found.decides
 
 
-def test_a_run_that_soon_passes_one_ends_there() -> None:
-    found = run_of("slider_crank_equal", "RK4", "0.01", 10, 10, time=100)
-    assert found.duration == pytest.approx(10)
-    assert not found.decides
-
-
 def test_a_scene_in_which_nothing_moves_is_refused() -> None:
     still = {"position": {"bob.x": 1.0, "bob.y": 0.0}, "velocity": {"bob.y": 0.0}}
     at_rest = parse_scene(pendulum(gravity=[0, 0], initial=still))
