@@ -145,6 +145,11 @@ SWEPT: Sequence[Column[SweptAnswer]] = (
 )
 
 
+def _remark(answer: Judgement) -> str | None:
+    searched = None if answer.searched is None else f"searched for αh, βh to {answer.searched:g}"
+    return "; ".join(filter(None, (answer.margins_reason, searched))) or None
+
+
 JUDGED: Sequence[Column[Judgement]] = (
     Column("", "role", lambda answer: answer.role, "whether the point is given, chosen, or to be taken instead"),
     METHOD,
@@ -183,12 +188,7 @@ JUDGED: Sequence[Column[Judgement]] = (
         up_to(".4g", UNLIMITED),
         brief=True,
     ),
-    Column(
-        "remark",
-        "remark",
-        lambda answer: None if answer.searched is None else f"searched for αh, βh to {answer.searched:g}",
-        "how far was searched; null where the region ends",
-    ),
+    Column("remark", "remark", _remark, "why margins are not known, how far was searched"),
     *of_part(Judgement, lambda answer: answer.margins, MARGINS),
     Column(
         "ωh (rad)",
