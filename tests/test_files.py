@@ -40,9 +40,3 @@ def test_a_toml_file_is_parsed_and_named_when_refused(tmp_path: Path) -> None:
 
     with pytest.raises(InputError, match=f"^thing {path}: b is odd$"):
         read_toml("thing", path, refuse)
-
-
-def test_a_fault_of_the_program_is_not_called_the_users(tmp_path: Path) -> None:
-    (path := tmp_path / "a.toml").touch()
-    with pytest.raises(KeyError):
-        read_toml("thing", path, lambda data: data["b"])

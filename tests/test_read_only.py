@@ -8,22 +8,11 @@ import numpy as np
 import pytest
 
 import bezstab
-from bezstab.runs.accuracy_costs import reference_run
-from bezstab.runs.verdict_maps import VerdictMap, map_rows, simulated_verdicts, verdict_map
-
-
-def small_map() -> VerdictMap:
-    """Return a map of two by two runs."""
-    rows = map_rows(bezstab.scene("slider_crank"), bezstab.method("B1"), h=0.001, count=2)
-    return verdict_map(rows, [simulated_verdicts(each) for each in rows])
-
 
 RESULTS: dict[str, Callable[[], Any]] = {
     "region": lambda: bezstab.region("B4"),
     "region without end": lambda: bezstab.region("trapezoid"),
     "simulate": lambda: bezstab.simulate("slider_crank", "B4", alpha_hat=0.5, beta_hat=0.1, h=0.001, duration=0.01),
-    "a map": small_map,
-    "a reference motion": lambda: reference_run(bezstab.scene("slider_crank"), h=0.001, duration=0.01),
 }
 
 

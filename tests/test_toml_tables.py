@@ -20,12 +20,6 @@ def test_what_is_absent_without_a_default_is_missing() -> None:
     assert refusal(lambda: TomlTable({"mas": 1}).positive_number("mass")) == "mass is missing: found mas"
 
 
-def test_a_message_has_the_place_the_key_the_value_and_what_is_expected() -> None:
-    table = TomlTable({"mass": -1.0}, "body 'bob'")
-    expected = "body 'bob': mass = -1.0: expected a positive number, 1e-100 to 1e100"
-    assert refusal(lambda: table.positive_number("mass")) == expected
-
-
 def test_an_unknown_key_of_a_table_within_is_found_from_outside() -> None:
     top = TomlTable({"body": [{}, {"mas": 1.0}], "initial": {}})
     for body in top.tables("body"):

@@ -69,6 +69,10 @@ def test_what_is_meant_in_seconds_has_a_largest_step_and_what_is_meant_per_step_
         # they would settle in seconds, where a step was typed
         ("check --method RK2 --alpha 1 --beta 1 --h 0.01", "if 1 and 1 are in 1/s, add --physical"),
         ("check --method RK2 --alpha 1 --beta 1", ""),
+        ("check --method RK4 --alpha 5 --beta 5 --h 1", ""),  # unstable in 1/s, too
+        ("check --method RK4 --alpha 1/2 --beta 1/10 --h 1/100", ""),  # in 700 s: a feedback that nobody has
+        ("check --method implicit-euler --alpha 50 --beta 50.5", ""),  # stable as typed
+        ("check --method SYM --alpha 4 --beta 3", ""),  # unstable, but no numbers of 1/s
         ("verify --scene pendulum --method SYM --h 0.01 --alpha 5 --beta 5", "if 5 and 5 are in 1/s, add --physical"),
         ("simulate --time 0.02 --figure none --table none --method SYM --h 0.01 --alpha 5 --beta 5", "if 5 and 5 are"),
         ("tradeoff --method SYM --h 0.002 --time 0.01 --alpha 50 --beta 50 --figure none --table none", "if 50 and 50"),

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.cli.processes import ROOT, catches, files_below, finished, group_members, started, wait_until
+from tests.cli.processes import catches, files_below, finished, group_members, started, wait_until
 
 pytestmark = pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="looks at processes as Linux shows them")
 
@@ -32,16 +32,6 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> bytes:
     path = tmp_path_factory.mktemp("whole")
     assert finished(*SMALL, cwd=path).returncode == 0
     return (path / f"{NAME}.csv").read_bytes()
-
-
-def test_algebra_has_one_thread_where_the_environment_does_not_say(tmp_path: Path) -> None:
-    """Of models of sixty joints two threads only wait for each other, for four times as long."""
-    (tmp_path / "sitecustomize.py").write_text(
-        "import atexit, os\natexit.register(lambda: print(len(os.listdir('/proc/self/task'))))", encoding="utf-8"
-    )
-    environment = {"OPENBLAS_NUM_THREADS": None, "PYTHONPATH": os.pathsep.join([str(tmp_path), str(ROOT)])}
-    done = finished("poles", "--method", "SYM", "--alpha", "1", "--beta", "1", cwd=tmp_path, environment=environment)
-    assert int(done.stdout.split()[-1]) == 1
 
 
 def assert_resumes_to(whole: bytes, path: Path) -> None:

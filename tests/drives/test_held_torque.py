@@ -21,10 +21,6 @@ from bezstab.methods.registry import lookup
 ONE = Fraction(1)
 
 
-def converges(way: str, a: Fraction, b: Fraction, timing: Timing) -> bool:
-    return said(way, a, b, timing) == "converges"
-
-
 def said(way: str, a: Fraction, b: Fraction, timing: Timing) -> str:
     """Return the verdict of a drive of inertia 1 with steps of 1 s: its gains are the point."""
     return verdict(Drive(kp=b, kd=a, inertia=ONE), ONE, lookup(way), timing)
@@ -129,8 +125,8 @@ def test_a_torque_may_be_held_and_late_up_to_the_last_step_that_is_proven() -> N
     assert found.every
     assert found.late
     for further in (0, 1):
-        assert converges("SYM", a, b, Timing(found.every + further, late)) == (not further)
-        assert converges("SYM", a, b, Timing(every, Fraction(found.late + further))) == (not further)
+        assert (said("SYM", a, b, Timing(found.every + further, late)) == "converges") == (not further)
+        assert (said("SYM", a, b, Timing(every, Fraction(found.late + further))) == "converges") == (not further)
     unstable = limits_of("SYM", Fraction("1.8"), Fraction("0.8"), Timing(every=4))
     assert (unstable.every, unstable.late) == (None, None)
 
@@ -178,7 +174,7 @@ def test_a_map_shows_all_that_is_stable_proven_and_by_its_law_if_it_has_one(way:
     stable, told = found.z_abs < 1, np.abs(found.z_abs - 1) > 1e-9  # float64's rounding of a pole
     for row, column in np.argwhere(told)[::17]:
         point = Fraction(found.alpha_hat[column]), Fraction(found.beta_hat[row])
-        assert stable[row, column] == converges(way, *point, timing), point
+        assert stable[row, column] == (said(way, *point, timing) == "converges"), point
     assert (found.law is not None) == ((way, timing) in LAWS)
     if found.law is not None:
         assert (stable == (found.beta_hat[:, np.newaxis] < found.law))[told].all()

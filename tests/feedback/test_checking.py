@@ -9,7 +9,6 @@ import pytest
 
 from bezstab.engines.conversions import Point
 from bezstab.engines.engine_list import ENGINES
-from bezstab.errors import InputError
 from bezstab.feedback import columns
 from bezstab.feedback.checking import CheckAnswer, check, checks
 from bezstab.feedback.choosing import ChooseAnswer
@@ -19,7 +18,6 @@ from bezstab.feedback.largest_steps import StepAnswer, largest_step, step_answer
 from bezstab.methods.registry import lookup
 from bezstab.motion.spinning_bodies import spin_change
 from bezstab.questions.energy import engine_energy_rate
-from bezstab.questions.meant import meant_in_seconds
 from bezstab.questions.methods import methods_for
 from bezstab.questions.scene_runs import SceneRun
 from bezstab.rationals import rational
@@ -107,22 +105,6 @@ def test_the_largest_step_of_alpha_and_beta_ends_where_they_do() -> None:
     assert step_answer(lookup("RK2"), Fraction(50), Fraction(50)).sentence.endswith(": safe up to h = 0.04 s.")
 
 
-@pytest.mark.parametrize(
-    ("asked", "message"),
-    [
-        ({}, "a point is given as alpha_hat= and beta_hat="),
-        ({**AT, "h": 0}, "h = 0 s: expected"),
-        ({**AT, "alpha": 1}, "a point is given as"),
-        ({**AT, "spread": None}, "spread = None: expected one real number"),
-        ({**AT, "speed": None}, "speed = None: expected one real number"),
-        ({**AT, "engine": "mujoco=0.02,1", "h": 1}, "engine takes the place of alpha, beta"),
-    ],
-)
-def test_what_only_python_can_ask_is_refused_as_well(asked: dict[str, Any], message: str) -> None:
-    with pytest.raises(InputError, match=message):
-        check(SYM, **asked)
-
-
 def test_what_a_motion_gains_is_said_where_its_rate_is_given() -> None:
     """RK2 at (2, 1) makes a rotation break down after 1 / (2 g h omega^2), g = 1/4: 2 s; runs did after 2.08 s."""
     pumped = check("RK2", alpha=100, beta=100, h="1/100", omega=10)
@@ -131,15 +113,6 @@ def test_what_a_motion_gains_is_said_where_its_rate_is_given() -> None:
     assert "breaks down after about 2.0" in pumped.sentence
     assert check("RK2", alpha=100, beta=100, h="1/100").energy_rate is None
     assert "gains" not in check("heun", alpha=20, beta=20, h="1/1000", omega=10).sentence
-
-
-@pytest.mark.parametrize(("name", "safe"), [("RK2", False), ("heun", True)])
-def test_a_scene_that_the_feedback_pumps_is_not_safe(name: str, safe: bool) -> None:
-    answer = check(name, alpha=100, beta=100, h="0.01", scene="pendulum")
-    assert answer.verdict == "converges"
-    assert answer.safe is safe
-    assert "in a run of 10 s: |c| at most" in answer.sentence.lower()
-    assert ("breaks down after about 27.8 s" in answer.sentence) is not safe
 
 
 def test_a_run_says_that_it_has_no_soft_impedance() -> None:
@@ -170,24 +143,6 @@ def test_an_engine_with_another_integrator_is_judged_by_that_integrator() -> Non
     assert answer.energy_rate
     assert not answer.energy_rate.spins
     assert "a motion of 10 rad/s gains" in answer.sentence.lower()
-
-
-@pytest.mark.parametrize(
-    ("name", "alpha", "beta", "h", "meant"),
-    [
-        ("SYM", "50", "50.5", None, True),
-        ("SYM", "4", "3", None, False),  # unstable, but no numbers of 1/s
-        ("implicit-euler", "50", "50.5", None, False),  # stable as typed
-        ("RK4", "5", "5", "1/100", True),  # a thousandth in 1.4 s
-        ("RK4", "1/2", "1/10", "1/100", False),  # in 700 s: a feedback that nobody has
-        ("RK4", "5", "5", "1", False),  # unstable in 1/s, too
-    ],
-)
-def test_numbers_are_meant_in_seconds_where_they_are_unstable_and_large_or_would_settle(
-    name: str, alpha: str, beta: str, h: str | None, meant: bool
-) -> None:
-    point = Fraction(alpha), Fraction(beta)
-    assert meant_in_seconds([lookup(name)], point, None if h is None else Fraction(h)) == meant
 
 
 @pytest.mark.filterwarnings("error")

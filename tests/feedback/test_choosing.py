@@ -138,17 +138,3 @@ def test_a_sag_is_kept_to_by_the_line_to_paste_and_by_no_weaker_one(engine: str,
     assert again.sag == pytest.approx(chosen.sag, rel=1e-6)
     twice = choose(engine=engine, h=h, sag=sag, load="19.62")
     assert twice.beta_hat > 1.5 * chosen.beta_hat
-
-
-@pytest.mark.parametrize(
-    ("asked", "message"),
-    [
-        ({"engine": "box2d", "h": "1/60", "sag": "1e-9"}, "no feedback of box2d that is stable sags so little"),
-        ({"engine": "bullet", "h": "1/60", "sag": "0.001"}, "bullet holds a load without an offset"),
-        ({"engine": "mujoco", "h": "1/60", "sag": "0.001", "goal": "robust"}, "sag takes the place of goal"),
-        ({"method": "RK4", "h": "1/60", "sag": "0.001"}, "sag needs engine"),
-    ],
-)
-def test_a_sag_that_means_nothing_is_refused(asked: dict[str, Any], message: str) -> None:
-    with pytest.raises(InputError, match=message):
-        choose(**asked)

@@ -30,7 +30,7 @@ from bezstab.paper.tables import is_printed
 from bezstab.rationals import exact
 from bezstab.stability.arrays import FloatArray
 from bezstab.stability.best_points import best_point
-from bezstab.stability.closed_loop import dominant_pole, poles, spectral_radius, verdict
+from bezstab.stability.closed_loop import dominant_pole, poles, verdict
 from bezstab.stability.feedback_costs import feedback_cost
 from bezstab.stability.regions import region
 from tests.paper.record_times import costs
@@ -97,11 +97,6 @@ def test_sections_3_and_6_and_table_5_who_is_stable_where(
 ) -> None:
     for names, expected in ((converge, "converges"), (diverge, "diverges")):
         assert {verdict(lookup(name), *map(exact, point)) for name in names.split()} <= {expected}
-
-
-def test_abstract_the_integrator_decides() -> None:
-    z_abs = {"B2": 0.637, "B3": 0.628, "B4": 0.629, "AB3": 0.939, "AB4": 1.456, "RK4@5": 0.669, "SIE": 0.745}
-    assert {name: spectral_radius(lookup(name), 1.01, 0.26) for name in z_abs} == pytest.approx(z_abs, abs=5e-4)
 
 
 def test_table_5_euler_semi_implicit_is_an_euler_step_corrected_once() -> None:

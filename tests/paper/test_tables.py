@@ -1,12 +1,9 @@
 from pathlib import Path
 
-import numpy as np
 import pytest
 
-from bezstab.methods.registry import lookup
-from bezstab.paper.experiments import experiment, kicked_runs, largest, pole
+from bezstab.paper.experiments import kicked_runs, pole
 from bezstab.paper.tables import TABLES, behaviour, is_printed
-from bezstab.stability.closed_loop import dominant_pole
 
 FIGURES = Path(__file__).parent.parent.parent / "figures"
 
@@ -21,14 +18,6 @@ def test_a_misprint_is_noticed_and_a_half_digit_is_not() -> None:
     assert not is_printed("0.12", 0.1251)
     assert not is_printed("-0.12", -0.1271)
     assert is_printed("0.9", 0.9004)
-
-
-def test_a_run_begins_with_its_kick_and_its_largest_error_is_that_between_two_times() -> None:
-    run = experiment("B4", 0.6, 0.35, duration=0.05, kick=1e-3)
-    assert run.c[0, 0] == pytest.approx(1e-3)
-    assert pole(run) == dominant_pole(lookup("B4"), 0.6, 0.35)
-    assert largest(run, 0, 0.05) == np.abs(run.c[:, 0]).max()
-    assert largest(run, 0.01, 0.02) == np.abs(run.c[10:21, 0]).max()
 
 
 def test_the_points_of_table_4_do_what_their_poles_say() -> None:

@@ -10,9 +10,8 @@ from click.testing import CliRunner
 from numpy.typing import NDArray
 
 from bezstab.cli.command_group import main
-from bezstab.errors import InputError
 from bezstab.methods.registry import lookup
-from bezstab.probes.answer import MOST_USED, compared_with
+from bezstab.probes.answer import MOST_USED
 from bezstab.stability.arrays import FloatArray
 from bezstab.stability.closed_loop import poles
 from tests.cli.running import rows, run
@@ -68,12 +67,6 @@ def test_there_is_no_answer_where_more_is_allowed_than_methods_differ_by() -> No
     assert (fast.exit_code, at_rest.exit_code) == (3, 0)
     assert "cannot be told from others: " in fast.stderr
     assert "as SYM has it at α̂ = 0.05, β̂ = 0.001" in at_rest.stdout
-
-
-def test_rows_are_a_whole_number_of_a_methods_own_steps_apart() -> None:
-    assert compared_with(every=10, methods=(lookup("RK4@5"),)).methods
-    with pytest.raises(InputError, match="--every 6: expected a multiple of 5"):
-        compared_with(every=6, methods=(lookup("RK4@5"),))
 
 
 def test_a_point_is_given_for_each_method_or_it_is_said_that_there_is_none() -> None:

@@ -8,7 +8,6 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from bezstab.errors import InputError
 from bezstab.mechanism.equations import compiled_mechanism
 from bezstab.mechanism.scene_files import load_scene
 from bezstab.mechanism.simulation import simulated
@@ -18,7 +17,6 @@ from bezstab.probes.probed_poles import (
     FEWEST,
     SAME,
     ProbedPole,
-    kicked_responses,
     likenesses,
     point_like,
     probed_pole,
@@ -204,13 +202,6 @@ def test_what_a_fast_motion_forces_is_not_taken_for_growth(
     run = simulated(mechanism, lookup(name), h=h, duration=2.0, alpha_hat=alpha_hat, beta_hat=beta_hat, perturb=kick)
     assert abs(dominant_pole(lookup(name), *point)) < 1
     assert "forced" in probed_pole(run.c[:, 0]).reason
-
-
-def test_arrays_of_other_shapes_are_refused() -> None:
-    with pytest.raises(InputError, match=r"shape \(20, 2\) and \(20, 1\)"):
-        probed_pole(np.zeros((20, 2)), np.zeros((20, 1)))
-    with pytest.raises(InputError, match=r"kick has shape \(1,\), the state has \(2,\)"):
-        kicked_responses(lambda state: state, [1.0, 2.0], lambda state: 0.0, [1e-3], 50)
 
 
 # Every method, kicked up and down in a scene

@@ -8,14 +8,10 @@ from bezstab.stability.forced_errors import OMEGA_H
 H = Fraction(1, 100)
 
 
-def test_a_motion_is_that_of_omega_else_the_usual_one() -> None:
-    assert motion_of(Fraction(2), None, H).omega_h == Fraction(1, 50)
-    assert motion_of(None, None, H).omega_h == OMEGA_H
-
-
 def test_at_shorter_steps_a_motion_turns_less() -> None:
     by_rate = motion_of(Fraction(2), None, H, 2 * H)
     assert (by_rate.omega_h, by_rate.omega_h_max) == (Fraction(1, 50), Fraction(1, 25))
+    assert motion_of(None, None, H, 2 * H).omega_h == OMEGA_H / 2
     by_angle = motion_of(None, None, H, 2 * H, omega_h=Fraction(1, 25))
     assert (by_angle.omega_h, by_angle.omega_h_max) == (Fraction(1, 50), Fraction(1, 25))
 

@@ -6,13 +6,11 @@ import numpy as np
 import pytest
 
 import bezstab
-from bezstab.errors import InputError
 from bezstab.mechanism.equations import compiled_mechanism
-from bezstab.mechanism.scene_files import load_scene, parse_scene
+from bezstab.mechanism.scene_files import load_scene
 from bezstab.mechanism.simulation import simulated
 from bezstab.methods.registry import lookup
 from bezstab.questions.scene_runs import SceneRun, run_time, scene_run
-from tests.mechanism.test_scenes import pendulum
 
 
 def run_of(scene: str, name: str, h: str, alpha: float, beta: float, time: float | None = None) -> SceneRun:
@@ -36,7 +34,6 @@ def test_stages_that_pump_a_pendulum_are_seen_and_their_end_is_foretold() -> Non
 @pytest.mark.parametrize(
     ("scene", "name", "h", "gain"),
     [
-        ("pendulum", "RK2", "0.01", 100),
         ("pendulum", "SIE", "0.002", 300),
         ("slider_crank_light", "RK2", "0.01", 100),
         ("slider_crank_light", "RK2", "0.005", 200),
@@ -66,18 +63,12 @@ def test_no_breakdown_is_foretold_of_a_mechanism_whose_driver_keeps_the_rate() -
     assert found.breakdown is None
 
 
-def test_multipliers_that_pump_a_four_bar_are_seen() -> None:
-    found = run_of("four_bar", "SYM", "0.001", 50, 50)
-    assert not found.sound
-    assert found.gained > 10
-    assert found.culprit == "multipliers"
-
-
 def test_an_explosion_on_the_way_is_seen_though_its_energy_is_lost_again() -> None:
     """At 4.4 s the four-bar has 235 times its largest kinetic energy; after ten it has lost a sixth."""
     found = run_of("four_bar", "SYM", "0.002", 100, 100)
     assert not found.sound
     assert found.gained > 100
+    assert found.culprit == "multipliers"
 
 
 def test_heun_with_the_same_feedback_is_sound() -> None:
@@ -105,13 +96,6 @@ def test_a_run_is_as_long_as_the_file_says_else_ten_seconds_or_ten_thousand_step
 def test_a_singular_passage_decides_nothing() -> None:
     found = run_of("slider_crank_equal", "RK4", "0.001", 10, 10)
     assert not found.decides
-
-
-def test_a_scene_in_which_nothing_moves_is_refused() -> None:
-    still = {"position": {"bob.x": 1.0, "bob.y": 0.0}, "velocity": {"bob.y": 0.0}}
-    at_rest = parse_scene(pendulum(gravity=[0, 0], initial=still))
-    with pytest.raises(InputError, match="nothing moves within"):
-        scene_run(compiled_mechanism(at_rest), lookup("RK4"), Fraction(1, 100), (Fraction(1, 5), Fraction(1, 100)), 0.1)
 
 
 def test_the_gain_is_that_of_simulate() -> None:

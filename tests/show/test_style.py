@@ -9,7 +9,7 @@ from bezstab.methods.registry import lookup
 from bezstab.regions.answer import MapConditions
 from bezstab.regions.figure import comparison_figure
 from bezstab.show.file_forms import FIGURE_FORMS
-from bezstab.show.style import line_at, new_axes, save, styled, title_lines, with_legend
+from bezstab.show.style import line_at, new_axes, save, styled, with_legend
 from bezstab.stability.regions import region
 
 
@@ -40,11 +40,3 @@ def test_equal_figures_are_equal_bytes_whatever_the_users_settings_and_the_day(
         outputs.append(file.getvalue())
     assert outputs[0] == outputs[1]
     assert form != "svg" or b">B4</text>" in outputs[0]  # text stays text
-
-
-def test_a_title_breaks_at_commas_wherever_that_does() -> None:
-    assert title_lines("slider-crank with a light rod", "AB4", "h = 0.001 s") == (
-        "slider-crank with a light rod, AB4,\nh = 0.001 s"
-    )
-    words = " ".join(["word"] * 20)
-    assert [set(line.split()) for line in title_lines(words).splitlines()] == [{"word"}] * 3

@@ -13,16 +13,6 @@ from bezstab.step_sequences.varying_steps import Steps, VaryingSteps
 H_MIN, H_MAX = Fraction(1, 240), Fraction(1, 60)
 
 
-def test_feedback_in_1_s_is_that_of_the_longest_step() -> None:
-    answer = steps("SYM", alpha=2, beta=100, h_min=0.00917, h_max="1/60")
-    assert (answer.alpha_hat, answer.beta_hat) == (Fraction(1, 15), Fraction(25, 9))
-    assert not answer
-    assert repr(answer) == (
-        "SYM, α = 2 1/s, β = 100 1/s, steps from 0.00917 s to 0.0166667 s: refuted. Each round of 0.00917 s, then "
-        "0.0166667 s multiplies the error by 1.78."
-    )
-
-
 def test_held_feedback_is_the_same_at_every_step() -> None:
     answer = steps("SYM", alpha=1, beta="1/2", h_min=0.005, h_max=0.01, hold=True)
     assert (answer.alpha_hat, answer.beta_hat) == (Fraction(1), Fraction(1, 2))
