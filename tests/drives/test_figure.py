@@ -29,7 +29,7 @@ def test_the_edge_is_that_of_stability_a_word_stands_where_it_is_true_and_a_star
     timing = Timing(4, Fraction(1))
     axes = drawn(5, 200, timing)
     (edge,) = (each for each in axes.collections if isinstance(each, ContourSet))
-    assert edge.levels.tolist() == [1]
+    assert list(edge.levels) == [1]
     for text in axes.texts:
         kd, kp = axes.transLimits.inverted().transform(text.get_position())
         found = judged(kd, kp, timing)
