@@ -9,6 +9,7 @@ import sympy as sp
 
 from bezstab.methods.registry import lookup
 from bezstab.methods.step_matrices import step_matrix
+from bezstab.step_sequences.growing_sequences import grows
 from bezstab.step_sequences.lyapunov_quadratics import proves_decay
 from bezstab.step_sequences.varying_steps import Steps, VaryingSteps, varying_steps
 from tests.reference.symbolic_steps import form_decreases, spectral_radius, symplectic_euler
@@ -94,7 +95,20 @@ def test_a_state_of_three_is_proven_by_a_form(name: str) -> None:
     assert len(found.certificate) == 3
 
 
+# What proves and what refutes, each alone
+
+ZERO, HALF, ONE = Fraction(0), Fraction(1, 2), Fraction(1)
+IDENTITY = np.eye(2, dtype=object)
+
+
+def test_a_product_on_the_unit_circle_does_not_decay() -> None:
+    # average acceleration without damping keeps the energy, whatever the step
+    matrix = step_matrix(lookup("average-acceleration"), ZERO, ONE)
+    assert grows(matrix, [ONE, HALF])
+    # with damping it loses some
+    assert not grows(step_matrix(lookup("average-acceleration"), HALF, ONE), [ONE, HALF])
+
+
 def test_a_form_that_is_not_positive_proves_nothing() -> None:
     # explicit Euler without damping: M^T M = 1 + s^2, so that -|x|^2 falls with each step
-    of_euler = step_matrix(lookup("RK1"), Fraction(0), Fraction(1))
-    assert not proves_decay(-np.eye(2, dtype=object), of_euler, Fraction(1, 2))
+    assert not proves_decay(-IDENTITY, step_matrix(lookup("RK1"), ZERO, ONE), HALF)
