@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.ticker import MaxNLocator
+from matplotlib.ticker import FixedLocator, MaxNLocator, NullFormatter
 
 from bezstab.mechanism.simulation import Simulation
 from bezstab.methods.schemes import Method
@@ -143,6 +143,11 @@ def work_precision_figure(swept: SweptRuns, scene: str, error: ErrorOf) -> Figur
                 axes.tick_params(labelbottom=True)
                 if columns < MOST_COLUMNS or place % columns == columns // 2:
                     axes.set_xlabel(COST_LABELS[swept.against])
+        low, high = np.log10(panels[0].get_xlim())
+        if math.floor(high) - math.ceil(low) < 1:  # one power of ten: matplotlib's labels beside it would run together
+            costs = [run.cost(swept.against) for run in runs]
+            panels[0].xaxis.set(major_locator=FixedLocator([min(costs), max(costs)]), minor_formatter=NullFormatter())
+            panels[0].xaxis.set_major_formatter(lambda cost, _: f"{float(f'{cost:.2g}'):g}")
         figure.suptitle(title_lines(scene))
         figure.supylabel(ERROR_LABELS[error], fontsize=8)
         others = [Line2D([0], [0], label="the other methods", **OTHERS)] if len(methods) > 1 else []

@@ -1,5 +1,6 @@
 """Figures of runs that are made up: each error and each front is drawn where it is."""
 
+import itertools
 from dataclasses import fields
 from typing import Any
 
@@ -44,6 +45,16 @@ def test_the_work_precision_figure_has_every_run_fills_the_front_and_marks_the_c
     assert panels["B2"][cheapest].tolist() == [[0.2, 3e-3]]
     assert set(panels["AB4"]["tolerance 0.006"][:, 1]) == {6e-3}
     assert {"diverged", *WHAT, "the other methods", cheapest, "tolerance 0.006"} <= set(legend_of(figure))
+
+
+@pytest.mark.parametrize("costs", [(100, 130), (100, 800), (100, 1600), (130, 7500), (509, 8000), (50, 20000)])
+def test_labels_below_narrow_axes_stand_apart(costs: tuple[int, int]) -> None:
+    runs = [a_run(name, cost, 0.01) for name in ("B2", "B4", "SYM") for cost in costs]
+    figure = work_precision_figure(ranked_runs(runs, 0.0, 6e-3), "made up", "trajectory")
+    figure.draw_without_rendering()
+    labels = figure.axes[0].xaxis.get_ticklabels(which="both")
+    ends = sorted(each.get_window_extent().intervalx.tolist() for each in labels if each.get_text())
+    assert all(left[1] < right[0] for left, right in itertools.pairwise(ends))
 
 
 def test_the_projection_figure_shows_all_three_errors_of_every_way_to_hold_the_constraints() -> None:
