@@ -20,6 +20,7 @@ from bezstab.methods.registry import method as method_named
 from bezstab.methods.schemes import Method
 from bezstab.questions.chains import SweptConstraints
 from bezstab.questions.methods import methods_for, usual_goal
+from bezstab.questions.motions import turning_rate
 from bezstab.questions.trial_runs import Trials, trial_runs
 from bezstab.rationals import rational, typed_number
 from bezstab.stability.choices import USUAL_SPREAD, Choice, describe_point
@@ -282,7 +283,7 @@ def _trials(choice: Choice, wish: Wish, asked: Conditions) -> Trials | None:
     None, too, where a choice is for several steps, or has alpha = beta.
     """
     narrow = asked.engine or asked.h_max or wish.equal
-    if asked.mechanism is None or asked.kappa is None or asked.h is None or wish.goal != "accurate" or narrow:
+    if asked.mechanism is None or asked.h is None or wish.goal != "accurate" or narrow:
         return None
     return trial_runs(
         asked.mechanism,
@@ -290,9 +291,8 @@ def _trials(choice: Choice, wish: Wish, asked: Conditions) -> Trials | None:
         asked.h,
         asked.motion.omega_h,
         spread=asked.spread,
-        kappa=asked.kappa,
         settle=wish.settle,
-        duration=asked.duration,
+        time=asked.duration,
     )
 
 
@@ -314,8 +314,8 @@ def _chosen_alone(method: Method, wish: Wish, asked: Conditions) -> Choice:
     if wish.sag is not None:
         return _sags_no_further(method, wish.sag, asked)
     modulus: Modulus | None = None
-    if asked.kappa is not None and asked.h:
-        turned = asked.kappa * float(asked.h_max or asked.h)
+    if asked.mechanism and asked.h:
+        turned = turning_rate(asked.mechanism) * float(asked.h_max or asked.h)
         modulus = moving_modulus(method, turned) if turned <= LAW_HOLDS else None
     return choose_point(
         method,

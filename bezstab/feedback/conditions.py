@@ -112,14 +112,13 @@ def given_feedback(
 class Conditions(Setup):
     """What answers depend on beside the feedback; made by `conditions`.
 
-    motion: the motion on which errors are told. mechanism: that of the scene; kappa: how fast its constraints turn
-    at most (1/s). swept: the constraints over which the engine sweeps; None for one alone, and if it is not known how
-    it sweeps. warnings: what is to be known before any answer.
+    motion: the motion on which errors are told. mechanism: that of the scene; swept: the constraints over
+    which the engine sweeps; None for one alone, and if it is not known how it sweeps. warnings: what is to be known
+    before any answer.
     """
 
     motion: ReferenceMotion
     mechanism: Mechanism | None
-    kappa: float | None
     swept: SweptConstraints | None
     warnings: tuple[str, ...]
 
@@ -132,18 +131,16 @@ def conditions(setup: Setup) -> Conditions:
     h = setup.h
     mechanism = mechanism_of(setup.scene, setup.speed, h)
     swept = _swept(setup, mechanism, bodies=1)
-    kappa = turning_rate(mechanism) if mechanism else None
     try:
         motion = motion_of(setup.omega, mechanism, h, setup.h_max, omega_h=setup.omega_h)
     except InputError:
-        if setup.omega is not None or swept is None or kappa != 0:
+        if setup.omega is not None or swept is None or mechanism is None or turning_rate(mechanism):
             raise
         motion = motion_of(None, None, h, setup.h_max)  # the sweeps are what is asked about
     return Conditions(
         **vars(setup),
         motion=motion,
         mechanism=mechanism,
-        kappa=kappa,
         swept=swept,
         warnings=tuple(turn_too_far(mechanism, h)) if mechanism and h else (),
     )

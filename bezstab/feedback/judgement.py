@@ -13,6 +13,7 @@ from bezstab.errors import InputError, NumericalError
 from bezstab.feedback.conditions import AS_GIVEN, Conditions, Given
 from bezstab.questions.chains import ALONE, SweptAnswer
 from bezstab.questions.energy import EnergyRate, energy_rate, impedance
+from bezstab.questions.motions import turning_rate
 from bezstab.questions.scene_runs import SceneRun, scene_run
 from bezstab.rationals import rational
 from bezstab.stability.choices import Choice, steps_to_settle
@@ -149,13 +150,14 @@ def _as_it_moves(
 
     None of these without a scene. Where errors grow anyway, or constraints are swept over, it is not run.
     """
-    if asked.mechanism is None or asked.kappa is None or asked.h is None:
+    if asked.mechanism is None or asked.h is None:
         return None, None, True
-    moving = moving_pole(choice.method, asked.kappa, float(asked.h), choice.alpha_hat, choice.beta_hat)
+    moving = moving_pole(
+        choice.method, turning_rate(asked.mechanism), float(asked.h), choice.alpha_hat, choice.beta_hat
+    )
     if swept or choice.verdict != "converges" or moving.verdict == "diverges":
         return moving, None, moving.verdict == "converges"
-    duration = None if asked.duration is None else float(asked.duration)
-    run = scene_run(asked.mechanism, choice.method, asked.h, choice.point, duration)
+    run = scene_run(asked.mechanism, choice.method, asked.h, choice.point, asked.duration)
     return moving, run, run.sound if run.decides else moving.verdict == "converges"
 
 

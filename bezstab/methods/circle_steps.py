@@ -38,7 +38,7 @@ class Series:
         return type(self)([a + b for a, b in zip(self.terms, other.terms, strict=True)])
 
     def __sub__(self, other: Self) -> Self:
-        return type(self)([a - b for a, b in zip(self.terms, other.terms, strict=True)])
+        return self + other * -1
 
     def __mul__(self, other: Any) -> Self:
         """Return the product with another series, or with a number, or an array of them."""

@@ -1,19 +1,19 @@
 """The third map: what a method and its feedback do to the energy of a motion, on the modulated circle.
 
 A unit mass is held to the unit circle, c = (q.q - 1) / 2, and goes round at the rate omega, theta = omega h. A weak
-conservative force along the circle, the slope of (epsilon / n) sin(n phi), speeds it up and slows it down n times a
-revolution. The exact motion keeps its energy: what a run gains or loses is the method's and its feedback's doing.
+conservative force along the circle, the slope of epsilon sin(phi), speeds it up and slows it down once a revolution.
+The exact motion keeps its energy: what a run gains or loses is the method's and its feedback's doing.
 
 In the frame of methods/circle_steps.py a quantity of the method's equations is, at step s,
 
-    u + epsilon Re(w e^(i n theta s)) + epsilon^2 (m + ...)
+    u + epsilon Re(w e^(i theta s)) + epsilon^2 (m + ...)
 
 and a constant moment T = T_0 + epsilon^2 T_2 about the centre is added, so that the mean rate of rotation stays: what
 energy the run would gain, -T takes away. Such quantities are series in epsilon, in whose products two amplitudes meet
 in the mean. In what the equations leave over
 
     epsilon^0    gives u and T_0 by Newton's method
-    epsilon^1    gives w by one linear solve, where what is so many steps later has a factor e^(i n theta steps)
+    epsilon^1    gives w by one linear solve, where what is so many steps later has a factor e^(i theta steps)
     epsilon^2    in the mean gives m and T_2, by the matrix of Newton's method
 
 -T_0 is the torque that stages put on a uniform rotation, -T_2 what else a motion gains: the work that the multiplier
@@ -22,19 +22,16 @@ does on the steady error, -lambda dc/dt, and the method's own truncation, which 
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from bezstab.errors import InputError
 from bezstab.methods.circle_steps import Array, CircleStep, Series, across, constraint
 from bezstab.methods.schemes import Method
 from bezstab.methods.step_equations import POSITION, VELOCITY
-from bezstab.read_only import ReadOnlyArrays
 
 FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 
 MODULATION = 0.3
 """Of a motion's rate: by so much a crank's varies that drives rods, to either side of its mean."""
@@ -49,44 +46,35 @@ SETTLED = 1e-9
 """Of a correction, of numbers of the size of one: the next would be rounding."""
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class MotionEnergy(ReadOnlyArrays):
+class MotionEnergy(NamedTuple):
     """What becomes of the energy of a motion, at points of the plane (shape of alpha_hat and beta_hat broadcast).
 
     rotation: growth of the energy of a uniform rotation, per radian, as a share of it: torque of stages and truncation.
     modulation: what a motion gains beside it, per radian and square of the relative modulation of its rate.
     multiplier: the part of `modulation` that the multiplier's work on the steady error is.
-    ripple: complex amplitude of c, per relative modulation of the rate.
     nan where a rotation has no solution.
     """
 
     rotation: FloatArray
     modulation: FloatArray
     multiplier: FloatArray
-    ripple: ComplexArray
 
-    def growth(self, modulation: float = MODULATION) -> FloatArray:
-        """Return the growth of energy per radian, as a share of it, of a motion whose rate varies by that share."""
-        return self.rotation + self.modulation * modulation**2
+    def growth(self) -> FloatArray:
+        """Return the growth of energy per radian, as a share of it, of a motion whose rate varies by MODULATION."""
+        return self.rotation + self.modulation * MODULATION**2
 
 
-def motion_energy(
-    method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike, omega_h: float, harmonic: float = 1.0
-) -> MotionEnergy:
+def motion_energy(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike, omega_h: float) -> MotionEnergy:
     """Return what the method makes of the energy of a motion of omega h radians a step whose rate varies.
 
-    `harmonic`: how often its rate rises and falls in a revolution. InputError unless 0 < omega_h < 1 and harmonic > 0.
-    Stability is not looked at: where errors of constraints grow, no run has such a motion. Source: the docstring above.
+    0 < omega_h < 1. Stability is not looked at: where errors of constraints grow, no run has such a motion. Source: the
+    docstring above.
     """
-    if not 0 < omega_h < 1:
-        raise InputError(f"omega h = {omega_h:g} rad a step: expected more than 0 and less than 1")
-    if not harmonic > 0:
-        raise InputError(f"harmonic = {harmonic:g}: expected a number above 0")
     multiple = float(method.step_multiple)
     a, b = np.broadcast_arrays(multiple * np.asarray(alpha_hat, float), multiple**2 * np.asarray(beta_hat, float))
     b = np.where(b > 0, b, np.nan)  # else no radius is held
     theta = multiple * omega_h
-    still, driven = (_Circle(method, a[..., np.newaxis], b[..., np.newaxis], theta, n) for n in (0.0, harmonic))
+    still, driven = (_Circle(method, a[..., np.newaxis], b[..., np.newaxis], theta, n) for n in (0, 1))
     with np.errstate(all="ignore"):
         mean, matrix = still.settled()
         disturbed, by_force = driven.first_order(mean)
@@ -97,14 +85,11 @@ def motion_energy(
         c, pull = constraint(found[POSITION]), driven.multiplier(found[POSITION], found[VELOCITY])
         # with the mean of the multiplier at both ends of a step
         work = (driven.shifted(c, 1) - c) * (driven.shifted(pull, 1) + pull) * -0.5
-    # the force changes the rate by epsilon / (n theta^2) of it; the energy is theta^2 / 2
-    of_modulation = harmonic * theta**2
-    scale = 2 * of_modulation**2 / theta**2
+    scale = 2 * theta**2  # the force changes the rate by epsilon / theta^2 of it; the energy is theta^2 / 2
     return MotionEnergy(
         rotation=-2 * mean[-1, ..., 0] / theta**2,
         modulation=-scale * added[-1, ..., 0],
         multiplier=scale * work.terms[2][..., 0] / theta,
-        ripple=of_modulation * c.terms[1][..., 0],
     )
 
 
@@ -113,7 +98,7 @@ def steps_to_breakdown(method: Method, alpha_hat: float, beta_hat: float, omega_
 
     Infinite where it is not. Each step multiplies the rate by 1 + theta rotation(theta) / 2. With theta = omega h / s
     the steps are the integral of 2 / (omega h rotation) over s from 0 to 1, smooth where rotation is of first order.
-    To 5 % below omega h = 0.1. Else errors as `motion_energy`.
+    To 5 % below omega h = 0.1.
     """
     steps = 0.0
     for node, weight in zip(*np.polynomial.legendre.leggauss(NODES), strict=True):
@@ -136,7 +121,7 @@ def solved(matrices: Array, right_sides: Array) -> Array:
 
 @dataclass(frozen=True)
 class _Wave(Series):
-    """A quantity: its mean, the amplitude of epsilon Re(w e^(i n theta s)), and what epsilon^2 adds to the mean."""
+    """A quantity: its mean, the amplitude of epsilon Re(w e^(i theta s)), and what epsilon^2 adds to the mean."""
 
     def product(self, i: int, terms: Sequence[Any], j: int) -> Any:
         """Return the product of two terms; of two amplitudes in the mean."""
@@ -146,11 +131,11 @@ class _Wave(Series):
 
 
 class _Circle(CircleStep):
-    """A method's step on the circle, where a force acts n times a revolution; with n = 0 a constant one."""
+    """A method's step on the circle, where a force rises and falls n times a revolution, once or not at all."""
 
     kind = _Wave
 
-    def __init__(self, method: Method, alpha_hat: Array, beta_hat: Array, theta: float, harmonic: float) -> None:
+    def __init__(self, method: Method, alpha_hat: Array, beta_hat: Array, theta: float, harmonic: int) -> None:
         super().__init__(method, alpha_hat, beta_hat, float)
         self.theta, self.harmonic = theta, harmonic
 

@@ -22,16 +22,13 @@ import cmath
 import math
 
 from bezstab.engines.conversions import EnergyClass
-from bezstab.errors import InputError
 
 
 def spin_change(energy_class: EnergyClass, a: float, b: float, theta: float, impedance: float = 1.0) -> float:
     """Return D, the share by which a step changes the rate of a spinning point mass, at the point (a, b).
 
-    Of "projected" a is the share of the way to the constraint that positions move. InputError unless 0 < theta < 1.
+    Of "projected" a is the share of the way to the constraint that positions move. 0 < theta < 1.
     """
-    if not 0 < theta < 1:
-        raise InputError(f"omega h = {theta:g} rad a step: expected more than 0 and less than 1")
     turn = cmath.exp(1j * theta)
     match energy_class:
         case "beside":

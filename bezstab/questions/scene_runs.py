@@ -64,20 +64,26 @@ class SceneRun:
     sound: bool
 
 
-def run_time(mechanism: Mechanism, method: Method, h: float) -> float:
-    """Return how long (s) a scene is run if nobody says: as its file says, else at most MOST_STEPS of the method."""
-    given = mechanism.scene.duration
-    return given if given != DURATION else min(USUAL_TIME, MOST_STEPS * h * float(method.step_multiple))
+def time_given(mechanism: Mechanism, time: Fraction | float | None) -> float | None:
+    """Return how long (s) a scene is to be run: as asked for, else as its file says; None where nobody says."""
+    written = mechanism.scene.duration
+    if time is not None:
+        return float(time)
+    return written if written != DURATION else None
 
 
-def scene_run(mechanism: Mechanism, method: Method, h: Fraction, point: Point, time: float | None = None) -> SceneRun:
+def scene_run(
+    mechanism: Mechanism, method: Method, h: Fraction, point: Point, time: Fraction | float | None = None
+) -> SceneRun:
     """Return what a run of `time` (s) shows, with steps of h (s) at a point (alpha_hat, beta_hat).
 
-    InputError for a time that is no number of steps, and for a scene in which nothing moves.
+    Where nobody gives a time it is USUAL_TIME, or MOST_STEPS if that is less. InputError for a time that is no number
+    of steps, and for a scene in which nothing moves.
     """
     run_for = partial(simulated, mechanism, method, h=float(h), alpha_hat=float(point[0]), beta_hat=float(point[1]))
-    duration = run_time(mechanism, method, float(h)) if time is None else time
-    check_duration(duration, float(h * method.step_multiple))
+    whole_step = float(h * method.step_multiple)
+    duration = time_given(mechanism, time) or min(USUAL_TIME, MOST_STEPS * whole_step)
+    check_duration(duration, whole_step)
     run = run_for(duration=duration)
     with np.errstate(all="ignore"):  # of a run that broke down
         kinetic = run.v**2 @ mechanism.mass / 2

@@ -13,12 +13,13 @@ import numpy as np
 from bezstab.mechanism.equations import Mechanism
 from bezstab.mechanism.programs import even_steps
 from bezstab.mechanism.runner import march, simulate
-from bezstab.mechanism.scenes import DURATION
 from bezstab.mechanism.start import constraint_errors, initial_state
 from bezstab.methods.registry import lookup
 from bezstab.methods.schemes import Method, evaluations, implicit
+from bezstab.questions.motions import turning_rate
+from bezstab.questions.scene_runs import time_given
 from bezstab.rationals import exact
-from bezstab.stability.accurate_points import worst_error
+from bezstab.stability.accurate_points import decaying
 from bezstab.stability.arrays import BoolArray, FloatArray
 from bezstab.stability.choices import THOUSANDFOLD, Choice, search_box
 from bezstab.stability.closed_loop import all_within
@@ -68,29 +69,26 @@ def trial_runs(
     omega_h: Fraction,
     *,
     spread: float,
-    kappa: float,
     settle: Fraction | None,
-    duration: Fraction | None,
+    time: Fraction | None,
 ) -> Trials | None:
     """Return a point that is clearly nearer to the motion than a choice; None where there is none.
 
-    It settles within a run and in `settle` (s), with alpha and beta off by the spread, and where constraints turn at
-    kappa (1/s). A run turns by TURNED rad, omega_h in a step of h (s), but is no longer than a scene or `duration` (s)
-    says. None, too, where the runs of the choice break down: their longer steps do not bear strong feedback.
+    It settles within a run and in `settle` (s), with alpha and beta off by the spread, and as constraints turn. A run
+    turns by TURNED rad, omega_h in a step of h (s), but is no longer than `time` (s) or the scene's file says. None,
+    too, where the runs of the choice break down: their longer steps do not bear strong feedback.
     """
     method, multiple, step = choice.method, float(choice.method.step_multiple), float(h)
-    seconds = TURNED * step / float(omega_h)
-    if duration or mechanism.scene.duration != DURATION:
-        seconds = min(seconds, float(duration or mechanism.scene.duration))
+    seconds = min(TURNED * step / float(omega_h), time_given(mechanism, time) or np.inf)
     rate = THOUSANDFOLD ** (step * multiple / min(seconds, float(settle or seconds)))
     (_, largest_alpha), (_, largest_beta) = search_box(region(method))[0]
     count = POINTS // 2 if implicit(method) else POINTS
     axes = np.geomspace(-np.log(rate) / multiple, [largest_alpha / 2, largest_beta**0.5], count)
     alpha_h, beta_h = (each.ravel() for each in np.meshgrid(*axes.T))
     points = np.array([2 * alpha_h, beta_h**2])
-    forced = worst_error(method, partial(all_within, method), rate, *points, omega_h=omega_h, spread=spread)
-    fit = np.isfinite(forced) & (turn_limits(method, *points) > kappa * step)
-    points = np.column_stack([points[:, fit], [choice.alpha_hat, choice.beta_hat]])
+    points = points[:, decaying(partial(all_within, method), rate, *points, spread=spread)]
+    points = points[:, turn_limits(method, *points) > turning_rate(mechanism) * step]
+    points = np.column_stack([points, [choice.alpha_hat, choice.beta_hat]])
     cost = evaluations(method) * (ITERATIONS if implicit(method) else 1)
     own = max(step * multiple, seconds * cost / EVALUATIONS)
     longer = max(SHARES) * own / (step * multiple)

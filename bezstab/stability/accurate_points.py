@@ -5,6 +5,7 @@ from fractions import Fraction
 from itertools import product
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bezstab.errors import NumericalError
 from bezstab.methods.schemes import Method
@@ -76,6 +77,17 @@ def default_rate(method: Method, omega_h: Fraction) -> float:
     return float(np.exp(-DECAY * float(omega_h * method.step_multiple)))
 
 
+def decaying(
+    within: Within, rate: float, alpha_hat: FloatArray, beta_hat: FloatArray, *, spread: float
+) -> NDArray[np.intp]:
+    """Return the places of points where |z_p| is at most a rate with alpha and beta off by the spread."""
+    left = np.arange(alpha_hat.size)
+    for by_beta, by_alpha in product((1, -1, 0), repeat=2):  # the region's edge may bend inwards
+        off_alpha, off_beta = 1 + spread * by_alpha, 1 + spread * by_beta
+        left = left[within(off_alpha * alpha_hat[left], off_beta**2 * beta_hat[left], rate)]
+    return left
+
+
 def worst_error(
     method: Method,
     within: Within,
@@ -88,10 +100,7 @@ def worst_error(
 ) -> FloatArray:
     """Return the largest combined error with alpha and beta off by the spread; infinite where |z_p| is above rate."""
     worst = np.full(alpha_hat.shape, np.inf)
-    left = np.arange(alpha_hat.size)
-    for by_beta, by_alpha in product((1, -1, 0), repeat=2):  # the region's edge may bend inwards
-        off_alpha, off_beta = 1 + spread * by_alpha, 1 + spread * by_beta
-        left = left[within(off_alpha * alpha_hat[left], off_beta**2 * beta_hat[left], rate)]
+    left = decaying(within, rate, alpha_hat, beta_hat, spread=spread)
     a, b = off_by(spread, alpha_hat[left], beta_hat[left])
     worst[left] = combined_error(method, a, b, omega_h).max(axis=0)
     return worst
