@@ -82,9 +82,13 @@ def choose(
     if asked.h is None:
         raise click.MissingParameter(param_hint="'--h'", param_type="option")
     say_each(asked.warnings)
-    answers = (choose_answer(method, wish, asked, trades=for_reading()) for method in methods)
+    whole = setup.h is not None
+    answers = (
+        choose_answer(method, wish, asked, margins=whole, cost=whole, trades=whole and for_reading())
+        for method in methods
+    )
     chosen = list(progress(answers, wish.goal, len(methods)))
-    if setup.h is None:
+    if not whole:
         at_any_step = [step_answer(each.method, exact(each.alpha or 0), exact(each.beta or 0)) for each in chosen]
         show_answers(columns.STEPS, at_any_step)
         return all(chosen)

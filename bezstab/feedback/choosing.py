@@ -3,6 +3,7 @@
 method, Wish (a goal), Conditions   →   choose_answer   →   ChooseAnswer
 """
 
+from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -35,9 +36,6 @@ from bezstab.words import counted
 
 SHORTER = (2, 4)
 """A step may be so many times as short for a choice that is not safe: a mechanism then turns less in a step."""
-
-GAIN = 0.95
-"""Of an error: what is not below is called no gain."""
 
 SLOWER = 2
 """Slower decay takes this many times as long to settle."""
@@ -74,13 +72,13 @@ class ChooseAnswer(Judgement):
     """The point that a goal asks for, judged.
 
     safe_with: the option with which a choice is safe that is not. trials: the runs of a scene that found the point;
-    None where a goal alone did. trades: what faster or slower decay would change; empty unless asked for. sentence: the
-    answer in words.
+    None where a goal alone did. trades: what faster or slower decay would change; None unless asked for, and where
+    errors are not known. sentence: the answer in words.
     """
 
     safe_with: str | None
     trials: Trials | None
-    trades: tuple[Alternative, ...]
+    trades: tuple[Alternative, ...] | None
     sentence: str
 
     def __repr__(self) -> str:
@@ -253,7 +251,10 @@ def choose_answer(
     trades: bool = False,
 ) -> ChooseAnswer:
     """Return the point that a goal asks for, judged; errors as `choose`."""
-    chosen = found = _chosen(method, wish, asked)
+    alone, swept = _chosen_alone(method, wish, asked), _limiting(wish, asked)
+    chosen = found = _limited(alone, swept, asked)
+    if role == "chosen":
+        _check_expressed(asked, chosen)
     trials = _trials(chosen, wish, asked) if role == "chosen" else None
     if trials:
         found = describe_point(method, wish.goal, *trials.point, asked.spread)
@@ -261,16 +262,16 @@ def choose_answer(
     judged = judge(asked, found, role, margins=margins, cost=cost)
     if trials and not judged.safe:
         trials, judged = None, judge(asked, chosen, role, margins=margins, cost=cost)
-    by_goal, swept = wish.sag is None, _limiting(wish, asked)
+    by_goal = wish.sag is None
     safe_with = _safe_with(judged, wish) if role == "chosen" and by_goal and not judged.safe else None
     return ChooseAnswer(
         **vars(judged),
         safe_with=safe_with,
         trials=trials,
-        trades=_trades(judged, wish) if trades and by_goal else (),
+        trades=_trades(judged, wish) if trades and by_goal else None,
         sentence=judgement_sentence(
             judged,
-            f"at {counted(swept.iterations, 'sweep')} it has {100 * asked.spread:g} % to spare" if swept else None,
+            *(_spare_words(alone, chosen, swept, asked) if swept else ()),
             safe_with and f"with {safe_with} it is safe",
             trials_words(trials, chosen, asked.h) if trials and asked.h else None,
         ),
@@ -296,17 +297,43 @@ def _trials(choice: Choice, wish: Wish, asked: Conditions) -> Trials | None:
     )
 
 
+def _check_expressed(asked: Conditions, chosen: Choice) -> None:
+    """Raise InputError if the engine has no values for a point: it says what to ask instead."""
+    if asked.engine is None or asked.h is None:
+        return
+    try:
+        asked.engine.values(chosen.point, asked.h)
+    except InputError as error:
+        words = f"{asked.engine.name}={asked.engine.words()}"
+        raise InputError(f"{error}: ask `bezstab check --engine {words}` about values of yours") from None
+
+
 def _chosen(method: Method, wish: Wish, asked: Conditions) -> Choice:
     """Return the choice of a goal; if an engine sweeps over constraints, at most the strongest that they allow."""
-    found, swept = _chosen_alone(method, wish, asked), _limiting(wish, asked)
+    return _limited(_chosen_alone(method, wish, asked), _limiting(wish, asked), asked)
+
+
+def _limited(alone: Choice, swept: SweptConstraints | None, asked: Conditions) -> Choice:
+    """Return the choice for one constraint alone, or the strongest that swept ones allow, if that is weaker."""
     if swept is None:
-        return found
+        return alone
     strongest = swept.strongest(asked.spread)
     if strongest is None:
         raise InputError(f"{swept.engine.name}: no feedback is stable in {swept.constraints.words}")
-    if found.beta_hat <= strongest[1] * (1 + READ_BACK):  # as is all of the curve but its end, which is not tried
-        return found
-    return describe_point(method, wish.goal, *strongest, asked.spread)
+    if alone.beta_hat <= strongest[1] * (1 + READ_BACK):  # as is all of the curve but its end, which is not tried
+        return alone
+    return describe_point(alone.method, alone.goal, *strongest, asked.spread)
+
+
+def _spare_words(alone: Choice, chosen: Choice, swept: SweptConstraints, asked: Conditions) -> Iterator[str]:
+    """Yield what a choice has to spare in an engine that sweeps, and what one constraint alone would get."""
+    yield f"at {counted(swept.iterations, 'sweep')} it has {100 * asked.spread:g} % to spare"
+    if alone is not chosen:
+        needed = swept.fewest_to_spare(alone.point, asked.spread)
+        yield (
+            f"a single constraint would get {swept.engine.setting(alone.point, swept.h)}; here that needs "
+            f"{counted(needed, 'sweep') if needed else 'more sweeps than were tried'} for the same margin"
+        )
 
 
 def _chosen_alone(method: Method, wish: Wish, asked: Conditions) -> Choice:
@@ -374,11 +401,13 @@ def _safe_with(judged: Judgement, wish: Wish) -> str | None:
     return None
 
 
-def _trades(judged: Judgement, wish: Wish) -> tuple[Alternative, ...]:
-    """Return a choice that decays faster, if there is one, and one that decays slower, if it gains anything.
+def _trades(judged: Judgement, wish: Wish) -> tuple[Alternative, ...] | None:
+    """Return a choice that decays faster, if there is one, and one that decays slower; None without errors.
 
     The slower one may take SLOWER times as long (s, to two digits) as the choice takes at worst.
     """
+    if judged.cost is None or judged.cost.total_error is None:
+        return None
     at_fastest = wish.goal == "fastest" and not judged.moving  # as it moves another pole is the least
     goals: tuple[Goal, ...] = () if at_fastest else ("robust", "fastest")
     stronger = (_alternative(judged, Wish(goal, None, wish.equal)) for goal in goals)
@@ -386,8 +415,7 @@ def _trades(judged: Judgement, wish: Wish) -> tuple[Alternative, ...]:
     steps, h = judged.settle_steps_at_worst, judged.conditions.h
     if steps is not None and h is not None:
         settle = Fraction(f"{float(SLOWER * steps * h * judged.method.step_multiple):.2g}")
-        slower = _alternative(judged, Wish("accurate", settle, wish.equal))
-        found += [slower if slower and min(slower.times_the_errors) < GAIN else None]
+        found.append(_alternative(judged, Wish("accurate", settle, wish.equal)))
     return tuple(filter(None, found))
 
 

@@ -21,6 +21,9 @@ from bezstab.stability.path_ends import Margins
 from bezstab.stability.turning import MovingPole
 from bezstab.words import errors_words, times_words
 
+GAIN = 0.95
+"""Of an error: what is not below is called no gain."""
+
 UNLIMITED, ANY = "unlimited", "any"
 
 
@@ -147,7 +150,8 @@ SWEPT: Sequence[Column[SweptAnswer]] = (
 
 def _remark(answer: Judgement) -> str | None:
     searched = None if answer.searched is None else f"searched for αh, βh to {answer.searched:g}"
-    return "; ".join(filter(None, (answer.margins_reason, searched))) or None
+    failure = answer.run.failure if answer.run else None
+    return "; ".join(filter(None, (answer.margins_reason, searched, failure))) or None
 
 
 JUDGED: Sequence[Column[Judgement]] = (
@@ -170,6 +174,7 @@ JUDGED: Sequence[Column[Judgement]] = (
     Column(
         "steps to 1/1000", "settle_steps", lambda answer: answer.settle_steps, "steps until an error is a thousandth"
     ),
+    Column("a tenth in (s)", "", lambda answer: answer.tenth_seconds, "", form=".3g"),
     Column(
         "settles in (s)",
         "settle_seconds",
@@ -188,7 +193,7 @@ JUDGED: Sequence[Column[Judgement]] = (
         up_to(".4g", UNLIMITED),
         brief=True,
     ),
-    Column("remark", "remark", _remark, "why margins are not known, how far was searched"),
+    Column("remark", "remark", _remark, "why margins are not known, how far was searched, why the run ended early"),
     *of_part(Judgement, lambda answer: answer.margins, MARGINS),
     Column(
         "ωh (rad)",
@@ -208,6 +213,7 @@ JUDGED: Sequence[Column[Judgement]] = (
     *of_part(Judgement, lambda answer: answer.cost, COST),
     *of_part(Judgement, lambda answer: answer.moving, MOVING),
     *of_part(Judgement, lambda answer: answer.run, RUN),
+    Column("holds for", "", lambda answer: answer.swept_over, ""),
     *of_part(Judgement, lambda answer: answer.swept, SWEPT),
     Column(
         "sag",
@@ -281,7 +287,14 @@ def trade_words(answer: ChooseAnswer) -> Iterator[str]:
                 "Start with velocities half a step back, v − ½hq̈ (simulate --start steady): begun on the motion the "
                 "method moves as if they were half a step ahead."
             )
+    if answer.trades is None:
+        return
+    if all(other.settle for other in answer.trades):
+        yield "No other goal decays faster."
     for other in answer.trades:
+        if other.settle and min(other.times_the_errors) >= GAIN:
+            yield "Slower decay would not be more accurate."
+            continue
         goal = "" if other.goal == answer.goal else f"--goal {other.goal} "
         decay, settle = ("Slower", f"--settle {typed_number(other.settle)} ") if other.settle else ("Faster", "")
         moduli = f"|z_p| {other.z_abs:.4f} instead of {abs(answer.pole):.4f}"

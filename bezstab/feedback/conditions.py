@@ -130,7 +130,7 @@ def conditions(setup: Setup) -> Conditions:
     """
     h = setup.h
     mechanism = mechanism_of(setup.scene, setup.speed, h)
-    swept = _swept(setup, mechanism, bodies=1)
+    swept = _swept(setup, mechanism) if mechanism else None
     try:
         motion = motion_of(setup.omega, mechanism, h, setup.h_max, omega_h=setup.omega_h)
     except InputError:
@@ -148,7 +148,7 @@ def conditions(setup: Setup) -> Conditions:
 
 def for_choosing(asked: Conditions) -> Conditions:
     """Return the same with USUAL_CHAIN to sweep over, where the engine sweeps and nobody says over what."""
-    return replace(asked, swept=asked.swept or _swept(asked, asked.mechanism, USUAL_CHAIN))
+    return replace(asked, swept=asked.swept or _swept(asked, asked.mechanism))
 
 
 def at_step(asked: Conditions, h: Fraction) -> Conditions:
@@ -156,10 +156,10 @@ def at_step(asked: Conditions, h: Fraction) -> Conditions:
     return replace(asked, h=h, motion=motion_of(asked.omega, asked.mechanism, h, omega_h=asked.omega_h))
 
 
-def _swept(setup: Setup, mechanism: Mechanism | None, bodies: int) -> SweptConstraints | None:
-    """Return the constraints of a mechanism, else of a chain, where the engine sweeps over more than one; else None."""
+def _swept(setup: Setup, mechanism: Mechanism | None) -> SweptConstraints | None:
+    """Return what an engine sweeps over, of a mechanism or of USUAL_CHAIN; None where that is one constraint alone."""
     engine, h = setup.engine, setup.h
     if engine is None or engine.sweeping is None or h is None:
         return None
-    constraints = constraints_of(mechanism) if mechanism else constraints_of_chain(bodies)
+    constraints = constraints_of(mechanism) if mechanism else constraints_of_chain(USUAL_CHAIN)
     return SweptConstraints(engine, h, constraints, engine.sweeping.iterations) if len(constraints.joints) > 1 else None

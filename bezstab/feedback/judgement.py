@@ -16,7 +16,7 @@ from bezstab.questions.energy import EnergyRate, energy_rate, impedance
 from bezstab.questions.motions import turning_rate
 from bezstab.questions.scene_runs import SceneRun, scene_run
 from bezstab.rationals import rational
-from bezstab.stability.choices import Choice, steps_to_settle
+from bezstab.stability.choices import TENTH, Choice, steps_to_settle
 from bezstab.stability.feedback_costs import FeedbackCost, feedback_cost
 from bezstab.stability.path_ends import Margins, largest_stable_step, stability_margins
 from bezstab.stability.rest_offsets import offset_at_rest
@@ -35,7 +35,8 @@ class Judgement(Choice):
     None without a step. margins: factors on h, alpha and beta; None where the point is not stable, for constraints that
     an engine sweeps over, and where they were not asked for; margins_reason: why they are not known. h_limit: the
     largest stable step (s), infinite where any is; in an engine, of its values as they are. settle_steps: of
-    constraints that are swept over, if there are. settle_seconds: until an error is a thousandth (s).
+    constraints that are swept over, if there are. tenth_seconds, settle_seconds: until an error is a tenth and a
+    thousandth (s).
 
     cost: what accuracy the feedback costs on the motion; cost_reason: why that is not known. energy_rate: what a second
     adds to the energy of a motion of rate omega; None without that rate. impedance: MuJoCo's d.
@@ -59,6 +60,7 @@ class Judgement(Choice):
     margins: Margins | None
     margins_reason: str | None
     h_limit: float | None
+    tenth_seconds: float | None
     settle_seconds: float | None
     cost: FeedbackCost | None
     cost_reason: str | None
@@ -100,8 +102,10 @@ def judge(
         setting, values = engine.setting(point, asked.h), tuple(map(rational, engine.values(point, asked.h)))
     swept = asked.swept.answer(values) if asked.swept and values is not None else None
     converges = choice.verdict == "converges"
+    z_abs = abs(choice.pole) if converges else math.inf
     if swept:
-        choice = replace(choice, settle_steps=steps_to_settle(swept.growth.factor))
+        z_abs = swept.growth.factor
+        choice = replace(choice, settle_steps=steps_to_settle(z_abs))
     moving, run, goes_well = _as_it_moves(asked, choice, swept)
     hard, rate, sag = None, None, None
     if values is not None:
@@ -116,7 +120,7 @@ def judge(
         limits, limits_reason, h_limit = _limits(asked, choice, values, as_typed=as_typed)
     found, reason = _cost(asked, choice, role) if cost else (None, None)
     alpha, beta = alpha_and_beta(*point, asked.h)
-    settle_steps = choice.settle_steps
+    own_step = None if h is None else h * float(method.step_multiple)
     return Judgement(
         **vars(choice),
         role=role,
@@ -127,7 +131,8 @@ def judge(
         margins=limits,
         margins_reason=limits_reason,
         h_limit=h_limit,
-        settle_seconds=None if h is None or settle_steps is None else settle_steps * h * float(method.step_multiple),
+        tenth_seconds=_seconds(steps_to_settle(z_abs, TENTH), own_step),
+        settle_seconds=_seconds(choice.settle_steps, own_step),
         cost=found,
         cost_reason=reason,
         energy_rate=rate,
@@ -192,3 +197,7 @@ def _limits(
         method, lambda step: engine.applied(tuple(values), step, as_typed=as_typed).points, float(h)
     )
     return margins, reason, math.inf if limit is None else limit
+
+
+def _seconds(steps: int | None, step: float | None) -> float | None:
+    return None if steps is None or step is None else steps * step

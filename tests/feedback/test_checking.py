@@ -48,6 +48,7 @@ def test_an_answer_begins_with_its_sentence_and_is_true_where_it_is_safe() -> No
         "It stays stable with one of these alone: the step up to 20 ms, α up to 2.5 times, β up to 1.65 times."
     )
     assert safe.settle_seconds == pytest.approx(0.1)
+    assert safe.tenth_seconds == pytest.approx(0.04)
     assert check("RK2", alpha_hat=1, beta_hat=1).sentence == (
         "α̂ = 1, β̂ = 1: safe at rest. An error falls to a thousandth in 10 steps. "
         "It stays stable with one of these alone: the step up to 2 times, α up to 2.5 times, β up to 1.65 times."
