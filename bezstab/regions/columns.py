@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import compress
 
 from bezstab.regions.answer import MotionPoint, MovingRegion, RegionAnswer
 from bezstab.regions.methods import Formulas, MethodAnswer, WholeMethod
@@ -107,6 +108,13 @@ REGION: Sequence[Column[RegionAnswer]] = (
         lambda answer: answer.region.extent and answer.region.extent[1],
         "the same in β̂",
         form=ENDS,
+        brief=True,
+    ),
+    Column(
+        "approached far out",
+        "",
+        lambda answer: " and ".join(compress(("the largest α̂", "the largest β̂"), answer.region.approached)),
+        "",
         brief=True,
     ),
     Column(

@@ -241,7 +241,8 @@ def history(
     simulation : Simulation
         What `bezstab.simulate` returns.
     constraint : int or None
-        Number of the constraint, from 1. None: the largest |c| over all, on a logarithmic axis; gaps where it is zero.
+        Number of the constraint, from 1. None: the largest |c| over all, on a logarithmic axis, with gaps where it is
+        zero; on a linear one if it is zero all the time.
     derivative : bool
         Whether to draw the time derivative.
     axes : Axes, optional
@@ -262,7 +263,7 @@ def history(
         name = rf"$\dot c_{constraint}$ (SI)" if derivative else rf"$c_{constraint}$ (SI)"
         errors = (simulation.cdot if derivative else simulation.c)[:, constraint - 1]
     axes = _axes(axes, title_lines(simulation.mechanism.scene.name, simulation.method.name), "t (s)", name)
-    if constraint is None:
+    if constraint is None and (errors > 0).any():
         axes.set_yscale("log", nonpositive="mask")
     return _line(axes, (simulation.t, errors), line, linewidth=FINE)
 

@@ -77,4 +77,4 @@ def lines_below(sentence: str, values: Sequence[tuple[str, str]], width: int) ->
     for heading, text in present:
         value = wrapped(text, width - indent).replace("\n", "\n" + " " * indent)
         lines.append(_filled_up(heading, indent) + value)
-    return "\n".join([wrapped(visible(sentence), width), "", *lines] if sentence else lines).rstrip("\n")
+    return "\n\n".join(filter(None, [wrapped(visible(sentence), width), "\n".join(lines)]))

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cache
+from math import isinf
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,7 +15,7 @@ from bezstab.stability.arrays import BoolArray, Extent, FloatArray
 from bezstab.stability.best_points import best_point_or_reason
 from bezstab.stability.closed_loop import mu_table, spectral_radius
 from bezstab.stability.curves import boundary_curves
-from bezstab.stability.lines import FIRST_LINES, Lines
+from bezstab.stability.lines import FAR, FIRST_LINES, Lines
 from bezstab.stability.path_ends import Path, verdict_end
 from bezstab.stability.stretches import ALONG_H
 
@@ -41,9 +42,10 @@ class Region(ReadOnlyArrays):
 
     It is what hangs together with weak feedback; of a level below one, what lies in that part of the stable region.
     `area` is None where an end is infinite, and known to `area_error`. `extent` is ((alpha_hat_min, alpha_hat_max),
-    (beta_hat_min, beta_hat_max)), None if the set is empty; far out a region may only come near an end. `boundary`
-    holds curves as arrays of shape (points, 2), closed but where they leave the window. `view` has finite ranges that
-    hold what there is to see. `islands` has a point of each other part of the plane where |z_p| < level.
+    (beta_hat_min, beta_hat_max)), None if the set is empty; `approached` says of alpha_hat_max and of beta_hat_max
+    whether the region only comes near it, towards infinity. `boundary` holds curves as arrays of shape (points, 2),
+    closed but where they leave the window. `view` has finite ranges that hold what there is to see. `islands` has a
+    point of each other part of the plane where |z_p| < level.
     """
 
     method: Method
@@ -54,6 +56,7 @@ class Region(ReadOnlyArrays):
     view: Extent | None = None
     boundary: tuple[FloatArray, ...] = ()
     islands: tuple[tuple[float, float], ...] = ()
+    approached: tuple[bool, bool] = (False, False)
 
     def __repr__(self) -> str:
         kind = "curve" if self.area is None else "closed curve"
@@ -100,7 +103,9 @@ def _region(method: Method, level: float) -> Region:
         beyond = 1 + (MARGIN if bounded else GOES_ON)
         boundary = boundary_curves(across, beyond * view[0][1], beyond * view[1][1])
         before, extent = extent, _extent(across, upwards)
-    return Region(method, level, area, error, extent, view, boundary, tuple(across.islands()))
+    goes_right, goes_up = (isinf(high) for _, high in extent or ((0.0, 0.0), (0.0, 0.0)))
+    near = (goes_up and _approached(across), goes_right and _approached(upwards))
+    return Region(method, level, area, error, extent, view, boundary, tuple(across.islands()), near)
 
 
 def _extent(across: Lines, upwards: Lines) -> Extent | None:
@@ -160,6 +165,13 @@ def _in_view(lines: Lines, ends: tuple[float, float]) -> tuple[float, float]:
         return ends
     changes = [place for strip in lines.strips() for place in (strip.places[0], strip.places[-1])]
     return 0.0, max([USUAL_SIZE, *(place for place in changes if place <= LARGEST_VIEW)])
+
+
+def _approached(lines: Lines) -> bool:
+    """Return whether the region comes near its last line only far out."""
+    last = max(strip.places[-1] for strip in lines.region())
+    lows = [strip.ends[-1, 0] for strip in lines.region() if strip.places[-1] == last]
+    return bool(last < max(lines.found) and min(lows) > FAR)
 
 
 def check_level(level: float) -> None:

@@ -33,3 +33,18 @@ def test_the_tables_of_a_map_and_of_compared_boundaries(tmp_path: Path) -> None:
     with (tmp_path / "compare_B4.csv").open(encoding="utf-8") as file:
         drawn = [[float(row["alpha_hat"]), float(row["beta_hat"])] for row in csv.DictReader(file)]
     assert drawn == np.concatenate(region(lookup("B4"), 0.9).boundary).tolist()
+
+
+def test_a_method_whose_region_only_comes_near_its_largest_beta_hat_far_out_says_so(tmp_path: Path) -> None:
+    """Stable where 2 beta_hat < alpha_hat (4 - beta_hat) < 8, from its characteristic polynomial."""
+    update = {
+        "x1": "x0 + v0 + 1/2 first",
+        "v1": "v0 + second",
+        "first": "acceleration(x0, 1/2 v0 + 1/2 v1)",
+        "second": "acceleration(x0, v0)",
+    }
+    (tmp_path / "own.toml").write_text(
+        "\n".join(["[update]", *(f'{name} = "{text}"' for name, text in update.items())])
+    )
+    assert "\napproached far out  the largest β̂\n" in run("region --method own.toml --figure none").stdout
+    assert "approached" not in run("region --method verlet-implicit --figure none").stdout

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.cli.running import arrays, rows, run
+from tests.cli.running import DATA, arrays, rows, run
 
 NOTHING = "--figure none --table none"
 
@@ -18,6 +18,12 @@ def test_simulate_writes_the_history_that_its_row_sums_up(tmp_path: Path) -> Non
     assert history["c_1"][0] == pytest.approx(1e-4, rel=1e-2)  # to first order in the perturbation
     assert row["c_max"] == pytest.approx(max(np.abs(history[f"c_{i}"]).max() for i in range(1, 5)))
     assert {"crank.theta", "d/dt slider.x", "cdot_4", "lambda_1", "energy"} <= set(history)
+
+
+def test_a_run_without_any_error_is_drawn_without_a_warning() -> None:
+    result = run(f"simulate --time 0.01 --scene {DATA / 'plumb.toml'}")
+    assert "largest |c| is 0.0e+00" in result.stdout
+    assert result.stderr == "wrote simulate_plumb_B4.png\n"
 
 
 def test_a_run_that_fails_is_status_three_with_its_time_and_keeps_the_history(tmp_path: Path) -> None:

@@ -69,6 +69,7 @@ TWO_EVALUATIONS = {
 def test_extents_in_closed_form(method: Method, level: float, extent: tuple[float, ...]) -> None:
     shape = region(method, level)
     assert np.ravel(np.array(shape.extent)) == pytest.approx(np.array(extent), rel=1e-8, abs=1e-9)
+    assert shape.approached == (False, method.name == "two evaluations")
     assert shape.bounded is (inf not in extent)
     assert (shape.area is None) is not shape.bounded
     for (low, high), end in zip(window(shape), extent[1::2], strict=True):
