@@ -13,7 +13,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.path import Path
 from matplotlib.patheffects import AbstractPathEffect, withStroke
+from matplotlib.text import Text
 from matplotlib.ticker import MultipleLocator
+from matplotlib.transforms import Bbox
 
 from bezstab.methods.schemes import Method
 from bezstab.regions.answer import Drawing, MapAnswer, MapConditions
@@ -256,11 +258,27 @@ def _motion_map_figure(answer: MapAnswer, omega_h: float) -> Figure:
             _level_line(axes, x, y, z_abs, level, f"$|z_p| = {level:.4g}$", DASHES[number % 4])
         _draw_points(answer, axes)
         _say_what_is_missing(axes, axes.lines, answer.reason)
+        labels: list[Text] = []
         for lines, form in contours:
-            for text in axes.clabel(lines, fmt=form, fontsize=6, colors="black", inline=False):
-                box = {"boxstyle": "round,pad=0.1", "facecolor": "white", "edgecolor": "none"}
-                text.set(rotation=0, bbox=box, clip_on=False, zorder=BELOW_MARKERS)
-        return with_legend(figure, facecolor="0.75")
+            labels += axes.clabel(lines, fmt=form, fontsize=6, colors="black", inline=False)
+        for text in labels:
+            box = {"boxstyle": "round,pad=0.1", "facecolor": "white", "edgecolor": "none"}
+            text.set(rotation=0, bbox=box, clip_on=False, zorder=BELOW_MARKERS)
+        with_legend(figure, facecolor="0.75")
+        _keep_apart(figure, labels)
+        return figure
+
+
+def _keep_apart(figure: Figure, labels: Sequence[Text]) -> None:
+    """Remove each label that would lie on one before it."""
+    figure.draw_without_rendering()  # which gives the axes their place
+    kept: list[Bbox] = []
+    for label in labels:
+        place = label.get_window_extent()
+        if place.count_overlaps(kept):
+            label.remove()
+        else:
+            kept.append(place)
 
 
 def _mesh(axes: Axes, x: FloatArray, y: FloatArray, z_abs: FloatArray, **colours: Any) -> QuadMesh:

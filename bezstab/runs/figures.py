@@ -143,11 +143,7 @@ def work_precision_figure(swept: SweptRuns, scene: str, error: ErrorOf) -> Figur
                 axes.tick_params(labelbottom=True)
                 if columns < MOST_COLUMNS or place % columns == columns // 2:
                     axes.set_xlabel(COST_LABELS[swept.against])
-        low, high = np.log10(panels[0].get_xlim())
-        if math.floor(high) - math.ceil(low) < 1:  # one power of ten: matplotlib's labels beside it would run together
-            costs = [run.cost(swept.against) for run in runs]
-            panels[0].xaxis.set(major_locator=FixedLocator([min(costs), max(costs)]), minor_formatter=NullFormatter())
-            panels[0].xaxis.set_major_formatter(lambda cost, _: f"{float(f'{cost:.2g}'):g}")
+        _label_costs_apart(swept, panels[0])
         figure.suptitle(title_lines(scene))
         figure.supylabel(ERROR_LABELS[error], fontsize=8)
         others = [Line2D([0], [0], label="the other methods", **OTHERS)] if len(methods) > 1 else []
@@ -191,12 +187,22 @@ def projection_figure(swept: SweptRuns, scene: str) -> Figure:
             axes.set(xscale="log", yscale="log", xlabel=COST_LABELS[swept.against], ylabel=ERROR_LABELS[error])
             _say_what_is_missing(axes, missing)
             axes.label_outer()
+        _label_costs_apart(swept, panels[0])
         handles = [Line2D([], [], label=method.name, **line_at(place)) for place, method in enumerate(methods)]
         for name, marker in ways.values():
             handles.append(Line2D([], [], color="0.3", linestyle="none", markersize=3.5, label=name, **marker))
         handles += _draw_cheapest(swept, panels[0])
         figure.suptitle(title_lines(scene))
         return with_legend(figure, handles=handles)
+
+
+def _label_costs_apart(swept: SweptRuns, axes: Axes) -> None:
+    """Label the least and the largest cost where there is one power of ten: matplotlib's labels would run together."""
+    low, high = np.log10(axes.get_xlim())
+    if math.floor(high) - math.ceil(low) < 1:
+        costs = [run.cost(swept.against) for run in swept.runs]
+        axes.xaxis.set(major_locator=FixedLocator([min(costs), max(costs)]), minor_formatter=NullFormatter())
+        axes.xaxis.set_major_formatter(lambda cost, _: f"{float(f'{cost:.2g}'):g}")
 
 
 def _held(run: Run) -> tuple[str, bool]:

@@ -147,6 +147,18 @@ def test_each_contour_is_where_the_error_is_its_power_of_ten_and_every_second_is
     assert np.median(abs(spectral_radius(lookup("RK4"), *np.asarray(path.vertices).T) - 0.99)) < 1e-3
 
 
+def test_labels_of_contours_stand_apart() -> None:
+    """Where gain turns into loss at once, lines of both run side by side; RK4's +10^-10 and -10^-10 do."""
+    answer = map_answer(lookup("RK4"), map_conditions(points=21, energy=True), drawn=True)
+    assert answer.drawing
+    growth = np.tile(np.sinh(np.linspace(-20, 20, 21)) * 1e-12, (21, 1))
+    figure = map_figure(replace(answer, drawing=replace(answer.drawing, growth=growth)))
+    figure.draw_without_rendering()
+    places = [text.get_window_extent() for text in figure.axes[0].texts]
+    assert len(places) > 1
+    assert not any(place.count_overlaps(places[:number]) for number, place in enumerate(places))
+
+
 def test_energy_is_kept_on_the_line_that_says_so() -> None:
     """Of symplectic Euler it is to first order in h beta^2 = omega^2 - 4 alpha^2: b = (omega h)^2 - a^2."""
     contours = drawn_map("SYM", energy=True, points=61).collections
