@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from bezstab.cli.asking import say_what_is_left_out
 from bezstab.cli.output import say, show_text
-from bezstab.feedback.conditions import Conditions, Given
+from bezstab.feedback.conditions import Conditions
 from bezstab.feedback.judgement import Judgement
 from bezstab.words import point_words
 
@@ -16,10 +16,10 @@ def show_point(judged: Sequence[Judgement]) -> None:
         show_text(f"{point_words(first.alpha_hat, first.beta_hat, first.h)}\n")
 
 
-def say_what_the_engine_did(given: Given, asked: Conditions) -> None:
+def say_what_the_engine_did(asked: Conditions) -> None:
     """Say on standard error what an engine did to its values, and what the conversion leaves out; else nothing."""
-    if asked.engine is None:
+    if asked.engine is None or asked.made is None:
         return
-    for note in given.made.notes or ():
+    for note in asked.made.notes or ():
         say(f"{asked.engine.name}: {note} (--as-typed leaves that out)")
     say_what_is_left_out(asked.engine, many=asked.swept is not None)

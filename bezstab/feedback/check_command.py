@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
@@ -14,8 +15,6 @@ from bezstab.cli.options import SECONDS, EngineValues, TypedPoint
 from bezstab.cli.output import for_reading, show_answers, show_text, worked_out
 
 if TYPE_CHECKING:
-    from bezstab.feedback.checking import CheckAnswer
-    from bezstab.feedback.choosing import ChooseAnswer
     from bezstab.methods.schemes import Method
 
 
@@ -64,20 +63,20 @@ def check(
 
     from bezstab.feedback import beside, columns, sentences
     from bezstab.feedback.checking import checks
-    from bezstab.feedback.conditions import Setup, conditions, given_feedback
+    from bezstab.feedback.conditions import Setup, conditions
     from bezstab.feedback.largest_steps import step_answer
     from bezstab.questions.methods import methods_for
 
     typed, (named, values) = TypedPoint(alpha, beta, physical), engine or (None, None)
-    setup = Setup(engine=named, **simulation)
+    setup = Setup(engine=named, values=values, as_typed=as_typed, **simulation)
     if physical and typed.numbers and setup.h is None and not (engine or setup.scene or setup.omega):
         found = [step_answer(method, *typed.numbers) for method in methods_for(methods, None)]
         show_answers(columns.STEPS, found)
         return all(found)
-    given = given_feedback(setup, typed.at(setup.h), values, as_typed=as_typed)
-    methods, asked = methods_for(methods, named), worked_out(lambda: conditions(setup), simulation["scene"])
+    setup = replace(setup, point=typed.at(setup.h))
+    asked = worked_out(lambda: conditions(setup), simulation["scene"])
     say_each(asked.warnings)
-    answers = checks(methods, given, asked, instead=instead or None)
+    answers = checks(methods, asked, instead=instead or None)
     say_if_units_were_mistaken(methods, typed, setup.h)
     better = [each.instead for each in answers if each.instead is not None]
     if for_reading():
@@ -93,10 +92,9 @@ def check(
         if every_column and not asked.motion.assumed:
             show_sentences([sentences.motion_words(asked.motion)])
     else:
-        both: list[CheckAnswer | ChooseAnswer] = [*answers, *better]
-        show_answers(columns.CHECKED, both)
+        show_answers(columns.CHECKED, [*answers, *better])
     say_each(each.instead_reason and f"nothing instead: {each.instead_reason}" for each in answers)
     say_each(each.cost_reason for each in answers)
     if for_reading():
-        beside.say_what_the_engine_did(given, asked)
+        beside.say_what_the_engine_did(asked)
     return all(answers)

@@ -1,24 +1,15 @@
 """Is this feedback safe, and what does it cost? A point of yours, or an engine's own values, judged.
 
-methods, Given, Conditions   →   checks   →   CheckAnswer, by method and point
+methods, Conditions   →   checks   →   Judgement, by method and point
 """
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import replace
 
 from bezstab.arguments import Number, in_keywords, plane_point
 from bezstab.engines.engine_list import engine_and_values
 from bezstab.errors import InputError, NumericalError
-from bezstab.feedback.choosing import ChooseAnswer, Wish, check_motion, choose_answer
-from bezstab.feedback.conditions import (
-    AS_GIVEN,
-    Conditions,
-    Given,
-    conditions,
-    for_choosing,
-    given_feedback,
-    setup_in_python,
-)
+from bezstab.feedback.choosing import Wish, check_motion, choose_answer
+from bezstab.feedback.conditions import AS_GIVEN, Conditions, conditions, for_choosing, setup_in_python
 from bezstab.feedback.judgement import Judgement, judge
 from bezstab.feedback.sentences import judgement_sentence
 from bezstab.mechanism.scenes import Scene
@@ -26,22 +17,7 @@ from bezstab.methods.registry import method as method_named
 from bezstab.methods.schemes import Method
 from bezstab.questions.methods import methods_for, usual_goal
 from bezstab.stability.choices import USUAL_SPREAD, describe_point
-
-
-@dataclass(frozen=True, kw_only=True, repr=False)
-class CheckAnswer(Judgement):
-    """A point that was given, judged.
-
-    instead: what `choose` gives in its place; None unless asked for, and where there is none: `instead_reason` says
-    why. sentence: the answer in words.
-    """
-
-    instead: ChooseAnswer | None
-    instead_reason: str | None
-    sentence: str
-
-    def __repr__(self) -> str:
-        return f"{self.sentence} [{self.method.name}, {self.goal}, |z_p| = {abs(self.pole):.6g}]"
+from bezstab.stability.closed_loop import poles
 
 
 @in_keywords()
@@ -65,7 +41,7 @@ def check(
     margins: bool = True,
     cost: bool = True,
     instead: bool = False,
-) -> CheckAnswer:
+) -> Judgement:
     """Return whether a feedback of your own is safe, how fast errors decay, and how far alpha, beta and h may go.
 
     Parameters
@@ -94,7 +70,7 @@ def check(
 
     Returns
     -------
-    CheckAnswer
+    Judgement
         True if safe. `sentence` says it in words, `verdict` is proven. Of several points that an engine makes of its
         values, the first that is not safe.
 
@@ -111,56 +87,62 @@ def check(
     """
     named, values = (None, None) if engine is None else engine_and_values(engine)
     setup = setup_in_python(
-        named, scene, speed, spread, h=h, omega=omega, omega_h=omega_h, duration=duration, load=load
+        scene,
+        speed,
+        spread,
+        {"h": h, "omega": omega, "omega_h": omega_h, "duration": duration, "load": load},
+        engine=named,
+        point=plane_point(alpha_hat, beta_hat, alpha, beta, h, needed=named is None),
+        values=values,
+        as_typed=as_typed,
+        margins=margins,
+        cost=cost,
     )
-    point = plane_point(alpha_hat, beta_hat, alpha, beta, h, needed=named is None)
-    given = given_feedback(setup, point, values, as_typed=as_typed)
-    methods = methods_for(() if method is None else (method_named(method),), named)
-    found = checks(methods, given, conditions(setup), margins=margins, cost=cost, instead=instead)
+    found = checks(() if method is None else (method_named(method),), conditions(setup), instead=instead)
     return next((answer for answer in found if not answer.safe), found[0])
 
 
-def checks(
-    methods: Sequence[Method],
-    given: Given,
-    asked: Conditions,
-    *,
-    margins: bool = True,
-    cost: bool = True,
-    instead: bool | None = False,
-) -> list[CheckAnswer]:
-    """Return the answer of each method for the point, and for those that an engine also takes; errors as `judge`.
+def checks(methods: tuple[Method, ...], asked: Conditions, *, instead: bool | None = False) -> list[Judgement]:
+    """Return the answer of each method, else of the engine's own, for the point, and for those that it also takes.
 
     What to take instead stands in the first answer of a method: if asked for, and with None where one of the method's
-    answers is not safe.
+    answers is not safe. InputError without a point, and as `methods_for`; else errors as `judge`.
     """
+    if asked.made is None:
+        raise InputError("a point is needed: --alpha with --beta, or --engine")
     found = []
-    for method in methods:
+    for method in methods_for(methods, asked.engine):
         judged = [
-            judge(
-                asked,
-                describe_point(method, label, *point, asked.spread),
-                "given",
-                given,
-                margins=margins,
-                cost=cost,
-            )
-            for label, point in ((AS_GIVEN, given.made.point), *given.made.also)
+            judge(asked, describe_point(method, label, *point, asked.spread), "given")
+            for label, point in ((AS_GIVEN, asked.made.point), *asked.made.also)
         ]
-        better, reason = None, None
         if instead or (instead is None and not all(judged)):
             try:
-                better = _instead(method, asked)
+                judged[0] = replace(judged[0], instead=_instead(method, asked))
             except (InputError, NumericalError) as error:  # the verdict stands without it
-                reason = str(error)
-        for each in judged:
-            sentence = judgement_sentence(each)
-            found.append(CheckAnswer(**vars(each), instead=better, instead_reason=reason, sentence=sentence))
-            better, reason = None, None
+                judged[0] = replace(judged[0], instead_reason=str(error))
+        found += [replace(each, sentence=judgement_sentence(each)) for each in judged]
     return found
 
 
-def _instead(method: Method, asked: Conditions) -> ChooseAnswer:
+def poles_at(methods: tuple[Method, ...], asked: Conditions, *, every: bool = False) -> list[Judgement]:
+    """Return the point that is given, judged, with the dominant pole of each method, or with each of them in turn.
+
+    Of a pair the upper one stands for both. Errors as `judge`.
+    """
+    dominant = [each for each in checks(methods, asked) if each.goal == AS_GIVEN]
+    if not every:
+        return dominant
+    part = "Each step multiplies this pole's part of the error by |z|."
+    return [
+        replace(each, pole=complex(z), sentence=f"{each.method.name} {each.verdict}. {part}")
+        for each in dominant
+        for z in poles(each.method, each.alpha_hat, each.beta_hat)
+        if z.imag >= 0
+    ]
+
+
+def _instead(method: Method, asked: Conditions) -> Judgement:
     """Return what `choose` gives for the same conditions by its usual goal.
 
     InputError where nothing is stable or the engine cannot express it, NumericalError where it cannot be found.

@@ -75,18 +75,15 @@ def choose(
     from bezstab.feedback.largest_steps import step_answer
     from bezstab.rationals import exact
 
-    setup = Setup(**simulation)
+    whole = simulation["h"] is not None
+    setup = Setup(margins=whole, cost=whole, **simulation)
     methods, wish, asked = worked_out(
         lambda: asked_to_choose(methods, setup, goal, settle=settle, equal=bool(equal), sag=sag), simulation["scene"]
     )
     if asked.h is None:
         raise click.MissingParameter(param_hint="'--h'", param_type="option")
     say_each(asked.warnings)
-    whole = setup.h is not None
-    answers = (
-        choose_answer(method, wish, asked, margins=whole, cost=whole, trades=whole and for_reading())
-        for method in methods
-    )
+    answers = (choose_answer(method, wish, asked, trades=whole and for_reading()) for method in methods)
     chosen = list(progress(answers, wish.goal, len(methods)))
     if not whole:
         at_any_step = [step_answer(each.method, exact(each.alpha or 0), exact(each.beta or 0)) for each in chosen]

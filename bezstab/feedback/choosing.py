@@ -1,6 +1,6 @@
 """Which alpha and beta to take: the point that a goal asks for, judged, and what faster or slower decay would change.
 
-method, Wish (a goal), Conditions   →   choose_answer   →   ChooseAnswer
+method, Wish (a goal), Conditions   →   choose_answer   →   Judgement
 """
 
 from collections.abc import Iterator
@@ -13,7 +13,7 @@ from bezstab.engines.conversions import READ_BACK, Curve, Engine
 from bezstab.engines.engine_list import engine_named
 from bezstab.errors import InputError, NumericalError
 from bezstab.feedback.conditions import Conditions, Setup, at_step, conditions, for_choosing, setup_in_python
-from bezstab.feedback.judgement import Judgement, Role, judge
+from bezstab.feedback.judgement import Alternative, Judgement, Role, judge
 from bezstab.feedback.sentences import judgement_sentence, trials_words
 from bezstab.goals import SETTLING, UP_TO_LONGEST, Goal, one_of
 from bezstab.mechanism.scenes import Scene
@@ -54,37 +54,6 @@ class Wish:
     sag: Fraction | None = None
 
 
-@dataclass(frozen=True)
-class Alternative:
-    """Another choice: the goal and the time to settle (s) that give it, its |z_p|, and its errors.
-
-    These are the errors of constraint and velocity over those of the choice that it is an alternative to.
-    """
-
-    goal: Goal
-    settle: Fraction | None
-    z_abs: float
-    times_the_errors: tuple[float, float]
-
-
-@dataclass(frozen=True, kw_only=True, repr=False)
-class ChooseAnswer(Judgement):
-    """The point that a goal asks for, judged.
-
-    safe_with: the option with which a choice is safe that is not. trials: the runs of a scene that found the point;
-    None where a goal alone did. trades: what faster or slower decay would change; None unless asked for, and where
-    errors are not known. sentence: the answer in words.
-    """
-
-    safe_with: str | None
-    trials: Trials | None
-    trades: tuple[Alternative, ...] | None
-    sentence: str
-
-    def __repr__(self) -> str:
-        return f"{self.sentence} [{self.method.name}, {self.goal}, |z_p| = {abs(self.pole):.6g}]"
-
-
 @in_keywords()
 def choose(
     method: str | Method | None = None,
@@ -106,7 +75,7 @@ def choose(
     margins: bool = True,
     cost: bool = True,
     trades: bool = False,
-) -> ChooseAnswer:
+) -> Judgement:
     """Return the alpha and beta to use: the point that a goal asks for, proven stable, with its margins.
 
     Parameters
@@ -145,7 +114,7 @@ def choose(
 
     Returns
     -------
-    ChooseAnswer
+    Judgement
         `alpha_hat` and `beta_hat` dimensionless, `alpha` and `beta` in 1/s, `pole`, `margins`, `safe`, `sentence`.
 
     Raises
@@ -159,14 +128,19 @@ def choose(
     ----------
     The poles of the paper's Eq. 17; the goals are this package's.
     """
-    named = None if engine is None else engine_named(engine)
     setup = setup_in_python(
-        named, scene, speed, spread, h=h, h_max=h_max, omega=omega, omega_h=omega_h, duration=duration, load=load
+        scene,
+        speed,
+        spread,
+        {"h": h, "h_max": h_max, "omega": omega, "omega_h": omega_h, "duration": duration, "load": load},
+        engine=None if engine is None else engine_named(engine),
+        margins=margins,
+        cost=cost,
     )
     given = () if method is None else (method_named(method),)
     within, at_most = exact_or_none(settle, "settle"), exact_or_none(sag, "sag")
     methods, wish, asked = asked_to_choose(given, setup, goal, settle=within, equal=equal, sag=at_most)
-    return choose_answer(methods[0], wish, asked, margins=margins, cost=cost, trades=trades)
+    return choose_answer(methods[0], wish, asked, trades=trades)
 
 
 def asked_to_choose(
@@ -246,10 +220,8 @@ def choose_answer(
     asked: Conditions,
     role: Role = "chosen",
     *,
-    margins: bool = True,
-    cost: bool = True,
     trades: bool = False,
-) -> ChooseAnswer:
+) -> Judgement:
     """Return the point that a goal asks for, judged; errors as `choose`."""
     alone, swept = _chosen_alone(method, wish, asked), _limiting(wish, asked)
     chosen = found = _limited(alone, swept, asked)
@@ -259,13 +231,13 @@ def choose_answer(
     if trials:
         found = describe_point(method, wish.goal, *trials.point, asked.spread)
         found = replace(found, searched=chosen.searched)
-    judged = judge(asked, found, role, margins=margins, cost=cost)
+    judged = judge(asked, found, role)
     if trials and not judged.safe:
-        trials, judged = None, judge(asked, chosen, role, margins=margins, cost=cost)
+        trials, judged = None, judge(asked, chosen, role)
     by_goal = wish.sag is None
     safe_with = _safe_with(judged, wish) if role == "chosen" and by_goal and not judged.safe else None
-    return ChooseAnswer(
-        **vars(judged),
+    return replace(
+        judged,
         safe_with=safe_with,
         trials=trials,
         trades=_trades(judged, wish) if trades and by_goal else None,
@@ -387,7 +359,7 @@ def _safe_with(judged: Judgement, wish: Wish) -> str | None:
 
     None, too, past a singular configuration: no run decides there.
     """
-    asked = judged.conditions
+    asked = replace(judged.conditions, margins=False, cost=False)
     if judged.run and not judged.run.decides:
         return None
     tried = [("--goal robust", Wish("robust", None, wish.equal), asked)]
@@ -396,7 +368,7 @@ def _safe_with(judged: Judgement, wish: Wish) -> str | None:
         tried += [(f"--h {typed_number(h)}", wish, at_step(asked, h)) for h in steps]
     for option, other, there in tried:
         with suppress(InputError, NumericalError):  # what cannot be found is not safe
-            if judge(there, _chosen(judged.method, other, there), "chosen", margins=False, cost=False).safe:
+            if judge(there, _chosen(judged.method, other, there), "chosen").safe:
                 return option
     return None
 

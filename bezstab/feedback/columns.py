@@ -4,8 +4,6 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-from bezstab.feedback.checking import CheckAnswer
-from bezstab.feedback.choosing import ChooseAnswer
 from bezstab.feedback.judgement import Judgement
 from bezstab.feedback.largest_steps import StepAnswer, limit_words
 from bezstab.feedback.sentences import sag_words
@@ -228,13 +226,13 @@ JUDGED: Sequence[Column[Judgement]] = (
 )
 
 
-CHECKED: Sequence[Column[CheckAnswer | ChooseAnswer]] = (
+CHECKED: Sequence[Column[Judgement]] = (
     *JUDGED,
     Column("", "applied", lambda answer: answer.applied, "what the engine does to its values before it uses them"),
     SENTENCE,
 )
 
-CHOSEN: Sequence[Column[ChooseAnswer]] = (
+CHOSEN: Sequence[Column[Judgement]] = (
     *JUDGED,
     SENTENCE,
 )
@@ -252,9 +250,9 @@ WITH_A_POLE = {
 }
 """Keys of a judged point that are printed with its poles, and whether without --all, too."""
 
-POLES: Sequence[Column[CheckAnswer]] = (
+POLES: Sequence[Column[Judgement]] = (
     *(replace(each, brief=WITH_A_POLE[each.key]) for each in JUDGED if each.key in WITH_A_POLE),
-    *of_part(CheckAnswer, lambda answer: answer.pole, [replace(each, brief=True) for each in POLE]),
+    *of_part(Judgement, lambda answer: answer.pole, [replace(each, brief=True) for each in POLE]),
     SENTENCE,
 )
 
@@ -275,7 +273,7 @@ STEPS: Sequence[Column[StepAnswer]] = (
 )
 
 
-def trade_words(answer: ChooseAnswer) -> Iterator[str]:
+def trade_words(answer: Judgement) -> Iterator[str]:
     """Yield how long a disturbance of a choice lasts, and what faster or slower decay would change."""
     if answer.goal == "accurate":
         yield (

@@ -1,9 +1,9 @@
 """What is asked about: the feedback that is given, if one is, and your simulation as far as an answer depends on it.
 
-h, engine, scene, omega, ...   →   Setup         →   conditions   →   Conditions
-a point, or an engine's values →   given_feedback   →   Given
+h, engine, scene, omega, ..., a point or an engine's values   →   Setup   →   conditions   →   Conditions
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
@@ -32,12 +32,16 @@ AS_GIVEN = "as given"
 
 @dataclass(frozen=True, kw_only=True)
 class Setup:
-    """Your simulation as it was given, checked when made.
+    """A question as it was given, checked when made.
 
     h: the step; h_max: the longest that may occur (s). omega: the rate of the motion (1/s); omega_h: the same in rad a
     step. scene, speed: the mechanism that moves, so many times as fast; duration: how long (s) it is to run, None for
     as long as is usual. spread: the share by which alpha and beta may be off. load: a steady one, as the acceleration
-    that it would give an error that nothing holds (m/s^2 or rad/s^2). InputError for what does not go together.
+    that it would give an error that nothing holds (m/s^2 or rad/s^2).
+
+    point: the feedback that is judged, alpha_hat and beta_hat; values: those of the engine in its place, without its
+    clamps if `as_typed`. margins, cost: whether to find how far alpha, beta and h may go, and the errors on the motion.
+    InputError for what does not go together.
     """
 
     h: Fraction | None = None
@@ -50,6 +54,11 @@ class Setup:
     duration: Fraction | None = None
     spread: float = USUAL_SPREAD
     load: Fraction | None = None
+    point: Point | None = None
+    values: tuple[Fraction, ...] | None = None
+    as_typed: bool = False
+    margins: bool = True
+    cost: bool = True
 
     def __post_init__(self) -> None:
         for name, step in (("h", self.h), ("h_max", self.h_max)):
@@ -63,60 +72,39 @@ class Setup:
             raise InputError(f"--time {float(self.duration):g} s: expected {least}")
         if self.load is not None and self.engine is None:
             raise InputError("--load needs --engine: a hard constraint holds any load without an offset")
+        if self.as_typed and self.values is None:
+            raise InputError("--as-typed needs --engine: it leaves out what that engine does to its values")
+        if self.values is not None and self.point is not None:
+            raise InputError("--engine takes the place of --alpha, --beta and --physical")
+        if self.values is not None and self.h is None:
+            raise InputError("--engine needs --h: the step in s")
 
 
 def setup_in_python(
-    engine: Engine | None, scene: str | Scene | None, speed: Number, spread: Number, **others: Number | None
+    scene: str | Scene | None, speed: Number, spread: Number, numbers: Mapping[str, Number | None], **others: Any
 ) -> Setup:
     """Return a setup from the arguments of a function in Python, its numbers read exactly."""
-    exact: dict[str, Any] = {name: exact_or_none(value, name) for name, value in others.items()}
+    exact: dict[str, Any] = {name: exact_or_none(value, name) for name, value in numbers.items()}
     return Setup(
-        engine=engine,
         scene=None if scene is None else scene_named(scene),
         speed=exact_number(speed, "speed"),
         spread=real_number(spread, "spread"),
         **exact,
+        **others,
     )
-
-
-@dataclass(frozen=True)
-class Given:
-    """The feedback that is judged: its point, and those that count as well.
-
-    values: those of an engine that makes these points of them, without its clamps if `as_typed`; else None.
-    """
-
-    made: Applied
-    values: tuple[Fraction, ...] | None = None
-    as_typed: bool = False
-
-
-def given_feedback(
-    setup: Setup, point: Point | None, values: tuple[Fraction, ...] | None, *, as_typed: bool = False
-) -> Given:
-    """Return the feedback that is judged; InputError unless it is either a point or the values of an engine."""
-    if as_typed and values is None:
-        raise InputError("--as-typed needs --engine: it leaves out what that engine does to its values")
-    if values is not None and point is not None:
-        raise InputError("--engine takes the place of --alpha, --beta and --physical")
-    if point is not None:
-        return Given(Applied(point, None))
-    if values is None or setup.engine is None:
-        raise InputError("a point is needed: --alpha with --beta, or --engine")
-    if setup.h is None:
-        raise InputError("--engine needs --h: the step in s")
-    return Given(setup.engine.applied(values, setup.h, as_typed=as_typed), values, as_typed)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Conditions(Setup):
-    """What answers depend on beside the feedback; made by `conditions`.
+    """What answers depend on; made by `conditions`.
 
+    made: the point that is judged, and those that count as well where an engine makes them; None if one is chosen.
     motion: the motion on which errors are told. mechanism: that of the scene; swept: the constraints over
     which the engine sweeps; None for one alone, and if it is not known how it sweeps. warnings: what is to be known
     before any answer.
     """
 
+    made: Applied | None
     motion: ReferenceMotion
     mechanism: Mechanism | None
     swept: SweptConstraints | None
@@ -128,7 +116,9 @@ def conditions(setup: Setup) -> Conditions:
 
     InputError as `motion_of` and `mechanism_of`.
     """
-    h = setup.h
+    h, made = setup.h, None if setup.point is None else Applied(setup.point, None)
+    if setup.engine and setup.values is not None and h:
+        made = setup.engine.applied(setup.values, h, as_typed=setup.as_typed)
     mechanism = mechanism_of(setup.scene, setup.speed, h)
     swept = _swept(setup, mechanism) if mechanism else None
     try:
@@ -139,6 +129,7 @@ def conditions(setup: Setup) -> Conditions:
         motion = motion_of(None, None, h, setup.h_max)  # the sweeps are what is asked about
     return Conditions(
         **vars(setup),
+        made=made,
         motion=motion,
         mechanism=mechanism,
         swept=swept,
@@ -147,8 +138,8 @@ def conditions(setup: Setup) -> Conditions:
 
 
 def for_choosing(asked: Conditions) -> Conditions:
-    """Return the same with USUAL_CHAIN to sweep over, where the engine sweeps and nobody says over what."""
-    return replace(asked, swept=asked.swept or _swept(asked, asked.mechanism))
+    """Return the same for other values: with USUAL_CHAIN where the engine sweeps and nobody says over what."""
+    return replace(asked, as_typed=False, swept=asked.swept or _swept(asked, asked.mechanism))
 
 
 def at_step(asked: Conditions, h: Fraction) -> Conditions:

@@ -1,20 +1,21 @@
 """One method at one point, judged: does an error die, how large does it stay, what does it do to the motion?
 
-stability.choices.Choice (a point with its proven verdict), Conditions, Given   →   judge   →   Judgement
+stability.choices.Choice (a point with its proven verdict), Conditions   →   judge   →   Judgement
 """
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Literal
 
 from bezstab.errors import InputError, NumericalError
-from bezstab.feedback.conditions import AS_GIVEN, Conditions, Given
+from bezstab.feedback.conditions import AS_GIVEN, Conditions
+from bezstab.goals import Goal
 from bezstab.questions.chains import ALONE, SweptAnswer
 from bezstab.questions.energy import EnergyRate, energy_rate, impedance
 from bezstab.questions.motions import turning_rate
 from bezstab.questions.scene_runs import SceneRun, scene_run
+from bezstab.questions.trial_runs import Trials
 from bezstab.rationals import rational
 from bezstab.stability.choices import TENTH, Choice, steps_to_settle
 from bezstab.stability.feedback_costs import FeedbackCost, feedback_cost
@@ -27,9 +28,22 @@ Role = Literal["given", "instead", "chosen"]
 """A point was given, or is to be taken instead of a given one, or was chosen by a goal."""
 
 
+@dataclass(frozen=True)
+class Alternative:
+    """Another choice: the goal and the time to settle (s) that give it, its |z_p|, and its errors.
+
+    These are the errors of constraint and velocity over those of the choice that it is an alternative to.
+    """
+
+    goal: Goal
+    settle: Fraction | None
+    z_abs: float
+    times_the_errors: tuple[float, float]
+
+
 @dataclass(frozen=True, kw_only=True, repr=False)
 class Judgement(Choice):
-    """What is known of a method at a point, under the conditions of a question. Complete when made.
+    """What is known of a method at a point, under the conditions of a question. Complete when it is handed out.
 
     goal: what the point was chosen for, or which of an engine's points it is. alpha, beta in 1/s and h, the step (s):
     None without a step. margins: factors on h, alpha and beta; None where the point is not stable, for constraints that
@@ -50,6 +64,15 @@ class Judgement(Choice):
     safe: whether every error is proven to shrink. Of a scene a run must go through as well, with constraints that hold
     and no energy gained; where the bound on the moving mechanism settles nothing, the run decides. For constraints that
     an engine sweeps over this is computed and not proven.
+
+    sentence: the answer in words.
+
+    Of a given point, instead: what is chosen in its place; None unless asked for, and where there is none:
+    instead_reason says why.
+
+    Of a choice, safe_with: the option with which it is safe if it is not. trials: the runs of a scene that found it;
+    None where a goal alone did. trades: what faster or slower decay would change; None unless asked for, and where
+    errors are not known.
     """
 
     role: Role
@@ -74,6 +97,15 @@ class Judgement(Choice):
     applied: str | None
     sag: float | None
     safe: bool
+    sentence: str = ""
+    instead: "Judgement | None" = None
+    instead_reason: str | None = None
+    safe_with: str | None = None
+    trials: Trials | None = None
+    trades: tuple[Alternative, ...] | None = None
+
+    def __repr__(self) -> str:
+        return f"{self.sentence} [{self.method.name}, {self.goal}, |z_p| = {abs(self.pole):.6g}]"
 
     def __bool__(self) -> bool:
         return self.safe
@@ -83,22 +115,16 @@ def judge(
     asked: Conditions,
     choice: Choice,
     role: Role,
-    given: Given | None = None,
-    *,
-    margins: bool = True,
-    cost: bool = True,
 ) -> Judgement:
-    """Return what is known of a point under the conditions of a question; of one that was given, with what it was.
+    """Return what is known of a point under the conditions of a question.
 
     InputError where the engine cannot express a point that was chosen; NumericalError where rounding leaves open
     whether swept errors decay, and as `moving_pole` and `scene_run`.
     """
     method, point, engine = choice.method, choice.point, asked.engine
     h = None if asked.h is None else float(asked.h)
-    setting, values, as_typed = None, None, False
-    if given:
-        values, as_typed = given.values, given.as_typed
-    elif engine and asked.h:
+    setting, values = None, asked.values
+    if engine and asked.h and role != "given":
         setting, values = engine.setting(point, asked.h), tuple(map(rational, engine.values(point, asked.h)))
     swept = asked.swept.answer(values) if asked.swept and values is not None else None
     converges = choice.verdict == "converges"
@@ -109,16 +135,16 @@ def judge(
     moving, run, goes_well = _as_it_moves(asked, choice, swept)
     hard, rate, sag = None, None, None
     if values is not None:
-        hard = impedance(engine, values, at_no_error=choice.goal == AS_GIVEN and not as_typed)
+        hard = impedance(engine, values, at_no_error=choice.goal == AS_GIVEN and not asked.as_typed)
     if converges and h is not None:
         if asked.omega is not None and asked.scene is None:
             rate = energy_rate(method, point, h, float(asked.omega), engine, hard or 1.0)
         if asked.load is not None and engine and asked.h and values is not None:
             sag = abs(offset_at_rest(engine, values, asked.h, asked.load))
     limits, limits_reason, h_limit = None, None, None
-    if margins and converges and not swept:
-        limits, limits_reason, h_limit = _limits(asked, choice, values, as_typed=as_typed)
-    found, reason = _cost(asked, choice, role) if cost else (None, None)
+    if asked.margins and converges and not swept:
+        limits, limits_reason, h_limit = _limits(asked, choice, values)
+    found, reason = _cost(asked, choice, role) if asked.cost else (None, None)
     alpha, beta = alpha_and_beta(*point, asked.h)
     own_step = None if h is None else h * float(method.step_multiple)
     return Judgement(
@@ -142,7 +168,7 @@ def judge(
         swept=swept,
         swept_over=(swept.constraints if swept else ALONE).words if engine and engine.sweeps else None,
         setting=setting,
-        applied=given.made.words if given and engine and choice.goal == AS_GIVEN else None,
+        applied=asked.made.words if asked.made and engine and choice.goal == AS_GIVEN else None,
         sag=sag,
         safe=converges and goes_well and (swept is None or swept.growth.decays),
     )
@@ -179,7 +205,7 @@ def _cost(asked: Conditions, choice: Choice, role: Role) -> tuple[FeedbackCost |
 
 
 def _limits(
-    asked: Conditions, choice: Choice, values: Sequence[Fraction] | None, *, as_typed: bool
+    asked: Conditions, choice: Choice, values: tuple[Fraction, ...] | None
 ) -> tuple[Margins | None, str | None, float | None]:
     """Return how far h, alpha and beta may each go alone, why that is not known, and the largest stable step (s).
 
@@ -194,7 +220,7 @@ def _limits(
     if h is None or engine is None or values is None:
         return margins, reason, margins.h * float(h) if margins and h else None
     limit = largest_stable_step(
-        method, lambda step: engine.applied(tuple(values), step, as_typed=as_typed).points, float(h)
+        method, lambda step: engine.applied(values, step, as_typed=asked.as_typed).points, float(h)
     )
     return margins, reason, math.inf if limit is None else limit
 

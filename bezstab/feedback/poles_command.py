@@ -56,25 +56,33 @@ def poles(
     """
 
     from bezstab.feedback.beside import say_what_the_engine_did, show_point
+    from bezstab.feedback.checking import poles_at
     from bezstab.feedback.columns import POLES
-    from bezstab.feedback.conditions import Setup, conditions, given_feedback
-    from bezstab.feedback.poles import poles_at
+    from bezstab.feedback.conditions import Setup, conditions
     from bezstab.methods.registry import lookup
-    from bezstab.questions.methods import methods_for
     from bezstab.stability.forced_errors import OMEGA_H
 
     typed, (named, values) = TypedPoint(alpha, beta, physical), engine or (None, None)
-    setup = Setup(engine=named, omega_h=OMEGA_H, **simulation)  # no errors on a motion are told
-    if setup.h and not (physical or engine or setup.scene):
+    h = simulation["h"]
+    if h and not (physical or engine or simulation["scene"]):
         raise click.UsageError("--h needs one of --physical, --engine, --scene: α̂ and β̂ have no unit")
-    given = given_feedback(setup, typed.at(setup.h), values, as_typed=as_typed)
+    setup = Setup(
+        engine=named,
+        point=typed.at(h),
+        values=values,
+        as_typed=as_typed,
+        omega_h=OMEGA_H,  # no errors on a motion are told
+        margins=False,
+        cost=False,
+        **simulation,
+    )
     if not methods and named is None:
         methods = tuple(map(lookup, USUAL_METHODS))
-    methods, asked = methods_for(methods, named), worked_out(lambda: conditions(setup), simulation["scene"])
+    asked = worked_out(lambda: conditions(setup), simulation["scene"])
     say_each(asked.warnings)
-    found = poles_at(methods, given, asked, every=all_poles)
-    say_if_units_were_mistaken(methods, typed, setup.h)
+    found = poles_at(methods, asked, every=all_poles)
+    say_if_units_were_mistaken(methods, typed, h)
     show_point(found)
     show_answers(POLES, found)
     if for_reading():
-        say_what_the_engine_did(given, asked)
+        say_what_the_engine_did(asked)

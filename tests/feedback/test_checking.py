@@ -10,15 +10,13 @@ import pytest
 from bezstab.engines.conversions import Point
 from bezstab.engines.engine_list import ENGINES
 from bezstab.feedback import columns
-from bezstab.feedback.checking import CheckAnswer, check, checks
-from bezstab.feedback.choosing import ChooseAnswer
-from bezstab.feedback.conditions import Conditions, Given, Setup, conditions, given_feedback
+from bezstab.feedback.checking import check, checks
+from bezstab.feedback.conditions import Conditions, Setup, conditions
 from bezstab.feedback.judgement import Judgement
 from bezstab.feedback.largest_steps import StepAnswer, largest_step, step_answer
 from bezstab.methods.registry import lookup
 from bezstab.motion.spinning_bodies import spin_change
 from bezstab.questions.energy import engine_energy_rate
-from bezstab.questions.methods import methods_for
 from bezstab.questions.scene_runs import SceneRun
 from bezstab.rationals import rational
 from bezstab.stability.choices import Choice, choose
@@ -32,7 +30,7 @@ AT: dict[str, Any] = {"alpha_hat": ONE, "beta_hat": Fraction(1, 2)}
 
 def test_an_answer_is_complete_when_made() -> None:
     """Nothing of it is computed when it is touched: no property, nothing cached, nothing lazy."""
-    for kind in (Choice, Judgement, CheckAnswer, ChooseAnswer, StepAnswer, Conditions, Given, SceneRun):
+    for kind in (Choice, Judgement, StepAnswer, Conditions, SceneRun):
         assert is_dataclass(kind)
         own = {name for base in kind.__mro__[:-1] for name in vars(base) if not name.startswith("_")}
         assert own <= {field.name for field in fields(kind)}, kind
@@ -68,11 +66,11 @@ def test_instead_is_what_choose_gives() -> None:
     assert "RK4: α = 0.56 ω, β = 0.83 ω, ω the rate of your motion in rad/s" in str(wanting.instead_reason)
 
 
-def all_points(values: str, h: str, **asked: Any) -> list[CheckAnswer]:
+def all_points(values: str, h: str, **asked: Any) -> list[Judgement]:
     """Return the answers for every point that MuJoCo makes of its values."""
-    setup = Setup(h=Fraction(h), engine=ENGINES["mujoco"], **asked)
-    given = given_feedback(setup, None, tuple(map(rational, values.split(","))))
-    return checks(methods_for((), ENGINES["mujoco"]), given, conditions(setup))
+    typed = tuple(map(rational, values.split(",")))
+    asked_of = conditions(Setup(h=Fraction(h), engine=ENGINES["mujoco"], values=typed, **asked))
+    return checks((), asked_of)
 
 
 def test_an_engine_answers_for_every_point_that_it_takes_with_its_impedance_there() -> None:
