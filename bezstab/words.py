@@ -49,18 +49,18 @@ def seconds_words(seconds: float) -> str:
     for least, size, unit in UNITS:
         if least <= rounded < THOUSAND * size:
             return f"{rounded / size:.3g} {unit}"
-    return f"{_three_digits(seconds)} s"
+    return f"{plain(seconds)} s"
 
 
-def growth_words(factor: float) -> str:
-    """Return how far something may grow: 1.32 times."""
-    return f"{_three_digits(factor)} times"
+def plain(number: float, digits: int = 3) -> str:
+    """Return a number to so many digits: 0.25, 17,300, or a power of ten where nobody counts its zeros."""
+    text = f"{number:.{digits}g}"
+    return f"{float(text):,.0f}" if 10**digits <= float(text) < PLAIN else text
 
 
 def times_words(factor: float) -> str:
-    """Return a factor to two digits, as a sentence has it: 0.25, 1.1, 3,400; powers of ten from ten millions on."""
-    digits = f"{factor:.2g}"
-    return f"{float(digits):,.0f}" if 100 <= float(digits) < PLAIN else digits
+    """Return a factor to two digits, as a sentence has it: 0.25, 1.1, 3,400."""
+    return plain(factor, 2)
 
 
 def errors_words(times: tuple[float, float]) -> str:
@@ -75,34 +75,27 @@ def _ratio_words(times: float) -> str:
     return "unchanged" if words == "1" else f"{words} times {'larger' if times > 1 else 'smaller'}"
 
 
-def _three_digits(number: float) -> str:
-    """Return a number to three digits: 0.25, 17,300, or a power of ten where nobody counts its zeros."""
-    digits = f"{number:.3g}"
-    return f"{float(digits):,.0f}" if THOUSAND <= float(digits) < PLAIN else digits
+def change_words(
+    z_abs: float, verdict: str, steps: int | None, step: float | None, what: str = "error", bound: str = ""
+) -> str:
+    """Return what becomes of an error: within how many steps it falls to a thousandth, else what a step does to it.
 
+    An error falls to a thousandth in 0.1 s (10 steps), with so many s a step, if known; or slowly: in 288 s. Where the
+    number of steps is not known, what a step does by its proven verdict: each step multiplies the error by 0.65. Two
+    digits of the modulus, and as many more as it takes to tell it from one. Where rounding has left it on the wrong
+    side of one, the verdict alone.
 
-def decay_words(steps: int, step: float | None, what: str = "error", bound: str = "") -> str:
-    """Return within how many steps (of so many s each, if known) an error, or `what` else, falls to a thousandth.
-
-    An error falls to a thousandth in 0.1 s (10 steps); or slowly: in 288 s. `bound` as for `change_words`.
+    The error, or `what` else: of a damper alone it is the velocity. `bound` says that it is at most, or at least, so
+    much.
     """
-    many = counted(steps, "step") if steps < THOUSAND else f"{_three_digits(steps)} steps"
-    falls = f"{'an error' if what == 'error' else f'the {what}'} falls"
-    if step is None:
-        return f"{falls} to a thousandth in {bound}{many}"
-    seconds = steps * step
-    slowly = "slowly: " if seconds >= SLOWLY else ""
-    return f"{falls} {slowly}to a thousandth in {bound}{seconds_words(seconds)} ({many})"
-
-
-def change_words(z_abs: float, verdict: str, what: str = "error", bound: str = "") -> str:
-    """Return what a step does to an error by its proven verdict: each step multiplies the error by 0.65.
-
-    The error, or `what` else: of a damper alone it is the velocity.
-
-    Two digits of the modulus, and as many more as it takes to tell it from one. Where rounding has left it on the wrong
-    side of one, the verdict alone. `bound` says that it is at most, or at least, so much.
-    """
+    if steps is not None:
+        many = counted(steps, "step") if steps < THOUSAND else f"{plain(steps)} steps"
+        falls = f"{'an error' if what == 'error' else f'the {what}'} falls"
+        if step is None:
+            return f"{falls} to a thousandth in {bound}{many}"
+        seconds = steps * step
+        slowly = "slowly: " if seconds >= SLOWLY else ""
+        return f"{falls} {slowly}to a thousandth in {bound}{seconds_words(seconds)} ({many})"
     if verdict == "marginal":
         return f"the {what} neither shrinks nor grows"
     converges = verdict == "converges"
@@ -112,6 +105,11 @@ def change_words(z_abs: float, verdict: str, what: str = "error", bound: str = "
         return f"the {what} {'shrinks' if converges else 'grows'}, by less at a step than rounding shows"
     digits = next(digits for digits in range(2, MOST_DIGITS + 1) if float(f"{z_abs:.{digits}g}") != 1)
     return f"each step multiplies the {what} by {bound}{z_abs:.{digits}g}"
+
+
+def as_sentence(said: str) -> str:
+    """Return what is said as a sentence: with a capital and a full stop."""
+    return f"{said[0].upper()}{said[1:]}."
 
 
 def counted(number: int, one: str, many: str = "") -> str:

@@ -19,7 +19,7 @@ from bezstab.stability.arrays import FloatArray
 from bezstab.stability.choices import TENTH, steps_to_settle
 from bezstab.stability.sweeps import SlowestMotion
 from bezstab.units import check_step
-from bezstab.words import change_words, counted, decay_words
+from bezstab.words import as_sentence, change_words, counted
 
 SPREAD = 0.1
 """The share by which the setting to paste may be stronger and the chain still be stable."""
@@ -227,15 +227,15 @@ def _setting(swept: SweptConstraints) -> str | None:
 def _sentence(answer: ChainAnswer) -> str:
     """Return whether a chain is stable, how fast its errors fall or grow, and from how many sweeps it is stable."""
     judged = f"{answer.engine.name}, {answer.links.words}, {counted(answer.iterations, 'sweep')}"
-    change = change_words(answer.z_abs, "converges" if answer.safe else "diverges")
+    change = change_words(
+        answer.z_abs, "converges" if answer.safe else "diverges", answer.settle_steps, float(answer.h)
+    )
     if not answer.safe and len(answer.growing) > 1:
         change += f", most at link {1 + int(np.argmax(answer.growing))} from the world"
-    if answer.settle_steps:
-        change = decay_words(answer.settle_steps, float(answer.h))
     enough = "No number of sweeps that was tried is stable"
     if answer.stable_iterations is not None:
         enough = f"It is stable from {counted(answer.stable_iterations, 'sweep')}"
-    sentence = f"{judged}: {'safe' if answer.safe else 'not safe'}. {change[0].upper()}{change[1:]}. {enough}."
+    sentence = f"{judged}: {'safe' if answer.safe else 'not safe'}. {as_sentence(change)} {enough}."
     if answer.sag is not None:
         sags = f"sags by {_length_words(answer.sag)}" if answer.sag else "does not sag"
         sentence += f" Under {_load_words(answer.load)} {'across' if answer.links.motor else 'along'} it, it {sags}."

@@ -25,7 +25,7 @@ from bezstab.rationals import exact, rounded_down, rounded_up
 from bezstab.stability.choices import TENTH, steps_to_settle
 from bezstab.stability.searches import first_where
 from bezstab.units import check_step
-from bezstab.words import change_words, counted, decay_words, gains_words, seconds_words
+from bezstab.words import as_sentence, change_words, counted, gains_words, seconds_words
 
 UsedUp = Literal["gains", "rate", "delay", "rate and delay", "kp", "kd", "too little kd", "ki"]
 """Why a drive is unstable; for a stable one, which of its numbers is nearest to its limit."""
@@ -274,10 +274,8 @@ def _sentence(answer: DriveAnswer) -> str:
     drive, h = answer.drive, float(answer.h)
     judged = gains_words(drive.kp, drive.kd, drive.ki, drive.inertia, h, answer.applied or answer.method.name)
     what = "error" if drive.kp else "velocity"
-    change = change_words(answer.z_abs, answer.verdict, what)
-    if answer.settle_steps:
-        change = decay_words(answer.settle_steps, h, what)
-    sentence = f"{judged}: {'safe' if answer.safe else 'not safe'}. {change[0].upper()}{change[1:]}.{_one_gain(answer)}"
+    change = change_words(answer.z_abs, answer.verdict, answer.settle_steps, h, what)
+    sentence = f"{judged}: {'safe' if answer.safe else 'not safe'}. {as_sentence(change)}{_one_gain(answer)}"
     if answer.sag is not None and answer.safe:
         sentence += f" Under {float(answer.load or 0):.4g} N m it rests {sag_words(answer.sag)}."
     changes = ", ".join(_changes(answer))

@@ -13,11 +13,11 @@ from bezstab.questions.trial_runs import Trials
 from bezstab.stability.choices import Choice, steps_to_settle
 from bezstab.stability.turning import MovingPole
 from bezstab.words import (
+    as_sentence,
     change_words,
     counted,
-    decay_words,
     errors_words,
-    growth_words,
+    plain,
     point_words,
     seconds_words,
     times_words,
@@ -55,7 +55,7 @@ def judgement_sentence(judged: Judgement, *more: str | None) -> str:
         _assumed(judged),
     ]
     place = point_words(judged.alpha_hat, judged.beta_hat, judged.h)
-    return " ".join([f"{place}: {safe}.", *map(_sentence, filter(None, clauses))])
+    return " ".join([f"{place}: {safe}.", *map(as_sentence, filter(None, clauses))])
 
 
 def trials_words(trials: Trials, rule: Choice, h: Fraction) -> str:
@@ -79,10 +79,6 @@ def sag_words(sag: float) -> str:
     return f"{1000 * sag:.3g} mm (of an angle {math.degrees(sag):.3g}°)"
 
 
-def _sentence(said: str) -> str:
-    return f"{said[0].upper()}{said[1:]}."
-
-
 def _assumed(judged: Judgement) -> str | None:
     """Return the motion that a choice was made for, if nobody gave its rate."""
     motion = judged.conditions.motion
@@ -96,10 +92,8 @@ def _assumed(judged: Judgement) -> str | None:
 def _change(judged: Judgement, z_abs: float, verdict: str, bound: str = "") -> str:
     """Return how long an error takes to fall to a thousandth, or what a step does to one that does not fall."""
     steps = judged.settle_steps if z_abs == abs(judged.pole) else steps_to_settle(z_abs)
-    if verdict != "converges" or steps is None:
-        return change_words(z_abs, verdict, bound=bound)
     own_step = None if judged.h is None else judged.h * float(judged.method.step_multiple)
-    return decay_words(steps, own_step, bound=bound)
+    return change_words(z_abs, verdict, steps, own_step, bound=bound)
 
 
 def _errors(judged: Judgement) -> list[str | None]:
@@ -151,7 +145,7 @@ def _on_a_motion(judged: Judgement) -> str | None:
 def energy_sentence(judged: Judgement) -> str | None:
     """Return what a second does to the energy of a motion of rate omega; None where that is little, or not known."""
     said = _on_a_motion(judged)
-    return said and _sentence(said)
+    return said and as_sentence(said)
 
 
 def _as_it_ran(judged: Judgement) -> list[str]:
@@ -217,7 +211,7 @@ def _growth(judged: Judgement) -> str | None:
     if margins is None:
         return None
     factors = {"the step": margins.h if judged.h is None else math.inf, "α": margins.alpha[1], "β": margins.beta[1]}
-    limits = [f"{name} up to {growth_words(factor)}" for name, factor in factors.items() if factor < math.inf]
+    limits = [f"{name} up to {plain(factor)} times" for name, factor in factors.items() if factor < math.inf]
     if judged.h_limit is not None and judged.h_limit < math.inf:
         limits.insert(0, f"the step up to {seconds_words(judged.h_limit)}")
     stays = "at rest it stays" if judged.moving else "it stays"

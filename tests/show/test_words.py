@@ -1,6 +1,7 @@
 """What numbers and points are called in words. Whole answers: tests/cli/sentences.md."""
 
 import math
+from functools import partial
 
 import pytest
 from hypothesis import given
@@ -8,7 +9,7 @@ from hypothesis import strategies as st
 
 from bezstab.regions.sentences import falling_words
 from bezstab.stability.best_points import FarLimit
-from bezstab.words import change_words, decay_words, growth_words, seconds_words, times_words
+from bezstab.words import change_words, plain, seconds_words, times_words
 
 
 @given(st.floats(1e-7, 1e4))  # with the least and the largest that a unit suits
@@ -19,15 +20,16 @@ def test_a_time_in_words_is_the_time_to_three_digits(seconds: float) -> None:
 
 
 def test_an_error_falls_slowly_from_ten_seconds_on() -> None:
-    assert decay_words(10, 0.01) == "an error falls to a thousandth in 0.1 s (10 steps)"
-    assert decay_words(10, None) == "an error falls to a thousandth in 10 steps"
-    assert decay_words(999, 0.01) == "an error falls to a thousandth in 9.99 s (999 steps)"
-    assert decay_words(1000, 0.01) == "an error falls slowly: to a thousandth in 10 s (1,000 steps)"
-    assert decay_words(10**9, 0.01) == "an error falls slowly: to a thousandth in 1e+07 s (1e+09 steps)"
+    falls = partial(change_words, 0.5, "converges")
+    assert falls(10, 0.01) == "an error falls to a thousandth in 0.1 s (10 steps)"
+    assert falls(10, None) == "an error falls to a thousandth in 10 steps"
+    assert falls(999, 0.01) == "an error falls to a thousandth in 9.99 s (999 steps)"
+    assert falls(1000, 0.01) == "an error falls slowly: to a thousandth in 10 s (1,000 steps)"
+    assert falls(10**9, 0.01) == "an error falls slowly: to a thousandth in 1e+07 s (1e+09 steps)"
 
 
 def test_a_factor_up_to_which_something_may_grow_is_plain() -> None:
-    assert [growth_words(factor) for factor in (1.6529, 2000.0, 3e8)] == ["1.65 times", "2,000 times", "3e+08 times"]
+    assert [plain(factor) for factor in (1.6529, 2000.0, 3e8)] == ["1.65", "2,000", "3e+08"]
 
 
 @given(st.floats(1e-3, 1e8))
@@ -37,7 +39,7 @@ def test_a_factor_in_words_is_the_factor_to_two_digits(factor: float) -> None:
 
 @given(st.floats(1e-3, 1e3).filter(lambda z_abs: z_abs != 1))
 def test_what_shrinks_is_never_said_to_be_times_one(z_abs: float) -> None:
-    begin, number = change_words(z_abs, "converges" if z_abs < 1 else "diverges").rsplit(maxsplit=1)
+    begin, number = change_words(z_abs, "converges" if z_abs < 1 else "diverges", None, None).rsplit(maxsplit=1)
     assert begin == "each step multiplies the error by"
     assert (float(number) < 1) == (z_abs < 1)
     assert float(number) == pytest.approx(z_abs, rel=0.05)
@@ -45,10 +47,11 @@ def test_what_shrinks_is_never_said_to_be_times_one(z_abs: float) -> None:
 
 def test_the_proven_verdict_counts_more_than_a_rounded_modulus() -> None:
     by_less = "by less at a step than rounding shows"
-    assert change_words(1.0000000000000002, "converges") == f"the error shrinks, {by_less}"
-    assert change_words(1.0, "diverges") == f"the error grows, {by_less}"  # a repeated root on the circle
-    assert change_words(math.nextafter(1, 2), "marginal") == "the error neither shrinks nor grows"
-    assert change_words(5.1e-8, "converges") == "the error is gone within a few steps"  # a double root zero, rounded
+    assert change_words(1.0000000000000002, "converges", None, None) == f"the error shrinks, {by_less}"
+    assert change_words(1.0, "diverges", None, None) == f"the error grows, {by_less}"  # a repeated root on the circle
+    assert change_words(math.nextafter(1, 2), "marginal", None, None) == "the error neither shrinks nor grows"
+    gone = "the error is gone within a few steps"
+    assert change_words(5.1e-8, "converges", None, None) == gone  # a double root zero, rounded
 
 
 @pytest.mark.parametrize(
