@@ -1,19 +1,28 @@
-"""Commands as processes of their own: with whatever environment, limits and streams, and told to stop at a moment."""
+"""Commands as processes of their own: in a line that a shell runs, or told to stop at a moment."""
 
 import os
 import re
+import shlex
 import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import IO, Any
+from typing import Any
 
-ROOT = Path(__file__).parent.parent.parent
+COMMAND = [sys.executable, "-m", "bezstab"]
+ENVIRONMENT = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[2])}
 PATIENCE = 120
 """s, after which a process that does not end is a failure."""
+
+
+def shell(line: str, path: Path, **options: Any) -> "subprocess.CompletedProcess[bytes]":
+    """Return what a shell's line prints that is typed below a path, and its exit status."""
+    options = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, **options}
+    typed = line.replace("bezstab", shlex.join(COMMAND))
+    return subprocess.run(typed, shell=True, cwd=path, env=ENVIRONMENT, timeout=PATIENCE, check=False, **options)
 
 
 def default_signals() -> None:
@@ -23,80 +32,47 @@ def default_signals() -> None:
 
 
 @contextmanager
-def started(
-    *arguments: str,
-    cwd: Path,
-    environment: Mapping[str, str | None] | None = None,
-    prepare: Callable[[], object] = lambda: None,
-    stdout: int | IO[bytes] = subprocess.PIPE,
-    stderr: int | IO[bytes] = subprocess.PIPE,
-) -> Iterator[subprocess.Popen[bytes]]:
-    """Give a running command, in a process group of its own, and leave none of that group behind.
-
-    `environment` is added to this one's, None takes a variable away; `prepare` runs in the child before the command.
-    """
-    asked = {**os.environ, "PYTHONPATH": str(ROOT), **(environment or {})}
-    variables = {name: value for name, value in asked.items() if value is not None}
-
-    def prepared() -> None:
-        default_signals()
-        prepare()
-
-    command = [sys.executable, "-m", "bezstab", *arguments]
+def started(line: str, path: Path) -> Iterator["subprocess.Popen[bytes]"]:
+    """Give a running command, in a process group of its own, and leave none of that group behind."""
     running = subprocess.Popen(
-        command,
-        cwd=cwd,
-        env=variables,
-        stdout=stdout,
-        stderr=stderr,
-        preexec_fn=prepared,  # noqa: PLW1509 - the tests start no threads
+        [*COMMAND, *line.split()],
+        cwd=path,
+        env=ENVIRONMENT,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        preexec_fn=default_signals,  # noqa: PLW1509 - the tests start no threads
         start_new_session=True,
     )
     try:
         yield running
     finally:
-        for process in (running.pid, *group_members(running.pid)):
-            with suppress(ProcessLookupError):
-                os.kill(process, signal.SIGKILL)
+        with suppress(ProcessLookupError):
+            os.killpg(running.pid, signal.SIGKILL)
         running.communicate()
 
 
-def finished(*arguments: str, **options: Any) -> subprocess.CompletedProcess[bytes]:
-    """Return what a command printed, and its exit status; the options are those of `started`."""
-    with started(*arguments, **options) as running:
-        answer, errors = running.communicate(timeout=PATIENCE)
-        return subprocess.CompletedProcess(arguments, running.returncode, answer, errors)
-
-
-def wait_until(condition: Callable[[], object], running: subprocess.Popen[bytes] | None = None) -> None:
-    """Wait until the condition holds; AssertionError if the process ends before, or after PATIENCE."""
+def wait_until(condition: Callable[[], object]) -> None:
+    """Wait until the condition holds; AssertionError after PATIENCE."""
     deadline = time.monotonic() + PATIENCE
     while not condition():
-        assert running is None or running.poll() is None, "the process ended first"
         assert time.monotonic() < deadline, "nothing happened"
         time.sleep(0.005)
 
 
 def catches(number: int, process: int) -> bool:
     """Return whether a process has a handler of its own for a signal."""
-    try:
-        status = Path(f"/proc/{process}/status").read_text(encoding="ascii", errors="replace")
-    except OSError:
-        return False
-    caught = re.search(r"SigCgt:\s*([0-9a-f]+)", status)
-    return bool(caught and int(caught[1], 16) >> (number - 1) & 1)
+    status = Path(f"/proc/{process}/status").read_text(encoding="ascii", errors="replace")
+    return bool(int(re.findall(r"SigCgt:\s*([0-9a-f]+)", status)[0], 16) >> (number - 1) & 1)
 
 
 def group_members(leader: int) -> list[int]:
     """Return the processes of a group that are alive, without its leader."""
     members: list[int] = []
     for stat in Path("/proc").glob("[0-9]*/stat"):
-        try:
-            fields = stat.read_text(encoding="ascii", errors="replace").rpartition(")")[2].split()
-        except OSError:
-            continue  # it has just ended
-        if fields[0] != "Z" and int(fields[2]) == leader != int(stat.parent.name):
-            members.append(int(stat.parent.name))
+        with suppress(OSError):  # it has just ended
+            state, _, group = stat.read_text(encoding="ascii", errors="replace").rpartition(")")[2].split()[:3]
+            if state != "Z" and int(group) == leader != int(stat.parent.name):
+                members.append(int(stat.parent.name))
     return members
 
 
