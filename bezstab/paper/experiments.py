@@ -94,10 +94,10 @@ def pole(run: Simulation) -> complex:
     return complex(dominant_pole(run.method, run.alpha_hat, run.beta_hat))
 
 
-def largest(run: Simulation, begin: float, end: float, rate: bool = False) -> float:
-    """Return the largest |c_1| (m), or with `rate` the largest |d c_1 / dt| (m/s), between two times (s).
+def largest(run: Simulation, begin: float, end: float) -> float:
+    """Return the largest |c_1| (m) between two times (s).
 
     The paper lets the first constraint stand for all (section 5.2.1).
     """
     between = (run.t >= begin) & (run.t <= end)
-    return float(np.abs((run.cdot if rate else run.c)[between, 0]).max())
+    return float(np.abs(run.c[between, 0]).max())

@@ -16,10 +16,6 @@ from bezstab.methods.registry import lookup
 H, INERTIA = Fraction("0.002"), Fraction("0.1")
 
 
-def judged(kd: float, kp: float, timing: Timing) -> str:
-    return verdict(Drive(Fraction(kp), Fraction(kd), INERTIA), H, lookup("SYM"), timing)
-
-
 def drawn(kd: int, kp: int, timing: Timing) -> Axes:
     drive = Drive(Fraction(kp), Fraction(kd), INERTIA)
     return drive_figure(judge_drive(drive, H, lookup("SYM"), timing), 40).axes[0]
@@ -32,7 +28,7 @@ def test_the_edge_is_that_of_stability_a_word_stands_where_it_is_true_and_a_star
     assert list(edge.levels) == [1]
     for text in axes.texts:
         kd, kp = axes.transLimits.inverted().transform(text.get_position())
-        found = judged(kd, kp, timing)
+        found = verdict(Drive(Fraction(kp), Fraction(kd), INERTIA), H, lookup("SYM"), timing)
         assert text.get_text() == {"converges": "stable"}.get(found, found)
     assert len(axes.texts) == 2
     (own,) = (line for line in axes.get_lines() if line.get_marker() == "*")

@@ -11,7 +11,6 @@ from bezstab.mechanism.constraint_normals import constraint_motion
 from bezstab.mechanism.equations import compiled_mechanism
 from bezstab.mechanism.scene_files import load_scene
 from bezstab.mechanism.simulation import Simulation
-from bezstab.methods.derivation import closed_loop_at
 from bezstab.methods.registry import lookup
 from bezstab.methods.schemes import evaluations
 from bezstab.paper.experiments import (
@@ -25,12 +24,11 @@ from bezstab.paper.experiments import (
     unstabilized_runs,
 )
 from bezstab.paper.figures import COLLAPSE, GROWTH
-from bezstab.paper.printed import COMPARED, FASTER_LEVEL, TABLE_5
-from bezstab.paper.tables import is_printed
+from bezstab.paper.printed import COMPARED, TABLE_5
 from bezstab.rationals import exact
 from bezstab.stability.arrays import FloatArray
 from bezstab.stability.best_points import best_point
-from bezstab.stability.closed_loop import dominant_pole, poles, verdict
+from bezstab.stability.closed_loop import poles, verdict
 from bezstab.stability.feedback_costs import feedback_cost
 from bezstab.stability.regions import region
 from tests.paper.record_times import costs
@@ -38,33 +36,12 @@ from tests.paper.record_times import costs
 CASES = tuple(TABLE_5)
 
 
-def area(name: str, level: float = 1.0) -> float:
-    found = region(lookup(name), level).area
-    assert found is not None
-    return found
-
-
-# The methods: Tables 1 and 2, Eqs 12 to 17
-
-
-def test_eqs_15_and_17_are_the_characteristic_polynomial_of_b2() -> None:
-    a, b = Fraction(1, 7), Fraction(5, 3)
-    printed = [b, 2 * a - 6 * b, 4 - 8 * a + 9 * b, -8 + 6 * a, Fraction(4)]  # in 1, z, ...
-    ours = closed_loop_at(lookup("B2"), a, b)
-    assert [c / ours[-1] for c in ours] == [c / printed[-1] for c in printed]
-
-
 # The regions: Figs. 1 to 3
 
 
-@pytest.mark.parametrize(
-    ("name", "part", "least"), [("B2", 0.162, 0.57735), ("B3", 0.186, 0.60698), ("B4", 0.265, 0.62588)]
-)
-def test_fig_1_and_section_5_1_the_regions_h_and_the_least_moduli(name: str, part: float, least: float) -> None:
-    assert area(name, FASTER_LEVEL[name]) / area(name) == pytest.approx(part, abs=5e-4)
-    best = best_point(lookup(name))
-    assert best
-    assert best.z_abs == pytest.approx(least, abs=5e-6)
+def test_section_5_1_the_least_moduli() -> None:
+    best = [best_point(lookup(name)) for name in ("B2", "B3", "B4")]
+    assert [each and round(each.z_abs, 5) for each in best] == [0.57735, 0.60698, 0.62588]
 
 
 @pytest.mark.parametrize(
@@ -76,7 +53,8 @@ def test_fig_1_and_section_5_1_the_regions_h_and_the_least_moduli(name: str, par
     ],
 )
 def test_introduction_abstract_and_figs_2_and_3_how_large_the_regions_are(areas: dict[str, float]) -> None:
-    assert {name: area(name) for name in areas} == pytest.approx(areas, rel=3e-3 if "AM3" in areas else 0, abs=5e-5)
+    found = {name: region(lookup(name)).area for name in areas}
+    assert found == pytest.approx(areas, rel=3e-3 if "AM3" in areas else 0, abs=5e-5)
 
 
 @pytest.mark.parametrize(
@@ -99,23 +77,14 @@ def test_sections_3_and_6_and_table_5_who_is_stable_where(
         assert {verdict(lookup(name), *map(exact, point)) for name in names.split()} <= {expected}
 
 
-def test_table_5_euler_semi_implicit_is_an_euler_step_corrected_once() -> None:
-    for name, is_it in (("SIE", True), ("SYM", False)):
-        for (alpha_hat, beta_hat), printed in TABLE_5.items():
-            z = complex(dominant_pole(lookup(name), float(alpha_hat), float(beta_hat)))
-            assert is_printed(printed["SIE"].split()[0], z.real) is is_it
-
-
 # The mechanism
 
 
 @pytest.mark.slow
 def test_section_5_2_what_is_wrong_at_the_start_stays_wrong() -> None:
     right, wrong = (experiment("AB4", kick=kick) for kick in (0.0, 1e-3))
-    assert np.abs([right.c[0], right.cdot[0]]).max() < 1e-12
     assert largest(right, 0, 10) < 1e-10
     assert largest(wrong, 9, 10) == pytest.approx(1.04e-3, abs=5e-6)
-    assert abs(wrong.q[-1, 0] - right.q[-1, 0]) == pytest.approx(4e-5, abs=5e-6)
 
 
 # No stabilisation: Figs. 5 and 6
@@ -149,11 +118,9 @@ def test_fig_5_b4_collapses_later_only_after_a_start_of_low_order() -> None:
 @pytest.mark.slow
 def test_fig_5_the_collapse_is_sudden() -> None:
     blown_up = [run for run in without_feedback(*COLLAPSE).values() if run.failure]
-    before = [largest(run, 0, 0.99 * run.t[-1]) for run in blown_up]
-    after = [largest(run, 0.99 * run.t[-1], np.inf) for run in blown_up]
     assert len(blown_up) == 8
-    assert [min(before), max(before)] == pytest.approx([0.21, 0.24], abs=0.005)
-    assert all(late > 5 * early for early, late in zip(before, after, strict=True))
+    for run in blown_up:  # in the last hundredth
+        assert largest(run, 0, np.inf) > 5 * largest(run, 0, 0.99 * run.t[-1])
 
 
 def final(run: Simulation) -> float:
@@ -176,11 +143,9 @@ def test_fig_6_b4_has_the_smaller_error_only_after_a_start_of_low_order_and_neve
 
 @pytest.mark.slow
 def test_fig_6_the_error_grows_linearly_and_the_first_constraint_has_the_largest() -> None:
-    times = np.linspace(10, 100, 40)
     above_rounding = [run for run in without_feedback(*GROWTH).values() if largest(run, 0, 100) > 1e-10]
     for run in above_rounding:
-        slope = np.polyfit(np.log(times), np.log([largest(run, 0, time) for time in times.tolist()]), 1)[0]
-        assert round(slope, 1) == 1.0
+        assert largest(run, 0, 100) / largest(run, 0, 50) == pytest.approx(2, rel=0.05)  # the crank turns meanwhile
     sizes = np.array([np.abs(run.c).max(axis=0) for run in above_rounding])
     ratios = sizes[:, 0] / sizes[:, 3]
     assert (len(sizes), set(sizes.argmax(axis=1))) == (15, {0})
@@ -198,24 +163,18 @@ def test_section_4_smaller_poles_are_faster_but_for_double_ones_and_the_derivati
     fallen = [[steps_to_a_hundredth(history[:, 0]) for history in (run.c, run.cdot)] for run in kicked_runs()[1:5]]
     assert fallen == [[333, 383], [233, 241], [18, 20], [13, 12]]
     assert [round(abs(pole(run)), 4) for run in kicked_runs()[1:5]] == [0.9802, 0.9810, 0.6835, 0.6836]
-    for run in (kicked_runs()[0], kicked_runs()[5]):
-        rates = np.abs(run.cdot[:, 0])
-        assert rates[len(rates) // 2 :].max() > rates[: len(rates) // 2].max()
 
 
 def test_section_5_1_a_pole_that_is_not_dominant_decides_first() -> None:
     run = experiment("AB4", 0.5, 0.1, duration=1.0, kick=1e-3)
-    c, moduli = np.abs(run.c[:, 0]), np.abs(poles(run.method, 0.5, 0.1))  # of pairs, descending
-    assert (round(moduli[0], 4), round(moduli[2], 4)) == (0.9988, 0.7776)
+    c, moduli = np.abs(run.c[:, 0]), np.abs(poles(run.method, 0.5, 0.1))  # descending
     assert np.flatnonzero(c > 1e-6)[-1] + 1 == 27
     assert np.log(1e-3) / np.log(moduli[0]) == pytest.approx(5992, abs=0.5)
-    assert round((c[750:].max() / c[500:750].max()) ** (1 / 250), 4) == 0.9988  # after half a second
 
 
-@pytest.mark.parametrize(("case", "times"), [(6, 928.0), (4, 1.0)])
-def test_section_3_energy_tells_wrong_parameters(case: int, times: float) -> None:
-    energy = experiment("B4", *TABLE_4[case - 1][1:], duration=0.5).energy
-    assert energy[-1] / energy[0] == pytest.approx(times, abs=0.5 if times > 1 else 5e-5)
+def test_section_3_energy_tells_wrong_parameters() -> None:
+    energy = experiment("B4", *TABLE_4[5][1:], duration=0.5).energy  # case 6
+    assert energy[-1] / energy[0] == pytest.approx(928, abs=0.5)
 
 
 # Four methods at three points: Table 5, Fig. 9
@@ -228,16 +187,6 @@ def test_fig_9_in_case_1_rk4_and_euler_oscillate_above_b4_and_ab4() -> None:
     assert left["B4"] == pytest.approx(1e-10, abs=5e-11)
     assert left["RK4@5"] == pytest.approx(1.7e-7, abs=3e-8)
     assert left["SIE"] / left["RK4@5"] == pytest.approx(1.9, abs=0.05)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(("case", "growth"), [(1, 0.093), (2, 27.0)])
-def test_fig_9_ab4_decays_inside_its_edge_and_grows_outside_and_so_does_the_derivative(
-    case: int, growth: float
-) -> None:
-    run = compared_runs()[CASES[case], "AB4"]
-    for rate in (False, True):
-        assert largest(run, 8, 10, rate) / largest(run, 6, 8, rate) == pytest.approx(growth, rel=0.05)
 
 
 @pytest.mark.slow
