@@ -8,7 +8,7 @@ from dataclasses import replace
 from bezstab.arguments import Number, in_keywords, plane_point
 from bezstab.engines.engine_list import engine_and_values
 from bezstab.errors import InputError, NumericalError
-from bezstab.feedback.choosing import Wish, check_motion, choose_answer
+from bezstab.feedback.choosing import check_motion, choose_answer
 from bezstab.feedback.conditions import AS_GIVEN, Conditions, conditions, for_choosing, setup_in_python
 from bezstab.feedback.judgement import Judgement, judge
 from bezstab.feedback.sentences import judgement_sentence
@@ -147,7 +147,6 @@ def _instead(method: Method, asked: Conditions) -> Judgement:
 
     InputError where nothing is stable or the engine cannot express it, NumericalError where it cannot be found.
     """
-    goal = usual_goal(asked.engine, (method,))
-    if goal == "accurate":
-        check_motion(method, asked)
-    return choose_answer(method, Wish(goal), for_choosing(asked), "instead")
+    asked = replace(for_choosing(asked), goal=usual_goal(asked.engine, (method,)))
+    check_motion(method, asked)
+    return choose_answer(method, asked, "instead")

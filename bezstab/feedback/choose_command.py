@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -52,9 +51,7 @@ GOALS_IN_LINES = "\b\nGoals:\n" + "\n".join(f"  {goal:<9} {asked}" for goal, ask
 def choose(
     methods: tuple[Method, ...],
     goal: Goal | None,
-    settle: Fraction | None,
     equal: str | None,
-    sag: Fraction | None,
     every_column: bool,
     form: str,
     **simulation: Any,
@@ -76,15 +73,13 @@ def choose(
     from bezstab.rationals import exact
 
     whole = simulation["h"] is not None
-    setup = Setup(margins=whole, cost=whole, **simulation)
-    methods, wish, asked = worked_out(
-        lambda: asked_to_choose(methods, setup, goal, settle=settle, equal=bool(equal), sag=sag), simulation["scene"]
-    )
+    setup = Setup(equal=bool(equal), margins=whole, cost=whole, **simulation)
+    methods, asked = worked_out(lambda: asked_to_choose(methods, setup, goal), simulation["scene"])
     if asked.h is None:
         raise click.MissingParameter(param_hint="'--h'", param_type="option")
     say_each(asked.warnings)
-    answers = (choose_answer(method, wish, asked, trades=whole and for_reading()) for method in methods)
-    chosen = list(progress(answers, wish.goal, len(methods)))
+    answers = (choose_answer(method, asked, trades=whole and for_reading()) for method in methods)
+    chosen = list(progress(answers, asked.goal, len(methods)))
     if not whole:
         at_any_step = [step_answer(each.method, exact(each.alpha or 0), exact(each.beta or 0)) for each in chosen]
         show_answers(columns.STEPS, at_any_step)

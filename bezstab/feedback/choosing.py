@@ -1,15 +1,15 @@
 """Which alpha and beta to take: the point that a goal asks for, judged, and what faster or slower decay would change.
 
-method, Wish (a goal), Conditions   →   choose_answer   →   Judgement
+method, Conditions   →   choose_answer   →   Judgement
 """
 
 from collections.abc import Iterator
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 
-from bezstab.arguments import Number, exact_or_none, in_keywords
-from bezstab.engines.conversions import READ_BACK, Curve, Engine
+from bezstab.arguments import Number, in_keywords
+from bezstab.engines.conversions import READ_BACK, Curve
 from bezstab.engines.engine_list import engine_named
 from bezstab.errors import InputError, NumericalError
 from bezstab.feedback.conditions import Conditions, Setup, at_step, conditions, for_choosing, setup_in_python
@@ -39,19 +39,6 @@ SHORTER = (2, 4)
 
 SLOWER = 2
 """Slower decay takes this many times as long to settle."""
-
-
-@dataclass(frozen=True)
-class Wish:
-    """What a choice is for: a goal, the time (s) in which errors are to settle, and whether alpha = beta.
-
-    With a `sag` (m or rad), it is the weakest feedback that sags no further under the load, whatever the goal.
-    """
-
-    goal: Goal
-    settle: Fraction | None = None
-    equal: bool = False
-    sag: Fraction | None = None
 
 
 @in_keywords()
@@ -132,55 +119,57 @@ def choose(
         scene,
         speed,
         spread,
-        {"h": h, "h_max": h_max, "omega": omega, "omega_h": omega_h, "duration": duration, "load": load},
+        {
+            "h": h,
+            "h_max": h_max,
+            "omega": omega,
+            "omega_h": omega_h,
+            "duration": duration,
+            "load": load,
+            "settle": settle,
+            "sag": sag,
+        },
         engine=None if engine is None else engine_named(engine),
+        equal=equal,
         margins=margins,
         cost=cost,
     )
     given = () if method is None else (method_named(method),)
-    within, at_most = exact_or_none(settle, "settle"), exact_or_none(sag, "sag")
-    methods, wish, asked = asked_to_choose(given, setup, goal, settle=within, equal=equal, sag=at_most)
-    return choose_answer(methods[0], wish, asked, trades=trades)
+    methods, asked = asked_to_choose(given, setup, goal)
+    return choose_answer(methods[0], asked, trades=trades)
 
 
 def asked_to_choose(
-    methods: tuple[Method, ...],
-    setup: Setup,
-    goal: Goal | None,
-    *,
-    settle: Fraction | None,
-    equal: bool,
-    sag: Fraction | None,
-) -> tuple[tuple[Method, ...], Wish, Conditions]:
-    """Return the methods, what a choice is for, by the usual goal where none is named, and the conditions.
+    methods: tuple[Method, ...], setup: Setup, goal: Goal | None
+) -> tuple[tuple[Method, ...], Conditions]:
+    """Return the methods, and the conditions of a choice; by the usual goal where none is named.
 
     InputError for what does not go together. Without a step, it is what makes OMEGA_H of the rate omega, where every
     method follows the motion. A sag is that under gravity, unless a load is given.
     """
-    if sag is None:
-        wish = Wish(goal or usual_goal(setup.engine, methods), settle, equal)
-    elif goal or settle or equal:
+    if setup.sag is None:
+        setup = replace(setup, goal=goal or usual_goal(setup.engine, methods))
+    elif goal or setup.settle or setup.equal:
         raise InputError("--sag takes the place of --goal, --settle and --keep")
     elif setup.engine is None:
         raise InputError("--sag needs --engine: a hard constraint does not sag")
     else:
-        wish = Wish("robust", sag=sag)
-    _check_wish(wish, setup.h, setup.h_max, setup.engine)
+        setup = replace(setup, goal="robust")
+    _check_goal(setup)
     if setup.h is None and setup.omega and methods and all(map(follows_motion, methods)):
         setup = replace(setup, h=OMEGA_H / setup.omega)
     methods = methods_for(methods, setup.engine)
-    if sag is not None:  # of one constraint alone: `chain` adds up what many sag
-        return methods, wish, conditions(replace(setup, load=setup.load or GRAVITY))
+    if setup.sag is not None:  # of one constraint alone: `chain` adds up what many sag
+        return methods, conditions(replace(setup, load=setup.load or GRAVITY))
     asked = conditions(setup)
-    if wish.goal == "accurate" and settle is None:
-        for method in methods:
-            check_motion(method, asked, equal=equal)
-    return methods, wish, for_choosing(asked)
+    for method in methods:
+        check_motion(method, asked)
+    return methods, for_choosing(asked)
 
 
-def _check_wish(wish: Wish, h: Fraction | None, h_max: Fraction | None, engine: Engine | None) -> None:
+def _check_goal(setup: Setup) -> None:
     """Raise InputError for arguments that do not go with the goal."""
-    goal, settle = wish.goal, wish.settle
+    goal, settle, h, h_max, engine = setup.goal, setup.settle, setup.h, setup.h_max, setup.engine
     if settle is None:
         if goal == "gentle":
             raise InputError("--goal gentle needs --settle: the time in s in which c falls a thousandfold")
@@ -202,11 +191,11 @@ def _check_wish(wish: Wish, h: Fraction | None, h_max: Fraction | None, engine: 
         )
 
 
-def check_motion(method: Method, asked: Conditions, *, equal: bool = False) -> None:
+def check_motion(method: Method, asked: Conditions) -> None:
     """Raise InputError if the most accurate feedback of a method follows a motion whose rate is not known."""
-    if not asked.motion.assumed or not follows_motion(method):
+    if asked.goal != "accurate" or asked.settle or not (asked.motion.assumed and follows_motion(method)):
         return
-    chosen = choose_point(method, "accurate", spread=asked.spread, equal=equal)
+    chosen = choose_point(method, "accurate", spread=asked.spread, equal=asked.equal)
     alpha, beta = from_dimensionless(chosen.alpha_hat, chosen.beta_hat, float(OMEGA_H))
     raise InputError(
         f"{method.name}: α = {alpha:.2g} ω, β = {beta:.2g} ω, ω the rate of your motion in rad/s: give --omega "
@@ -216,31 +205,29 @@ def check_motion(method: Method, asked: Conditions, *, equal: bool = False) -> N
 
 def choose_answer(
     method: Method,
-    wish: Wish,
     asked: Conditions,
     role: Role = "chosen",
     *,
     trades: bool = False,
 ) -> Judgement:
     """Return the point that a goal asks for, judged; errors as `choose`."""
-    alone, swept = _chosen_alone(method, wish, asked), _limiting(wish, asked)
-    chosen = found = _limited(alone, swept, asked)
+    alone, swept = _chosen_alone(method, asked), _limiting(asked)
+    chosen = _limited(alone, swept, asked)
+    trials, judged, by_goal = None, None, asked.sag is None
     if role == "chosen":
         _check_expressed(asked, chosen)
-    trials = _trials(chosen, wish, asked) if role == "chosen" else None
+        trials = _trials(chosen, asked)
     if trials:
-        found = describe_point(method, wish.goal, *trials.point, asked.spread)
-        found = replace(found, searched=chosen.searched)
-    judged = judge(asked, found, role)
-    if trials and not judged.safe:
+        nearer = describe_point(method, asked.goal, *trials.point, asked.spread)
+        judged = judge(asked, replace(nearer, searched=chosen.searched), role)
+    if judged is None or not judged.safe:
         trials, judged = None, judge(asked, chosen, role)
-    by_goal = wish.sag is None
-    safe_with = _safe_with(judged, wish) if role == "chosen" and by_goal and not judged.safe else None
+    safe_with = _safe_with(judged) if role == "chosen" and by_goal and not judged.safe else None
     return replace(
         judged,
         safe_with=safe_with,
         trials=trials,
-        trades=_trades(judged, wish) if trades and by_goal else None,
+        trades=_trades(judged) if trades and by_goal else None,
         sentence=judgement_sentence(
             judged,
             *(_spare_words(alone, chosen, swept, asked) if swept else ()),
@@ -250,13 +237,13 @@ def choose_answer(
     )
 
 
-def _trials(choice: Choice, wish: Wish, asked: Conditions) -> Trials | None:
+def _trials(choice: Choice, asked: Conditions) -> Trials | None:
     """Return what short runs of a scene find beside a choice of the goal accurate; None without one, in an engine too.
 
     None, too, where a choice is for several steps, or has alpha = beta.
     """
-    narrow = asked.engine or asked.h_max or wish.equal
-    if asked.mechanism is None or asked.h is None or wish.goal != "accurate" or narrow:
+    narrow = asked.engine or asked.h_max or asked.equal
+    if asked.mechanism is None or asked.h is None or asked.goal != "accurate" or narrow:
         return None
     return trial_runs(
         asked.mechanism,
@@ -264,7 +251,7 @@ def _trials(choice: Choice, wish: Wish, asked: Conditions) -> Trials | None:
         asked.h,
         asked.motion.omega_h,
         spread=asked.spread,
-        settle=wish.settle,
+        settle=asked.settle,
         time=asked.duration,
     )
 
@@ -280,9 +267,9 @@ def _check_expressed(asked: Conditions, chosen: Choice) -> None:
         raise InputError(f"{error}: ask `bezstab check --engine {words}` about values of yours") from None
 
 
-def _chosen(method: Method, wish: Wish, asked: Conditions) -> Choice:
+def _chosen(method: Method, asked: Conditions) -> Choice:
     """Return the choice of a goal; if an engine sweeps over constraints, at most the strongest that they allow."""
-    return _limited(_chosen_alone(method, wish, asked), _limiting(wish, asked), asked)
+    return _limited(_chosen_alone(method, asked), _limiting(asked), asked)
 
 
 def _limited(alone: Choice, swept: SweptConstraints | None, asked: Conditions) -> Choice:
@@ -308,24 +295,24 @@ def _spare_words(alone: Choice, chosen: Choice, swept: SweptConstraints, asked: 
         )
 
 
-def _chosen_alone(method: Method, wish: Wish, asked: Conditions) -> Choice:
+def _chosen_alone(method: Method, asked: Conditions) -> Choice:
     """Return the choice of a goal for one constraint; if its goal is one of UP_TO_LONGEST, for all steps to h_max."""
-    if wish.sag is not None:
-        return _sags_no_further(method, wish.sag, asked)
+    if asked.sag is not None:
+        return _sags_no_further(method, asked.sag, asked)
     modulus: Modulus | None = None
     if asked.mechanism and asked.h:
         turned = turning_rate(asked.mechanism) * float(asked.h_max or asked.h)
         modulus = moving_modulus(method, turned) if turned <= LAW_HOLDS else None
     return choose_point(
         method,
-        wish.goal,
+        asked.goal,
         h=asked.h,
-        h_max=asked.h_max if wish.goal in UP_TO_LONGEST else None,
-        settle=wish.settle,
+        h_max=asked.h_max if asked.goal in UP_TO_LONGEST else None,
+        settle=asked.settle,
         spread=asked.spread,
-        equal=wish.equal,
+        equal=asked.equal,
         modulus=modulus,
-        along=_curve(wish, asked),
+        along=_curve(asked),
         omega_h=asked.motion.omega_h_max,
     )
 
@@ -344,17 +331,17 @@ def _sags_no_further(method: Method, sag: Fraction, asked: Conditions) -> Choice
     return describe_point(method, "sag", *found, asked.spread)
 
 
-def _curve(wish: Wish, asked: Conditions) -> Curve | None:
+def _curve(asked: Conditions) -> Curve | None:
     """Return the curve of points that the engine can express; None if the goal does not search along it."""
-    return asked.engine.curve if asked.engine and wish.goal != "critical" and not wish.equal else None
+    return asked.engine.curve if asked.engine and asked.goal != "critical" and not asked.equal else None
 
 
-def _limiting(wish: Wish, asked: Conditions) -> SweptConstraints | None:
+def _limiting(asked: Conditions) -> SweptConstraints | None:
     """Return the constraints that limit a choice, as an engine sweeps over them; None if it has nothing to set."""
-    return asked.swept if asked.engine and asked.engine.parameters and _curve(wish, asked) else None
+    return asked.swept if asked.engine and asked.engine.parameters and _curve(asked) else None
 
 
-def _safe_with(judged: Judgement, wish: Wish) -> str | None:
+def _safe_with(judged: Judgement) -> str | None:
     """Return the option with which a choice is safe that is not: --goal robust, else a shorter step; None if neither.
 
     None, too, past a singular configuration: no run decides there.
@@ -362,44 +349,44 @@ def _safe_with(judged: Judgement, wish: Wish) -> str | None:
     asked = replace(judged.conditions, margins=False, cost=False)
     if judged.run and not judged.run.decides:
         return None
-    tried = [("--goal robust", Wish("robust", None, wish.equal), asked)]
+    tried = [("--goal robust", replace(asked, goal="robust", settle=None))]
     if asked.scene is not None and asked.h and not (asked.h_max or asked.engine):
         steps = [asked.h / share for share in SHORTER]
-        tried += [(f"--h {typed_number(h)}", wish, at_step(asked, h)) for h in steps]
-    for option, other, there in tried:
+        tried += [(f"--h {typed_number(h)}", at_step(asked, h)) for h in steps]
+    for option, there in tried:
         with suppress(InputError, NumericalError):  # what cannot be found is not safe
-            if judge(there, _chosen(judged.method, other, there), "chosen").safe:
+            if judge(there, _chosen(judged.method, there), "chosen").safe:
                 return option
     return None
 
 
-def _trades(judged: Judgement, wish: Wish) -> tuple[Alternative, ...] | None:
+def _trades(judged: Judgement) -> tuple[Alternative, ...] | None:
     """Return a choice that decays faster, if there is one, and one that decays slower; None without errors.
 
     The slower one may take SLOWER times as long (s, to two digits) as the choice takes at worst.
     """
     if judged.cost is None or judged.cost.total_error is None:
         return None
-    at_fastest = wish.goal == "fastest" and not judged.moving  # as it moves another pole is the least
+    at_fastest = judged.goal == "fastest" and not judged.moving  # as it moves another pole is the least
     goals: tuple[Goal, ...] = () if at_fastest else ("robust", "fastest")
-    stronger = (_alternative(judged, Wish(goal, None, wish.equal)) for goal in goals)
+    stronger = (_alternative(judged, goal) for goal in goals)
     found = [next((each for each in stronger if each and each.z_abs < abs(judged.pole)), None)]
     steps, h = judged.settle_steps_at_worst, judged.conditions.h
     if steps is not None and h is not None:
         settle = Fraction(f"{float(SLOWER * steps * h * judged.method.step_multiple):.2g}")
-        found.append(_alternative(judged, Wish("accurate", settle, wish.equal)))
+        found.append(_alternative(judged, "accurate", settle))
     return tuple(filter(None, found))
 
 
-def _alternative(judged: Judgement, wish: Wish) -> Alternative | None:
+def _alternative(judged: Judgement, goal: Goal, settle: Fraction | None = None) -> Alternative | None:
     """Return another choice; None if there is none, or it or its errors cannot be found: no answer needs it."""
-    asked, here = judged.conditions, judged.cost
+    asked, here = replace(judged.conditions, goal=goal, settle=settle), judged.cost
     try:
-        other = _chosen(judged.method, wish, asked)
+        other = _chosen(judged.method, asked)
         there = feedback_cost(judged.method, *other.point, asked.motion.omega_h, least=False)
     except (InputError, NumericalError):
         return None
     if not (here and here.total_error and here.velocity_error and there.total_error and there.velocity_error):
         return None
     times = there.total_error / here.total_error, there.velocity_error / here.velocity_error
-    return Alternative(wish.goal, wish.settle, abs(other.pole), times)
+    return Alternative(goal, settle, abs(other.pole), times)

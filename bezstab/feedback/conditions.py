@@ -11,6 +11,7 @@ from typing import Any
 from bezstab.arguments import Number, exact_number, exact_or_none, real_number
 from bezstab.engines.conversions import Applied, Engine, Point
 from bezstab.errors import InputError
+from bezstab.goals import Goal
 from bezstab.mechanism.equations import Mechanism
 from bezstab.mechanism.scene_files import scene as scene_named
 from bezstab.mechanism.scenes import Scene
@@ -40,8 +41,10 @@ class Setup:
     that it would give an error that nothing holds (m/s^2 or rad/s^2).
 
     point: the feedback that is judged, alpha_hat and beta_hat; values: those of the engine in its place, without its
-    clamps if `as_typed`. margins, cost: whether to find how far alpha, beta and h may go, and the errors on the motion.
-    InputError for what does not go together.
+    clamps if `as_typed`. Of one that is chosen, goal: what it is for; settle: the time (s) in which errors are to fall
+    a thousandfold; equal: whether alpha = beta; sag (m or rad): with it the weakest that sags no further under the
+    load, whatever the goal. margins, cost: whether to find how far alpha, beta and h may go, and the errors on the
+    motion. InputError for what does not go together.
     """
 
     h: Fraction | None = None
@@ -57,6 +60,10 @@ class Setup:
     point: Point | None = None
     values: tuple[Fraction, ...] | None = None
     as_typed: bool = False
+    goal: Goal = "accurate"
+    settle: Fraction | None = None
+    equal: bool = False
+    sag: Fraction | None = None
     margins: bool = True
     cost: bool = True
 
