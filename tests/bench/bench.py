@@ -28,7 +28,7 @@ from bezstab.stability.regions import region, window
 from tests.reference.companion_poles import radius
 from tests.reference.literal_equation_9 import literal_equation_9
 from tests.reference.second_order_methods import second_order
-from tests.runs.mujoco_witness import model_xml
+from tests.runs.mujoco_witness import four_bar_xml
 
 REPORT = Path(__file__).parents[2] / "figures" / "bench.md"
 HEAD = """# Speed
@@ -39,7 +39,7 @@ Written by `make bench`, from one run: how many times as fast as something else 
 TURNS = 3
 POINTS = 500  # per axis
 OFF_AXIS = 1e-7  # companions of a step without solution, which lie on straight lines, have no eigenvalues
-MECHANISM = compiled_mechanism(load_scene("slider_crank"))
+MECHANISM = compiled_mechanism(load_scene("four_bar"))
 STEP, GAINS = 1e-3, (500.0, 1e5)  # s; 2 alpha, beta^2 in 1/s, 1/s^2: alpha_hat = 0.5, beta_hat = 0.1
 STEPS = 200  # of a run
 WAITED_FOR = ("choose", "check --alpha 5 --beta 5 --physical")
@@ -122,7 +122,7 @@ def mujocos(integrator: str) -> Callable[[], object]:
     """Return what runs COMPILED_STEPS steps of MuJoCo in one call."""
     import mujoco
 
-    model = mujoco.MjModel.from_xml_string(model_xml(MECHANISM.scene, integrator, STEP, 0.5, 0.1))
+    model = mujoco.MjModel.from_xml_string(four_bar_xml(integrator, STEP, 0.5, 0.1))
     data = mujoco.MjData(model)
     data.qpos[:], data.qvel[:] = initial_state(MECHANISM)
     return partial(mujoco.mj_step, model, data, nstep=COMPILED_STEPS)

@@ -1,55 +1,34 @@
-"""Scenes as MuJoCo's models: the same mechanism in an engine that is not ours.
+"""The four-bar of the scenes as MuJoCo's model: the same mechanism in an engine that is not ours.
 
 MuJoCo's constraint reference is aref = -b cdot - k c, Baumgarte's feedback, with k and b given as solref = (-k, -b)
 (MuJoCo documentation, Modeling, Constraint parameters). Its Euler integrator is symplectic Euler, its RK4 Kutta's.
 """
 
-from bezstab.engines.acceleration_engines import MOST_IMPEDANCE
-from bezstab.mechanism.scenes import GROUND, Body, Revolute, Scene
 from bezstab.units import feedback_gains
 
 
-def model_xml(scene: Scene, integrator: str, h: float, alpha_hat: float, beta_hat: float) -> str:
-    """Return the scene as MuJoCo's XML: a joint per free coordinate, in their order, and a connection per revolute.
+def four_bar_xml(integrator: str, h: float, alpha_hat: float, beta_hat: float) -> str:
+    """Return configs/scenes/four_bar.toml as MuJoCo's XML: its joints are the scene's coordinates, its connects the pins.
 
-    Of scenes made of revolute joints and gravity alone; h in s, SI units.
+    Without gravity; inertias are about the centres of mass. h in s.
     """
-    assert not scene.forces
-    assert not scene.springs
     two_alpha, beta_squared = feedback_gains(alpha_hat, beta_hat, h)
-    impedance = float(MOST_IMPEDANCE)  # the rest of the unconstrained acceleration leaks into the constraint
-    feedback = f'solref="{-beta_squared!r} {-two_alpha!r}" solimp="{impedance} {impedance} 1 0.5 1"'
-    sites: dict[str, str] = dict.fromkeys([GROUND, *(body.name for body in scene.bodies)], "")
-    connections = ""
-    for number, joint in enumerate(scene.joints):
-        assert isinstance(joint, Revolute)
-        for end, (name, (x, y)) in enumerate(zip(joint.bodies, joint.points, strict=True)):
-            sites[name] += f'<site name="point{number}_{end}" pos="{x!r} {y!r} 0"/>'
-        connections += f'<connect site1="point{number}_0" site2="point{number}_1" {feedback}/>'
-    bodies = "".join(_body_xml(body, sites[body.name]) for body in scene.bodies)
-    gx, gy = scene.gravity
+    # the rest of the unconstrained acceleration leaks into the constraint: so hard an impedance as there is
+    feedback = f'solref="{-beta_squared!r} {-two_alpha!r}" solimp="0.9999 0.9999 1 0.5 1"'
     return f"""<mujoco>
-        <compiler angle="radian"/>
-        <option timestep="{h!r}" integrator="{integrator}" gravity="{gx!r} {gy!r} 0" tolerance="0" iterations="100">
+        <option timestep="{h!r}" integrator="{integrator}" gravity="0 0 0" tolerance="0" iterations="100">
           <flag contact="disable" refsafe="disable" autoreset="disable"/>
         </option>
-        <worldbody>{sites[GROUND]}{bodies}</worldbody>
-        <equality>{connections}</equality>
+        <default><joint axis="0 0 1"/></default>
+        <worldbody>
+          <body><inertial pos=".05 0 0" mass=".2" diaginertia="1 1 {0.2 * 0.1**2 / 12!r}"/>
+            <joint/><site name="crank's end" pos=".1 0 0"/></body>
+          <body><inertial pos="0 0 0" mass=".6" diaginertia="1 1 .0045"/>
+            <joint type="slide" axis="1 0 0"/><joint type="slide" axis="0 1 0"/><joint/>
+            <site name="coupler's start" pos="-.15 0 0"/><site name="coupler's end" pos=".15 0 0"/></body>
+          <body pos=".3 0 0"><inertial pos=".125 0 0" mass=".5" diaginertia="1 1 {0.5 * 0.25**2 / 12!r}"/>
+            <joint/><site name="rocker's end" pos=".25 0 0"/></body>
+        </worldbody>
+        <equality><connect site1="crank's end" site2="coupler's start" {feedback}/>
+          <connect site1="coupler's end" site2="rocker's end" {feedback}/></equality>
     </mujoco>"""
-
-
-def _body_xml(body: Body, sites: str) -> str:
-    axes = {"x": 'type="slide" axis="1 0 0"', "y": 'type="slide" axis="0 1 0"', "theta": 'type="hinge" axis="0 0 1"'}
-    x, y, theta = (body.locked.get(axis, 0.0) for axis in axes)
-    center_x, center_y = body.center
-    mass = body.mass or 1.0  # of a body about its centre on a fixed pivot, where it does not matter
-    if "theta" in body.free:
-        offset_squared = center_x * center_x + center_y * center_y
-        inertia = body.inertia - body.mass * offset_squared  # about the centre of mass (parallel axes)
-    else:
-        inertia = 1.0  # of a body that does not turn: it does not matter
-    joints = "".join(f"<joint {axes[axis]}/>" for axis in body.free)
-    return f"""<body pos="{x!r} {y!r} 0" euler="0 0 {theta!r}">
-        <inertial pos="{center_x!r} {center_y!r} 0" mass="{mass!r}" diaginertia="{inertia!r} {inertia!r} {inertia!r}"/>
-        {joints}{sites}
-    </body>"""

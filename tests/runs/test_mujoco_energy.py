@@ -11,7 +11,7 @@ from bezstab import check
 from bezstab.mechanism.equations import compiled_mechanism
 from bezstab.mechanism.scene_files import load_scene
 from bezstab.mechanism.start import initial_state
-from tests.runs.mujoco_witness import model_xml
+from tests.runs.mujoco_witness import four_bar_xml
 
 mujoco: Any = pytest.importorskip("mujoco")
 
@@ -63,7 +63,7 @@ def test_check_says_what_a_closed_four_bar_gains(a: float, b: float) -> None:
     """By its own run, of hard constraints, strong and gentle: to 3 %, ten seconds at 1/240 s."""
     h, scene = Fraction(1, 240), replace(load_scene("four_bar"), gravity=(0.0, 0.0))
     mechanism = compiled_mechanism(scene)
-    model = mujoco.MjModel.from_xml_string(model_xml(scene, "Euler", float(h), a, b))
+    model = mujoco.MjModel.from_xml_string(four_bar_xml("Euler", float(h), a, b))
     data = mujoco.MjData(model)
     q, v = initial_state(mechanism)
     data.qpos[:], data.qvel[:] = q, v
