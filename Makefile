@@ -60,7 +60,7 @@ witnesses: .venv/tested  ## engines that are not ours, run: PyBullet, pymunk, Bo
 	$(BIN)/python -m pytest tests/witnesses tests/runs/test_mujoco_maps.py tests/runs/test_mujoco_energy.py
 
 extremes: .venv/tested  ## what holds at the extremes, in minutes, into figures/extremes.md
-	$(BIN)/python -m tests.extremes.write_page
+	$(BIN)/python -m tests.extremes.checks
 
 lint: .venv/tested  ## style, format and types
 	$(BIN)/ruff check .
