@@ -48,5 +48,5 @@ def poles_with_errors(
                 slope = abs(mpmath.polyval(derivative[::-1], z)) / mpmath.factorial(k)
                 if slope:
                     error = min(error, (len(coefficients) * rounding / slope) ** (mpmath.mpf(1) / k))
-            pairs.append((z, error))
+            pairs.append((z, error + 100 * mpmath.mp.eps))  # polyroots stops there, however small a root is
     return pairs

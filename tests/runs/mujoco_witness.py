@@ -8,7 +8,7 @@ from bezstab.units import feedback_gains
 
 
 def four_bar_xml(integrator: str, h: float, alpha_hat: float, beta_hat: float) -> str:
-    """Return configs/scenes/four_bar.toml as MuJoCo's XML: its joints are the scene's coordinates, its connects the pins.
+    """Return configs/scenes/four_bar.toml as MuJoCo's XML: joints are the scene's coordinates.
 
     Without gravity; inertias are about the centres of mass. h in s.
     """
