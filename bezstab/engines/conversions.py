@@ -7,7 +7,7 @@ from typing import Any, Literal
 
 from bezstab.engines.sweeping import Sweeping
 from bezstab.errors import InputError
-from bezstab.rationals import rational, within_float64
+from bezstab.rationals import ONE, rational, within_float64
 from bezstab.units import feedback_gains, from_feedback_gains
 
 Level = Literal["acceleration", "velocity", "position"]
@@ -67,7 +67,7 @@ class Engine:
     the points to choose among, None for all of the plane. `jointly` is whether it solves all constraints together below
     acceleration level, too. `sweeping` is how it goes through a step in which it solves one after another, None where
     that is not written down here. `energy_class` is how it takes errors back, None likewise. `impedances(*values)` are
-    the shares that soft constraints get of what they want, at no error and at large ones, None where they get all.
+    the shares that soft constraints get of what they want, at no error and at large ones; else all.
     `rest(h, acceleration, *values)` is the error at which a constraint holds a load, None where that follows from the
     rest: stability/rest_offsets.py.
     """
@@ -93,7 +93,7 @@ class Engine:
     jointly: bool = False
     sweeping: Sweeping | None = None
     energy_class: EnergyClass | None = None
-    impedances: Callable[..., tuple[Fraction, Fraction]] | None = None
+    impedances: Callable[..., tuple[Fraction, Fraction]] = lambda *_values: (ONE, ONE)
     rest: Callable[..., Fraction | float] | None = None
 
     @property

@@ -203,7 +203,7 @@ JUDGED: Sequence[Column[Judgement]] = (
     Column(
         "energy gained a second",
         "energy_rate",
-        lambda answer: answer.energy_rate and answer.energy_rate.gained,
+        lambda answer: answer.energy_rate,
         "share of its energy that a motion of rate ω gains in a second; in an engine a body that spins about a pin",
         "1/s",
         ".2e",

@@ -12,7 +12,7 @@ from bezstab.errors import InputError, NumericalError
 from bezstab.feedback.conditions import AS_GIVEN, Conditions
 from bezstab.goals import Goal
 from bezstab.questions.chains import ALONE, SweptAnswer
-from bezstab.questions.energy import EnergyRate, energy_rate, impedance
+from bezstab.questions.energy import energy_rate
 from bezstab.questions.motions import turning_rate
 from bezstab.questions.scene_runs import SceneRun, scene_run
 from bezstab.questions.trial_runs import Trials
@@ -53,7 +53,7 @@ class Judgement(Choice):
     thousandth (s).
 
     cost: what accuracy the feedback costs on the motion; cost_reason: why that is not known. energy_rate: what a second
-    adds to the energy of a motion of rate omega; None without that rate. impedance: MuJoCo's d.
+    adds to the energy of a motion of rate omega; None without that rate. impedance: MuJoCo's d, else 1.
 
     moving: bounds on the poles as the scene moves; run: what a run of it showed; None without a scene. swept: what the
     engine's sweeps do to many constraints; swept_over: for which constraints all this holds, in an engine that sweeps.
@@ -87,8 +87,8 @@ class Judgement(Choice):
     settle_seconds: float | None
     cost: FeedbackCost | None
     cost_reason: str | None
-    energy_rate: EnergyRate | None
-    impedance: float | None
+    energy_rate: float | None
+    impedance: float
     moving: MovingPole | None
     run: SceneRun | None
     swept: SweptAnswer | None
@@ -133,12 +133,13 @@ def judge(
         z_abs = swept.growth.factor
         choice = replace(choice, settle_steps=steps_to_settle(z_abs))
     moving, run, goes_well = _as_it_moves(asked, choice, swept)
-    hard, rate, sag = None, None, None
-    if values is not None:
-        hard = impedance(engine, values, at_no_error=choice.goal == AS_GIVEN and not asked.as_typed)
+    hard, rate, sag = 1.0, None, None
+    if engine and values is not None:
+        at_no_error, at_most = map(float, engine.impedances(*values))
+        hard = at_no_error if choice.goal == AS_GIVEN and not asked.as_typed else at_most
     if converges and h is not None:
         if asked.omega is not None and asked.scene is None:
-            rate = energy_rate(method, point, h, float(asked.omega), engine, hard or 1.0)
+            rate = energy_rate(method, point, h, float(asked.omega), engine, hard)
         if asked.load is not None and engine and asked.h and values is not None:
             sag = abs(offset_at_rest(engine, values, asked.h, asked.load))
     limits, limits_reason, h_limit = None, None, None

@@ -7,6 +7,7 @@ from bezstab.feedback.judgement import Judgement
 from bezstab.methods.rotation_torque import stage_torque
 from bezstab.motion.modulated_circle import steps_to_breakdown
 from bezstab.questions.chains import SweptAnswer
+from bezstab.questions.energy import spinning_class
 from bezstab.questions.motions import ReferenceMotion
 from bezstab.questions.scene_runs import MOST_GAINED
 from bezstab.questions.trial_runs import Trials
@@ -124,21 +125,21 @@ def _on_a_motion(judged: Judgement) -> str | None:
     Of a choice that does not weigh it, it is said anyway.
     """
     unweighed = judged.role == "chosen" and judged.goal != "accurate"
-    if judged.energy_rate is None or not (abs(judged.energy_rate.gained) >= MOVED or unweighed):
+    rate, omega = judged.energy_rate, float(judged.conditions.omega or 0)
+    if rate is None or not (abs(rate) >= MOVED or unweighed):
         return None
-    rate, by_rotation, spins = judged.energy_rate
-    omega = float(judged.conditions.omega or 0)
+    spins = spinning_class(judged.conditions.engine, judged.method)
     motion = f"a body that spins about a pin at {omega:.3g} rad/s" if spins else f"a motion of {omega:.3g} rad/s"
-    if spins and judged.impedance:
+    if spins and judged.impedance < 1:
         motion += f", with an impedance d of {judged.impedance:g},"
     if abs(rate) < KEPT:
         return f"{motion} keeps its energy"
     said = f"{motion} {'gains' if rate > 0 else 'loses'} {100 * abs(rate):.2g} % of its energy a second"
     # stages' torque grows as the cube of the rate
-    if judged.h and not spins and by_rotation > MOVED and stage_torque(judged.method).power == 2:
-        steps = steps_to_breakdown(judged.method, judged.alpha_hat, judged.beta_hat, omega * judged.h)
-        said += f" and breaks down after about {seconds_words(steps * judged.h)}" if steps < math.inf else ""
-        said += ": take heun or RK4, or gentler feedback"
+    if judged.h and not spins and stage_torque(judged.method).power == 2:
+        end = judged.h * steps_to_breakdown(judged.method, judged.alpha_hat, judged.beta_hat, omega * judged.h)
+        if end < 1 / MOVED:
+            said += f" and breaks down after about {seconds_words(end)}: take heun or RK4, or gentler feedback"
     return said
 
 
@@ -153,23 +154,23 @@ def _as_it_ran(judged: Judgement) -> list[str]:
     run = judged.run
     if run is None:
         return []
-    if run.failure:
-        return [f"a run breaks down {run.failure}"]
     said = [f"in a run of {seconds_words(run.duration)}: |c| at most {run.c_max:.1e}, {_energy_text(run.gained)}"]
+    if run.failure:
+        said = [f"a run breaks down {run.failure}"]
     if not run.decides:
         return [*said, "it passes a singular configuration, and decides nothing"]
+    if run.failure:
+        return said
     if run.grown:
         said.append("there the constraint error grows")
-    if run.gained > MOST_GAINED and run.culprit == "multipliers":
+    if run.gained > MOST_GAINED and run.by_feedback:
         said.append("the feedback pumps the motion: take --goal accurate, or a shorter step")
     elif run.gained > MOST_GAINED:
         end = f", and breaks down after about {seconds_words(run.breakdown)}" if run.breakdown else ""
         said.append(f"the method speeds the motion up{end}: take heun or RK4, or gentler feedback")
     elif run.gained < -MOST_GAINED:
-        said.append(
-            "the method takes that, whatever the feedback" if run.culprit == "method" else "the feedback brakes"
-        )
-    if judged.impedance and judged.impedance < HARD:
+        said.append("the feedback brakes" if run.by_feedback else "the method takes that, whatever the feedback")
+    if judged.impedance < HARD:
         said.append(f"the run is of hard constraints: an impedance d of {judged.impedance:g} brakes besides")
     if run.sound and judged.moving and judged.moving.verdict != "converges":
         said.append("the prediction settles nothing, but the run went through")

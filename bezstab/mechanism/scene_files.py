@@ -12,7 +12,6 @@ from bezstab.errors import InputError, shown, unknown_name
 from bezstab.files import read_toml
 from bezstab.mechanism.scenes import (
     COORDINATES,
-    DURATION,
     GROUND,
     Body,
     Distance,
@@ -95,7 +94,7 @@ def parse_scene(data: dict[str, Any]) -> Scene:
     top = TomlTable(data, "scene")
     name = top.text("name")
     gravity = top.point("gravity", default=NOWHERE)
-    duration = top.positive_number("duration", default=DURATION)
+    duration = top.positive_number("duration", default=0.0)
 
     bodies = tuple(_body(table) for table in top.tables("body"))
     body_names = [body.name for body in bodies]

@@ -10,7 +10,6 @@ from bezstab.errors import InputError
 Point = tuple[float, float]
 
 FASTEST = 1e100  # times as fast as given, and the inverse the slowest: its square is within float64
-DURATION = 1.0  # s, of a scene that says nothing
 GROUND = "ground"
 COORDINATES = ("x", "y", "theta")
 """What a body in the plane can have free: its frame's origin (m, in the ground's axes) and its angle (rad)."""
@@ -120,7 +119,7 @@ class Scene:
 
     `gravity` in m/s2. `position` (m, rad) and `velocity` (m/s, rad/s) hold the coordinates that are given at the
     start, and the others follow from the constraints, found from `guess`. `duration` (s) is how long a motion that no
-    driver closes is worth looking at.
+    driver closes is worth looking at; 0 where nobody says.
     """
 
     name: str
@@ -132,7 +131,7 @@ class Scene:
     position: Mapping[str, float] = field(hash=False)
     velocity: Mapping[str, float] = field(hash=False)
     guess: Mapping[str, float] = field(hash=False)
-    duration: float = DURATION
+    duration: float = 0.0
 
     @property
     def coordinates(self) -> tuple[str, ...]:

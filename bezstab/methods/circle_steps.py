@@ -76,12 +76,6 @@ def across(p: Series) -> Series:
     return p.each(lambda term: np.stack([-term[1], term[0]]))
 
 
-def constraint(position: Series) -> Series:
-    """Return c."""
-    of_rest, *others = dot(position, position).terms
-    return type(position)([of_rest - 1, *others]).each(lambda term: term / 2)
-
-
 class CircleStep(ABC):
     """A method's step on the circle, at its own alpha_hat and beta_hat.
 
@@ -112,8 +106,8 @@ class CircleStep(ABC):
     def later(self, quantity: Series, steps: int) -> Series:
         """Return what a quantity is so many steps later, as it is seen from the frame of now."""
 
-    def taken(self, unknowns: Series) -> tuple[dict[str, Series], Series]:
-        """Return the quantities of a step, and what should be zero, (size, ..., 1): what is off, and the angle of x."""
+    def taken(self, unknowns: Series) -> Series:
+        """Return what should be zero, (size, ..., 1): what is off in the step's equations, and the angle of x."""
         pairs = {name: unknowns.each(itemgetter(slice(place, place + 2))) for name, place in self.places.items()}
         found, off = dict(pairs), dict[str, Series]()
         for equation in self.equations:
@@ -131,27 +125,24 @@ class CircleStep(ABC):
                 found[name] = value
         rows = [*(off[name] for name in pairs), pairs[POSITION].each(itemgetter(slice(1, 2)))]
         powers = zip(*(each.terms for each in rows), strict=True)
-        zero = self.kind([np.stack(np.broadcast_arrays(*(row for term in terms for row in term))) for terms in powers])
-        return found, zero
+        return self.kind([np.stack(np.broadcast_arrays(*(row for term in terms for row in term))) for terms in powers])
 
     def acceleration(self, position: Series, velocity: Series, moment: Series) -> Series:
         """Return the acceleration of the mass, with a moment about the centre."""
-        along = moment * dot(position, position).inverse()
-        return across(position) * along - position * self.multiplier(position, velocity)
+        square = dot(position, position)
+        at_rest, *others = square.terms
+        off = type(square)([at_rest - 1, *others])  # 2 c
+        pull: Series = dot(velocity, velocity) + dot(position, velocity) * self.alpha_hat + off * (self.beta_hat / 2)
+        return (across(position) * moment - position * pull) * square.inverse()
 
     def first_order(self, known: Array) -> tuple[Array, Series]:
         """Return the matrix, (..., size, size), by which first coefficients enter what is off, and that without them.
 
         `known` are the unknowns' coefficients before these.
         """
-        _, without = self.taken(self.kind([known, 0 * known]))
-        _, ahead = self.taken(self.kind([known, self.unit.reshape(len(known), *(1 for _ in known.shape[2:]), -1)]))
+        without = self.taken(self.kind([known, 0 * known]))
+        ahead = self.taken(self.kind([known, self.unit.reshape(len(known), *(1 for _ in known.shape[2:]), -1)]))
         return np.moveaxis(ahead.terms[1] - without.terms[1], 0, -2), without
-
-    def multiplier(self, position: Series, velocity: Series) -> Series:
-        """Return lambda."""
-        feedback: Series = dot(position, velocity) * self.alpha_hat + constraint(position) * self.beta_hat
-        return (dot(velocity, velocity) + feedback) * dot(position, position).inverse()
 
     def _sum_of(self, found: dict[str, Series], combination: Combination, step: int) -> Series:
         """Return a sum of quantities as it is seen from the frame of a step."""

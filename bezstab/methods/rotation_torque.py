@@ -85,6 +85,5 @@ class _Rotation(CircleStep):
         inverse = np.array(solution(matrix.tolist(), self.unit.tolist()))
         for _ in range(powers):
             terms.append(0 * terms[0])
-            _, left = self.taken(Series(terms))
-            terms[-1] = -inverse @ left.terms[-1]
+            terms[-1] = -inverse @ self.taken(Series(terms)).terms[-1]
             yield -terms[-1][-1, 0]

@@ -22,14 +22,13 @@ does on the steady error, -lambda dc/dt, and the method's own truncation, which 
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from bezstab.methods.circle_steps import Array, CircleStep, Series, across, constraint
+from bezstab.methods.circle_steps import Array, CircleStep, Series, across
 from bezstab.methods.schemes import Method
-from bezstab.methods.step_equations import POSITION, VELOCITY
 
 FloatArray = NDArray[np.float64]
 
@@ -46,69 +45,45 @@ SETTLED = 1e-9
 """Of a correction, of numbers of the size of one: the next would be rounding."""
 
 
-class MotionEnergy(NamedTuple):
-    """What becomes of the energy of a motion, at points of the plane (shape of alpha_hat and beta_hat broadcast).
+def motion_energy(
+    method: Method,
+    alpha_hat: ArrayLike,
+    beta_hat: ArrayLike,
+    omega_h: float | FloatArray,
+    modulation: float = MODULATION,
+) -> FloatArray:
+    """Return the growth of energy per radian, as a share of it, of a motion of omega_h radians a step.
 
-    rotation: growth of the energy of a uniform rotation, per radian, as a share of it: torque of stages and truncation.
-    modulation: what a motion gains beside it, per radian and square of the relative modulation of its rate.
-    multiplier: the part of `modulation` that the multiplier's work on the steady error is.
-    nan where a rotation has no solution.
-    """
-
-    rotation: FloatArray
-    modulation: FloatArray
-    multiplier: FloatArray
-
-    def growth(self) -> FloatArray:
-        """Return the growth of energy per radian, as a share of it, of a motion whose rate varies by MODULATION."""
-        return self.rotation + self.modulation * MODULATION**2
-
-
-def motion_energy(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike, omega_h: float) -> MotionEnergy:
-    """Return what the method makes of the energy of a motion of omega h radians a step whose rate varies.
-
-    0 < omega_h < 1. Stability is not looked at: where errors of constraints grow, no run has such a motion. Source: the
-    docstring above.
+    Its rate varies by `modulation` of it; with 0 it is a uniform rotation, which torque of stages and truncation alone
+    change. Shape of alpha_hat, beta_hat and omega_h, broadcast; nan where a rotation has no solution. 0 < omega_h < 1.
+    Stability is not looked at: where errors of constraints grow, no run has such a motion. Source: the docstring above.
     """
     multiple = float(method.step_multiple)
-    a, b = np.broadcast_arrays(multiple * np.asarray(alpha_hat, float), multiple**2 * np.asarray(beta_hat, float))
+    a, b = (each[..., np.newaxis] for each in np.broadcast_arrays(alpha_hat, beta_hat))
     b = np.where(b > 0, b, np.nan)  # else no radius is held
-    theta = multiple * omega_h
-    still, driven = (_Circle(method, a[..., np.newaxis], b[..., np.newaxis], theta, n) for n in (0, 1))
+    theta = multiple * np.asarray(omega_h)[..., np.newaxis]
+    still, driven = (_Circle(method, multiple * a, multiple**2 * b, theta, n) for n in (0, 1))
     with np.errstate(all="ignore"):
         mean, matrix = still.settled()
         disturbed, by_force = driven.first_order(mean)
         amplitude = solved(disturbed[..., :-1, :-1], -by_force.terms[1][:-1])
         swinging = _Wave([mean, np.concatenate([amplitude, 0 * amplitude[:1]]), 0 * mean])
-        found, left = driven.taken(swinging)
-        added = solved(matrix, -left.terms[2])
-        c, pull = constraint(found[POSITION]), driven.multiplier(found[POSITION], found[VELOCITY])
-        # with the mean of the multiplier at both ends of a step
-        work = (driven.shifted(c, 1) - c) * (driven.shifted(pull, 1) + pull) * -0.5
-    scale = 2 * theta**2  # the force changes the rate by epsilon / theta^2 of it; the energy is theta^2 / 2
-    return MotionEnergy(
-        rotation=-2 * mean[-1, ..., 0] / theta**2,
-        modulation=-scale * added[-1, ..., 0],
-        multiplier=scale * work.terms[2][..., 0] / theta,
-    )
+        epsilon = modulation * theta**2  # changes the rate by the modulation of it
+        moment = (mean - epsilon**2 * solved(matrix, driven.taken(swinging).terms[2]))[-1]
+        return np.asarray(-2 * moment / theta**2)[..., 0]  # the energy is theta^2 / 2
 
 
 def steps_to_breakdown(method: Method, alpha_hat: float, beta_hat: float, omega_h: float) -> float:
     """Return after about how many steps of h a uniform rotation of omega h radians a step is infinitely fast.
 
-    Infinite where it is not. Each step multiplies the rate by 1 + theta rotation(theta) / 2. With theta = omega h / s
-    the steps are the integral of 2 / (omega h rotation) over s from 0 to 1, smooth where rotation is of first order.
-    To 5 % below omega h = 0.1.
+    Infinite where it is not. A radian adds half of its growth of energy to the rate. With theta = omega h / s the steps
+    are the integral of 2 / (omega h growth) over s from 0 to 1, smooth where growth is of first order. To 5 % below
+    omega h = 0.1.
     """
-    steps = 0.0
-    for node, weight in zip(*np.polynomial.legendre.leggauss(NODES), strict=True):
-        theta = min(2 * omega_h / (1 + node), FASTEST)
-        gained = float(motion_energy(method, alpha_hat, beta_hat, theta).rotation)
-        if gained <= 0:
-            return np.inf
-        if np.isfinite(gained):  # else it is over before it turns so fast
-            steps += weight / (omega_h * gained)
-    return steps
+    nodes, weights = np.polynomial.legendre.leggauss(NODES)
+    growth = motion_energy(method, alpha_hat, beta_hat, np.minimum(2 * omega_h / (1 + nodes), FASTEST), modulation=0)
+    # without a solution it is over before it turns so fast
+    return np.inf if np.any(growth <= 0) else float(np.nansum(weights / growth)) / omega_h
 
 
 def solved(matrices: Array, right_sides: Array) -> Array:
@@ -135,32 +110,29 @@ class _Circle(CircleStep):
 
     kind = _Wave
 
-    def __init__(self, method: Method, alpha_hat: Array, beta_hat: Array, theta: float, harmonic: int) -> None:
+    def __init__(self, method: Method, alpha_hat: Array, beta_hat: Array, theta: Array, harmonic: int) -> None:
         super().__init__(method, alpha_hat, beta_hat, float)
         self.theta, self.harmonic = theta, harmonic
 
     def later(self, quantity: Series, steps: int) -> Series:
-        """Return what a quantity is so many steps later: turned, too."""
+        """Return what a quantity is so many steps later, as it is seen from the frame of now."""
         angle = steps * self.theta
-        return self.shifted(quantity * np.cos(angle) + across(quantity) * np.sin(angle), steps)
-
-    def shifted(self, seen: Series, steps: int) -> Series:
-        """Return what is seen from the frame of each step, so many steps later."""
-        mean, amplitude, *second = seen.terms
-        return _Wave([mean, amplitude * np.exp(1j * self.harmonic * self.theta * steps), *second])
+        mean, amplitude, *second = (quantity * np.cos(angle) + across(quantity) * np.sin(angle)).terms
+        return _Wave([mean, amplitude * np.exp(1j * self.harmonic * angle), *second])
 
     def acceleration(self, position: Series, velocity: Series, moment: Series) -> Series:
-        """Return the acceleration with the force, epsilon Re e^(i n (theta s + angle)), at the angle of a position."""
+        """Return the acceleration with the force, epsilon Re e^(i (theta s + angle)), at the angle of a position."""
         (x, y), (dx, dy) = position.terms[:2]
-        force = np.exp(1j * self.harmonic * np.arctan2(y, x))
+        force = np.exp(1j * np.arctan2(y, x))
         turn = (x * dy - y * dx) / (x**2 + y**2)
-        of_place = np.real(1j * self.harmonic * force * np.conj(turn)) / 2
+        of_place = np.real(1j * force * np.conj(turn)) / 2
         forced = _Wave([a + b for a, b in zip(moment.terms, (0, force, of_place), strict=False)])
         return super().acceleration(position, velocity, forced)
 
     def settled(self) -> tuple[FloatArray, FloatArray]:
         """Return the unknowns of a uniform rotation, nan where it has none, and the matrix of Newton's method."""
-        at_rest, by_theta = (np.multiply.outer(each[:, 0], np.ones_like(self.alpha_hat)) for each in self.rotation)
+        ones = np.ones_like(self.alpha_hat + self.theta)
+        at_rest, by_theta = (np.multiply.outer(each[:, 0], ones) for each in self.rotation)
         mean = at_rest + self.theta * by_theta
         for _ in range(MOST_ITERATIONS):
             matrix, left = self.first_order(mean)

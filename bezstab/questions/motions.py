@@ -12,6 +12,9 @@ from bezstab.rationals import exact, typed_number
 from bezstab.stability.forced_errors import OMEGA_H, check_omega_h
 from bezstab.stability.turning import LAW_HOLDS
 
+DURATION = 1.0
+"""s: for so long a motion is followed that no driver closes, of a scene that says nothing."""
+
 
 @dataclass(frozen=True)
 class ReferenceMotion:
@@ -61,7 +64,7 @@ def motion_of(
             assert mechanism
             name = mechanism.scene.name
             try:
-                of_scene = constraint_motion(mechanism, float(duration or mechanism.scene.duration))
+                of_scene = constraint_motion(mechanism, float(duration or mechanism.scene.duration or DURATION))
             except InputError as error:
                 raise InputError(f"--scene: {error}; --omega gives one") from None
             omega, amplitude = exact(of_scene.omega), of_scene.amplitude
@@ -98,7 +101,7 @@ def mechanism_of(scene: str | Scene | None, speed: Fraction, h: Fraction | None)
 
 def turning_rate(mechanism: Mechanism) -> float:
     """Return how fast its constraints turn at most as it moves (1/s); errors as `turning_normals`."""
-    return turning_normals(mechanism, mechanism.scene.duration).kappa
+    return turning_normals(mechanism, mechanism.scene.duration or DURATION).kappa
 
 
 def turn_too_far(mechanism: Mechanism, h: Fraction) -> list[str]:

@@ -7,15 +7,13 @@ it is run, for ten seconds or ten thousand steps, or as long as its file says.
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
-from typing import Literal
 
 import numpy as np
 
 from bezstab.engines.conversions import Point
 from bezstab.errors import InputError
 from bezstab.mechanism.equations import Mechanism
-from bezstab.mechanism.scenes import DURATION
-from bezstab.mechanism.simulation import Simulation, check_duration, simulated
+from bezstab.mechanism.simulation import Simulation, simulated
 from bezstab.methods.rotation_torque import stage_torque
 from bezstab.methods.schemes import Method
 
@@ -37,8 +35,6 @@ GROWN = 100.0
 SEEN = 1e-9
 """m or rad: |c| below is rounding of a run, whatever it was before."""
 
-Culprit = Literal["multipliers", "method"]
-
 
 @dataclass(frozen=True)
 class SceneRun:
@@ -46,9 +42,9 @@ class SceneRun:
 
     c_max: the largest |c| (m or rad). gained: what the energy gained beside the work of drivers and forces, as a share
     of the largest kinetic energy; negative where it lost. At the end of the run, but at its height where that is more
-    than MOST_GAINED: a run may explode, and lose all of it again. culprit: whether most of it is the multipliers' work,
-    which depends on the feedback, or the method's own. breakdown: when (s) the energy becomes infinite if it goes on
-    so, None where it does not. grown: whether constraints do not hold. failure: why the run ended early. decides:
+    than MOST_GAINED: a run may explode, and lose all of it again. by_feedback: whether most of it is the multipliers'
+    work, else the method's own. breakdown: when (s) the energy becomes infinite if it goes on so, None where it does
+    not. grown: whether constraints do not hold. failure: why the run ended early. decides:
     whether it says anything: past a singular configuration a motion branches by rounding. sound: whether it went
     through, with constraints that hold, and gained next to no energy.
     """
@@ -56,7 +52,7 @@ class SceneRun:
     duration: float
     c_max: float
     gained: float
-    culprit: Culprit
+    by_feedback: bool
     breakdown: float | None
     grown: bool
     failure: str | None
@@ -64,26 +60,17 @@ class SceneRun:
     sound: bool
 
 
-def time_given(mechanism: Mechanism, time: Fraction | float | None) -> float | None:
-    """Return how long (s) a scene is to be run: as asked for, else as its file says; None where nobody says."""
-    written = mechanism.scene.duration
-    if time is not None:
-        return float(time)
-    return written if written != DURATION else None
-
-
 def scene_run(
     mechanism: Mechanism, method: Method, h: Fraction, point: Point, time: Fraction | float | None = None
 ) -> SceneRun:
     """Return what a run of `time` (s) shows, with steps of h (s) at a point (alpha_hat, beta_hat).
 
-    Where nobody gives a time it is USUAL_TIME, or MOST_STEPS if that is less. InputError for a time that is no number
-    of steps, and for a scene in which nothing moves.
+    Where nobody gives a time it is the scene's own, else USUAL_TIME, or MOST_STEPS if that is less. InputError for a
+    time that is no number of steps, and for a scene in which nothing moves.
     """
     run_for = partial(simulated, mechanism, method, h=float(h), alpha_hat=float(point[0]), beta_hat=float(point[1]))
-    whole_step = float(h * method.step_multiple)
-    duration = time_given(mechanism, time) or min(USUAL_TIME, MOST_STEPS * whole_step)
-    check_duration(duration, whole_step)
+    usual = min(USUAL_TIME, MOST_STEPS * float(h * method.step_multiple))
+    duration = float(time or mechanism.scene.duration or usual)
     run = run_for(duration=duration)
     with np.errstate(all="ignore"):  # of a run that broke down
         kinetic = run.v**2 @ mechanism.mass / 2
@@ -94,10 +81,10 @@ def scene_run(
     height = int(np.nanargmax(run.energy_drift))
     at = height if run.energy_drift[height] > MOST_GAINED * own else -1
     drift, by_multipliers = float(run.energy_drift[at]), float(run.multiplier_work[at])
-    culprit: Culprit = "multipliers" if abs(by_multipliers) >= abs(drift - by_multipliers) else "method"
+    by_feedback = abs(by_multipliers) >= abs(drift - by_multipliers)
     breakdown = None
     grows = run.energy_drift[-1] > MOST_GAINED * own
-    if culprit == "method" and grows and stage_torque(method).power == 2 and not run.failure:
+    if grows and not by_feedback and stage_torque(method).power == 2 and not run.failure:
         longer = run_for(duration=FURTHER * duration)
         end = float(longer.t[-1])
         breakdown = end if longer.failure else _breakdown(run)
@@ -109,7 +96,7 @@ def scene_run(
         duration=float(run.t[-1]),
         c_max=run.c_max,
         gained=gained,
-        culprit=culprit,
+        by_feedback=by_feedback,
         breakdown=breakdown,
         grown=grown,
         failure=run.failure,

@@ -17,7 +17,6 @@ from bezstab.mechanism.start import constraint_errors, initial_state
 from bezstab.methods.registry import lookup
 from bezstab.methods.schemes import Method, evaluations, implicit
 from bezstab.questions.motions import turning_rate
-from bezstab.questions.scene_runs import time_given
 from bezstab.rationals import exact
 from bezstab.stability.accurate_points import decaying
 from bezstab.stability.arrays import BoolArray, FloatArray
@@ -79,7 +78,7 @@ def trial_runs(
     too, where the runs of the choice break down: their longer steps do not bear strong feedback.
     """
     method, multiple, step = choice.method, float(choice.method.step_multiple), float(h)
-    seconds = min(TURNED * step / float(omega_h), time_given(mechanism, time) or np.inf)
+    seconds = min(TURNED * step / float(omega_h), float(time or mechanism.scene.duration or np.inf))
     rate = THOUSANDFOLD ** (step * multiple / min(seconds, float(settle or seconds)))
     (_, largest_alpha), (_, largest_beta) = search_box(region(method))[0]
     count = POINTS // 2 if implicit(method) else POINTS

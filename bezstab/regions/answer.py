@@ -390,7 +390,7 @@ def _error(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray, motion: 
 
 def _growth(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray, motion: ReferenceMotion) -> FloatArray:
     """Return the growth of energy in a revolution, a share of it, of a motion whose rate varies by MODULATION."""
-    return 2 * np.pi * motion_energy(method, alpha_hat, beta_hat, float(motion.omega_h)).growth()
+    return 2 * np.pi * motion_energy(method, alpha_hat, beta_hat, float(motion.omega_h))
 
 
 def _on_motion(
