@@ -109,7 +109,7 @@ SPEED = ParsedType("number", partial(_within_squares, unit="times the scene's ow
 SEQUENCE = ParsedType("steps", _sequence)
 NUMBERS = ParsedType("number,number,...", lambda text: tuple(map(rational, text.split(","))))
 METHOD = ParsedType("method", lookup, lambda: REGISTRY)
-SHARE = ParsedType("number", lambda text: float(rational(text)))
+REAL = ParsedType("number", lambda text: float(rational(text)))
 ENGINE = ParsedType("name", engine_named, lambda: ENGINES)
 ENGINE_VALUES = ParsedType("name[=values]", _engine_values, lambda: [f"{name}=" for name in ENGINES])
 SCENE = ParsedType("scene", str, _scenes)

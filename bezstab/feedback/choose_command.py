@@ -9,7 +9,7 @@ import click
 from bezstab.cli import shared_options as shared
 from bezstab.cli.asking import say_each, say_what_is_left_out, show_sentences
 from bezstab.cli.grouped_help import GroupedCommand, grouped
-from bezstab.cli.options import ENGINE, POSITIVE, SECONDS, SHARE
+from bezstab.cli.options import ENGINE, POSITIVE, REAL, SECONDS
 from bezstab.cli.output import for_reading, progress, show_answers, worked_out
 from bezstab.goals import GOALS, SETTLING, UP_TO_LONGEST, Goal, one_of
 
@@ -31,7 +31,7 @@ GOALS_IN_LINES = "\b\nGoals:\n" + "\n".join(f"  {goal:<9} {asked}" for goal, ask
         help="One of those below [accurate; robust in most engines].",
     ),
     click.option("--settle", type=SECONDS, help=f"{one_of(SETTLING)}: time to a thousandth."),
-    click.option("--spread", type=SHARE, default="0.1", help="Share by which α and β may be wrong."),
+    click.option("--spread", type=REAL, default="0.1", help="Share by which α and β may be wrong."),
     click.option("--keep", "equal", type=click.Choice(["alpha=beta"]), help="Only points with α = β."),
     click.option("--engine", type=ENGINE, help="Only settings that this engine has."),
     click.option("--sag", type=POSITIVE, help="Instead of --goal: the weakest that sags by so many m."),

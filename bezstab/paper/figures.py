@@ -1,6 +1,7 @@
 """Figures 1 to 9."""
 
 from collections.abc import Callable, Mapping
+from fractions import Fraction
 from functools import partial
 from typing import Any
 
@@ -25,6 +26,7 @@ from bezstab.paper.experiments import (
     unstabilized_runs,
 )
 from bezstab.paper.printed import COMPARED, FASTER_LEVEL, TABLE_5
+from bezstab.rationals import exact
 from bezstab.regions.answer import MapConditions, map_answer
 from bezstab.regions.figure import comparison_figure, map_figure
 from bezstab.show import plot
@@ -61,7 +63,7 @@ def faster_region_figure(name: str) -> Figure:
     return map_figure(map_answer(lookup(name), MapConditions(levels=(FASTER_LEVEL[name],)), drawn=True))
 
 
-def compared_regions_figure(*names: str, h: float | None = None) -> Figure:
+def compared_regions_figure(*names: str, h: Fraction | None = None) -> Figure:
     """Return Fig. 2 or, in 2 alpha and beta^2 for a step of h (s), Fig. 3: the boundaries of several methods.
 
     On a page: bezstab paper -o figures
@@ -169,7 +171,7 @@ FIGURES: Mapping[str, Callable[[], Figure]] = {
     "fig1b": partial(faster_region_figure, "B3"),
     "fig1c": partial(faster_region_figure, "B4"),
     "fig2": partial(compared_regions_figure, "B3", "B4", "AB3", "AB4"),
-    "fig3": partial(compared_regions_figure, "B4", "AB4", "RK4@5", h=STEP),
+    "fig3": partial(compared_regions_figure, "B4", "AB4", "RK4@5", h=exact(STEP)),
     "fig4": mechanism_figure,
     "fig5": lambda: drift_figure(unstabilized_runs(*COLLAPSE)),
     "fig6": lambda: drift_figure(unstabilized_runs(*GROWTH)),

@@ -1,13 +1,13 @@
 """Regions: how large they are, where errors shrink fastest, and the part of the plane that shows them.
 
-levels, a window, an engine, a scene or a motion   →   map_conditions   →   MapConditions
-a method, MapConditions                            →   map_answer       →   MapAnswer, with its Drawing if asked for
+levels, a window, an engine, a scene, ...   →   MapSetup     →   map_conditions   →   MapConditions
+a method, MapConditions                     →   map_answer   →   MapAnswer, with its Drawing if asked for
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
-from itertools import chain
+from itertools import chain, compress
 
 import numpy as np
 
@@ -15,7 +15,6 @@ from bezstab.arguments import Number, in_keywords, real_number
 from bezstab.engines.conversions import Engine
 from bezstab.errors import InputError, NumericalError
 from bezstab.goals import Goal
-from bezstab.mechanism.scene_files import load_scene
 from bezstab.methods.registry import method as method_named
 from bezstab.methods.schemes import Method
 from bezstab.motion.modulated_circle import motion_energy
@@ -130,115 +129,105 @@ Range = tuple[float, float]
 
 
 @dataclass(frozen=True, kw_only=True)
-class MapConditions:
-    """What maps of all methods share; made by `map_conditions`.
+class MapSetup:
+    """What is asked of maps of all methods as it was given, checked when made.
 
-    `levels` are further values of |z_p|, at most 1, whose regions are asked about. The windows `alpha_range` and
-    `beta_range` are in alpha_hat and beta_hat; without them a window holds the region. Axes have so many `points`. With
-    a step `h` (s) there may be `marks`, points (alpha_hat, beta_hat) by label, and a scene, called `scene_name`, whose
-    constraints turn at most at rates `kappas` (1/s), by times its own speed. `motion`: that on which errors are told,
-    or with `energy` what the feedback does to its energy; None if neither is asked about. With `alpha_beta` axes are
-    alpha and beta (1/s). In an `engine` the point to choose is one that it can express. `warnings` are
-    to be known before the answers.
+    `levels` are further values of |z_p|, at most 1, whose regions are asked about; with `compare` one, whose boundaries
+    alone are drawn. The windows `alpha_range` and `beta_range` are in alpha_hat and beta_hat; without them a window
+    holds the region. Axes have so many `points`; with `alpha_beta` they are alpha and beta (1/s). h: the step (s). In
+    an `engine` the point to choose is one that it can express. scene, speeds: the mechanism that moves, by times its
+    own speed. With `accuracy` errors are told on a motion of rate omega (1/s), with `energy` what the feedback does to
+    its energy. InputError for what does not go together, and for numbers out of range.
     """
 
     levels: tuple[float, ...] = ()
     alpha_range: Range | None = None
     beta_range: Range | None = None
     points: int = QUALITY["balanced"]
-    h: float | None = None
-    marks: Mapping[str, tuple[float, float]] = field(default_factory=dict)
-    scene_name: str = ""
-    kappas: Mapping[float, float] = field(default_factory=dict)
-    motion: ReferenceMotion | None = None
-    energy: bool = False
-    alpha_beta: bool = False
+    h: Fraction | None = None
     engine: Engine | None = None
-    warnings: tuple[str, ...] = ()
+    scene: str | None = None
+    speeds: tuple[Fraction, ...] = ()
+    accuracy: bool = False
+    energy: bool = False
+    omega: Fraction | None = None
+    compare: bool = False
+    alpha_beta: bool = False
+
+    def __post_init__(self) -> None:
+        motion, scene = {"--accuracy": self.accuracy, "--motion": self.energy}, self.scene is not None
+        asked = {"--scene": scene, "--engine": self.engine, **motion}
+        others = [option for option, given in asked.items() if given]
+        of_motion = next(compress(motion, motion.values()), "")
+        if self.compare and others:
+            raise InputError(f"{others[0]} does not go with --compare: it draws boundaries alone")
+        if self.compare and len(self.levels) > 1:
+            raise InputError(f"--compare takes one --level, but {len(self.levels)} were given")
+        if self.accuracy and self.energy:
+            raise InputError("--motion does not go with --accuracy: it draws another map")
+        if of_motion and self.alpha_beta:
+            raise InputError(f"--alpha-beta does not go with {of_motion}: its axes are α̂ and β̂")
+        if self.omega is not None and not of_motion:
+            raise InputError("--omega needs --accuracy or --motion: it is the motion that is asked about")
+        if of_motion and len(self.speeds) > 1:
+            raise InputError(f"{of_motion} takes one --speed, but {len(self.speeds)} were given")
+        if self.h is None and (self.alpha_beta or self.engine):
+            option = "--alpha-beta" if self.alpha_beta else "--engine"
+            raise InputError(f"{option} needs --h: what it shows depends on the step in s")
+        if not 2 <= self.points <= MOST_POINTS:
+            raise InputError(f"--grid {self.points}: expected 2 to {MOST_POINTS} points along each axis")
+        for level in self.levels:
+            check_level(level)
+        for option, ends in (("--alpha-range", self.alpha_range), ("--beta-range", self.beta_range)):
+            if ends:
+                _check_range(option, *ends, of_motion)
+        if self.alpha_beta and self.beta_range and self.beta_range[0] < 0:
+            low, high = self.beta_range
+            raise InputError(f"--beta-range {low:g} {high:g}: no real β has a β² below 0")
 
 
-def map_conditions(
-    *,
-    levels: tuple[Fraction, ...] = (),
-    alpha_range: tuple[Fraction, Fraction] | None = None,
-    beta_range: tuple[Fraction, Fraction] | None = None,
-    points: int = QUALITY["balanced"],
-    h: Fraction | None = None,
-    engine: Engine | None = None,
-    scene: str | None = None,
-    speeds: tuple[Fraction, ...] = (),
-    accuracy: bool = False,
-    energy: bool = False,
-    omega: Fraction | None = None,
-    compare: bool = False,
-    alpha_beta: bool = False,
-) -> MapConditions:
-    """Return what is asked of all methods; with `compare` that boundaries alone are drawn, at one level.
-
-    InputError for what does not go together, for numbers out of range, and as `motion_of` and `mechanism_of`.
-    """
-    asked = {"--scene": scene, "--engine": engine, "--accuracy": accuracy or None, "--motion": energy or None}
-    given = [name for name, value in asked.items() if value is not None]
-    of_motion = "--accuracy" if accuracy else "--motion" if energy else ""
-    if compare and given:
-        raise InputError(f"{given[0]} does not go with --compare: it draws boundaries alone")
-    if compare and len(levels) > 1:
-        raise InputError(f"--compare takes one --level, but {len(levels)} were given")
-    if accuracy and energy:
-        raise InputError("--motion does not go with --accuracy: it draws another map")
-    if of_motion and alpha_beta:
-        raise InputError(f"--alpha-beta does not go with {of_motion}: its axes are α̂ and β̂")
-    if omega is not None and not of_motion:
-        raise InputError("--omega needs --accuracy or --motion: it is the motion that is asked about")
-    if of_motion and len(speeds) > 1:
-        raise InputError(f"{of_motion} takes one --speed, but {len(speeds)} were given")
-    if h is None and (alpha_beta or engine):
-        option = "--alpha-beta" if alpha_beta else "--engine"
-        raise InputError(f"{option} needs --h: what it shows depends on the step in s")
-    if not 2 <= points <= MOST_POINTS:
-        raise InputError(f"--grid {points}: expected 2 to {MOST_POINTS} points along each axis")
-    for level in levels:
-        check_level(float(level))
-    if alpha_beta and beta_range and beta_range[0] < 0:
-        raise InputError(f"--beta-range {float(beta_range[0]):g} {float(beta_range[1]):g}: no real β has a β² below 0")
-    ranges = [
-        _range(option, ends, of_motion)
-        for option, ends in (("--alpha-range", alpha_range), ("--beta-range", beta_range))
-    ]
-    speeds = speeds or (Fraction(1),)
-    mechanisms = {float(speed): mechanism_of(scene, speed, h) for speed in speeds}
-    turning = {} if of_motion else {speed: moving for speed, moving in mechanisms.items() if moving}
-    marks = engine.marked(h) if engine and h else {}
-    return MapConditions(
-        levels=tuple(map(float, levels)),
-        alpha_range=ranges[0],
-        beta_range=ranges[1],
-        points=points,
-        h=None if h is None else float(h),
-        marks={label: (float(alpha_hat), float(beta_hat)) for label, (alpha_hat, beta_hat) in marks.items()},
-        scene_name=load_scene(scene).name if scene else "",
-        kappas={speed: turning_rate(moving) for speed, moving in turning.items()},
-        motion=motion_of(omega, mechanisms[float(speeds[0])], h) if of_motion else None,
-        energy=energy,
-        alpha_beta=alpha_beta,
-        engine=engine,
-        warnings=tuple(warning for moving in turning.values() if h for warning in turn_too_far(moving, h)),
-    )
-
-
-def _range(option: str, ends: tuple[Fraction, Fraction] | None, of_motion: str) -> Range | None:
-    """Return a window along one axis; InputError for ends that no axis has."""
-    if ends is None:
-        return None
-    low, high = ends
-    typed = f"{option} {float(low):g} {float(high):g}"
-    if not float(low) < float(high):
+def _check_range(option: str, low: float, high: float, of_motion: str) -> None:
+    """Refuse a window along one axis whose ends no axis has."""
+    typed = f"{option} {low:g} {high:g}"
+    if not low < high:
         raise InputError(f"{typed}: the first value must be smaller than the second")
     if max(abs(low), abs(high)) > MOST_DRAWN:
         raise InputError(f"{typed}: expected at most {MOST_DRAWN:g}")
     if of_motion and low <= 0:
         raise InputError(f"{typed}: the axes of {of_motion} are logarithmic, and begin above 0")
-    return float(low), float(high)
+
+
+@dataclass(frozen=True, kw_only=True)
+class MapConditions(MapSetup):
+    """A setup with what follows from it; made by `map_conditions`.
+
+    There may be `marks`, points (alpha_hat, beta_hat) by label, and a scene, called `scene_name`, whose constraints
+    turn at most at rates `kappas` (1/s), by times its own speed. `motion` is that which is asked about, None without
+    one. `warnings` are to be known before the answers.
+    """
+
+    marks: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    scene_name: str = ""
+    kappas: Mapping[float, float] = field(default_factory=dict)
+    motion: ReferenceMotion | None = None
+    warnings: tuple[str, ...] = ()
+
+
+def map_conditions(setup: MapSetup) -> MapConditions:
+    """Return what all maps share; InputError as `motion_of` and `mechanism_of`."""
+    h, of_motion = setup.h, setup.accuracy or setup.energy
+    mechanisms = {float(speed): mechanism_of(setup.scene, speed, h) for speed in setup.speeds or (Fraction(1),)}
+    mechanism = next(iter(mechanisms.values()))
+    turning = {} if of_motion else {speed: moving for speed, moving in mechanisms.items() if moving}
+    marks = setup.engine.marked(h) if setup.engine and h else {}
+    return MapConditions(
+        **vars(setup),
+        marks={label: (float(alpha_hat), float(beta_hat)) for label, (alpha_hat, beta_hat) in marks.items()},
+        scene_name=mechanism.scene.name if mechanism else "",
+        kappas={speed: turning_rate(moving) for speed, moving in turning.items()},
+        motion=motion_of(setup.omega, mechanism, h) if of_motion else None,
+        warnings=tuple(warning for moving in turning.values() if h for warning in turn_too_far(moving, h)),
+    )
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -359,7 +348,7 @@ def map_answer(
         reason=reason,
         on_motion=tuple(_on_motion(method, asked, stable.best, chosen)),
         speeds=tuple(
-            MovingRegion(method, speed, kappa, moving.area(kappa * asked.h))
+            MovingRegion(method, speed, kappa, moving.area(kappa * float(asked.h)))
             for speed, kappa in asked.kappas.items()
             if moving and asked.h
         ),

@@ -2,7 +2,8 @@
 
 import math
 from collections.abc import Sequence
-from typing import Any
+from fractions import Fraction
+from typing import Any, SupportsFloat
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -130,7 +131,7 @@ def _drawn(answer: MapAnswer) -> Drawing:
     return answer.drawing
 
 
-def _plane(title: str, methods: Sequence[Method], h: float | None) -> tuple[Figure, Axes]:
+def _plane(title: str, methods: Sequence[Method], h: Fraction | None) -> tuple[Figure, Axes]:
     """Return a figure and its axes, the plane for a step of h (s); a window says there what methods do at a point."""
     figure, axes = new_axes(*plane_words(title, h))
     axes.format_coord = under_the_mouse(methods, h)  # type: ignore[assignment]
@@ -193,7 +194,9 @@ def _key(axes: Axes, label: str, **line: Any) -> None:
     axes.plot([], [], **{"label": label, "gid": KEY, **line})
 
 
-def _draw_open_edges(region: Region, axes: Axes, h: float | None, inset: float = EDGE_LINES, **line: Any) -> None:
+def _draw_open_edges(
+    region: Region, axes: Axes, h: SupportsFloat | None, inset: float = EDGE_LINES, **line: Any
+) -> None:
     """Draw arrows along those edges of the axes, whose limits are final, beyond which a region goes on without end.
 
     They are `inset` (a share of the axes' sides) inside the axes, where the region is.

@@ -1,10 +1,9 @@
 """The command that draws where a method is stable: region."""
 
 from collections.abc import Sequence
-from fractions import Fraction
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -12,22 +11,19 @@ from bezstab.cli import shared_options as shared
 from bezstab.cli.asking import of_each, say_each
 from bezstab.cli.command_group import NUMERICAL_TROUBLE
 from bezstab.cli.grouped_help import GroupedCommand, grouped
-from bezstab.cli.options import ENGINE, METHOD, NUMBER, POSITIVE, SCENE, SECONDS, SPEED
+from bezstab.cli.options import ENGINE, METHOD, POSITIVE, REAL, SCENE, SECONDS, SPEED
 from bezstab.cli.output import Files, Table, progress, show_answers, show_text, worked_out
-from bezstab.engines.conversions import Engine
 from bezstab.methods.schemes import Method
 
 if TYPE_CHECKING:  # so that `bezstab --help`, which lists this command, loads nothing that computes
     from bezstab.regions.answer import MapAnswer, MapConditions, RegionAnswer
-
-Window = tuple[Fraction, Fraction]
 
 
 @click.command(cls=GroupedCommand)
 @grouped(
     "What is asked",
     click.option("--method", "methods", type=METHOD, multiple=True, help=f"{shared.METHOD_HELP} Repeatable [B4]."),
-    click.option("--level", "levels", type=POSITIVE, multiple=True, help="Also where |z_p| < LEVEL. Repeatable."),
+    click.option("--level", "levels", type=REAL, multiple=True, help="Also where |z_p| < LEVEL. Repeatable."),
     click.option("--compare", is_flag=True, help="Boundaries of all methods in one figure, at --level [1]."),
     click.option("--accuracy", is_flag=True, help="Draw the error that the feedback adds to a motion, and |z_p|."),
     click.option("--motion", "energy", is_flag=True, help="Draw the energy that a motion gains or loses."),
@@ -43,8 +39,8 @@ Window = tuple[Fraction, Fraction]
 @grouped(
     "Output",
     shared.every_column,
-    click.option("--alpha-range", type=NUMBER, nargs=2, help="Draw α̂ from the first number to the second."),
-    click.option("--beta-range", type=NUMBER, nargs=2, help="Draw β̂ from the first number to the second."),
+    click.option("--alpha-range", type=REAL, nargs=2, help="Draw α̂ from the first number to the second."),
+    click.option("--beta-range", type=REAL, nargs=2, help="Draw β̂ from the first number to the second."),
     click.option("--alpha-beta", is_flag=True, help="Axes of α and β (1/s); needs --h."),
     click.option(
         "--quality",
@@ -67,24 +63,14 @@ Window = tuple[Fraction, Fraction]
 )
 def region(
     methods: tuple[Method, ...],
-    levels: tuple[Fraction, ...],
-    compare: bool,
-    accuracy: bool,
-    energy: bool,
-    omega: Fraction | None,
-    h: Fraction | None,
-    alpha_beta: bool,
-    engine: Engine | None,
-    scene: str | None,
-    speeds: tuple[Fraction, ...],
-    alpha_range: Window | None,
-    beta_range: Window | None,
     quality: str,
     grid: int | None,
     table: str,
     figure: str,
     output: Path,
-    **_: object,
+    every_column: bool,
+    form: str,
+    **asked_for: Any,
 ) -> int:
     """Draw where each method is stable, and |z_p| there.
 
@@ -96,39 +82,23 @@ def region(
     """
     from bezstab.methods.registry import lookup
     from bezstab.questions.methods import methods_for
-    from bezstab.regions.answer import map_conditions, region_answer
+    from bezstab.regions.answer import MapSetup, map_conditions, region_answer
     from bezstab.regions.columns import MOVING, ON_A_MOTION, REGION
     from bezstab.show.result_sentences import combined_words, energy_words
     from bezstab.stability.closed_loop import QUALITY
 
-    methods = methods_for(methods or (() if engine else (lookup("B4"),)), engine)
-    asked = worked_out(
-        lambda: map_conditions(
-            levels=levels,
-            alpha_range=alpha_range,
-            beta_range=beta_range,
-            points=QUALITY[quality] if grid is None else grid,
-            h=h,
-            engine=engine,
-            scene=scene,
-            speeds=speeds,
-            accuracy=accuracy,
-            energy=energy,
-            omega=omega,
-            compare=compare,
-            alpha_beta=alpha_beta,
-        ),
-        scene,
-    )
+    setup = MapSetup(points=QUALITY[quality] if grid is None else grid, **asked_for)
+    methods = methods_for(methods or (() if setup.engine else (lookup("B4"),)), setup.engine)
+    asked = worked_out(lambda: map_conditions(setup), setup.scene)
     say_each(asked.warnings)
     files, status = Files(output, figure, table), 0
     files.check_output()
-    if compare:
+    if asked.compare:
         regions = [region_answer(method, *asked.levels) for method in methods]
         _write_boundaries(regions, asked, files)
         show_answers(REGION, regions)
     else:
-        kind = "accuracy" if accuracy else "motion" if energy else scene
+        kind = "accuracy" if asked.accuracy else "motion" if asked.energy else asked.scene
         answers, status = of_each(methods, lambda method: [_map(method, asked, files, kind)])
         regions = [region for answer in answers for region in answer.regions]
         below: list[Table] = [
@@ -137,7 +107,7 @@ def region(
         ]
         show_answers(REGION, regions, below=below)
     if asked.motion:
-        show_text((energy_words if energy else combined_words)(asked.motion))
+        show_text((energy_words if asked.energy else combined_words)(asked.motion))
     return NUMERICAL_TROUBLE if any(region.trouble for region in regions) else status
 
 

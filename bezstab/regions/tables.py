@@ -1,6 +1,7 @@
 """Maps and boundaries as equally long arrays by name, for tables."""
 
 from collections.abc import Sequence
+from typing import SupportsFloat
 
 import numpy as np
 
@@ -11,7 +12,7 @@ from bezstab.stability.regions import Region
 from bezstab.units import feedback_gains
 
 
-def map_arrays(drawing: Drawing, h: float | None) -> Arrays:
+def map_arrays(drawing: Drawing, h: SupportsFloat | None) -> Arrays:
     """Return the dominant poles over both axes as arrays of shape (points,), alpha_hat running fastest.
 
     Dimensionless; the angle of z in degrees; with a step (s) also 2 alpha and beta^2 in 1/s and 1/s^2; with the errors
@@ -23,7 +24,7 @@ def map_arrays(drawing: Drawing, h: float | None) -> Arrays:
     return arrays if drawing.errors is None else {**arrays, "combined_error": drawing.errors.ravel()}
 
 
-def boundary_arrays(regions: Sequence[Region], h: float | None) -> Arrays:
+def boundary_arrays(regions: Sequence[Region], h: SupportsFloat | None) -> Arrays:
     """Return all boundary curves as arrays of shape (points,): method, number of the closed curve, the point.
 
     Dimensionless; with h (s) also 2 alpha and beta^2 in 1/s and 1/s^2.
@@ -45,8 +46,8 @@ def boundary_arrays(regions: Sequence[Region], h: float | None) -> Arrays:
     }
 
 
-def _gains(alpha_hat: FloatArray, beta_hat: FloatArray, h: float | None) -> dict[str, FloatArray]:
+def _gains(alpha_hat: FloatArray, beta_hat: FloatArray, h: SupportsFloat | None) -> dict[str, FloatArray]:
     if h is None:
         return {}
-    two_alpha, beta_squared = feedback_gains(alpha_hat, beta_hat, h)
+    two_alpha, beta_squared = feedback_gains(alpha_hat, beta_hat, float(h))
     return {"two_alpha": two_alpha, "beta_squared": beta_squared}

@@ -63,7 +63,7 @@ NAME_OFF = 4.0  # points from a body up to its name
 FINE = 0.6  # points: lines of histories, so that fast oscillations are told apart
 
 
-def region(region: Region, axes: Axes | None = None, h: float | None = None, **line: Any) -> Line2D:
+def region(region: Region, axes: Axes | None = None, h: SupportsFloat | None = None, **line: Any) -> Line2D:
     """Draw the boundary of a region |z_p| < level.
 
     Parameters
@@ -101,7 +101,7 @@ def spectral_radius(
     beta_range: Range,
     points: int = 200,
     axes: Axes | None = None,
-    h: float | None = None,
+    h: SupportsFloat | None = None,
 ) -> AxesImage:
     """Draw |z_p| over a rectangle of the plane; blank where |z_p| >= 1.
 
@@ -130,7 +130,11 @@ def spectral_radius(
 
 
 def modulus_map(
-    alpha_hat: FloatArray, beta_hat: FloatArray, z_abs: FloatArray, axes: Axes | None = None, h: float | None = None
+    alpha_hat: FloatArray,
+    beta_hat: FloatArray,
+    z_abs: FloatArray,
+    axes: Axes | None = None,
+    h: SupportsFloat | None = None,
 ) -> AxesImage:
     """Draw |z_p| that was computed before on an even grid; blank where |z_p| >= 1.
 
@@ -154,7 +158,9 @@ def modulus_map(
     return cells(axes, *plane_coordinates(alpha_hat, beta_hat, h), stable, cmap="cividis", vmax=1.0)
 
 
-def critical_damping(alpha_range: Range, axes: Axes | None = None, h: float | None = None, **line: Any) -> Line2D:
+def critical_damping(
+    alpha_range: Range, axes: Axes | None = None, h: SupportsFloat | None = None, **line: Any
+) -> Line2D:
     """Draw the line of critical damping, beta_hat = alpha_hat^2 / 4, where alpha = beta.
 
     Parameters
@@ -185,7 +191,7 @@ def critical_damping(alpha_range: Range, axes: Axes | None = None, h: float | No
 
 
 def point(
-    at: BestPoint | Choice | tuple[float, float], axes: Axes | None = None, h: float | None = None, **line: Any
+    at: BestPoint | Choice | tuple[float, float], axes: Axes | None = None, h: SupportsFloat | None = None, **line: Any
 ) -> Line2D:
     """Draw a marker at a point (alpha_hat, beta_hat).
 
@@ -319,7 +325,7 @@ def mechanism(scene: Scene, q: FloatArray, axes: Axes | None = None) -> list[Lin
     return lines
 
 
-def _plane(axes: Axes | None, title: str, h: float | None) -> Axes:
+def _plane(axes: Axes | None, title: str, h: SupportsFloat | None) -> Axes:
     """Return the given axes, labelled if they are empty, or those of a new figure for the plane."""
     return _axes(axes, *plane_words(title, h))
 

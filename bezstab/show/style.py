@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from contextlib import AbstractContextManager
 from textwrap import fill
-from typing import Any, BinaryIO
+from typing import Any, BinaryIO, SupportsFloat
 
 import numpy as np
 from matplotlib import style
@@ -96,20 +96,20 @@ def new_axes(title: str, xlabel: str, ylabel: str, height: float = 1.0) -> tuple
     return figure, figure.add_subplot(title=title, xlabel=xlabel, ylabel=ylabel)
 
 
-def plane_words(title: str, h: float | None) -> tuple[str, str, str]:
+def plane_words(title: str, h: SupportsFloat | None) -> tuple[str, str, str]:
     """Return the title and the labels of both axes, alpha_hat and beta_hat, or 2 alpha and beta^2 for a step of h s."""
     if h is None:
         return title, r"$\hat\alpha = 2\alpha h$ (dimensionless)", r"$\hat\beta = \beta^2 h^2$ (dimensionless)"
-    return title_lines(title, f"h = {h:g} s"), r"$2\alpha$ (1/s)", r"$\beta^2$ (1/s$^2$)"
+    return title_lines(title, f"h = {float(h):g} s"), r"$2\alpha$ (1/s)", r"$\beta^2$ (1/s$^2$)"
 
 
 def plane_coordinates(
-    alpha_hat: FloatOrArray, beta_hat: FloatOrArray, h: float | None
+    alpha_hat: FloatOrArray, beta_hat: FloatOrArray, h: SupportsFloat | None
 ) -> tuple[FloatOrArray, FloatOrArray]:
     """Return where points lie in the plane of plane_words: as they are, or 2 alpha (1/s), beta^2 (1/s^2) with h (s)."""
     if h is None:
         return alpha_hat, beta_hat
-    return feedback_gains(alpha_hat, beta_hat, h)
+    return feedback_gains(alpha_hat, beta_hat, float(h))
 
 
 def mark_in_alpha_and_beta(axes: Axes) -> None:

@@ -14,7 +14,7 @@ from bezstab.words import point_words
 ENLARGED = 2  # times the size of a column on paper
 
 
-def under_the_mouse(methods: Sequence[Method], h: float | None) -> Callable[[float, float], str]:
+def under_the_mouse(methods: Sequence[Method], h: Fraction | float | None) -> Callable[[float, float], str]:
     """Return what a window says of a place on axes as `plane_words` has them, for a step of h (s): `format_coord`.
 
     The point has six digits; of each method |z_p| and the verdict, which is proven for these digits.

@@ -6,7 +6,7 @@ import pytest
 from bezstab.engines.engine_list import ENGINES
 from bezstab.feedback.choosing import choose
 from bezstab.methods.registry import lookup
-from bezstab.regions.answer import MapAnswer, map_answer, map_conditions, moving_regions
+from bezstab.regions.answer import MapAnswer, MapSetup, map_answer, map_conditions, moving_regions
 from bezstab.stability.closed_loop import spectral_radius
 from bezstab.stability.forced_errors import combined_error
 from bezstab.stability.regions import region
@@ -14,11 +14,11 @@ from bezstab.stability.turning import moving_pole
 
 
 def answer_about(name: str, **asked: Any) -> MapAnswer:
-    return map_answer(lookup(name), map_conditions(points=2, **asked), drawn=True)
+    return map_answer(lookup(name), map_conditions(MapSetup(points=2, **asked)), drawn=True)
 
 
 def test_the_best_point_is_inside_only_where_z_is_that_small() -> None:
-    stable, faster = answer_about("B4", levels=(Fraction(1), Fraction(1, 2))).regions
+    stable, faster = answer_about("B4", levels=(1.0, 0.5)).regions
     assert stable.best
     assert stable.best.z_abs > 0.5
     assert (stable.inside, faster.best, faster.inside) == (stable.best, stable.best, None)
@@ -59,5 +59,5 @@ def test_of_a_motion_the_most_accurate_point_forces_less_than_the_fastest() -> N
 
 
 def test_the_marks_of_an_engine_are_stable_points_with_its_own_method() -> None:
-    for point in map_conditions(engine=ENGINES["box2d"], h=Fraction(1, 60)).marks.values():
+    for point in map_conditions(MapSetup(engine=ENGINES["box2d"], h=Fraction(1, 60))).marks.values():
         assert spectral_radius(lookup("SYM"), *point) < 1

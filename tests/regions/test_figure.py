@@ -12,7 +12,7 @@ from matplotlib.contour import QuadContourSet
 
 from bezstab.engines.engine_list import ENGINES
 from bezstab.methods.registry import lookup
-from bezstab.regions.answer import map_answer, map_conditions
+from bezstab.regions.answer import MapConditions, MapSetup, map_answer, map_conditions
 from bezstab.regions.figure import comparison_figure, map_figure
 from bezstab.stability.closed_loop import spectral_radius
 from bezstab.stability.forced_errors import combined_error
@@ -23,7 +23,7 @@ F = Fraction
 
 
 def drawn_map(name: str, **asked: Any) -> Axes:
-    return map_figure(map_answer(lookup(name), map_conditions(**{"points": 21, **asked}), drawn=True)).axes[0]
+    return map_figure(map_answer(lookup(name), map_conditions(MapSetup(**{"points": 21, **asked})), drawn=True)).axes[0]
 
 
 def starting(axes: Axes, words: str) -> list[str]:
@@ -35,8 +35,8 @@ def starting(axes: Axes, words: str) -> list[str]:
 def test_a_map_draws_what_it_is_given(accuracy: bool, h: Fraction | None) -> None:
     """On even axes, and on logarithmic ones where errors are asked about."""
     scale = np.array([1, 1] if h is None else [1e3, 1e6])
-    levels = () if accuracy else (F("0.75"), F("0.9"))
-    asked = map_conditions(h=h, accuracy=accuracy, levels=levels, points=41)
+    levels = () if accuracy else (0.75, 0.9)
+    asked = map_conditions(MapSetup(h=h, accuracy=accuracy, levels=levels, points=41))
     answer = map_answer(lookup("B4"), replace(asked, marks={"a rule": (0.1, 0.2)}), drawn=True)
     assert answer.drawing
     z_abs = np.abs(answer.drawing.z)
@@ -66,12 +66,12 @@ def test_a_map_draws_what_it_is_given(accuracy: bool, h: Fraction | None) -> Non
 
 def test_a_comparison_draws_each_boundary_in_a_given_window_or_in_alpha_and_beta() -> None:
     methods = lookup("B4"), lookup("RK4@5")
-    ends: dict[str, Any] = {"alpha_range": (F(0), F(1)), "beta_range": (F(0), F("0.5"))}
-    axes = comparison_figure(list(map(region, methods)), map_conditions(h=F("0.001"), **ends)).axes[0]
+    ends: dict[str, Any] = {"alpha_range": (0.0, 1.0), "beta_range": (0.0, 0.5)}
+    axes = comparison_figure(list(map(region, methods)), MapConditions(h=F("0.001"), **ends)).axes[0]
     for line, method in zip(axes.lines[:2], methods, strict=True):
         assert np.array(line.get_xydata())[:-1] == pytest.approx(region(method).boundary[0] * [1e3, 1e6])
     assert (*axes.get_xlim(), *axes.get_ylim()) == pytest.approx((0, 1e3, 0, 0.5e6))
-    (axes,) = comparison_figure([region(methods[0])], map_conditions(h=F("0.001"), alpha_beta=True)).axes
+    (axes,) = comparison_figure([region(methods[0])], MapConditions(h=F("0.001"), alpha_beta=True)).axes
     of_alpha, of_beta = (
         [float(label.get_text()) for label in labels] for labels in (axes.get_xticklabels(), axes.get_yticklabels())
     )
@@ -84,8 +84,8 @@ def test_in_an_engine_the_point_says_that_constraints_are_not_many() -> None:
 
 
 def test_what_is_not_in_the_window_is_named_as_such_and_not_drawn() -> None:
-    window: dict[str, Any] = {"alpha_range": (F(0), F("0.5")), "beta_range": (F("0.1"), F(1))}
-    axes = drawn_map("SYM", levels=(F("0.9"), F("0.3")), **window)
+    window: dict[str, Any] = {"alpha_range": (0.0, 0.5), "beta_range": (0.1, 1.0)}
+    axes = drawn_map("SYM", levels=(0.9, 0.3), **window)
     assert starting(axes, "$|z_p| = 0.9$")  # a chord crosses the window, whose ends are outside
     (missing,) = starting(axes, "nowhere")
     for name in ("$|z_p| = 0.3$", "critical damping", "deadbeat", "choose"):
@@ -104,7 +104,7 @@ def test_of_a_scene_that_moves_words_and_point_are_those_at_rest() -> None:
 def test_arrows_along_the_edges_are_where_an_unbounded_region_goes_on() -> None:
     """Beside the two unbounded ones the bounded region has none."""
     regions = [region(lookup(name)) for name in ("RK4", "hht", "newmark")]
-    axes = comparison_figure(regions, map_conditions(h=F("0.01"))).axes[0]
+    axes = comparison_figure(regions, MapConditions(h=F("0.01"))).axes[0]
     of_boundaries = {line.get_color(): shape for line, shape in zip(axes.lines, regions, strict=False)}
     arrows = axes.lines[len(regions) :]
     assert {line.get_color() for line in arrows} == set(list(of_boundaries)[1:])
@@ -135,8 +135,8 @@ OMEGA_H = F(1, 100)
 
 
 def test_each_contour_is_where_the_error_is_its_power_of_ten_and_every_second_is_drawn() -> None:
-    window: dict[str, Any] = {"alpha_range": (F("2e-3"), F(6)), "beta_range": (F("1e-6"), F(9))}
-    axes = drawn_map("RK4", accuracy=True, levels=(F("0.99"),), points=61, **window)
+    window: dict[str, Any] = {"alpha_range": (2e-3, 6.0), "beta_range": (1e-6, 9.0)}
+    axes = drawn_map("RK4", accuracy=True, levels=(0.99,), points=61, **window)
     errors, level = (each for each in axes.collections if isinstance(each, QuadContourSet))
     paths = zip(errors.levels, errors.get_paths(), strict=True)
     drawn = [(power, np.transpose(path.vertices)) for power, path in paths if np.size(path.vertices)]

@@ -1,5 +1,7 @@
 """A window on the plane: what it says of the point under the mouse, and that it opens."""
 
+from fractions import Fraction
+
 import pytest
 from matplotlib import pyplot
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -12,7 +14,7 @@ from tests.cli.running import run
 
 def test_the_point_under_the_mouse_has_its_gains_its_pole_and_its_proven_verdict() -> None:
     """B1, explicit Euler, has the poles 1/2 +- i/2 at (1, 1/2); on its edge alpha_hat = beta_hat no float64 decides."""
-    (axes, _) = map_figure(map_answer(lookup("B1"), MapConditions(h=0.01, points=2), drawn=True)).axes
+    (axes, _) = map_figure(map_answer(lookup("B1"), MapConditions(h=Fraction("0.01"), points=2), drawn=True)).axes
     words = "α̂ = {}, β̂ = {} (α = {} 1/s, β = {} 1/s at h = 0.01 s)\nB1: |z_p| = {}, {} (proven)"
     two_alpha, beta_squared = 1 / 0.01, 0.5 / 0.01**2
     assert axes.format_coord(two_alpha, beta_squared) == words.format(1, 0.5, 50, 70.7107, "0.707107", "converges")
