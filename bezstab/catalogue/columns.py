@@ -6,8 +6,8 @@ from bezstab.catalogue.answer import EngineFacts
 from bezstab.engines.conversions import Engine
 from bezstab.engines.sweeping import Sweeping
 from bezstab.rationals import rational
+from bezstab.show.cells import MISSING
 from bezstab.show.columns import Column, of_part
-from bezstab.show.fields import MISSING
 
 SPINNING = {
     "acceleration": "gains, as θ⁴",
@@ -35,10 +35,6 @@ def _short(numbers: Sequence[float]) -> str:
 def _usual_words(facts: EngineFacts) -> str:
     """Return the point of an engine's defaults: 1, 0.2."""
     return MISSING if facts.usual is None else ", ".join(f"{float(number):.4g}" for number in facts.usual)
-
-
-def _of_usual(facts: EngineFacts, place: int) -> float | None:
-    return None if facts.usual is None else float(facts.usual[place])
 
 
 def _spinning_words(engine: Engine) -> str:
@@ -71,8 +67,18 @@ COLUMNS: Sequence[Column[EngineFacts]] = (
     Column("what you set", "", lambda facts: _set_words(facts.engine), "", brief=True),
     Column("defaults", "defaults", _defaults, "values unless you set them", form=_short, brief=True),
     Column("as α̂, β̂", "", _usual_words, "", brief=True),
-    Column("", "alpha_hat", lambda facts: _of_usual(facts, 0), "α̂ of the defaults at this step; null without them"),
-    Column("", "beta_hat", lambda facts: _of_usual(facts, 1), "β̂ of the defaults at this step; null without them"),
+    Column(
+        "",
+        "alpha_hat",
+        lambda facts: facts.usual and float(facts.usual[0]),
+        "α̂ of the defaults at this step; null without them",
+    ),
+    Column(
+        "",
+        "beta_hat",
+        lambda facts: facts.usual and float(facts.usual[1]),
+        "β̂ of the defaults at this step; null without them",
+    ),
     Column(
         "to paste",
         "setting",

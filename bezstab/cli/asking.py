@@ -7,7 +7,7 @@ from fractions import Fraction
 from typing import TypeVar
 
 from bezstab.cli.command_group import NUMERICAL_TROUBLE
-from bezstab.cli.options import TypedPoint, typed_options
+from bezstab.cli.options import TypedPoint
 from bezstab.cli.output import say, show_text
 from bezstab.engines.conversions import Engine
 from bezstab.engines.engine_list import WITNESSES
@@ -76,5 +76,5 @@ def say_if_units_were_mistaken(methods: Sequence[Method], point: TypedPoint, h: 
         return
     if meant_in_seconds(methods or (lookup("SYM"),), point.numbers, h):
         alpha, beta = map(typed_number, point.numbers)
-        needed = "" if "--h" in typed_options() else " and your --h"
+        needed = "" if h else " and your --h"
         say(f"note: if {alpha} and {beta} are in 1/s, add --physical{needed}")

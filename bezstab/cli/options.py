@@ -125,17 +125,6 @@ def choose_compiled(_context: click.Context, _option: click.Parameter, choice: s
     os.environ[COMPILED_CHOICE] = choice
 
 
-def typed_options() -> dict[str, Any]:
-    """Return the values that the user gave the running command, each by the long name of its option."""
-    context = click.get_current_context()
-    names = {str(parameter.name): parameter.opts[-1] for parameter in context.command.params}
-    return {
-        option: context.params.get(name)
-        for name, option in names.items()
-        if context.get_parameter_source(name) == click.core.ParameterSource.COMMANDLINE
-    }
-
-
 @dataclass(frozen=True)
 class TypedPoint:
     """The options --alpha, --beta and --physical as typed: alpha_hat and beta_hat, or with `physical` both in 1/s."""

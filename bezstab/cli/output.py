@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, Any, BinaryIO, TypeVar
 import click
 
 from bezstab.files import output_directory, write_whole
+from bezstab.show.cells import MISSING, visible
 from bezstab.show.columns import SENTENCE, Column, row_of
-from bezstab.show.fields import MISSING, visible
-from bezstab.show.tables import Format, fits, for_programs, lines_below, table, wrapped
+from bezstab.show.tables import Format, for_programs, lines_below, shown_width, table, wrapped
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -112,7 +112,7 @@ def _text(table: Table, every_column: bool, *, in_blocks: bool = False) -> str:
     ]
     if chosen_format() == "markdown" or not in_blocks:
         as_table = _table_of(shown, answers)
-        if chosen_format() == "markdown" or fits(as_table, text_width()):
+        if chosen_format() == "markdown" or shown_width(as_table) <= text_width():
             return as_table
     sentences = [each for each in columns if each.key == SENTENCE.key]
     return "\n\n".join(

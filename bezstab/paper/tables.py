@@ -12,8 +12,7 @@ from bezstab.methods.formulas import characteristic_text, mapping_text, recursio
 from bezstab.methods.registry import lookup
 from bezstab.paper.experiments import KICK, KICKS, STEP, TABLE_4, compared_runs, kicked_runs, largest, pole
 from bezstab.paper.printed import FASTER_LEVEL, TABLE_5, TABLE_6
-from bezstab.show.cells import pole_words
-from bezstab.show.fields import Row, formatted
+from bezstab.show.cells import Row, formatted, pole_words
 from bezstab.show.tables import table
 
 ROUNDED = 1e-13  # m: below, c_1 is rounding amplified by beta^2 h^2 / |1 - z|, and differs between machines

@@ -372,29 +372,19 @@ def _chosen(method: Method, asked: MapConditions, drawn: bool) -> tuple[Choice |
         return None, f"no {'most accurate point' if asked.motion else 'point to choose'}: {error}"
 
 
-def _error(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray, motion: ReferenceMotion) -> FloatArray:
-    """Return the error that is forced on a motion, as a share of it."""
-    return combined_error(method, alpha_hat, beta_hat, motion.omega_h)
-
-
-def _growth(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray, motion: ReferenceMotion) -> FloatArray:
-    """Return the growth of energy in a revolution, a share of it, of a motion whose rate varies by MODULATION."""
-    return 2 * np.pi * motion_energy(method, alpha_hat, beta_hat, float(motion.omega_h))
-
-
 def _on_motion(
     method: Method, asked: MapConditions, best: BestPoint | None, chosen: Choice | None
 ) -> Iterator[MotionPoint]:
     """Yield what the points that decay fastest and are most accurate do to the motion, if one is asked about."""
-    motion = asked.motion
-    points: list[tuple[Goal, float, BestPoint | Choice]] = []
+    motion, points = asked.motion, dict[Goal, tuple[BestPoint | Choice, float]]()
     if best:
-        points.append(("fastest", best.z_abs, best))
+        points["fastest"] = best, best.z_abs
     if chosen:
-        points.append(("accurate", abs(chosen.pole), chosen))
-    for goal, z_abs, point in points if motion else ():
+        points["accurate"] = chosen, abs(chosen.pole)
+    for goal, (point, z_abs) in points.items() if motion else ():
         assert motion
         place = np.array(point.alpha_hat), np.array(point.beta_hat)
+        error, growth = _shares(method, motion, *place, energy=asked.energy)
         yield MotionPoint(
             method=method,
             goal=goal,
@@ -402,9 +392,22 @@ def _on_motion(
             alpha_hat=point.alpha_hat,
             beta_hat=point.beta_hat,
             z_abs=z_abs,
-            error=float(_error(method, *place, motion)),
-            growth=float(_growth(method, *place, motion)) if asked.energy else None,
+            error=float(error),
+            growth=None if growth is None else float(growth),
         )
+
+
+def _shares(
+    method: Method, motion: ReferenceMotion, alpha_hat: FloatArray, beta_hat: FloatArray, *, energy: bool
+) -> tuple[FloatArray, FloatArray | None]:
+    """Return the error that is forced on a motion and, if asked, the growth of energy in a revolution: shares of it.
+
+    The growth is that of a motion whose rate varies by MODULATION.
+    """
+    error = combined_error(method, alpha_hat, beta_hat, motion.omega_h)
+    if not energy:
+        return error, None
+    return error, 2 * np.pi * motion_energy(method, alpha_hat, beta_hat, float(motion.omega_h))
 
 
 def _drawing(
@@ -423,18 +426,16 @@ def _drawing(
         beta_hat = np.linspace(max(ends[1][0], 0) ** 0.5, ends[1][1] ** 0.5, asked.points) ** 2
     z = np.array(list(bar(chain.from_iterable(pole_map(method, alpha_hat, beta_hat)))))
     levels = _levels(method, asked, stable.best)
-
-    def share(of: Callable[[Method, FloatArray, FloatArray, ReferenceMotion], FloatArray]) -> FloatArray | None:
-        if motion is None:
-            return None
-        return np.where(np.abs(z) < 1, of(method, alpha_hat, beta_hat[:, np.newaxis], motion), np.nan)
-
+    errors = growth = None
+    if motion:
+        on_motion = _shares(method, motion, alpha_hat, beta_hat[:, np.newaxis], energy=asked.energy)
+        errors, growth = (None if share is None else np.where(np.abs(z) < 1, share, np.nan) for share in on_motion)
     return Drawing(
         alpha_hat=alpha_hat,
         beta_hat=beta_hat,
         z=z,
-        errors=share(_error),
-        growth=share(_growth) if asked.energy else None,
+        errors=errors,
+        growth=growth,
         levels=levels,
         faster=() if motion else tuple(region_of(method, level) for level in levels),
     )

@@ -14,9 +14,8 @@ from bezstab.regions.sentences import (
     region_sentence,
     whole_method_sentence,
 )
-from bezstab.show.cells import between
+from bezstab.show.cells import MISSING, between, formatted
 from bezstab.show.columns import METHOD, POINT, Column, of_part
-from bezstab.show.fields import MISSING, formatted
 from bezstab.stability.best_points import BestPoint
 
 NAMES_ROOM = 22

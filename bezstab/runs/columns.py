@@ -10,9 +10,8 @@ from bezstab.runs.accuracy_costs import Run, SweptRuns
 from bezstab.runs.measured_poles import Measurement, MeasurementSummary
 from bezstab.runs.sentences import measurement_sentence, run_sentence, verdict_map_sentence
 from bezstab.runs.verdict_maps import VerdictMap
-from bezstab.show.cells import modulus_words
+from bezstab.show.cells import formatted, modulus_words
 from bezstab.show.columns import METHOD, POINT, POLE, Column, of_part
-from bezstab.show.fields import formatted
 from bezstab.stability.error_fronts import FrontPoint
 from bezstab.units import alpha_and_beta
 

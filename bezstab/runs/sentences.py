@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from bezstab.mechanism.simulation import Simulation
 from bezstab.runs.measured_poles import Measurement
 from bezstab.runs.verdict_maps import VerdictMap
-from bezstab.show.fields import formatted
+from bezstab.show.cells import formatted
 from bezstab.words import point_words, seconds_words
 
 MOST_LISTED = 20  # times in a message

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 from bezstab.mechanism.simulation import Simulation
 from bezstab.runs.verdict_maps import VerdictMap
 from bezstab.show.arrays import over_the_plane
+from bezstab.show.cells import Value
 from bezstab.show.columns import Answer, Column, row_of
-from bezstab.show.fields import Value
 from bezstab.stability.arrays import Arrays
 
 

@@ -150,7 +150,7 @@ def tradeoff(
         ),
         named,
     )
-    say_if_units_were_mistaken(methods, typed, None)
+    say_if_units_were_mistaken(methods, typed, next(iter(steps), None))
     path = files.path("tradeoff", named)
     with results_of_chunks(measured_runs, asked.sweeps, path, asked.job, Work(workers, scheduler, resume)) as results:
         swept = ranked(asked, results)

@@ -21,22 +21,15 @@ def over_the_plane(alpha_hat: FloatArray, beta_hat: FloatArray, **values: NDArra
 
 
 def write_arrays(arrays: Mapping[str, NDArray[np.generic]], form: str, file: BinaryIO) -> None:
-    """Write equally long arrays in one of TABLE_FORMS.
+    """Write equally long arrays in one of TABLE_FORMS: CSV with every digit of float64, or NPZ.
 
     Nothing is compressed: that would take longer than a long run, and digits hardly shrink.
     """
-    {"csv": _write_csv, "npz": _write_npz}[form](arrays, file)
-
-
-def _write_csv(arrays: Mapping[str, NDArray[np.generic]], file: BinaryIO) -> None:
-    """Write every digit of float64."""
+    if form == "npz":
+        np.savez(file, **arrays)  # type: ignore[arg-type]  # its options have other names
+        return
     text = TextIOWrapper(file, "utf-8", newline="")
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(arrays)
     writer.writerows(zip(*(array.tolist() for array in arrays.values()), strict=True))
     text.detach()  # which writes what is left, and leaves the file open
-
-
-def _write_npz(arrays: Mapping[str, NDArray[np.generic]], file: BinaryIO) -> None:
-    """Write one array for each name."""
-    np.savez(file, **arrays)  # type: ignore[arg-type]  # its options have other names

@@ -7,8 +7,7 @@ from dataclasses import dataclass
 from typing import Any, Generic, Protocol, SupportsFloat, TypeVar
 
 from bezstab.methods.schemes import Method
-from bezstab.show.cells import modulus_words, pole_words
-from bezstab.show.fields import MISSING, Form, Row, Value, formatted, visible
+from bezstab.show.cells import MISSING, Form, Row, Value, formatted, modulus_words, pole_words, visible
 
 Answer = TypeVar("Answer")
 Answer_contra = TypeVar("Answer_contra", contravariant=True)

@@ -1,11 +1,6 @@
 """What results say in sentences, beside their rows: what feedback costs, where it is best, when errors grow."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from bezstab.questions.motions import ReferenceMotion
+from bezstab.questions.motions import ReferenceMotion
 
 
 def combined_words(motion: ReferenceMotion) -> str:

@@ -8,7 +8,7 @@ import unicodedata
 from collections.abc import Sequence
 from typing import Literal
 
-from bezstab.show.fields import MISSING, Row, visible
+from bezstab.show.cells import MISSING, Row, visible
 
 Format = Literal["text", "json", "csv", "markdown"]
 
@@ -18,20 +18,19 @@ GAP = "  "
 
 
 def for_programs(rows: Sequence[Row], form: Literal["json", "csv"]) -> str:
-    """Return every key of the rows; a key that only other rows have is null, or an empty cell."""
+    """Return every key of the rows; a key that only other rows have is null, or an empty cell.
+
+    A list is one cell of CSV, as JSON has it.
+    """
     nothing = dict.fromkeys(key for row in rows for key in row)
+    whole = [{**nothing, **row} for row in rows]
     if form == "json":
-        return json.dumps([{**nothing, **row} for row in rows], indent=2, allow_nan=False)
-    return _comma_separated(rows, list(nothing))
-
-
-def _comma_separated(rows: Sequence[Row], keys: Sequence[str]) -> str:
-    """Return rows as CSV; a list is one cell, as JSON has it."""
+        return json.dumps(whole, indent=2, allow_nan=False)
     text = io.StringIO()
-    writer = csv.DictWriter(text, keys, lineterminator="\n")
-    writer.writeheader()
-    for row in rows:
-        writer.writerow({key: json.dumps(value) if isinstance(value, list) else value for key, value in row.items()})
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(nothing)
+    for row in whole:
+        writer.writerow(json.dumps(value) if isinstance(value, list) else value for value in row.values())
     return text.getvalue().rstrip("\n")
 
 
@@ -52,13 +51,8 @@ def _filled_up(text: str, width: int) -> str:
 
 
 def shown_width(text: str) -> int:
-    """Return the number of character cells; the hat of alpha-hat is a combining character and takes none."""
-    return sum(not unicodedata.combining(character) for character in text)
-
-
-def fits(table: str, width: int) -> bool:
-    """Return whether every line of a table has at most `width` character cells."""
-    return all(shown_width(line) <= width for line in table.split("\n"))
+    """Return the number of character cells of the longest line; the hat of alpha-hat combines and takes none."""
+    return max(sum(not unicodedata.combining(character) for character in line) for line in text.split("\n"))
 
 
 def wrapped(text: str, width: int) -> str:

@@ -11,9 +11,8 @@ import numpy as np
 import pytest
 
 from bezstab.show.arrays import write_arrays
-from bezstab.show.cells import pole_words
+from bezstab.show.cells import formatted, pole_words
 from bezstab.show.columns import POLE, Column, row_of
-from bezstab.show.fields import formatted
 from bezstab.show.file_forms import TABLE_FORMS
 from bezstab.show.tables import for_programs
 from tests.imports import PACKAGE
