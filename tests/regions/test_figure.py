@@ -149,7 +149,7 @@ def test_each_contour_is_where_the_error_is_its_power_of_ten_and_every_second_is
 
 def test_labels_of_contours_stand_apart() -> None:
     """Where gain turns into loss at once, lines of both run side by side; RK4's +10^-10 and -10^-10 do."""
-    answer = map_answer(lookup("RK4"), map_conditions(points=21, energy=True), drawn=True)
+    answer = map_answer(lookup("RK4"), map_conditions(MapSetup(points=21, energy=True)), drawn=True)
     assert answer.drawing
     growth = np.tile(np.sinh(np.linspace(-20, 20, 21)) * 1e-12, (21, 1))
     figure = map_figure(replace(answer, drawing=replace(answer.drawing, growth=growth)))
