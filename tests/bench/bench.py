@@ -23,11 +23,11 @@ from bezstab.mechanism.runner import march, simulate
 from bezstab.mechanism.scene_files import load_scene
 from bezstab.mechanism.start import initial_state
 from bezstab.methods.registry import lookup
+from bezstab.methods.schemes import Method
 from bezstab.stability.closed_loop import spectral_radius
 from bezstab.stability.regions import region, window
 from tests.reference.companion_poles import radius
 from tests.reference.literal_equation_9 import literal_equation_9
-from tests.reference.second_order_methods import second_order
 from tests.runs.mujoco_witness import four_bar_xml
 
 REPORT = Path(__file__).parents[2] / "figures" / "bench.md"
@@ -69,8 +69,8 @@ def maps() -> Iterator[Line]:
     for methods, promise in (
         (map(lookup, (*multistep, "verlet-half", "verlet-kdk", "hht")), 18),
         (map(lookup, ("heun", "dopri5", "tsit5", "sdirk2", "radau3")), 9),
-        # of a recipe's P, which has real coefficients, roots meet along curves: next to them all are solved for
-        (map(second_order, ("beeman", "B2 and B3", "AB3 and B3")), 5),
+        # written out as equations: of a P, which has real coefficients, roots meet along curves: next to them all are solved for
+        ((Method(name, lookup(name).scheme.second_order, "") for name in ("AB3", "ABM3")), 5),
     ):
         ratios = {}
         for method in methods:

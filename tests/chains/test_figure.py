@@ -13,17 +13,10 @@ def test_the_line_of_chains_parts_what_decays_from_what_grows() -> None:
     z_abs = chain_map(answer.engine, answer.values, answer.h, answer.links)
     axes = chain_figure(answer).axes[0]
     boundary, own = axes.get_lines()
-    assert boundary.get_drawstyle() == "steps-pre"
-    across, up = (np.asarray(each) for each in boundary.get_data())
-    for bodies in range(1, 8):
-        assert up[bodies - 1] < bodies < up[bodies]
-        stable = np.arange(1, z_abs.shape[1] + 1) > across[bodies - 1]
-        assert ((z_abs[bodies - 1] < 1 - 1e-9) == stable).all()  # two bodies are marginal with one sweep
-    assert np.asarray(own.get_xdata())[0] == pytest.approx(10)
-    said = {text.get_text(): axes.transLimits.inverted().transform(text.get_position()) for text in axes.texts}
-    assert set(said) == {"stable", "diverges"}
-    for word, (sweeps, bodies) in said.items():
-        assert (z_abs[round(bodies) - 1, round(sweeps) - 1] < 1) == (word == "stable")
+    edge = np.asarray(boundary.get_xdata())[:-1, np.newaxis]
+    # two bodies are marginal with one sweep
+    assert ((z_abs < 1 - 1e-9) == (np.arange(1, z_abs.shape[1] + 1) > edge)).all()
+    assert np.asarray(own.get_xdata())[0] == 10
 
 
 def test_a_figure_without_an_edge_says_why() -> None:

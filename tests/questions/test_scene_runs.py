@@ -9,7 +9,6 @@ import pytest
 import bezstab
 from bezstab.mechanism.equations import compiled_mechanism
 from bezstab.mechanism.scene_files import load_scene
-from bezstab.mechanism.simulation import simulated
 from bezstab.methods.registry import lookup
 from bezstab.questions.scene_runs import SceneRun, scene_run
 
@@ -44,15 +43,7 @@ def test_stages_that_pump_a_pendulum_are_seen_and_their_end_is_foretold() -> Non
 )
 def test_a_breakdown_is_foretold_beyond_the_run(scene: str, name: str, h: str, gain: float) -> None:
     found = run_of(scene, name, h, gain, gain)
-    step = float(h)
-    run = simulated(
-        compiled_mechanism(load_scene(scene)),
-        lookup(name),
-        h=step,
-        duration=60,
-        alpha_hat=2 * gain * step,
-        beta_hat=(gain * step) ** 2,
-    )
+    run = bezstab.simulate(scene, name, h=float(h), duration=60, alpha=gain, beta=gain)
     assert run.failure
     assert found.failure is None
     assert found.breakdown == pytest.approx(float(run.t[-1]), rel=0.05)
@@ -102,14 +93,7 @@ def test_a_singular_passage_decides_nothing() -> None:
 
 def test_the_gain_is_that_of_simulate() -> None:
     found = run_of("four_bar", "AB2", "0.002", 30, 30, time=2.0)
-    run = simulated(
-        compiled_mechanism(load_scene("four_bar")),
-        lookup("AB2"),
-        h=0.002,
-        duration=2.0,
-        alpha_hat=0.12,
-        beta_hat=0.0036,
-    )
+    run = bezstab.simulate("four_bar", "AB2", h=0.002, duration=2.0, alpha=30, beta=30)
     kinetic = run.v**2 @ run.mechanism.mass / 2
     assert found.gained == pytest.approx(run.energy_drift[-1] / (kinetic - run.energy_drift).max(), rel=1e-3)
 

@@ -5,8 +5,6 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from bezstab.methods.registry import lookup
 from bezstab.stability.closed_loop import verdict
@@ -28,18 +26,6 @@ def assert_each_end_is_proven(name: str, alpha_hat: Fraction, beta_hat: Fraction
             nearer, further = (Fraction(end) * (1 + outwards * side * PART) for side in (-1, 1))
             assert verdict(method, alpha_hat * nearer**i, beta_hat * nearer**j) == "converges"
             assert verdict(method, alpha_hat * further**i, beta_hat * further**j) == "diverges"
-
-
-@given(st.floats(0.05, 1.9), st.floats(0.05, 0.95))
-@settings(deadline=None, max_examples=20)
-def test_margins_of_symplectic_euler_are_those_of_its_triangle(a: float, share: float) -> None:
-    b = share * (4 - 2 * a)
-    found = stability_margins(lookup("SYM"), a, b)
-    exact = pytest.approx  # 0 < alpha_hat < 2 and 0 < beta_hat < 4 - 2 alpha_hat
-    assert found.h == exact(min((-2 * a + math.sqrt(4 * a * a + 16 * b)) / (2 * b), 2 / a), rel=1e-12)
-    assert found.alpha[1] == exact((4 - b) / (2 * a), rel=1e-12)
-    assert found.beta[1] == exact(math.sqrt((4 - 2 * a) / b), rel=1e-12)
-    assert (found.alpha[0], found.beta[0]) == (0, 0)
 
 
 @pytest.mark.parametrize(
