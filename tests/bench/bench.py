@@ -69,7 +69,7 @@ def maps() -> Iterator[Line]:
     for methods, promise in (
         (map(lookup, (*multistep, "verlet-half", "verlet-kdk", "hht")), 18),
         (map(lookup, ("heun", "dopri5", "tsit5", "sdirk2", "radau3")), 9),
-        # written out as equations: of a P, which has real coefficients, roots meet along curves: next to them all are solved for
+        # of a P, which has real coefficients, roots meet along curves: next to them all are solved for
         ((Method(name, lookup(name).scheme.second_order, "") for name in ("AB3", "ABM3")), 5),
     ):
         ratios = {}

@@ -3,30 +3,8 @@ from fractions import Fraction
 import pytest
 
 from bezstab.engines.engine_list import ENGINES
-from bezstab.errors import InputError
 
 H = Fraction(1, 100)
-
-
-@pytest.mark.parametrize(
-    ("name", "typed", "said"),
-    [
-        ("mujoco", (1, -1), "of the same sign"),
-        ("mujoco", (1,), "solimp"),
-        ("bullet", (1, 2), "expected ERP"),
-        ("box2d", (-1, 1), "expected 0 or more"),
-        ("rapier", (30, 0), "above 0"),
-        ("drake-sap", (1, 1), "go together"),
-        ("rbdl", (0,), "above 0"),
-        ("xpbd", (0,), "above 0"),
-        ("pbd", ("1/2", "3/2"), "whole"),
-        ("bullet", ("1e-310",), "range of float64"),
-    ],
-)
-def test_values_that_mean_nothing_are_refused(name: str, typed: tuple[str | int, ...], said: str) -> None:
-    for as_typed in (False, True):
-        with pytest.raises(InputError, match=f"--engine {name}.*{said}"):
-            ENGINES[name].applied(tuple(map(Fraction, typed)), H, as_typed=as_typed)
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,6 @@
 import math
 import re
+from fractions import Fraction
 from functools import partial
 from typing import get_args
 
@@ -13,9 +14,11 @@ from bezstab.methods.formulas import (
     mapping_text,
     multiplier_law_text,
     recursion_text,
+    second_order_text,
     stage_torque_text,
     steady_error_text,
 )
+from bezstab.methods.recipes import recipe
 from bezstab.methods.registry import lookup
 from bezstab.methods.steady_errors import Part, leading_error
 from tests.methods.exact_lists import plane_value
@@ -37,6 +40,17 @@ def test_every_kind_of_recursion() -> None:
     assert recursion_text(lookup("imex-euler@1/2"), latex=True) == (
         r"a_{k+1} = a(x_k, v_{k+1}); v_{k+1} = v_k + \frac{h}{2} a_{k+1}; x_{k+1} = x_k + \frac{h}{2} v_{k+1}"
     )
+
+
+def test_equations_of_a_recipe_are_written_with_the_powers_of_the_step() -> None:
+    """A velocity from positions is divided by h; a helper has the least derivative of its sum."""
+    stoermer = recipe({"a0": "acceleration(x0, x0 - x[-1])", "x1": "2 x0 - x[-1] + a0", "v1": "x1 - x0"})
+    assert second_order_text(stoermer, Fraction(1), latex=False) == (
+        "a_k = a(x_k, 1/h x_k - 1/h x_{k-1}); x_{k+1} = 2 x_k - x_{k-1} + h^2 a_k; v_{k+1} = 1/h x_{k+1} - 1/h x_k"
+    )
+    smoothed = recipe({"a0": "acceleration(x0, v0)", "w_m": "1/2 w_m[0] + 1/2 a0", "v1": "v0 + w_m", "x1": "x0 + v1"})
+    written = r"\mathrm{w\_m}_{k+1} = \frac{1}{2} \mathrm{w\_m}_k + \frac{1}{2} a_k"
+    assert written in second_order_text(smoothed, Fraction(2), latex=True)
 
 
 def test_mappings_and_the_decimals_of_irrational_coefficients() -> None:

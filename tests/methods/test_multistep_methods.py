@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import BPoly
 
-from bezstab.methods.multistep_methods import is_bezier
-from bezstab.methods.registry import REGISTRY, lookup
+from bezstab.methods.registry import lookup
 from bezstab.methods.schemes import LinearMultistep
 
 
@@ -17,8 +16,3 @@ def test_bezier_step_integrates_the_curve_past_its_end(n: int) -> None:
     assert scheme.rho == (1, -1, *[0] * (n - 1))
     weights = BPoly(np.eye(n)[:, np.newaxis], [1 - n, 0]).integrate(0, 1, extrapolate=True)
     assert np.array(scheme.sigma, float) == pytest.approx(np.array([0, *weights[::-1]]), rel=1e-13)
-
-
-def test_bezier_schemes_are_known_by_their_coefficients() -> None:
-    known = [name for name in REGISTRY if is_bezier(lookup(name).scheme)]
-    assert known == [f"B{n}" for n in range(3, 13)]  # B1 and B2 are Adams and Bashforth's

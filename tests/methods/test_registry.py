@@ -12,7 +12,6 @@ from bezstab.errors import InputError
 from bezstab.methods.aliases import ADVICE, ALIASES, folded
 from bezstab.methods.method_files import read_method
 from bezstab.methods.registry import FOLDED_NAMES, GROUPS, REGISTRY, lookup
-from bezstab.methods.second_order_methods import PARAMETRIC
 
 
 def refusal(text: str) -> str:
@@ -43,11 +42,6 @@ def test_name_at_m_is_the_method_with_a_step_of_m_h_however_it_is_spelt() -> Non
         assert lookup(f"{spelt}@{multiple}") == lookup(longer.name) == longer
 
 
-def test_an_unknown_name_or_a_multiple_out_of_range_is_refused_in_one_line() -> None:
-    """What is said: tests/cli/mistakes.txt."""
-    assert all(refusal(text) for text in ("", "@5", "a\nb", "B４", "RK4@", "RK4@1e7"))
-
-
 NAMED = {
     "Newmark( 0.25 , .5 )": "newmark(beta=1/4,gamma=1/2)",
     "newmark(γ=1/2, beta = 0.25)": "newmark(beta=1/4,gamma=1/2)",
@@ -60,19 +54,6 @@ NAMED = {
 def test_parameters_are_exact_and_the_name_says_them() -> None:
     assert {typed: lookup(typed).name for typed in NAMED} == NAMED
     assert all(lookup(typed) == lookup(name) for typed, name in NAMED.items())
-
-
-@pytest.mark.parametrize(
-    ("typed", "why"),
-    [
-        ("newmark(1/4)", "expected newmark(beta,gamma) or newmark(beta=...,gamma=...)"),
-        ("newmark(-1/4,1/2)", "beta = -1/4: expected 0 to 10"),
-        ("newmark(beta=1/4,beta=1/2)", "newmark(beta=...,gamma=...)"),
-        ("Semi-Implicit-Euler(1)", "'Semi-Implicit-Euler' has no parameters"),
-    ],
-)
-def test_bad_parameters_are_refused_in_one_line(typed: str, why: str) -> None:
-    assert why in refusal(typed)
 
 
 def test_a_file_takes_a_step_multiple_and_an_at_sign_in_its_name_is_part_of_it(tmp_path: Path) -> None:
@@ -94,6 +75,7 @@ SAME = {
 
 
 def test_an_unambiguous_everyday_name_is_the_method() -> None:
+    assert all(map(lookup, ALIASES))
     assert all(lookup(alias) == lookup(name) for alias, name in SAME.items())
 
 
@@ -104,24 +86,3 @@ def test_every_name_in_a_piece_of_advice_can_be_typed() -> None:
         words = set(re.findall(method_like, advice)) - {"x0", "x1"}
         assert {folded(word) for word in words} <= set(FOLDED_NAMES), name
     assert all("an engine" in refusal(engine) for engine in ENGINES)
-
-
-def test_the_lists_of_names_have_no_name_twice() -> None:
-    built_in = {*FOLDED_NAMES, *map(folded, PARAMETRIC)} - {"newmark"}
-    assert not set(ALIASES) & built_in
-    assert not set(ADVICE) & {*built_in, *ALIASES}
-    assert all(lookup(name) for name in ALIASES)
-
-
-MEANT = {
-    "leepfrog": "leapfrog: which velocity",
-    "newmrk(1/4,1/2)": "newmark",
-    "BFD2": "bdf2",
-    "forward-eular": "forwardeuler (RK1)",
-    "b:5@12": "B5?",  # not B12
-}
-
-
-def test_a_name_may_be_misspelt_but_not_beyond_recognition() -> None:
-    assert all(f"did you mean {meant}" in refusal(typed) for typed, meant in MEANT.items())
-    assert not any("did you mean" in refusal(typed) for typed in ("x", "solver", "sundials", "4", "..."))

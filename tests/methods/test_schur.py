@@ -8,20 +8,16 @@ from hypothesis import strategies as st
 
 from bezstab.methods.schur import is_schur, recursion_verdict
 from tests.reference.known_roots import (
-    ONE,
     Factor,
     inside,
     on_circle,
     outside,
     product,
     reciprocal,
-    scaled,
     several,
     small_rationals,
     verdict_by_roots,
 )
-
-TINY = Fraction(1, 10**20)
 
 
 @settings(deadline=None, max_examples=100)  # exact arithmetic has no bounded time per example
@@ -31,14 +27,6 @@ def test_verdict_is_that_of_the_known_roots(factors: list[Factor], c: Fraction, 
     p = [Fraction(0)] * at_zero + [c * a for a in product(factors)] + [Fraction(0)] * leading
     assert recursion_verdict(p) == verdict_by_roots(factors)
     assert is_schur(p) == (verdict_by_roots(factors) == "converges")
-
-
-@pytest.mark.slow
-@settings(deadline=None, max_examples=30)  # numbers of 20 digits to the power of the degree take their time
-@given(several(inside), st.lists(on_circle, unique=True, min_size=1, max_size=4))
-def test_one_part_in_ten_to_the_twenty_off_the_circle_decides(inner: list[Factor], circle: list[Factor]) -> None:
-    p = product(inner + circle)
-    assert [recursion_verdict(scaled(p, s)) for s in (1 - TINY, ONE, 1 + TINY)] == ["converges", "marginal", "diverges"]
 
 
 @settings(deadline=None, max_examples=25)

@@ -1,6 +1,5 @@
 """Steady errors of the feedback: closed forms by hand, and each method's own recursion in sixty digits."""
 
-from dataclasses import replace
 from fractions import Fraction
 
 import mpmath
@@ -9,7 +8,7 @@ import sympy as sp
 
 from bezstab.methods.orders import accuracy
 from bezstab.methods.registry import lookup
-from bezstab.methods.steady_errors import Part, forced_errors, leading_error, turning_error, velocity_lag
+from bezstab.methods.steady_errors import forced_errors, leading_error, turning_error, velocity_lag
 from tests.methods.exact_lists import plane_value
 from tests.methods.kinds import SOLVED
 from tests.reference.forced_runs import DIGITS, exact_value, steady_errors
@@ -54,20 +53,6 @@ def test_normals_that_turn_add_something_of_the_leading_order_to_gauss_alone() -
     assert found
     assert found.power == 3
     assert found.at(3.0, 12.0) == pytest.approx(-12 * 5**6 / 5184, rel=1e-14)
-
-
-@pytest.mark.parametrize("name", ["ABM2", "verlet-half"])
-@pytest.mark.parametrize("part", ["x", "v"])
-def test_a_step_of_several_h_forces_what_its_own_parameters_do(name: str, part: Part) -> None:
-    """E of m h at (a, b) is m^k times E of h at (m a, m^2 b), in theta of h."""
-    short, m = leading_error(lookup(name), part), Fraction(7, 10)
-    long = leading_error(replace(lookup(name), step_multiple=m), part)
-    a, b = Fraction(3, 7), Fraction(2, 5)
-    of_long, of_short = (
-        plane_value(error.numerator, *point) / plane_value(error.denominator, *point)
-        for error, point in ((long, (a, b)), (short, (m * a, m**2 * b)))
-    )
-    assert of_long == m**short.power * of_short
 
 
 def test_velocities_lag_by_half_a_step_where_positions_use_the_new_ones() -> None:

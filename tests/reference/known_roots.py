@@ -7,7 +7,6 @@ from fractions import Fraction
 import numpy as np
 from hypothesis import strategies as st
 
-from bezstab.methods.polynomials import Polynomial
 from bezstab.methods.schur import Verdict
 from tests.reference.rationals import rationals
 
@@ -43,11 +42,6 @@ def product(factors: Sequence[Sequence[Fraction]]) -> list[Fraction]:
     for factor in factors:
         result = np.convolve(result, np.array(factor))
     return list(result)
-
-
-def scaled(p: Polynomial, s: Fraction) -> list[Fraction]:
-    """Return the polynomial whose roots are s times those of p."""
-    return [a * s ** (len(p) - 1 - k) for k, a in enumerate(p)]
 
 
 def verdict_by_roots(factors: Sequence[Factor]) -> Verdict:

@@ -3,7 +3,6 @@
 h = 1; numbers of any kind. A matrix is what a step makes of unit vectors.
 """
 
-from cmath import rect
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
 
@@ -149,31 +148,3 @@ def arm_step(
     for place in (count - 1, -1):
         pulls[place] += pull[1] * inverse[place]
     return swept_step(constraints, inverse, sweeps, pull=pulls, **settings)
-
-
-def hanging_errors(
-    masses: Sequence[float], sweeps: int, share: float, *, pull: float, length: float, angle: float, steps: int
-) -> list[list[float]]:
-    """Return by how much each link is too long, step by step, of a chain let go at an angle that hangs in a plane.
-
-    Impulse by impulse along the links where they are, with a bias in the velocity and kept impulses. `pull` is what
-    gravity adds to velocities in a step, h = 1. Places and velocities are complex; gravity is along the real axis.
-    """
-    inverse, tied = [1 / mass for mass in masses], links(len(masses))
-    places = [length * (number + 1) * rect(1, angle) for number in range(len(masses))]
-    velocities, impulses, seen = [0j] * len(masses), [0.0] * len(masses), []
-    for _ in range(steps):
-        spans = [link.of(places) for link in tied]
-        errors, along = [abs(span) - length for span in spans], [span / abs(span) for span in spans]
-        velocities = [velocity + pull for velocity in velocities]
-        for link, impulse, direction in zip(tied, impulses, along, strict=True):
-            link.push(velocities, inverse, impulse * direction)
-        for _ in range(sweeps):
-            for number, (link, direction) in enumerate(zip(tied, along, strict=True)):
-                rate = (link.of(velocities) * direction.conjugate()).real
-                added = -(rate + share * errors[number]) / link.gives(inverse)
-                link.push(velocities, inverse, added * direction)
-                impulses[number] += added
-        places = [place + velocity for place, velocity in zip(places, velocities, strict=True)]
-        seen.append(errors)
-    return seen
