@@ -8,6 +8,8 @@ of a TOML file, or what `scene` returns.
 
 from __future__ import annotations  # so that help() shows annotations as they are written
 
+from typing import Any
+
 from numpy.typing import ArrayLike
 
 from bezstab.arguments import Number, exact_or_none, in_keywords, plane_point
@@ -251,12 +253,6 @@ def feedback_cost(
     return feedback_costs.feedback_cost(method_named(method), first, second, motion.omega_h)
 
 
-def _plane_arrays(
-    alpha_hat: ArrayLike | None,
-    beta_hat: ArrayLike | None,
-    alpha: ArrayLike | None,
-    beta: ArrayLike | None,
-    h: Number | None,
-) -> tuple[FloatArray, FloatArray]:
-    """Return alpha_hat and beta_hat as float64 arrays, broadcast; InputError if their shapes do not fit each other."""
-    return arrays.plane_arrays(*plane_point(alpha_hat, beta_hat, alpha, beta, h, arrays.real_array))
+def _plane_arrays(*given: Any) -> tuple[FloatArray, FloatArray]:
+    """Return a point, given as for `plane_point`, as float64 arrays, broadcast; errors as `plane_arrays`."""
+    return arrays.plane_arrays(*plane_point(*given, read=arrays.real_array))

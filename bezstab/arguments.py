@@ -65,8 +65,8 @@ def plane_point(
     alpha: Any,
     beta: Any,
     h: Number | None,
-    read: Callable[[Any, str], Any] = exact_number,
     *,
+    read: Callable[[Any, str], Any] = exact_number,
     needed: bool = True,
 ) -> Any:
     """Return (alpha_hat, beta_hat) from whichever two were given, alpha and beta in 1/s with the step h in s.

@@ -140,11 +140,8 @@ class SweptConstraints:
 
     def fewest_to_spare(self, point: Point, spread: float) -> int | None:
         """Return from how many sweeps a point on the engine's curve is stable even if it were `spread` stronger."""
-
-        def as_strong(share: float) -> bool:
-            return self._point_at(share)[1] >= point[1]
-
-        turn = first_where(np.vectorize(as_strong, otypes=[bool]), SHARES)
+        as_strong = np.vectorize(lambda share: self._point_at(share)[1] >= point[1], otypes=[bool])
+        turn = first_where(as_strong, SHARES)
         return self.fewest(self._values_at(turn[1] if turn else SHARES[-1], spread))
 
     def _point_at(self, share: float) -> Point:

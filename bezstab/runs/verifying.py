@@ -65,7 +65,7 @@ def verify(
     ----------
     Opposite kicks and linear prediction (Prony).
     """
-    first, second = plane_arrays(*plane_point(alpha_hat, beta_hat, alpha, beta, h, real_array))
+    first, second = plane_arrays(*plane_point(alpha_hat, beta_hat, alpha, beta, h, read=real_array))
     step = real_number(h, "h")
     check_step(step)
     kicked = compiled_mechanism(scene_named(scene))
