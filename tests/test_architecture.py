@@ -26,7 +26,7 @@ module that defines it.
     engines                what others call the feedback
       |
     errors, rationals, files, toml_tables, units, stopping, compiling, read_only, goals, stabilising,
-    linear_equations, words, arguments
+    linear_equations, matrices, words, arguments
 """
 
 import subprocess
@@ -39,7 +39,7 @@ from tests.imports import PACKAGE, ROOMS, SUBJECTS, imports, own_imports
 
 FOUNDATIONS = (
     *("stopping", "errors", "rationals", "files", "toml_tables", "units", "compiling", "read_only", "goals"),
-    *("stabilising", "linear_equations", "words", "arguments"),
+    *("stabilising", "linear_equations", "matrices", "words", "arguments"),
 )
 """Beside the rooms, each importing only from those before it."""
 

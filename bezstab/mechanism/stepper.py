@@ -21,6 +21,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from bezstab.matrices import inverses
 from bezstab.mechanism.generated_code import IMAGINARY_STEP, SINGULAR, LaneFunction
 from bezstab.mechanism.newton import FloatArray, newton
 from bezstab.mechanism.programs import Program
@@ -127,7 +128,7 @@ class Stepper:
                 if self.iterations == before_first + 2:
                     np.copyto(unknown, guess, where=poor)
                     missing = unknown - self._evaluated(first, last, t, gains, self.known)
-                self.inverses[first] = _inverses(self._jacobians(first, last, t, gains))
+                self.inverses[first] = inverses(self._jacobians(first, last, t, gains))
                 change = self._change(first, missing)
                 moved = np.abs(change).sum(axis=(0, 1))
             unknown[:] -= change
@@ -201,15 +202,6 @@ def _sums(rows: Array, registers: Array) -> Array:
     """Return the sums of registers that rows of a program stand for, (rows, n, lanes)."""
     sums: Array = rows @ registers.reshape(len(registers), -1)
     return sums.reshape(len(rows), *registers.shape[1:])
-
-
-def _inverses(matrices: Array) -> Array:
-    """Return the inverses of a row of matrices; not finite where there is none."""
-    try:
-        return np.linalg.inv(matrices)
-    except np.linalg.LinAlgError:  # because of one without an inverse numpy gives up on all
-        singular = np.linalg.det(matrices) == 0
-        return np.linalg.inv(np.where(singular[:, np.newaxis, np.newaxis], np.nan, matrices))
 
 
 def _not_converged(what: str, most: int, moved: float) -> str:

@@ -46,11 +46,11 @@ class Series:
             return self.each(lambda term: term * other)
         return type(self)([self._convolved(other.terms, power, first=0) for power in range(len(self.terms))])
 
-    def inverse(self) -> Self:
-        """Return 1 / self."""
-        terms = [1 / self.terms[0]]
-        for power in range(1, len(self.terms)):
-            terms.append(-self._convolved(terms, power, first=1) * terms[0])
+    def __truediv__(self, other: Self) -> Self:
+        """Return the quotient by another series."""
+        terms: list[Any] = []
+        for power, term in enumerate(self.terms):
+            terms.append((term - other._convolved(terms, power, first=1)) / other.terms[0])
         return type(self)(terms)
 
     def each(self, function: Callable[[Any], Any]) -> Self:
@@ -81,7 +81,7 @@ class CircleStep(ABC):
 
     Unknowns are two components for each quantity that is used before its equation is taken, and T: series of arrays
     (size, ..., 1). `number` makes of a fraction what these consist of. `rotation` are the first two coefficients in
-    theta of a uniform rotation.
+    theta of a uniform rotation, (2, size).
     """
 
     kind: ClassVar[type[Series]] = Series
@@ -90,17 +90,16 @@ class CircleStep(ABC):
         scheme = method.scheme.second_order
         self.alpha_hat, self.beta_hat, self.number = alpha_hat, beta_hat, number
         self.equations = [equation for group in scheme.groups for equation in group]
-        unknown, taken = dict[str, None](), set[str]()
-        for equation in self.equations:
-            unknown |= {quantity.name: None for quantity in equation.used if quantity.name not in taken}
-            taken.add(equation.result.name)
+        names = [equation.result.name for equation in self.equations]
+        used = [{quantity.name for quantity in equation.used} for equation in self.equations]
+        unknown = [name for i, name in enumerate(names) if name in set().union(*used[: i + 1])]
         motions, size = exact_motions(scheme), 2 * len(unknown) + 1
         self.places = {name: 2 * i for i, name in enumerate(unknown)}
         self.unit = np.array([[number(Fraction(i == j)) for j in range(size)] for i in range(size)])
-        self.rotation = [0 * self.unit[:, :1], 0 * self.unit[:, :1]]
+        self.rotation = 0 * self.unit[:2]
         for name, place in self.places.items():
-            for axis, motion in enumerate((AT_REST, STEADY)):
-                self.rotation[axis][place + axis] = number(motions[name][0][motion])
+            for motion in (AT_REST, STEADY):  # along the first axis, and the second
+                self.rotation[motion, place + motion] = number(motions[name][0][motion])
 
     @abstractmethod
     def later(self, quantity: Series, steps: int) -> Series:
@@ -109,7 +108,7 @@ class CircleStep(ABC):
     def taken(self, unknowns: Series) -> Series:
         """Return what should be zero, (size, ..., 1): what is off in the step's equations, and the angle of x."""
         pairs = {name: unknowns.each(itemgetter(slice(place, place + 2))) for name, place in self.places.items()}
-        found, off = dict(pairs), dict[str, Series]()
+        found, off = dict(pairs), list[Series]()
         for equation in self.equations:
             name, step = equation.result.name, equation.result.step
             if isinstance(equation, Assignment):
@@ -120,11 +119,11 @@ class CircleStep(ABC):
                 )
                 value = self.acceleration(position, velocity, unknowns.each(itemgetter(-1)))
             if name in pairs:
-                off[name] = pairs[name] - value
+                off.append(pairs[name] - value)
             else:
                 found[name] = value
-        rows = [*(off[name] for name in pairs), pairs[POSITION].each(itemgetter(slice(1, 2)))]
-        powers = zip(*(each.terms for each in rows), strict=True)
+        off.append(pairs[POSITION].each(itemgetter(slice(1, 2))))
+        powers = zip(*(each.terms for each in off), strict=True)
         return self.kind([np.stack(np.broadcast_arrays(*(row for term in terms for row in term))) for terms in powers])
 
     def acceleration(self, position: Series, velocity: Series, moment: Series) -> Series:
@@ -133,7 +132,7 @@ class CircleStep(ABC):
         at_rest, *others = square.terms
         off = type(square)([at_rest - 1, *others])  # 2 c
         pull: Series = dot(velocity, velocity) + dot(position, velocity) * self.alpha_hat + off * (self.beta_hat / 2)
-        return (across(position) * moment - position * pull) * square.inverse()
+        return (across(position) * moment - position * pull) / square
 
     def first_order(self, known: Array) -> tuple[Array, Series]:
         """Return the matrix, (..., size, size), by which first coefficients enter what is off, and that without them.

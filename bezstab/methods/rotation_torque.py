@@ -80,7 +80,7 @@ class _Rotation(CircleStep):
 
     def torques(self, powers: int) -> Iterator[Any]:
         """Yield the coefficients of -T, from theta^2 on."""
-        terms = list(self.rotation)
+        terms = list(self.rotation[..., np.newaxis])
         matrix, _ = self.first_order(terms[0])
         inverse = np.array(solution(matrix.tolist(), self.unit.tolist()))
         for _ in range(powers):

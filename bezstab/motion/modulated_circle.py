@@ -27,6 +27,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from bezstab.matrices import inverses
 from bezstab.methods.circle_steps import Array, CircleStep, Series, across
 from bezstab.methods.schemes import Method
 
@@ -88,10 +89,7 @@ def steps_to_breakdown(method: Method, alpha_hat: float, beta_hat: float, omega_
 
 def solved(matrices: Array, right_sides: Array) -> Array:
     """Return the solutions of linear systems, (size, ..., 1) as the right sides; nan where a matrix is singular."""
-    singular = ~(np.abs(np.linalg.det(matrices)) > 0)  # so is one without numbers
-    regular = np.where(singular[..., np.newaxis, np.newaxis], np.eye(len(right_sides)), matrices)
-    found = np.moveaxis(np.linalg.solve(regular, np.moveaxis(right_sides, 0, -2)), -2, 0)
-    return np.where(singular[..., np.newaxis], np.nan, found)
+    return np.moveaxis(inverses(matrices) @ np.moveaxis(right_sides, 0, -2), -2, 0)
 
 
 @dataclass(frozen=True)
@@ -132,7 +130,7 @@ class _Circle(CircleStep):
     def settled(self) -> tuple[FloatArray, FloatArray]:
         """Return the unknowns of a uniform rotation, nan where it has none, and the matrix of Newton's method."""
         ones = np.ones_like(self.alpha_hat + self.theta)
-        at_rest, by_theta = (np.multiply.outer(each[:, 0], ones) for each in self.rotation)
+        at_rest, by_theta = np.multiply.outer(self.rotation, ones)
         mean = at_rest + self.theta * by_theta
         for _ in range(MOST_ITERATIONS):
             matrix, left = self.first_order(mean)

@@ -13,6 +13,7 @@ import numpy as np
 from bezstab.engines.conversions import Point
 from bezstab.errors import InputError
 from bezstab.mechanism.equations import Mechanism
+from bezstab.mechanism.observation import FloatArray, running_integral
 from bezstab.mechanism.simulation import Simulation, simulated
 from bezstab.methods.rotation_torque import stage_torque
 from bezstab.methods.schemes import Method
@@ -87,7 +88,7 @@ def scene_run(
     if grows and not by_feedback and stage_torque(method).power == 2 and not run.failure:
         longer = run_for(duration=FURTHER * duration)
         end = float(longer.t[-1])
-        breakdown = end if longer.failure else _breakdown(run)
+        breakdown = end if longer.failure else _breakdown(run, kinetic)
         if breakdown < end:  # it went on: a driver keeps its rate
             breakdown = None
     gained = drift / own
@@ -105,10 +106,8 @@ def scene_run(
     )
 
 
-def _breakdown(run: Simulation) -> float:
+def _breakdown(run: Simulation, kinetic: FloatArray) -> float:
     """Return about when (s) a torque ~ omega^3, of which E' = C E^2 in the mean, makes the kinetic energy infinite."""
-    kinetic = run.v**2 @ run.mechanism.mass / 2
-    in_the_mean = (kinetic[1:] ** 2 + kinetic[:-1] ** 2) / 2
-    rate = float(run.energy_drift[-1] / (in_the_mean @ np.diff(run.t)))
+    rate = float(run.energy_drift[-1] / running_integral(kinetic**2, np.diff(run.t))[-1])
     last = slice(-(len(run.t) // 3), None)
     return float(run.t[last].mean() + 1 / (rate * kinetic[last].mean()))
