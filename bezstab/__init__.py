@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from bezstab.chains.answer import chain as chain
     from bezstab.drives.answer import drive as drive
     from bezstab.feedback.checking import check as check
+    from bezstab.feedback.checking import largest_step as largest_step
     from bezstab.feedback.choosing import choose as choose
-    from bezstab.feedback.largest_steps import largest_step as largest_step
     from bezstab.mechanism.scene_files import scene as scene
     from bezstab.methods.registry import method as method
     from bezstab.mujoco.linting import lint as lint
@@ -50,7 +50,7 @@ HOMES = {
         "bezstab.api",
     ),
     "chain": "bezstab.chains.answer",
-    "largest_step": "bezstab.feedback.largest_steps",
+    "largest_step": "bezstab.feedback.checking",
     "choose": "bezstab.feedback.choosing",
     "check": "bezstab.feedback.checking",
     "drive": "bezstab.drives.answer",

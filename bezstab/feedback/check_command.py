@@ -62,9 +62,8 @@ def check(
     """
 
     from bezstab.feedback import beside, columns, sentences
-    from bezstab.feedback.checking import checks
+    from bezstab.feedback.checking import checks, step_answer
     from bezstab.feedback.conditions import Setup, conditions
-    from bezstab.feedback.largest_steps import step_answer
     from bezstab.questions.methods import methods_for
 
     typed, (named, values) = TypedPoint(alpha, beta, physical), engine or (None, None)

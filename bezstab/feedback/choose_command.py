@@ -67,9 +67,9 @@ def choose(
     """
 
     from bezstab.feedback import columns, sentences
+    from bezstab.feedback.checking import step_answer
     from bezstab.feedback.choosing import asked_to_choose, choose_answer
     from bezstab.feedback.conditions import Setup
-    from bezstab.feedback.largest_steps import step_answer
     from bezstab.rationals import exact
 
     whole = simulation["h"] is not None

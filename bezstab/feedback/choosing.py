@@ -203,16 +203,10 @@ def check_motion(method: Method, asked: Conditions) -> None:
     )
 
 
-def choose_answer(
-    method: Method,
-    asked: Conditions,
-    role: Role = "chosen",
-    *,
-    trades: bool = False,
-) -> Judgement:
+def choose_answer(method: Method, asked: Conditions, role: Role = "chosen", *, trades: bool = False) -> Judgement:
     """Return the point that a goal asks for, judged; errors as `choose`."""
     alone, swept = _chosen_alone(method, asked), _limiting(asked)
-    chosen = _limited(alone, swept, asked)
+    chosen = _limited(alone, asked)
     trials, judged, by_goal = None, None, asked.sag is None
     if role == "chosen":
         _check_expressed(asked, chosen)
@@ -269,11 +263,12 @@ def _check_expressed(asked: Conditions, chosen: Choice) -> None:
 
 def _chosen(method: Method, asked: Conditions) -> Choice:
     """Return the choice of a goal; if an engine sweeps over constraints, at most the strongest that they allow."""
-    return _limited(_chosen_alone(method, asked), _limiting(asked), asked)
+    return _limited(_chosen_alone(method, asked), asked)
 
 
-def _limited(alone: Choice, swept: SweptConstraints | None, asked: Conditions) -> Choice:
+def _limited(alone: Choice, asked: Conditions) -> Choice:
     """Return the choice for one constraint alone, or the strongest that swept ones allow, if that is weaker."""
+    swept = _limiting(asked)
     if swept is None:
         return alone
     strongest = swept.strongest(asked.spread)

@@ -4,8 +4,8 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
+from bezstab.feedback.checking import StepAnswer, limit_words
 from bezstab.feedback.judgement import Judgement
-from bezstab.feedback.largest_steps import StepAnswer, limit_words
 from bezstab.feedback.sentences import sag_words
 from bezstab.methods.schemes import implicit
 from bezstab.methods.steady_errors import velocity_lag

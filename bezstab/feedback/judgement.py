@@ -111,11 +111,7 @@ class Judgement(Choice):
         return self.safe
 
 
-def judge(
-    asked: Conditions,
-    choice: Choice,
-    role: Role,
-) -> Judgement:
+def judge(asked: Conditions, choice: Choice, role: Role) -> Judgement:
     """Return what is known of a point under the conditions of a question.
 
     InputError where the engine cannot express a point that was chosen; NumericalError where rounding leaves open

@@ -9,10 +9,9 @@ import pytest
 from bezstab.engines.conversions import Point
 from bezstab.engines.engine_list import ENGINES
 from bezstab.feedback import columns
-from bezstab.feedback.checking import check, checks
+from bezstab.feedback.checking import check, checks, largest_step, step_answer
 from bezstab.feedback.conditions import Setup, conditions
 from bezstab.feedback.judgement import Judgement
-from bezstab.feedback.largest_steps import largest_step, step_answer
 from bezstab.methods.registry import lookup
 from bezstab.motion.spinning_bodies import spin_change
 from bezstab.questions.energy import engine_energy_rate

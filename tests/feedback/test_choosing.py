@@ -10,9 +10,8 @@ from bezstab.engines.conversions import Point
 from bezstab.engines.engine_list import ENGINES
 from bezstab.errors import InputError
 from bezstab.feedback import judgement
-from bezstab.feedback.checking import check
+from bezstab.feedback.checking import check, largest_step
 from bezstab.feedback.choosing import choose
-from bezstab.feedback.largest_steps import largest_step
 from bezstab.goals import Goal
 from bezstab.mechanism.equations import Mechanism
 from bezstab.methods.registry import lookup
