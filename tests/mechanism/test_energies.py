@@ -56,8 +56,7 @@ def test_a_damper_takes_what_the_oscillation_loses() -> None:
     run = run_of(parse_scene({**pendulum(spring=[spring], initial=initial), "joint": [line]}), duration=3.0)
     # x - 2, of x'' + 2 x' + 10 (x - 2) = 0 released at x = 3
     x = np.exp(-run.t) * (np.cos(3 * run.t) + np.sin(3 * run.t) / 3)
-    rate = -np.exp(-run.t) * np.sin(3 * run.t) * 10 / 3
-    assert run.force_work == pytest.approx(rate**2 / 2 + 10 * x**2 / 2 - 5, abs=1e-10)
+    assert run.q[:, 0] == pytest.approx(2 + x, abs=1e-10)
     assert run.energy_drift == pytest.approx(np.zeros(len(run.t)), abs=1e-10)
 
 

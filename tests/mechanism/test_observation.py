@@ -8,7 +8,7 @@ from bezstab.mechanism.generated_code import accelerations
 from bezstab.mechanism.observation import observe
 from bezstab.mechanism.scene_files import load_scene, parse_scene, shipped_scenes
 from bezstab.mechanism.simulation import simulated
-from bezstab.mechanism.start import initial_state
+from bezstab.mechanism.start import constraint_errors, initial_state
 from bezstab.methods.registry import lookup
 from tests.mechanism.test_scenes import pendulum
 from tests.reference.literal_equation_9 import literal_equation_9
@@ -49,18 +49,15 @@ def test_where_nothing_is_singular_no_passage_is_seen() -> None:
 
 
 @pytest.mark.parametrize(
-    ("joint", "c", "cdot"),
+    ("joint", "c"),
     [
         # the distance (m) to the line through (0.3, -0.4) along (3, 4) / 5
-        ({"type": "point-on-line", "direction": [3, 4]}, 0.6 * 2.6 - 0.8 * 2.4, 0.6 * 1.5 - 0.8 * 0.5),
-        ({"type": "distance", "length": 2.0}, (2.4**2 + 2.6**2 - 2**2) / 4, (2.4 * 0.5 + 2.6 * 1.5) / 2),
+        ({"type": "point-on-line", "direction": [3, 4]}, 0.6 * 2.6 - 0.8 * 2.4),
+        ({"type": "distance", "length": 2.0}, (2.4**2 + 2.6**2 - 2**2) / 4),
     ],
 )
-def test_a_joint_holds_two_points_neither_of_which_lies_at_a_frames_origin(
-    joint: dict[str, Any], c: float, cdot: float
-) -> None:
-    """The second is at (2.5, 1.5) + (0.2, 0.7), and moves with (0.5, 1.5)."""
+def test_a_joint_holds_two_points_neither_of_which_lies_at_a_frames_origin(joint: dict[str, Any], c: float) -> None:
+    """The second is at (2.5, 1.5) + (0.2, 0.7)."""
     joint |= {"bodies": ["ground", "bob"], "points": [[0.3, -0.4], [0.2, 0.7]]}
     mechanism = compiled_mechanism(parse_scene({**pendulum(), "joint": [joint]}))
-    seen = observe(mechanism, np.zeros(1), np.array([[2.5, 1.5]]), np.array([[0.5, 1.5]]), 0.0, 0.0)
-    assert (seen.c[0, 0], seen.cdot[0, 0]) == pytest.approx((c, cdot), rel=1e-14)
+    assert constraint_errors(mechanism, 0.0, [2.5, 1.5]) == pytest.approx(c, rel=1e-14)

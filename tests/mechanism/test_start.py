@@ -1,11 +1,10 @@
 import re
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 
-from bezstab.errors import InputError, NumericalError
+from bezstab.errors import InputError
 from bezstab.mechanism.equations import Mechanism, compiled_mechanism
 from bezstab.mechanism.motions import motion
 from bezstab.mechanism.observation import observe
@@ -34,13 +33,6 @@ def test_a_perturbation_moves_the_first_constraint_alone() -> None:
     mechanism = compiled_mechanism(load_scene("slider_crank"))
     c, _ = errors(mechanism, *perturbed_state(mechanism, 1e-5))
     assert c == pytest.approx([1e-5, 0, 0, 0], abs=1e-9)  # the square of the perturbation
-
-
-def test_masses_too_far_apart_are_reported() -> None:
-    scene = load_scene("slider_crank")
-    crank, rod, slider = scene.bodies
-    with pytest.raises(NumericalError, match="singular"):
-        perturbed_state(compiled_mechanism(replace(scene, bodies=(crank, replace(rod, mass=1e30), slider))), 1e-5)
 
 
 @pytest.mark.parametrize(

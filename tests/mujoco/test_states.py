@@ -7,10 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from bezstab.errors import InputError
 from bezstab.mujoco.linting import lint
 from bezstab.mujoco.robots import State
-from bezstab.mujoco.states import chosen_states
 from tests.mujoco.models import mjcf
 from tests.mujoco.test_steps import model_of, robot_of
 
@@ -68,11 +66,6 @@ def test_a_log_of_what_falls_by_itself_is_said_to_be_safe_numerically(tmp_path: 
     assert found.status == 0
     falls = "at log.csv row 1 (0 s) it falls by itself (3.1 1/s): look at its controller"
     assert found.sentence.startswith(f"the model is numerically safe at all 5 states; {falls} (")
-
-
-def test_a_log_with_what_is_no_number_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match=r"nan.csv, row 1: expected finite numbers"):
-        chosen_states(mujoco, model_of(ARM), [logged(tmp_path / "nan.csv", "a,b", [(1, float("nan"))])])
 
 
 def test_a_foot_that_just_touches_is_judged_on_the_ground_and_in_the_air() -> None:
