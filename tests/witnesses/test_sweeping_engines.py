@@ -17,9 +17,8 @@ from bezstab.methods.registry import lookup
 from bezstab.motion.spinning_bodies import spin_change
 from bezstab.stability.closed_loop import dominant_pole
 from tests.witnesses.growths import grown
-from tests.witnesses.worlds import Body, Box2d, Bullet, FloatArray, Joint, Pymunk, World
+from tests.witnesses.worlds import Asked, Body, Box2d, Bullet, FloatArray, H, Joint, Pymunk, World
 
-H = 1 / 60
 INERTIA = 0.5  # of a body of 1 kg that goes round a pin at 1 m
 ENGINES: dict[str, tuple[str, Callable[..., World]]] = {
     "chipmunk": ("pymunk", Pymunk),
@@ -31,7 +30,7 @@ ENGINES: dict[str, tuple[str, Callable[..., World]]] = {
 def made(engine: str, bodies: Sequence[Body], joints: Sequence[Joint], **settings: Any) -> World:
     """Return a mechanism in an engine, at steps of H; the test is skipped where the engine is missing."""
     module, world = ENGINES[engine]
-    return world(pytest.importorskip(module), bodies, joints, H, **settings)
+    return world(pytest.importorskip(module), Asked(bodies, joints, **settings))
 
 
 def chain(engine: str, bodies: int, ratio: float, moved: Any, **settings: Any) -> World:
@@ -49,7 +48,7 @@ def chain(engine: str, bodies: int, ratio: float, moved: Any, **settings: Any) -
 
 def too_long(world: World) -> FloatArray:
     """Return by how much each link of a chain is too long."""
-    places = np.vstack([np.zeros(2), world.places()[:, :2]])
+    places = np.vstack([np.zeros(2), world.states()[:, :2]])
     return np.asarray(np.linalg.norm(np.diff(places, axis=0), axis=1) - 1)
 
 
@@ -70,7 +69,7 @@ def test_one_joint_has_the_pole_of_its_row(typed: str, share: float | None, with
     errors = []
     for _ in range(12):
         world.step()
-        errors.append(world.places()[0, 0])
+        errors.append(world.states()[0, 0])
     assert np.divide(errors[2:], errors[1:-1]) == pytest.approx(expected.real, abs=within)
 
 
@@ -127,10 +126,13 @@ def test_a_chain_that_hangs_in_chipmunk_does_not_sag_and_if_it_grows_jitters_as_
         assert (answer.sag, measured) == (0, pytest.approx(0, abs=1e-3))
 
 
-def arm(engine: str, bodies: int, motor: str, ratio: float = 1, both_ends: bool = False, **settings: Any) -> World:
+def arm(
+    engine: str, bodies: int, motor: str, ratio: float = 1, both_ends: bool = False, kick: float = 0, **settings: Any
+) -> World:
     """Return rods of length 1 out from the world, the last one heavier, each held by a pin and a motor."""
     masses = [1.0] * (bodies - 1) + [ratio]
-    rods = [Body(mass, mass / 12, (n + 0.5, 0, 0)) for n, mass in enumerate(masses)]
+    rates = kick * np.random.default_rng(1).standard_normal((bodies, 3)) * (0, 1, 1)
+    rods = [Body(mass, mass / 12, (n + 0.5, 0, 0), rates[n].tolist()) for n, mass in enumerate(masses)]
     joints = [Joint("pin", n, n + 1, [(0.5 if n else 0, 0), (-0.5, 0)], motor) for n in range(bodies)]
     closed = [Joint("pin", 0, bodies, [(bodies, 0), (0.5, 0)])] * both_ends
     return made(engine, rods, [*joints, *closed], **settings)
@@ -155,12 +157,12 @@ def test_a_kicked_arm_turns_as_predicted(
     answer = judge(engine, h="1/60", bodies=bodies, motor=motor, **settings)
     assert answer.safe is safe
     names = {"mass_ratio": "ratio", "iterations": "sweeps"}
-    world = arm(engine, bodies, motor, **{names.get(name, name): value for name, value in settings.items()})
     kick, window, least, most = 1e-8, 60, 1e-13, 0.1
     if engine == "box2d-v2":
         kick, window, least, most = 1e-2 if safe else 1e-5, 20, 3e-6, 1
-    world.kick(kick * np.random.default_rng(1).standard_normal((bodies, 3)) * (0, 1, 1))
-    found = grown(world.step, lambda: float(np.abs(world.rates()[:, 2]).max()), window, least, most)
+    named = {names.get(name, name): value for name, value in settings.items()}
+    world = arm(engine, bodies, motor, kick=kick, **named)
+    found = grown(world.step, lambda: float(np.abs(world.states()[:, 5]).max()), window, least, most)
     assert found == pytest.approx(answer.z_abs, abs=2e-3)
 
 
@@ -171,7 +173,7 @@ def test_an_arm_droops_as_predicted() -> None:
     for _ in range(4000):
         world.step()
     sag = judge("box2d-v2", h="1/60", bodies=6, motor="20,1", load="gravity").sag
-    _, y, angle = world.places()[-1]
+    y, angle = world.states()[-1, 1:3]
     assert -(y + np.sin(angle) / 2) == pytest.approx(share * (sag or 0.0), rel=0.01)
 
 
@@ -186,7 +188,7 @@ def test_what_goes_round_is_braked_as_the_engines_class_of_energy_says(typed: st
     rates = []
     for _ in range(360):
         world.step()
-        rates.append(world.rates()[0, 2])
+        rates.append(world.states()[0, 5])
     first, last = rates[60], rates[-1]
     expected = first
     for _ in rates[61:]:
