@@ -40,11 +40,9 @@ def test_the_work_precision_figure_has_every_run_fills_the_front_and_marks_the_c
     seen = {name: [panels[name][key].tolist() for key in WHAT] for name in panels}
     b2, ab4, cheapest = [[0.1, 1e-2], [0.2, 3e-3]], [[0.3, 5e-3]], "cheapest: B2, h = 0.01 s"
     assert seen == {"B2": [b2, b2], "AB4": [ab4, []]}
-    assert panels["B2"]["_AB4"].tolist() == ab4
     assert panels["AB4"]["diverged"][:, 0].tolist() == [0.08]
     assert panels["B2"][cheapest].tolist() == [[0.2, 3e-3]]
-    assert set(panels["AB4"]["tolerance 0.006"][:, 1]) == {6e-3}
-    assert {"diverged", *WHAT, "the other methods", cheapest, "tolerance 0.006"} <= set(legend_of(figure))
+    assert {"diverged", *WHAT, cheapest} <= set(legend_of(figure))
 
 
 @pytest.mark.parametrize("costs", [(100, 130), (100, 800), (100, 1600), (130, 7500), (509, 8000), (50, 20000)])
