@@ -60,4 +60,4 @@ def test_a_joint_holds_two_points_neither_of_which_lies_at_a_frames_origin(joint
     """The second is at (2.5, 1.5) + (0.2, 0.7)."""
     joint |= {"bodies": ["ground", "bob"], "points": [[0.3, -0.4], [0.2, 0.7]]}
     mechanism = compiled_mechanism(parse_scene({**pendulum(), "joint": [joint]}))
-    assert constraint_errors(mechanism, 0.0, [2.5, 1.5]) == pytest.approx(c, rel=1e-14)
+    assert constraint_errors(mechanism, 0.0, np.array([2.5, 1.5])) == pytest.approx(c, rel=1e-14)
