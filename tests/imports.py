@@ -41,24 +41,15 @@ SUBJECTS = {
 
 
 @cache
-def tree_of(path: Path) -> ast.Module:
-    """Return the syntax tree of a file of the package, given by its path in it."""
-    return ast.parse((PACKAGE / path).read_text(encoding="utf-8"))
-
-
-@cache
 def imports(path: Path, with_types: bool = True) -> list[tuple[str, tuple[str, ...]]]:
-    """Return each module that a file imports, inside functions too, with the names taken from it."""
-    return list(_imports(path, with_types))
-
-
-def _imports(path: Path, with_types: bool) -> Iterator[tuple[str, tuple[str, ...]]]:
-    for node in _nodes(tree_of(path), with_types):
+    """Return each module that a file of the package imports, inside functions too, with the names taken from it."""
+    found: list[tuple[str, tuple[str, ...]]] = []
+    for node in _nodes(ast.parse((PACKAGE / path).read_text(encoding="utf-8")), with_types):
         if isinstance(node, ast.ImportFrom) and node.module:
-            yield node.module, tuple(alias.name for alias in node.names)
+            found.append((node.module, tuple(alias.name for alias in node.names)))
         elif isinstance(node, ast.Import):
-            for alias in node.names:
-                yield alias.name, ()
+            found += [(alias.name, ()) for alias in node.names]
+    return found
 
 
 def _nodes(node: ast.AST, with_types: bool) -> Iterator[ast.AST]:

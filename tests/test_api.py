@@ -36,10 +36,6 @@ def test_what_is_public_is_listed_once_and_found() -> None:
     with pytest.raises(AttributeError, match="no attribute 'rational'"):
         _ = bezstab.rational
     assert sorted(bezstab.plot.__all__) == dir(bezstab.plot)
-    for name in bezstab.plot.__all__:
-        function = getattr(bezstab.plot, name)
-        if inspect.isfunction(function):
-            assert "axes" in inspect.signature(function).parameters, name
 
 
 PUBLIC = [name for name in bezstab.__all__ if inspect.isfunction(getattr(bezstab, name))]
@@ -67,8 +63,6 @@ def test_both_ways_to_give_a_point_and_a_motion_agree() -> None:
     assert in_seconds == bezstab.feedback_cost("RK4", alpha_hat=1.6, beta_hat=1)  # as usual
     chosen = bezstab.choose("RK4", h=0.002, omega=10)
     assert chosen.point == bezstab.choose("RK4", goal="accurate", omega_h=0.02).point
-    of_longest = bezstab.choose("RK4", h=0.001, h_max=0.002, omega=10)
-    assert of_longest.alpha_hat == pytest.approx(chosen.alpha_hat / 2)
 
 
 @pytest.mark.parametrize(

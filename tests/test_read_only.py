@@ -11,7 +11,6 @@ import bezstab
 
 RESULTS: dict[str, Callable[[], Any]] = {
     "region": lambda: bezstab.region("B4"),
-    "region without end": lambda: bezstab.region("trapezoid"),
     "simulate": lambda: bezstab.simulate("slider_crank", "B4", alpha_hat=0.5, beta_hat=0.1, h=0.001, duration=0.01),
 }
 

@@ -11,9 +11,7 @@ from tests.cli.running import DATA, rows, run
 @pytest.mark.parametrize(
     ("name", "alpha", "beta", "verdict"),
     [
-        ("SYM", "1", "2", "marginal"),
         ("SYM", "1", "2.00000000000000000001", "diverges"),
-        ("SYM", "1", "1.99999999999999999999", "converges"),
         ("RK1", "6/11", "6/11", "marginal"),
         ("RK1", "2.00000000000000000002", "2", "converges"),
     ],
@@ -68,10 +66,7 @@ def test_what_is_meant_in_seconds_has_a_largest_step_and_what_is_meant_per_step_
         (f"probe {DATA}/pendulum.csv --alpha 50 --beta 50", "if 50 and 50 are in 1/s, add --physical and your --h"),
         # they would settle in seconds, where a step was typed
         ("check --method RK2 --alpha 1 --beta 1 --h 0.01", "if 1 and 1 are in 1/s, add --physical"),
-        ("check --method RK2 --alpha 1 --beta 1", ""),
-        ("check --method RK4 --alpha 5 --beta 5 --h 1", ""),  # unstable in 1/s, too
         ("check --method RK4 --alpha 1/2 --beta 1/10 --h 1/100", ""),  # in 700 s: a feedback that nobody has
-        ("check --method implicit-euler --alpha 50 --beta 50.5", ""),  # stable as typed
         ("check --method SYM --alpha 4 --beta 3", ""),  # unstable, but no numbers of 1/s
         ("verify --scene pendulum --method SYM --h 0.01 --alpha 5 --beta 5", "if 5 and 5 are in 1/s, add --physical"),
         ("simulate --time 0.02 --figure none --table none --method SYM --h 0.01 --alpha 5 --beta 5", "if 5 and 5 are"),
@@ -84,13 +79,12 @@ def test_numbers_that_look_like_one_over_seconds_are_asked_about(typed: str, not
     assert "your --h" in note or not any("your --h" in line for line in said)
 
 
-def test_what_was_typed_is_shown_as_typed() -> None:
-    for asked, keys, typed in (
-        ("--method SYM --h 1/240 --alpha 60 --beta 60.1 --physical", ("alpha", "beta"), (60, 60.1)),
-        ("--engine maplesim=60,60.1 --method SYM --h 0.003", ("alpha", "beta"), (60, 60.1)),
-    ):
-        given = rows("check", asked)[0]
-        assert tuple(given[key] for key in keys) == typed
+@pytest.mark.parametrize(
+    "point", ["--h 1/240 --alpha 60 --beta 60.1 --physical", "--engine maplesim=60,60.1 --h 0.003"]
+)
+def test_what_was_typed_is_shown_as_typed(point: str) -> None:
+    given = rows("check --method SYM", point)[0]
+    assert (given["alpha"], given["beta"]) == (60, 60.1)
 
 
 def test_a_step_is_taken_as_often_as_typed() -> None:

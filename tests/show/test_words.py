@@ -58,7 +58,6 @@ def test_the_proven_verdict_counts_more_than_a_rounded_modulus() -> None:
     ("limit", "words"),
     [
         (FarLimit(0.5, (1, 0), 2.0), "0.5 as α̂ grows at β̂ = 0.5"),
-        (FarLimit(0.5, (1, 2), 3.0), "0.5 as α̂ and β̂ grow, α̂^2 = 3 β̂"),
         (FarLimit(0.5, (-1, 2)), "0.5 as β̂ grows and α̂ falls, α̂^2 like β̂^-1"),
     ],
 )
