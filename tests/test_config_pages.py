@@ -46,36 +46,28 @@ def asked_keys(monkeypatch: pytest.MonkeyPatch) -> dict[str, set[str]]:
     return asked
 
 
-@pytest.mark.parametrize("example", examples(METHODS_PAGE))
-def test_an_example_of_a_method_has_a_closed_loop(example: str, tmp_path: Path) -> None:
-    """A multistep method has two roots for each step; the helper of the running mean is one root more."""
-    (path := tmp_path / "own.toml").write_text(example, encoding="utf-8")
-    method = read_method(path)
-    assert closed_loop_polynomial(method).degree() == (3 if "mean" in example else 2 * steps(method))
-
-
 def test_a_shipped_method_has_its_order() -> None:
     orders = {path.stem: accuracy(read_method(path))[0] for path in (CONFIGS / "methods").glob("*.toml")}
     assert orders == {"ebdf2": 2, "ssprk3": 3, "verlet_half": 1, "houbolt": 2, "lobatto": 2}
 
 
-@pytest.mark.parametrize("example", examples(SCENES_PAGE))
-def test_an_example_of_a_scene_takes_a_step(example: str) -> None:
-    mechanism = compiled_mechanism(parse_scene(tomllib.loads(example)))
-    run = simulate(mechanism, lookup("RK4"), h=1e-3, duration=1e-3, gains=(0.0, 0.0))
-    assert run.failure is None
-    assert len(run.t) == 2
-
-
-def test_the_page_of_methods_has_every_key_and_no_other(asked_keys: dict[str, set[str]], tmp_path: Path) -> None:
+def test_the_page_of_methods_has_every_key_and_no_other_and_its_examples_have_closed_loops(
+    asked_keys: dict[str, set[str]], tmp_path: Path
+) -> None:
+    """A multistep method has two roots for each step; the helper of the running mean is one root more."""
     for example in examples(METHODS_PAGE):
         (path := tmp_path / "own.toml").write_text(example, encoding="utf-8")
-        read_method(path)
+        method = read_method(path)
+        assert closed_loop_polynomial(method).degree() == (3 if "mean" in example else 2 * steps(method))
     assert documented_keys(METHODS_PAGE) == asked_keys[""] == {"name", "source", "rho", "sigma", "A", "b", "update"}
 
 
-def test_the_page_of_scenes_has_every_key_of_every_table_and_no_other(asked_keys: dict[str, set[str]]) -> None:
+def test_the_page_of_scenes_has_every_key_of_every_table_and_no_other_and_its_examples_take_a_step(
+    asked_keys: dict[str, set[str]],
+) -> None:
     for example in examples(SCENES_PAGE):
-        parse_scene(tomllib.loads(example))
+        mechanism = compiled_mechanism(parse_scene(tomllib.loads(example)))
+        run = simulate(mechanism, lookup("RK4"), h=1e-3, duration=1e-3, gains=(0.0, 0.0))
+        assert (run.failure, len(run.t)) == (None, 2)
     sections = re.findall(r"^## (.*?)\n(.*?)(?=^## |\Z)", SCENES_PAGE, re.MULTILINE | re.DOTALL)
     assert {place: keys for place, text in sections if (keys := documented_keys(text))} == asked_keys

@@ -1,5 +1,4 @@
 import re
-import shlex
 import shutil
 from pathlib import Path
 from typing import Any
@@ -7,22 +6,19 @@ from typing import Any
 import click
 import numpy as np
 import pytest
-from click.testing import CliRunner
 
 from bezstab.cli.command_group import main
 from bezstab.methods.registry import lookup
 from bezstab.stability.closed_loop import poles
+from tests.cli.running import DATA, run
 from tests.reference.sampled_responses import of_poles
 
 ROOT = Path(__file__).parent.parent
-DATA = ROOT / "tests" / "cli" / "data"
 FOLDERS = ("", "bezstab", "bezstab/*", "configs/*", "tests")
 READMES = sorted(path for folder in FOLDERS for path in ROOT.glob(f"{folder}/README.md".lstrip("/")))
 PAGES = [*(path.relative_to(ROOT).as_posix() for path in READMES), "tests/cli/sentences.md"]
 """The pages whose commands are run."""
 
-ON_A_PIPE = {"COLUMNS": None}
-"""Environment in which nothing says how wide a line may be."""
 UNSAFE = ("check", "chain", "choose", "drive", "lint", "steps")
 """Commands whose exit status is 1 where what they judge is unsafe."""
 PLACEHOLDER = re.compile(r"\b(COMMAND|LOG|MODEL|NAME|PATH|FILE)\b")
@@ -49,10 +45,7 @@ def prompted(session: str) -> str:
 
 QUICK = ("check --method SYM", "check --engine bullet", "choose --method SYM", "methods own", "poles", "lint")
 SESSIONS = [session for page in PAGES for session in sessions(page)]
-GOLDEN = ("paper -o figures",)
-"""Commands of pages that others run: tests/paper."""
-
-INLINE = sorted({command for page in PAGES for command in commands(page)} - {*GOLDEN})
+INLINE = sorted({command for page in PAGES for command in commands(page)} - {"paper -o figures"})  # tests/paper
 
 
 def all_but_a_few_slow(commands: list[str]) -> list[Any]:
@@ -67,6 +60,7 @@ def all_but_a_few_slow(commands: list[str]) -> list[Any]:
 def _with_the_files_of_the_pages(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Work in a directory with files called as on the pages."""
     monkeypatch.chdir(tmp_path)
+    monkeypatch.delenv("COLUMNS", raising=False)  # as on a pipe
     response = of_poles(poles(lookup("B4"), 0.5, 0.1), 300, seed=2)  # at the point that the page asks about
     np.savetxt("log.csv", response, "%.9g", header="c", comments="")
     (logging,) = re.findall(r"```python\n(.*?)```", (ROOT / "bezstab/probes/README.md").read_text("utf-8"), re.DOTALL)
@@ -82,7 +76,7 @@ def _with_the_files_of_the_pages(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 def test_a_session_prints_what_the_page_shows(session: str) -> None:
     """Three dots stand for whatever is printed there."""
     command, shown = prompted(session), session.partition("\n")[2]
-    result = CliRunner(env=ON_A_PIPE).invoke(main, shlex.split(command))
+    result = run(command)
     given = shown.partition("What `choose` gives instead:")[0]
     assert result.exit_code == bool(command.startswith(UNSAFE) and re.search("[nN]ot safe|diverges|: refuted", given))
     pieces = map(re.escape, shown.strip().split("…"))
@@ -94,8 +88,7 @@ def test_a_session_prints_what_the_page_shows(session: str) -> None:
 def test_a_command_in_the_text_runs(command: str) -> None:
     if "own.toml" in command:
         shutil.copy(own_file(command), "own.toml")
-    shorter = command.replace("--points 300", "--points 40")
-    result = CliRunner(env=ON_A_PIPE).invoke(main, shlex.split(shorter))
+    result = run(command.replace("--points 300", "--points 40"))
     may_end = (0, 1) if command.startswith(UNSAFE) else (0, 3) if command.startswith("probe") else (0,)
     assert result.exit_code in may_end, result.stderr  # 3: of another method's log nothing fits
 

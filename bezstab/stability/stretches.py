@@ -170,7 +170,8 @@ class Paths:
 def middle_of(low: ArrayLike, high: ArrayLike) -> FloatArray:
     """Return a point between two ends, of which the upper one may be infinite."""
     low, high = np.asarray(low), np.asarray(high)
-    return np.where(np.isinf(high), 2 * low + 1, (low + high) / 2)
+    with np.errstate(over="ignore"):  # of levels next to 0 ends are next to float64's largest number
+        return np.where(np.isinf(high), 2 * low + 1, (low + high) / 2)
 
 
 def paths(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray, powers: Powers, level: float = 1.0) -> Paths:

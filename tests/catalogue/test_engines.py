@@ -2,11 +2,11 @@
 
 from fractions import Fraction
 
-from click.testing import CliRunner
+import pytest
 
 from bezstab.catalogue.answer import engine_facts
-from bezstab.cli.command_group import main
 from bezstab.engines.engine_list import ENGINES
+from tests.cli.running import run
 
 H = Fraction(1, 100)
 
@@ -24,11 +24,12 @@ def test_a_point_comes_as_what_to_set_or_as_the_reason_why_nothing_can_be() -> N
     assert engine_facts(ENGINES["ode"], H).setting is None
 
 
-def test_the_list_is_a_line_an_engine_and_a_name_shows_the_rest() -> None:
-    lines = CliRunner(env={"COLUMNS": None}).invoke(main, ["engines"]).output.splitlines()
+def test_the_list_is_a_line_an_engine_and_a_name_shows_the_rest(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("COLUMNS", raising=False)
+    lines = run("engines").output.splitlines()
     assert [line.split()[0] for line in lines[2 : 2 + len(ENGINES)]] == list(ENGINES)
     assert max(map(len, lines[1 : 2 + len(ENGINES)])) <= 120
-    shown = CliRunner().invoke(main, ["engines", "pybullet"]).output
+    shown = run("engines pybullet").output
     for heading in ("left out", "source", "a spinning body", "sweeps in a step"):
         assert f"\n{heading} " in shown
         assert heading not in lines[1]

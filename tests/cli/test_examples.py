@@ -4,15 +4,13 @@ import csv
 import io
 import json
 import re
-import shlex
 
 import click
 import pytest
-from click.testing import CliRunner
 
 from bezstab.cli.command_group import main
 from bezstab.show.tables import shown_width
-from tests.cli.running import DATA
+from tests.cli.running import DATA, run
 from tests.show.keys_page import COLUMNS
 
 SMALL = "--figure none --table none"
@@ -53,17 +51,11 @@ EXAMPLES = (
 QUICK = ("poles --alpha 1", "check --method SYM --alpha 2 --beta 2", "probe", "engines", "simulate")
 
 
-def printed(example: str, *form: str, columns: int | None = None) -> str:
+def printed(example: str, *form: str) -> str:
     """Return what an example prints; a choice that is not safe ends with status one."""
-    environment = {"COLUMNS": str(columns) if columns else None}
-    result = CliRunner(env=environment).invoke(main, [*shlex.split(example), *form])
+    result = run(example, *form)
     assert result.exit_code in (0, 1), result.stderr
-    assert isinstance(result.exception, SystemExit | None)
     return result.stdout
-
-
-def widest(text: str) -> int:
-    return max(map(shown_width, text.splitlines()))
 
 
 def test_every_command_that_prints_rows_has_an_example() -> None:
@@ -79,11 +71,12 @@ def test_an_example_keeps_to_its_keys_and_the_width_of_the_terminal(
     example: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(DATA)
-    rows = json.loads(printed(example, "--format", "json"))
+    rows = json.loads(printed(example, "--format json"))
     (keys,) = {tuple(row) for row in rows}
     assert set(keys) <= {column.key for columns in COLUMNS[example.split(maxsplit=1)[0]] for column in columns}
     if example.startswith(QUICK):
-        assert next(csv.reader(io.StringIO(printed(example, "--format", "csv")))) == list(keys)
-        assert re.search(r"^\|[-| ]+\|$", printed(example, "--format", "markdown"), re.MULTILINE)
+        assert next(csv.reader(io.StringIO(printed(example, "--format csv")))) == list(keys)
+        assert re.search(r"^\|[-| ]+\|$", printed(example, "--format markdown"), re.MULTILINE)
     for columns in (80, 120):
-        assert widest(printed(example, columns=columns)) <= columns
+        monkeypatch.setenv("COLUMNS", str(columns))
+        assert max(map(shown_width, printed(example).splitlines())) <= columns

@@ -1,12 +1,11 @@
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner
 
-from bezstab.cli.command_group import main
 from bezstab.paper.command import PARTS
 from bezstab.paper.figures import FIGURES
 from bezstab.paper.tables import TABLES
+from tests.cli.running import run
 
 
 def test_every_part_is_made() -> None:
@@ -21,6 +20,6 @@ def test_every_part_is_made() -> None:
     ],
 )
 def test_what_is_asked_for_is_written_and_nothing_is_printed(only: str, files: list[str], tmp_path: Path) -> None:
-    result = CliRunner().invoke(main, ["paper", *only.split(), "-o", str(tmp_path)])
+    result = run("paper", only, "-o", str(tmp_path))
     assert (result.exit_code, result.stdout) == (0, "")
     assert sorted(path.name for path in tmp_path.iterdir()) == files
