@@ -12,7 +12,7 @@ from bezstab.errors import InputError, NumericalError
 from bezstab.feedback.conditions import AS_GIVEN, Conditions
 from bezstab.goals import Goal
 from bezstab.questions.chains import ALONE, SweptAnswer
-from bezstab.questions.energy import energy_rate
+from bezstab.questions.energy import EnergyRate, energy_rate
 from bezstab.questions.motions import turning_rate
 from bezstab.questions.scene_runs import SceneRun, scene_run
 from bezstab.questions.trial_runs import Trials
@@ -87,7 +87,7 @@ class Judgement(Choice):
     settle_seconds: float | None
     cost: FeedbackCost | None
     cost_reason: str | None
-    energy_rate: float | None
+    energy_rate: EnergyRate | None
     impedance: float
     moving: MovingPole | None
     run: SceneRun | None

@@ -125,9 +125,9 @@ def _on_a_motion(judged: Judgement) -> str | None:
     Of a choice that does not weigh it, it is said anyway.
     """
     unweighed = judged.role == "chosen" and judged.goal != "accurate"
-    rate, omega = judged.energy_rate, float(judged.conditions.omega or 0)
-    if rate is None or not (abs(rate) >= MOVED or unweighed):
+    if judged.energy_rate is None or not (abs(judged.energy_rate.gained) >= MOVED or unweighed):
         return None
+    rate, omega = judged.energy_rate.gained, float(judged.conditions.omega or 0)
     spins = spinning_class(judged.conditions.engine, judged.method)
     motion = f"a body that spins about a pin at {omega:.3g} rad/s" if spins else f"a motion of {omega:.3g} rad/s"
     if spins and judged.impedance < 1:

@@ -76,6 +76,12 @@ def across(p: Series) -> Series:
     return p.each(lambda term: np.stack([-term[1], term[0]]))
 
 
+def constraint(position: Series) -> Series:
+    """Return c."""
+    of_rest, *others = dot(position, position).terms
+    return type(position)([of_rest - 1, *others]).each(lambda term: term / 2)
+
+
 class CircleStep(ABC):
     """A method's step on the circle, at its own alpha_hat and beta_hat.
 
@@ -107,6 +113,10 @@ class CircleStep(ABC):
 
     def taken(self, unknowns: Series) -> Series:
         """Return what should be zero, (size, ..., 1): what is off in the step's equations, and the angle of x."""
+        return self.quantities(unknowns)[1]
+
+    def quantities(self, unknowns: Series) -> tuple[dict[str, Series], Series]:
+        """Return the quantities of a step by their names, and what should be zero."""
         pairs = {name: unknowns.each(itemgetter(slice(place, place + 2))) for name, place in self.places.items()}
         found, off = dict(pairs), list[Series]()
         for equation in self.equations:
@@ -124,15 +134,17 @@ class CircleStep(ABC):
                 found[name] = value
         off.append(pairs[POSITION].each(itemgetter(slice(1, 2))))
         powers = zip(*(each.terms for each in off), strict=True)
-        return self.kind([np.stack(np.broadcast_arrays(*(row for term in terms for row in term))) for terms in powers])
+        zero = self.kind([np.stack(np.broadcast_arrays(*(row for term in terms for row in term))) for terms in powers])
+        return found, zero
 
     def acceleration(self, position: Series, velocity: Series, moment: Series) -> Series:
         """Return the acceleration of the mass, with a moment about the centre."""
-        square = dot(position, position)
-        at_rest, *others = square.terms
-        off = type(square)([at_rest - 1, *others])  # 2 c
-        pull: Series = dot(velocity, velocity) + dot(position, velocity) * self.alpha_hat + off * (self.beta_hat / 2)
-        return (across(position) * moment - position * pull) / square
+        return across(position) * (moment / dot(position, position)) - position * self.multiplier(position, velocity)
+
+    def multiplier(self, position: Series, velocity: Series) -> Series:
+        """Return lambda."""
+        feedback: Series = dot(position, velocity) * self.alpha_hat + constraint(position) * self.beta_hat
+        return (dot(velocity, velocity) + feedback) / dot(position, position)
 
     def first_order(self, known: Array) -> tuple[Array, Series]:
         """Return the matrix, (..., size, size), by which first coefficients enter what is off, and that without them.

@@ -22,14 +22,15 @@ does on the steady error, -lambda dc/dt, and the method's own truncation, which 
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from bezstab.matrices import inverses
-from bezstab.methods.circle_steps import Array, CircleStep, Series, across
+from bezstab.methods.circle_steps import Array, CircleStep, Series, across, constraint
 from bezstab.methods.schemes import Method
+from bezstab.methods.step_equations import POSITION, VELOCITY
 
 FloatArray = NDArray[np.float64]
 
@@ -46,18 +47,31 @@ SETTLED = 1e-9
 """Of a correction, of numbers of the size of one: the next would be rounding."""
 
 
+class MotionEnergy(NamedTuple):
+    """Growth of a motion's energy per radian, as shares of it, at points of the plane, and its three parts.
+
+    rotation: of a uniform rotation, by the torque of stages, where there is none by truncation. multipliers: by their
+    work on the steady error. truncation: the rest, as the rate varies. nan where a rotation has no solution.
+    """
+
+    gained: FloatArray
+    rotation: FloatArray
+    multipliers: FloatArray
+    truncation: FloatArray
+
+
 def motion_energy(
     method: Method,
     alpha_hat: ArrayLike,
     beta_hat: ArrayLike,
     omega_h: float | FloatArray,
     modulation: float = MODULATION,
-) -> FloatArray:
-    """Return the growth of energy per radian, as a share of it, of a motion of omega_h radians a step.
+) -> MotionEnergy:
+    """Return what the method makes of the energy of a motion of omega_h radians a step, whose rate varies.
 
-    Its rate varies by `modulation` of it; with 0 it is a uniform rotation, which torque of stages and truncation alone
-    change. Shape of alpha_hat, beta_hat and omega_h, broadcast; nan where a rotation has no solution. 0 < omega_h < 1.
-    Stability is not looked at: where errors of constraints grow, no run has such a motion. Source: the docstring above.
+    It varies by `modulation` of it; with 0 it is a uniform rotation. Shapes are that of alpha_hat, beta_hat and
+    omega_h, broadcast. 0 < omega_h < 1. Stability is not looked at: where errors of constraints grow, no run has such a
+    motion. Source: the docstring above.
     """
     multiple = float(method.step_multiple)
     a, b = (each[..., np.newaxis] for each in np.broadcast_arrays(alpha_hat, beta_hat))
@@ -69,9 +83,17 @@ def motion_energy(
         disturbed, by_force = driven.first_order(mean)
         amplitude = solved(disturbed[..., :-1, :-1], -by_force.terms[1][:-1])
         swinging = _Wave([mean, np.concatenate([amplitude, 0 * amplitude[:1]]), 0 * mean])
-        epsilon = modulation * theta**2  # changes the rate by the modulation of it
-        moment = (mean - epsilon**2 * solved(matrix, driven.taken(swinging).terms[2]))[-1]
-        return np.asarray(-2 * moment / theta**2)[..., 0]  # the energy is theta^2 / 2
+        found, left = driven.quantities(swinging)
+        moment, added = mean[-1], -solved(matrix, left.terms[2])[-1]
+        c, pull = constraint(found[POSITION]), driven.multiplier(found[POSITION], found[VELOCITY])
+        ahead = np.exp(1j * theta)
+        # over a step, with the mean of the multiplier at both of its ends
+        work = -np.real((ahead - 1) * c.terms[1] * np.conj((ahead + 1) / 2 * pull.terms[1])) / 2
+    # the energy is theta^2 / 2; a force of modulation * theta^2 changes the rate by the modulation of it
+    rotation, multipliers = -2 * moment / theta**2, 2 * modulation**2 * theta * work
+    varied = -2 * modulation**2 * theta**2 * added
+    parts = (rotation + varied, rotation, multipliers, varied - multipliers)
+    return MotionEnergy(*(np.asarray(part)[..., 0] for part in parts))
 
 
 def steps_to_breakdown(method: Method, alpha_hat: float, beta_hat: float, omega_h: float) -> float:
@@ -82,7 +104,7 @@ def steps_to_breakdown(method: Method, alpha_hat: float, beta_hat: float, omega_
     omega h = 0.1.
     """
     nodes, weights = np.polynomial.legendre.leggauss(NODES)
-    growth = motion_energy(method, alpha_hat, beta_hat, np.minimum(2 * omega_h / (1 + nodes), FASTEST), modulation=0)
+    growth = motion_energy(method, alpha_hat, beta_hat, np.minimum(2 * omega_h / (1 + nodes), FASTEST)).rotation
     # without a solution it is over before it turns so fast
     return np.inf if np.any(growth <= 0) else float(np.nansum(weights / growth)) / omega_h
 

@@ -2,6 +2,7 @@
 
 import math
 from fractions import Fraction
+from typing import NamedTuple
 
 from bezstab.engines.conversions import EnergyClass, Engine, Point
 from bezstab.engines.engine_list import engine_and_values
@@ -20,10 +21,19 @@ def spinning_class(engine: Engine | None, method: Method) -> EnergyClass | None:
     return engine.energy_class if engine and method.name == engine.method else None
 
 
+class EnergyRate(NamedTuple):
+    """The share of its energy that a motion gains in a second, and its parts: as `MotionEnergy`; None in an engine."""
+
+    gained: float
+    rotation: float | None = None
+    multipliers: float | None = None
+    truncation: float | None = None
+
+
 def energy_rate(
     method: Method, point: Point, h: float, omega: float, engine: Engine | None, hard: float = 1.0
-) -> float | None:
-    """Return the share of its energy that a motion of rate omega (1/s) gains in a second, by steps of h (s).
+) -> EnergyRate | None:
+    """Return what a second does to the energy of a motion of rate omega (1/s), by steps of h (s).
 
     Of a mass on a circle whose rate varies by MODULATION; in an engine of a known class, of a body that spins about a
     pin, where constraints get the share `hard` of what they want. At a stable point; None where it is not known.
@@ -35,11 +45,11 @@ def energy_rate(
                 return None
             whole = 1 + alpha_hat + beta_hat
             alpha_hat, beta_hat = (alpha_hat + beta_hat) / whole, beta_hat / whole
-        return 2 * spin_change(spinning, alpha_hat, beta_hat, omega * h, hard) / h
+        return EnergyRate(2 * spin_change(spinning, alpha_hat, beta_hat, omega * h, hard) / h)
     if engine and engine.level != "acceleration":
         return None
-    growth = omega * float(motion_energy(method, alpha_hat, beta_hat, omega * h))
-    return growth if math.isfinite(growth) else None
+    growth = EnergyRate(*(omega * float(part) for part in motion_energy(method, alpha_hat, beta_hat, omega * h)))
+    return growth if math.isfinite(growth.gained) else None
 
 
 def engine_energy_rate(engine: Engine, point: Point | None, h: Fraction, omega: Fraction) -> float | None:
@@ -60,4 +70,5 @@ def engine_energy_rate(engine: Engine, point: Point | None, h: Fraction, omega: 
     if not converges(method, *made):
         return None
     hard, _ = engine.impedances(*values)
-    return energy_rate(method, made, float(h), float(omega), engine, float(hard))
+    rate = energy_rate(method, made, float(h), float(omega), engine, float(hard))
+    return rate and rate.gained

@@ -407,7 +407,7 @@ def _shares(
     error = combined_error(method, alpha_hat, beta_hat, motion.omega_h)
     if not energy:
         return error, None
-    return error, 2 * np.pi * motion_energy(method, alpha_hat, beta_hat, float(motion.omega_h))
+    return error, 2 * np.pi * motion_energy(method, alpha_hat, beta_hat, float(motion.omega_h)).gained
 
 
 def _drawing(

@@ -137,5 +137,5 @@ def _front_point(method: Method, omega_h: Fraction, rate: float, alpha_hat: floa
         total_error=float(errors.total),
         velocity_error=float(errors.velocity),
         combined_error=float(combined_error(method, alpha_hat, beta_hat, omega_h)),
-        energy_growth=2 * np.pi * float(motion_energy(method, alpha_hat, beta_hat, float(omega_h))),
+        energy_growth=2 * np.pi * float(motion_energy(method, alpha_hat, beta_hat, float(omega_h)).gained),
     )

@@ -69,7 +69,7 @@ def test_an_engine_answers_for_every_point_that_it_takes_with_its_impedance_ther
     assert (soft.impedance, past.impedance) == (0.8, 0.95)
     assert soft.energy_rate is not None
     assert past.energy_rate is not None
-    assert soft.energy_rate < 0 < past.energy_rate
+    assert soft.energy_rate.gained < 0 < past.energy_rate.gained
 
 
 def test_a_given_point_is_compared_with_the_least_error_where_the_motion_is_known() -> None:

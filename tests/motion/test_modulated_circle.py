@@ -77,7 +77,7 @@ def run(name: str, alpha_hat: float, beta_hat: float, modulation: float) -> tupl
 @pytest.mark.parametrize("name", PLAIN)
 def test_it_predicts_runs(name: str, alpha_hat: float, beta_hat: float) -> None:
     rate, modulation, moment = run(name, alpha_hat, beta_hat, 0.02)
-    predicted = motion_energy(lookup(name), alpha_hat, beta_hat, rate, modulation)
+    predicted = motion_energy(lookup(name), alpha_hat, beta_hat, rate, modulation).gained
     # the next terms: of fourth order in the modulation, and that the rate itself grows while it is measured
     assert moment == pytest.approx(float(predicted) * rate**2 / 2, rel=0.005)
 
@@ -89,7 +89,7 @@ def test_a_uniform_rotation_gains_what_the_stages_torque_says(name: str) -> None
     for a, b in ((Fraction(1), Fraction(1, 4)), (Fraction(4, 5), Fraction(1, 3))):
         found = stage_torque(method, (a, b))
         point = float(a) / multiple, float(b) / multiple**2
-        rotation = float(motion_energy(method, *point, theta / multiple, modulation=0))
+        rotation = float(motion_energy(method, *point, theta / multiple, modulation=0).gained)
         leading = 2 * float(found.coefficient) * theta ** ((found.power or 1) - 1)
         assert rotation == pytest.approx(leading, rel=0.01, abs=5e-13)  # rounding of a step, 1e-16, over theta^2 / 2
 
@@ -100,17 +100,23 @@ OMEGA, ALPHA, BETA = 1.0, 1.0, 2.0
 
 @pytest.mark.parametrize("name", ["AB2", "bdf2", "trapezoid", "B4"])
 def test_the_multipliers_work_of_methods_of_order_two(name: str) -> None:
-    """(3/2) C h^2 kappa_1^2 Omega^2 alpha (beta^2 + Omega^2) / D of theory, with lambda in phase with kappa.
-
-    Beside it the method's own truncation, of order h^3, is below a hundredth.
-    """
-    h, constant = 0.0005, float(accuracy(lookup(name))[1])
+    """(3/2) C h^2 kappa_1^2 Omega^2 alpha (beta^2 + Omega^2) / D of theory, with lambda in phase with kappa."""
+    h, constant = 0.002, float(accuracy(lookup(name))[1])
     kappa = 2 * OMEGA  # v^2 changes by twice the modulation
     resonance = (BETA**2 - OMEGA**2) ** 2 + 4 * ALPHA**2 * OMEGA**2
     power = 1.5 * constant * h**2 * kappa**2 * OMEGA**2 * ALPHA * (BETA**2 + OMEGA**2) / resonance
-    still, driven = (motion_energy(lookup(name), 2 * ALPHA * h, BETA**2 * h**2, OMEGA * h, each) for each in (0, 1))
-    assert float(driven - still) == pytest.approx(2 * power, rel=0.01)  # of omega^2 / 2, per radian at 1 rad/s
+    found = motion_energy(lookup(name), 2 * ALPHA * h, BETA**2 * h**2, OMEGA * h, modulation=1)
+    assert float(found.multipliers) == pytest.approx(2 * power, rel=0.01)  # of omega^2 / 2, per radian at 1 rad/s
+
+
+@pytest.mark.parametrize("name", ["AB2", "bdf2", "B4"])
+def test_truncation_does_not_depend_on_the_feedback(name: str) -> None:
+    weak, strong = (motion_energy(lookup(name), *point, 0.005) for point in ((0.02, 0.01), (0.2, 0.3)))
+    assert float(weak.truncation) == pytest.approx(float(strong.truncation), rel=1e-4)
+    assert float(weak.rotation) == pytest.approx(float(strong.rotation), rel=1e-4)
+    assert abs(float(weak.multipliers / strong.multipliers)) > 2
+    assert float(strong.gained) == pytest.approx(float(sum(strong[1:])), rel=1e-12)
 
 
 def test_without_feedback_of_position_there_is_no_radius() -> None:
-    assert np.isnan(motion_energy(lookup("SYM"), 1, 0, 0.01))
+    assert np.isnan(motion_energy(lookup("SYM"), 1, 0, 0.01).gained)
