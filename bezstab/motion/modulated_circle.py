@@ -1,19 +1,19 @@
 """The third map: what a method and its feedback do to the energy of a motion, on the modulated circle.
 
 A unit mass is held to the unit circle, c = (q.q - 1) / 2, and goes round at the rate omega, theta = omega h. A weak
-conservative force along the circle, the slope of epsilon sin(phi), speeds it up and slows it down once a revolution.
-The exact motion keeps its energy: what a run gains or loses is the method's and its feedback's doing.
+conservative force along the circle, the slope of (epsilon / n) sin(n phi), speeds it up and slows it down n times a
+revolution. The exact motion keeps its energy: what a run gains or loses is the method's and its feedback's doing.
 
 In the frame of methods/circle_steps.py a quantity of the method's equations is, at step s,
 
-    u + epsilon Re(w e^(i theta s)) + epsilon^2 (m + ...)
+    u + epsilon Re(w e^(i n theta s)) + epsilon^2 (m + ...)
 
 and a constant moment T = T_0 + epsilon^2 T_2 about the centre is added, so that the mean rate of rotation stays: what
 energy the run would gain, -T takes away. Such quantities are series in epsilon, in whose products two amplitudes meet
 in the mean. In what the equations leave over
 
     epsilon^0    gives u and T_0 by Newton's method
-    epsilon^1    gives w by one linear solve, where what is so many steps later has a factor e^(i theta steps)
+    epsilon^1    gives w by one linear solve, where what is so many steps later has a factor e^(i n theta steps)
     epsilon^2    in the mean gives m and T_2, by the matrix of Newton's method
 
 -T_0 is the torque that stages put on a uniform rotation, -T_2 what else a motion gains: the work that the multiplier
@@ -66,18 +66,19 @@ def motion_energy(
     beta_hat: ArrayLike,
     omega_h: float | FloatArray,
     modulation: float = MODULATION,
+    harmonic: float = 1.0,
 ) -> MotionEnergy:
     """Return what the method makes of the energy of a motion of omega_h radians a step, whose rate varies.
 
-    It varies by `modulation` of it; with 0 it is a uniform rotation. Shapes are that of alpha_hat, beta_hat and
-    omega_h, broadcast. 0 < omega_h < 1. Stability is not looked at: where errors of constraints grow, no run has such a
-    motion. Source: the docstring above.
+    It varies by `modulation` of it, `harmonic` times a revolution; with a modulation of 0 it is a uniform rotation.
+    Shapes are that of alpha_hat, beta_hat and omega_h, broadcast. 0 < omega_h < 1. Stability is not looked at: where
+    errors of constraints grow, no run has such a motion. Source: the docstring above.
     """
     multiple = float(method.step_multiple)
     a, b = (each[..., np.newaxis] for each in np.broadcast_arrays(alpha_hat, beta_hat))
     b = np.where(b > 0, b, np.nan)  # else no radius is held
     theta = multiple * np.asarray(omega_h)[..., np.newaxis]
-    still, driven = (_Circle(method, multiple * a, multiple**2 * b, theta, n) for n in (0, 1))
+    still, driven = (_Circle(method, multiple * a, multiple**2 * b, theta, n) for n in (0.0, harmonic))
     with np.errstate(all="ignore"):
         mean, matrix = still.settled()
         disturbed, by_force = driven.first_order(mean)
@@ -86,12 +87,13 @@ def motion_energy(
         found, left = driven.quantities(swinging)
         moment, added = mean[-1], -solved(matrix, left.terms[2])[-1]
         c, pull = constraint(found[POSITION]), driven.multiplier(found[POSITION], found[VELOCITY])
-        ahead = np.exp(1j * theta)
+        ahead = np.exp(1j * harmonic * theta)
         # over a step, with the mean of the multiplier at both of its ends
         work = -np.real((ahead - 1) * c.terms[1] * np.conj((ahead + 1) / 2 * pull.terms[1])) / 2
-    # the energy is theta^2 / 2; a force of modulation * theta^2 changes the rate by the modulation of it
-    rotation, multipliers = -2 * moment / theta**2, 2 * modulation**2 * theta * work
-    varied = -2 * modulation**2 * theta**2 * added
+    # the energy is theta^2 / 2; a force of that strength changes the rate by the modulation of it
+    strength = modulation * harmonic * theta**2
+    rotation, multipliers = -2 * moment / theta**2, 2 * strength**2 * work / theta**3
+    varied = -2 * strength**2 * added / theta**2
     parts = (rotation + varied, rotation, multipliers, varied - multipliers)
     return MotionEnergy(*(np.asarray(part)[..., 0] for part in parts))
 
@@ -116,7 +118,7 @@ def solved(matrices: Array, right_sides: Array) -> Array:
 
 @dataclass(frozen=True)
 class _Wave(Series):
-    """A quantity: its mean, the amplitude of epsilon Re(w e^(i theta s)), and what epsilon^2 adds to the mean."""
+    """A quantity: its mean, the amplitude of epsilon Re(w e^(i n theta s)), and what epsilon^2 adds to the mean."""
 
     def product(self, i: int, terms: Sequence[Any], j: int) -> Any:
         """Return the product of two terms; of two amplitudes in the mean."""
@@ -126,11 +128,11 @@ class _Wave(Series):
 
 
 class _Circle(CircleStep):
-    """A method's step on the circle, where a force rises and falls n times a revolution, once or not at all."""
+    """A method's step on the circle, where a force rises and falls n times a revolution; with n = 0 it is constant."""
 
     kind = _Wave
 
-    def __init__(self, method: Method, alpha_hat: Array, beta_hat: Array, theta: Array, harmonic: int) -> None:
+    def __init__(self, method: Method, alpha_hat: Array, beta_hat: Array, theta: Array, harmonic: float) -> None:
         super().__init__(method, alpha_hat, beta_hat, float)
         self.theta, self.harmonic = theta, harmonic
 
@@ -141,11 +143,11 @@ class _Circle(CircleStep):
         return _Wave([mean, amplitude * np.exp(1j * self.harmonic * angle), *second])
 
     def acceleration(self, position: Series, velocity: Series, moment: Series) -> Series:
-        """Return the acceleration with the force, epsilon Re e^(i (theta s + angle)), at the angle of a position."""
+        """Return the acceleration with the force, epsilon Re e^(i n (theta s + angle)), at the angle of a position."""
         (x, y), (dx, dy) = position.terms[:2]
-        force = np.exp(1j * np.arctan2(y, x))
+        force = np.exp(1j * self.harmonic * np.arctan2(y, x))
         turn = (x * dy - y * dx) / (x**2 + y**2)
-        of_place = np.real(1j * force * np.conj(turn)) / 2
+        of_place = np.real(1j * self.harmonic * force * np.conj(turn)) / 2
         forced = _Wave([a + b for a, b in zip(moment.terms, (0, force, of_place), strict=False)])
         return super().acceleration(position, velocity, forced)
 
