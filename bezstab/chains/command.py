@@ -73,7 +73,6 @@ def chain(
     whole = links(bodies, mass_ratio, masses, both_ends=pinned == "both", motor=motor, load=load)
     answer = judge_chain(words, values, h, whole, iterations, load)
     files = Files(output, figure)
-    files.check_output()
     show_answers(COLUMNS, [answer])
     if figure != "none":
         from bezstab.chains.figure import chain_figure

@@ -68,11 +68,11 @@ def show_answers(
     table, if that is not wider than the terminal, unless they are to be `in_blocks`. A command without --all shows
     every one. Tables of another kind follow `below`, as `show_tables` has them.
     """
-    if not for_reading():
-        _show_for_programs([(columns, answers), *below])
-        return
-    click.echo(_text((columns, answers), _every_column(), in_blocks=in_blocks or len(answers) == 1))
-    show_tables(below)
+    if for_reading():
+        click.echo(_text((columns, answers), _every_column(), in_blocks=in_blocks or len(answers) == 1))
+        show_tables(below)
+    else:
+        show_tables([(columns, answers), *below])
 
 
 def show_tables(tables: Sequence[Table], *, every_column: bool | None = None) -> None:
@@ -82,7 +82,8 @@ def show_tables(tables: Sequence[Table], *, every_column: bool | None = None) ->
     told which.
     """
     if not for_reading():
-        _show_for_programs(tables)
+        rows = [row_of(columns, answer) for columns, answers in tables for answer in answers]
+        click.echo(for_programs(rows, chosen_format()))
         return
     for each in tables:
         if text := _text(each, _every_column() if every_column is None else every_column):
@@ -93,12 +94,6 @@ def _every_column() -> bool:
     """Return whether people want every column: --all, where a command has it."""
     chosen: bool = click.get_current_context().params.get("every_column", True)
     return chosen
-
-
-def _show_for_programs(tables: Sequence[Table]) -> None:
-    """Print all rows as JSON or CSV, as the running command's --format says."""
-    rows = [row_of(columns, answer) for columns, answers in tables for answer in answers]
-    click.echo(for_programs(rows, "csv" if chosen_format() == "csv" else "json"))
 
 
 def _text(table: Table, every_column: bool, *, in_blocks: bool = False) -> str:
@@ -193,21 +188,23 @@ def write_file(path: Path, write: Callable[[BinaryIO], object]) -> None:
 
 @dataclass(frozen=True)
 class Files:
-    """Where a command writes (--output), and in which forms (--figure, --table)."""
+    """Where a command writes (--output), and in which forms (--figure, --table).
+
+    The directory is made at once, before anything runs, if something is to be written; InputError if that fails.
+    """
 
     output: Path
     figure: str
     table: str = "none"
 
+    def __post_init__(self) -> None:
+        if self.wanted:
+            output_directory(self.output)
+
     @property
     def wanted(self) -> bool:
         """Whether anything is to be written."""
         return self.figure != "none" or self.table != "none"
-
-    def check_output(self) -> None:
-        """Make the directory before anything runs, if something is to be written; InputError if that fails."""
-        if self.wanted:
-            output_directory(self.output)
 
     def path(self, *names: str | None) -> Path:
         """Return the path, without an ending, of a file that is named after what was asked for."""
@@ -225,7 +222,6 @@ class Files:
         from bezstab.show.style import save
         from bezstab.show.window import show_in_window
 
-        self.check_output()
         if table and self.table != "none":
             write_file(path.with_name(f"{path.name}.{self.table}"), partial(write_arrays, table(), self.table))
         if figure and self.figure == "window":

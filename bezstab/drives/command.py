@@ -113,7 +113,6 @@ def drive(
     else:
         judged = Drive(kp, kd, inertia, ki)
     files = Files(output, figure)
-    files.check_output()
     answers = [judge_drive(judged, h, method, timing, load) for method in ways]
     if timing != FRESH:
         show_text(f"{timing_words(timing, float(h))}\n")

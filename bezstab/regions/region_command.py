@@ -92,7 +92,6 @@ def region(
     asked = worked_out(lambda: map_conditions(setup), setup.scene)
     say_each(asked.warnings)
     files, status = Files(output, figure, table), 0
-    files.check_output()
     if asked.compare:
         regions = [region_answer(method, *asked.levels) for method in methods]
         _write_boundaries(regions, asked, files)

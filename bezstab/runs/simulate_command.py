@@ -102,7 +102,6 @@ def simulate(
     held = stabilise or "baumgarte"
     point = typed.at(h) or (USUAL_POINT if held == "baumgarte" else None)
     files = Files(output, figure, table)
-    files.check_output()
     mechanism = worked_out(lambda: compiled_mechanism(scene_named(scene, speed)), scene)
     run = worked_out(
         lambda: run_of(

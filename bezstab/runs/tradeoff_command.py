@@ -180,7 +180,6 @@ def _show_fronts(
     motion = front_motion(steps, omega, scene, speed)
     h = next(iter(steps), None)
     found = fronts(methods, levels, motion)
-    files.check_output()
     points = [Placed(point, h) for front in progress(found, "fronts", len(methods)) for point in front]
     files.write(files.path("tradeoff", "predicted"), None, lambda: table_arrays(FRONTS, points))
     show_answers(FRONTS, points)

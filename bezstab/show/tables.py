@@ -17,8 +17,8 @@ GAP = "  "
 """Between a heading and its value, and between the columns of a table."""
 
 
-def for_programs(rows: Sequence[Row], form: Literal["json", "csv"]) -> str:
-    """Return every key of the rows; a key that only other rows have is null, or an empty cell.
+def for_programs(rows: Sequence[Row], form: Format) -> str:
+    """Return every key of the rows as JSON, or else as CSV; a key that only other rows have is null, or an empty cell.
 
     A list is one cell of CSV, as JSON has it.
     """
