@@ -1,15 +1,10 @@
 """Numbers as sentences have them: points, times, factors, and what becomes of an error from step to step."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
+from fractions import Fraction
 
 from bezstab.units import alpha_and_beta
 
-if TYPE_CHECKING:
-    from fractions import Fraction
-
-    Number = Fraction | float
+Number = Fraction | float
 
 MOST_DIGITS = 17  # of float64: with so many every number other than one is shown as another
 THOUSAND = 1000.0

@@ -211,10 +211,9 @@ def _draw_open_edges(
         inside = region.contains(*points.T)
         if inside.any():
             x, y = np.where(inside, np.clip(edge, inset, 1 - inset).T, np.nan)
-            arrows: dict[str, Any] = {"marker": ("<>", "v^")[axis][end], "markersize": 3, "markevery": ARROW_EVERY}
             told = any(drawn.get_label() == GOES_ON for drawn in axes.lines)
-            arrows |= {"linestyle": "-", "linewidth": 0.6, "label": None if told else GOES_ON}
-            axes.plot(x, y, transform=axes.transAxes, **{**arrows, **line})
+            (arrows,) = axes.plot(x, y, "-", transform=axes.transAxes, linewidth=0.6, label=None if told else GOES_ON)
+            arrows.set(marker=("<>", "v^")[axis][end], markersize=3, markevery=ARROW_EVERY, **line)
 
 
 def decay_scale(z_abs: FloatArray) -> FloatArray:
