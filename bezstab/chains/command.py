@@ -38,7 +38,7 @@ MOTOR = ParsedType("rate|angle|hz,ratio", motor_named, lambda: ["rate", "angle"]
     shared.h,
     click.option("--iterations", type=int, help="Sweeps over all constraints in a step [the engine's]."),
 )
-@grouped("Output", shared.output_options)
+@grouped("Output", *shared.output_options)
 def chain(
     engine: EngineValues,
     h: Fraction,

@@ -128,9 +128,15 @@ def _table_of(columns: Sequence[Column[Item]], answers: Sequence[Item]) -> str:
 
 
 def show_groups(columns: Sequence[Column[Item]], groups: Sequence[tuple[str, Sequence[Item]]]) -> None:
-    """Print one table of the brief columns of several groups for reading, each group below its heading."""
-    shown = [each for each in columns if each.brief]
-    head, *lines = _table_of(shown, [answer for _, answers in groups for answer in answers]).splitlines()
+    """Print one table of the brief columns of several groups, each group below its heading.
+
+    As Markdown and for programs it is `show_answers` of all.
+    """
+    everything = [answer for _, answers in groups for answer in answers]
+    if chosen_format() != "text":
+        show_answers(columns, everything)
+        return
+    head, *lines = _table_of([each for each in columns if each.brief], everything).splitlines()
     click.echo(head)
     for heading, answers in groups:
         click.echo(f"\n{heading}")

@@ -1,9 +1,8 @@
 """Options that several commands share, as click decorators: `@h`, `@method`; and groups of them: `@output_options`."""
 
-from collections.abc import Callable
 from fractions import Fraction
 from pathlib import Path
-from typing import Any, TypeVar, get_args
+from typing import get_args
 
 import click
 
@@ -25,11 +24,10 @@ from bezstab.show.file_forms import FIGURE_FORMS, TABLE_FORMS
 from bezstab.show.tables import Format
 from bezstab.units import GRAVITY
 
-Command = TypeVar("Command", bound=Callable[..., Any])
-
 alpha = click.option("--alpha", type=NUMBER, help="α̂, or with --physical α in 1/s.")
 beta = click.option("--beta", type=NUMBER, help="β̂, or with --physical β in 1/s.")
 physical = click.option("--physical", is_flag=True, help="--alpha and --beta are α and β in 1/s; with --h.")
+point = (alpha, beta, physical)
 
 
 def _load(text: str) -> Fraction:
@@ -94,20 +92,8 @@ form = click.option(
 every_column = click.option("--all", "every_column", is_flag=True, help="Print every column, not only the main ones.")
 
 
-def point(command: Command) -> Command:
-    """Add what gives a point of the plane: --alpha, --beta and --physical."""
-    for option in (physical, beta, alpha):
-        command = option(command)
-    return command
-
-
-def output_options(command: Command) -> Command:
-    """Add what says how a command answers: --all, --format, --figure and --output."""
-    for option in (output, figure, form, every_column):
-        command = option(command)
-    return command
-
-
 load = click.option(
     "--load", type=LOAD, help="Sag of --engine under gravity, or under 50,2: N and kg, or N m and kg m²."
 )
+output_options = (every_column, form, figure, output)
+"""What says how a command answers that draws if it is asked to."""

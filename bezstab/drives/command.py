@@ -65,7 +65,7 @@ POINTS = 200
     ),
     click.option("--filter", "filter_seconds", type=NUMBER, default="0", help="Time constant of a filter of q', s."),
 )
-@grouped("Output", shared.output_options)
+@grouped("Output", *shared.output_options)
 def drive(
     kp: Fraction | None,
     kd: Fraction | None,

@@ -26,7 +26,7 @@ from bezstab.methods.schemes import Method
 @grouped(
     "What it is compared with",
     shared.methods,
-    shared.point,
+    *shared.point,
     click.option("--h", type=SECONDS, help="Step size of the integrator in s."),
     click.option("--turning", type=NUMBER, help="Rate at which constraints turn, 1/s; 0 at rest [0.03 a step]."),
 )

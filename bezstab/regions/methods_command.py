@@ -6,7 +6,7 @@ import click
 
 from bezstab.cli import shared_options as shared
 from bezstab.cli.options import METHOD
-from bezstab.cli.output import chosen_format, show_answers, show_groups, show_text
+from bezstab.cli.output import show_answers, show_groups, show_text
 from bezstab.methods.registry import GROUPS, lookup
 from bezstab.methods.schemes import Method
 
@@ -40,11 +40,11 @@ def methods(methods: Sequence[Method], latex: bool, **_: object) -> None:
         show_answers(WHOLE, found, in_blocks=True)
         show_text("\nSteady errors are shares of a motion of ω rad/s, to leading order in θ = iωh.")
         return
-    listed = [(group, [method_answer(lookup(name), name) for name in group.methods]) for group in GROUPS]
-    if chosen_format() == "text":
-        show_groups(
-            LISTED, [("\n".join(filter(None, (group.heading, group.note))), answers) for group, answers in listed]
+    groups = [
+        (
+            "\n".join(filter(None, (group.heading, group.note))),
+            [method_answer(lookup(name), name) for name in group.methods],
         )
-    else:
-        answers = [answer for _, of_group in listed for answer in of_group]
-        show_answers(LISTED, answers)
+        for group in GROUPS
+    ]
+    show_groups(LISTED, groups)

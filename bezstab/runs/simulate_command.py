@@ -36,7 +36,7 @@ USUAL_POINT: Point = (Fraction("0.5"), Fraction("0.1"))
 @grouped(
     "Your simulation",
     click.option("--method", type=METHOD, default="B4", help=shared.METHOD_HELP),
-    shared.point,
+    *shared.point,
     options.stabilise,
     options.iterations,
     click.option("--h", "given_h", type=SECONDS, help="Step size in s [0.001]."),

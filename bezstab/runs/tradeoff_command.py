@@ -35,7 +35,7 @@ USUAL_SCENE = "slider_crank_light"
     click.option("--method", "methods", type=METHOD, multiple=True, help=f"{shared.METHOD_HELP} Repeatable [nine]."),
     click.option("--h", "steps", type=SECONDS, multiple=True, help="Step in s. Repeatable [ten, 0.0001 to 0.02]."),
     click.option("--time", "duration", type=SECONDS, help="Duration in s [2]."),
-    shared.point,
+    *shared.point,
     click.option("--omega", type=POSITIVE, help="Rate, 1/s, for which points are chosen [the scene's]."),
     options.stabilise,
     options.iterations,

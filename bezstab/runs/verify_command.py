@@ -29,7 +29,7 @@ if TYPE_CHECKING:  # so that `bezstab --help`, which lists this command, loads n
     click.option(
         "--method", "methods", type=METHOD, multiple=True, default=["B4"], help=f"{shared.METHOD_HELP} Repeatable."
     ),
-    shared.point,
+    *shared.point,
     click.option("--h", "given_h", type=SECONDS, help="Step size in s [0.001]."),
     click.option("--points", type=int, help="Without a point: so many, over the region and around it [20]."),
     click.option("--map", "across", type=int, help="Simulate N×N points, and draw their verdicts."),
