@@ -152,12 +152,15 @@ def name_areas(axes: Axes, stable: Callable[[FloatArray, FloatArray], NDArray[np
         for line in axes.lines
         if len(np.atleast_1d(line.get_xdata())) in {1, 2}
     ]
-    walls = [places * [1, 0], places * [1, 0] + [0, 1], places * [0, 1], places * [0, 1] + [1, 0]]
+    from_edges = (np.minimum(places, 1 - places) * WORDS_ARE_WIDE).min(axis=1)
     for word, area in (("stable", inside), ("diverges", ~inside)):
         if not area.any():
             continue
-        others = np.concatenate([places[~area], *in_the_way, *walls])
-        away = [np.hypot(*((others - place) * WORDS_ARE_WIDE).T).min() for place in places[area]]
+        others = np.concatenate([places[~area], *in_the_way])
+        away = [
+            np.hypot(*((others - place) * WORDS_ARE_WIDE).T).min(initial=room)
+            for place, room in zip(places[area], from_edges[area], strict=True)
+        ]
         if max(away) < ROOM_FOR_A_WORD:
             continue
         x, y = places[area][int(np.argmax(away))]
