@@ -11,6 +11,7 @@ from bezstab.cli.command_group import main
 from bezstab.methods.registry import lookup
 from bezstab.stability.closed_loop import poles
 from tests.cli.running import DATA, run
+from tests.imports import PACKAGE
 from tests.reference.sampled_responses import of_poles
 
 ROOT = Path(__file__).parent.parent
@@ -103,6 +104,16 @@ def test_every_picture_and_link_is_there(page: str) -> None:
     for target in re.findall(r"\]\(([^)#]+)\)", (ROOT / page).read_text(encoding="utf-8")):
         if not target.startswith("https://"):
             assert ((ROOT / page).parent / target).exists(), target
+
+
+def test_every_kind_of_figure_is_shown_or_named_on_a_page() -> None:
+    """The docstring of what returns a Figure says where: "On a page: figures/region_SYM.png"."""
+    told = "".join((ROOT / page).read_text(encoding="utf-8") for page in PAGES if not page.startswith("tests"))
+    for path in {*PACKAGE.glob("*/*.py")} - {PACKAGE / "show/style.py"}:
+        for function in path.read_text(encoding="utf-8").split("\n\n\n"):
+            head, _, body = function.partition("-> Figure:\n")
+            where = re.search("On a page: (.*)", body)
+            assert not body or (where and where[1] in told), f"{path}: {head}"
 
 
 def test_the_readme_names_every_command() -> None:
