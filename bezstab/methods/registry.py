@@ -41,7 +41,6 @@ FOLDED_NAMES = {folded(name): name for name in REGISTRY}
 FOLDED_PARAMETRIC = {folded(name): method for name, method in PARAMETRIC.items()}
 
 
-@cache
 def lookup(text: str) -> Method:
     """Return the method called `text`: a built-in name or the path of a TOML file, either with @m for a step of m h.
 
@@ -86,6 +85,7 @@ def method(name: str | Method) -> Method:
     return name if isinstance(name, Method) else lookup(name)
 
 
+@cache
 def _built_in(name: str) -> Method:
     """Return the built-in method of that name, in any case, with or without parameters, or by an alias."""
     if folded(name) in FOLDED_NAMES:

@@ -33,6 +33,11 @@ def test_a_file_is_read_exactly_whatever_it_is_called(tmp_path: Path) -> None:
         assert read_method(named) == Method("AB4", lookup(name).scheme, "me, 2020")
 
 
+def test_a_file_that_changed_is_read_anew(tmp_path: Path) -> None:
+    schemes = [lookup(str(written(tmp_path, content))).scheme for content in (AB2, HEUN)]
+    assert schemes == [lookup("AB2").scheme, lookup("heun").scheme]
+
+
 DIGITS = "1" * 5000
 REFUSED: dict[str, tuple[str | bytes, str]] = {
     "floats": ("rho = [1.0, -1.0]\nsigma = [0.0, 1.0]", "rational strings"),
