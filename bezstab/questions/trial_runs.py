@@ -37,11 +37,15 @@ ITERATIONS = 4
 SHARES = (1.1, 0.9)
 """Of the step: what is better with one of them alone is so by chance."""
 
-POINTS = 28
+POINTS, FINER = 28, 9
 """Per axis, from the weakest feedback that settles within a run to the strongest stable one: each a fourth stronger.
 
-Half as many where steps are to be solved.
+Half as many where steps are to be solved. Then so many around the best of these, each a twentieth stronger: errors
+cancel in a narrow valley.
 """
+
+KNOWN = 1e-12
+"""Of its largest value: to so much the motion itself is known, by steps of an EVALUATIONS-th of a run."""
 
 NEARER, LOOSER = 1 / 3, 2.0
 """Times the errors of trajectory and constraints: what a point has at most that takes the place of another."""
@@ -51,7 +55,7 @@ NEARER, LOOSER = 1 / 3, 2.0
 class Trials:
     """What so many runs of a mechanism found: a point, and how many times nearer its trajectory is.
 
-    Each run takes so many seconds, by steps of h_max (s) at most, in which the factor holds.
+    Each run takes so many seconds, by steps of h_max (s) or a fifth less, in which the factor holds.
     """
 
     point: tuple[Fraction, Fraction]
@@ -80,52 +84,67 @@ def trial_runs(
     method, multiple, step = choice.method, float(choice.method.step_multiple), float(h)
     seconds = min(TURNED * step / float(omega_h), float(time or mechanism.scene.duration or np.inf))
     rate = THOUSANDFOLD ** (step * multiple / min(seconds, float(settle or seconds)))
-    (_, largest_alpha), (_, largest_beta) = search_box(region(method))[0]
-    count = POINTS // 2 if implicit(method) else POINTS
-    axes = np.geomspace(-np.log(rate) / multiple, [largest_alpha / 2, largest_beta**0.5], count)
-    alpha_h, beta_h = (each.ravel() for each in np.meshgrid(*axes.T))
-    points = np.array([2 * alpha_h, beta_h**2])
-    points = points[:, decaying(partial(all_within, method), rate, *points, spread=spread)]
-    points = points[:, turn_limits(method, *points) > turning_rate(mechanism) * step]
-    points = np.column_stack([points, [choice.alpha_hat, choice.beta_hat]])
     cost = evaluations(method) * (ITERATIONS if implicit(method) else 1)
     own = max(step * multiple, seconds * cost / EVALUATIONS)
     longer = max(SHARES) * own / (step * multiple)
-    stable = all_within(method, points[0] * longer, points[1] * longer**2, 1.0)
-    if not stable[-1]:
+    turns = turning_rate(mechanism) * step
+
+    def bears(points: FloatArray) -> BoolArray:
+        return all_within(method, points[0] * longer, points[1] * longer**2, 1.0)
+
+    def to_try(axes: FloatArray) -> FloatArray:
+        """Return the points over two axes, alpha h and beta h, that may be chosen."""
+        alpha_h, beta_h = (each.ravel() for each in np.meshgrid(*axes.T))
+        points = np.array([2 * alpha_h, beta_h**2])
+        points = points[:, decaying(partial(all_within, method), rate, *points, spread=spread)]
+        return points[:, (turn_limits(method, *points) > turns) & bears(points)]
+
+    def errors(points: FloatArray, share: float) -> FloatArray:
+        return _errors(mechanism, method, share * own, seconds, (points[0] / step, points[1] / step**2))
+
+    rule = np.array([[choice.alpha_hat], [choice.beta_hat]])
+    if not bears(rule).all():
         return None
-    points = points[:, stable]
-    rule = best = len(points.T) - 1
-    gains = points[0] / step, points[1] / step**2
-    errors: list[FloatArray] = []
-    with np.errstate(all="ignore"):  # of runs that break down
-        for share in SHARES:
-            errors.append(_errors(mechanism, method, share * own, seconds, gains))
-            nearer, times = _nearer(errors, best)
-            if not nearer.any():
-                return None
-        while nearer.any():
-            best = int(np.where(nearer, times, np.inf).argmin())
-            nearer, times = _nearer(errors, best)
-    _, times = _nearer(errors, rule)
-    point = exact(points[0, best]), exact(points[1, best])
-    runs, h_max = len(SHARES) * len(points.T), longer * step
-    return Trials(point, runs, seconds, h_max, float(1 / times[best]))
+    (_, largest_alpha), (_, largest_beta) = search_box(region(method))[0]
+    count = POINTS // 2 if implicit(method) else POINTS
+    axes = np.geomspace(-np.log(rate) / multiple, [largest_alpha / 2, largest_beta**0.5], count)
+    coarse = np.column_stack([rule, to_try(axes)])
+    times = _times_as_far([errors(coarse, SHARES[0])], 0)
+    if not times.min() < NEARER:
+        return None
+    alpha_hat, beta_hat = coarse[:, times.argmin()]
+    nearest, apart = np.array([alpha_hat / 2, beta_hat**0.5]), axes[1] / axes[0]
+    fine = to_try(np.geomspace(nearest / apart, nearest * apart, FINER))
+    points = np.column_stack([rule, coarse[:, times < NEARER], fine])
+    found, best = [errors(points, share) for share in SHARES], 0
+    while (times := _times_as_far(found, best)).min() < NEARER:
+        best = int(times.argmin())
+    if best == 0:
+        return None
+    runs = coarse.shape[1] + len(SHARES) * points.shape[1]
+    times_nearer = min(float(each[1, 1, 0] / each[1, 1, best]) for each in found)
+    return Trials((exact(points[0, best]), exact(points[1, best])), runs, seconds, longer * step, times_nearer)
 
 
-def _nearer(errors: list[FloatArray], point: int) -> tuple[BoolArray, FloatArray]:
-    """Return which points are clearly nearer to the motion than one, and how many times as far in the later half."""
+@np.errstate(all="ignore")  # of runs that break down
+def _times_as_far(errors: list[FloatArray], point: int) -> FloatArray:
+    """Return how many times as far from the motion as one point each is in the later half.
+
+    Infinite where it is farther in the first half, where constraints are LOOSER, and where velocities are worse.
+    """
     times = np.max([each / each[:, :, [point]] for each in errors], axis=0)
     of_c, of_q, of_v = times[1]
-    return (of_c <= LOOSER) & (of_q < NEARER) & (of_v <= 1) & (times[0, 1] <= 1), of_q
+    return np.where((of_c <= LOOSER) & (of_v <= 1) & (times[0, 1] <= 1), of_q, np.inf)
 
 
+@np.errstate(all="ignore")
 def _errors(
     mechanism: Mechanism, method: Method, step: float, seconds: float, gains: tuple[FloatArray, FloatArray]
 ) -> FloatArray:
     """Return the largest errors of constraints, coordinates and velocities in both halves of runs side by side."""
     steps = int(seconds / step)
-    exactly = simulate(mechanism, lookup("tsit5"), step / 2, steps * step, (0.0, 0.0))
+    shorter = max(1, round(step * EVALUATIONS / seconds))
+    exactly = simulate(mechanism, lookup("tsit5"), step / shorter, steps * step, (0.0, 0.0))
     if exactly.failure:
         return np.full((2, 3, len(gains[0])), np.nan)
     start = np.repeat(np.concatenate(initial_state(mechanism))[:, np.newaxis], len(gains[0]), axis=1)
@@ -135,7 +154,9 @@ def _errors(
             taken += 1
             q, v = np.split(state, 2)
             off = [constraint_errors(mechanism, taken * step, list(q))]
-            off += [q - exactly.q[2 * taken][:, np.newaxis], v - exactly.v[2 * taken][:, np.newaxis]]
+            off += [q - exactly.q[shorter * taken][:, np.newaxis], v - exactly.v[shorter * taken][:, np.newaxis]]
             half = largest[int(2 * taken > steps)]
             half[:] = np.maximum(half, [np.abs(each).max(axis=0) for each in off])
+    known = KNOWN * np.array([np.abs(exactly.q).max(), np.abs(exactly.v).max()])
+    largest[:, 1:] = np.maximum(largest[:, 1:], known[:, np.newaxis])
     return largest
