@@ -25,7 +25,6 @@ if TYPE_CHECKING:
     from bezstab.methods.registry import method as method
     from bezstab.mujoco.linting import lint as lint
     from bezstab.probes.answer import probe as probe
-    from bezstab.probes.answer import probe_step as probe_step
     from bezstab.regions.answer import region as region
     from bezstab.runs.simulating import simulate as simulate
     from bezstab.runs.trades import tradeoff as tradeoff
@@ -59,7 +58,6 @@ HOMES = {
     "method": "bezstab.methods.registry",
     "plot": "bezstab.show.plot",
     "probe": "bezstab.probes.answer",
-    "probe_step": "bezstab.probes.answer",
     "region": "bezstab.regions.answer",
     "scene": "bezstab.mechanism.scene_files",
     "simulate": "bezstab.runs.simulating",

@@ -1,38 +1,26 @@
 """What is printed of a log: columns of the pole, of the methods that are compared with it, and of the points found."""
 
 from collections.abc import Sequence
-from fractions import Fraction
 from typing import NamedTuple
 
 from bezstab.probes.answer import Probe
 from bezstab.probes.probed_poles import Likeness, LikePoint
 from bezstab.show.cells import modulus_words
-from bezstab.show.columns import POLE, Column, of_part
-from bezstab.units import alpha_and_beta
+from bezstab.show.columns import POLE, RATES, Column, of_part
 
 
 class Compared(NamedTuple):
-    """A method whose pole is compared with that of a log."""
+    """A method whose pole is compared with that in a column of a log."""
 
-    answer: Probe
+    column: str
     one: Likeness
 
 
 class Found(NamedTuple):
-    """A point at which a method has the pole of a log; `h` is the integrator's step (s), if it is known."""
+    """A point at which a method has the pole in a column of a log."""
 
-    answer: Probe
+    column: str
     point: LikePoint
-    h: Fraction | None
-
-
-def _fits(it: Compared) -> bool | None:
-    told = it.one.method.name in it.answer.fitting
-    return None if it.one.fits and not told else it.one.fits
-
-
-def _rates(it: Found) -> tuple[float | None, float | None]:
-    return alpha_and_beta(it.point.alpha_hat, it.point.beta_hat, it.h)
 
 
 POLES: Sequence[Column[Probe]] = (
@@ -41,16 +29,15 @@ POLES: Sequence[Column[Probe]] = (
     Column(
         "± of z",
         "uncertainty",
-        lambda answer: answer.found.uncertainty if answer.pole is not None else None,
+        lambda answer: answer.uncertainty,
         "how far the pole may be off, or α̂ and β̂; null without a pole",
         form=".1e",
     ),
-    Column("rows", "", lambda answer: answer.found.samples, ""),
-    Column("remark", "remark", lambda answer: answer.found.reason, "why there is no pole; empty where there is one"),
+    Column("remark", "remark", lambda answer: answer.reason, "why there is no answer; empty where there is one"),
 )
 
 COMPARED: Sequence[Column[Compared]] = (
-    Column("column", "column", lambda it: it.answer.column, "column of the log", apart=True),
+    Column("column", "column", lambda it: it.column, "column of the log", apart=True),
     Column("method", "method", lambda it: it.one.method.name, "integration method", brief=True),
     Column(
         "predicted |z_p|",
@@ -65,14 +52,14 @@ COMPARED: Sequence[Column[Compared]] = (
     Column(
         "fits",
         "fits",
-        _fits,
+        lambda it: it.one.fits,
         "whether the log may be the method's; null where more distance is allowed than methods differ by",
         brief=True,
     ),
 )
 
 FOUND: Sequence[Column[Found]] = (
-    Column("column", "column", lambda it: it.answer.column, "column of the log", apart=True),
+    Column("column", "column", lambda it: it.column, "column of the log", apart=True),
     Column("method", "method", lambda it: it.point.method.name, "integration method", brief=True),
     Column("α̂", "alpha_hat", lambda it: it.point.alpha_hat, "2αh where the method has the pole", brief=True),
     Column("β̂", "beta_hat", lambda it: it.point.beta_hat, "β²h² where the method has the pole", brief=True),
@@ -84,6 +71,5 @@ FOUND: Sequence[Column[Found]] = (
         form=".1e",
         brief=True,
     ),
-    Column("α (1/s)", "alpha", lambda it: _rates(it)[0], "damping; null without h", "1/s", brief=True),
-    Column("β (1/s)", "beta", lambda it: _rates(it)[1], "stiffness as a rate; null without h", "1/s", brief=True),
+    *of_part(Found, lambda it: it.point, RATES),
 )

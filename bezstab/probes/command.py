@@ -21,7 +21,7 @@ from bezstab.methods.schemes import Method
     "The log",
     click.option("--minus", type=click.File("rb"), help="Another log, to subtract: not kicked, or the opposite way."),
     click.option("--column", "columns", multiple=True, help="A column by name [all but t or time]. Repeatable."),
-    click.option("--every", type=int, default=1, help="Steps of the integrator from one row to the next."),
+    click.option("--every", type=click.IntRange(min=1), default=1, help="Steps of the integrator from row to row."),
 )
 @grouped(
     "What it is compared with",
@@ -54,31 +54,29 @@ def probe(
 
     Example: bezstab probe log.csv --minus unkicked.csv --alpha 1 --beta 0.25
     """
-    from bezstab.probes.answer import compared_with, probe_response
+    from bezstab.probes.answer import probed
     from bezstab.probes.columns import COMPARED, FOUND, POLES, Compared, Found
     from bezstab.probes.logs import read_log
-    from bezstab.probes.probed_poles import probed_pole
 
     typed = TypedPoint(alpha, beta, physical)
-    compared = compared_with(typed.at(h), methods, every, h, turning)
+    point = typed.at(h)
     kicked = read_log(log, float(every * h) if h else None)
     other = read_log(minus, kicked.row_step) if minus else None
-    poles = {
-        name: probed_pole(kicked.column(name), other.column(name) if other else None)
+    answers = [
+        probed(name, kicked.column(name), other.column(name) if other else None, methods, point, every, h, turning)
         for name in columns or kicked.errors
-    }
-    answers = [probe_response(name, pole, compared) for name, pole in poles.items()]
+    ]
     say_if_units_were_mistaken(methods, typed, h)
     failed = all(answer.reason for answer in answers)
-    for answer in answers:
-        if answer.pole is not None or not failed:
+    if not failed:
+        for answer in answers:
             show_text(answer.sentence)
     show_tables(
         [
             (POLES, answers),
-            (COMPARED, [Compared(answer, one) for answer in answers for one in answer.likenesses]),
-            (FOUND, [Found(answer, point, h) for answer in answers for point in answer.points]),
+            (COMPARED, [Compared(answer.column, one) for answer in answers for one in answer.likenesses]),
+            (FOUND, [Found(answer.column, found) for answer in answers for found in answer.points]),
         ]
     )
     if failed:
-        raise NumericalError("; ".join(f"{answer.column}: {answer.reason}" for answer in answers))
+        raise NumericalError(" ".join(answer.sentence for answer in answers))

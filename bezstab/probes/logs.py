@@ -3,7 +3,6 @@
 Nothing in a log is executed.
 """
 
-import csv
 import re
 from dataclasses import dataclass
 from typing import BinaryIO
@@ -53,10 +52,8 @@ def read_log(file: BinaryIO, row_step: float | None = None) -> Log:
     except UnicodeDecodeError:
         raise InputError(f"log {name}: is not text (UTF-8)") from None
     delimiter = next((each for each in ";\t" if each in first), ",")
-    names = [
-        each.strip() for each in next(csv.reader([first.lstrip("# ")], delimiter=delimiter, skipinitialspace=True), [])
-    ]
-    if len(set(names) - {""}) < max(len(names), 1) or any(_number(each) is not None for each in names):
+    names = [each.strip(' "') for each in first.lstrip("# ").split(delimiter)]
+    if len(set(names) - {""}) < len(names) or any(_number(each) is not None for each in names):
         raise InputError(f"log {name}, line 1: {first[:50]!r}: expected a name for each column")
     rows = []
     for number, line in enumerate(lines, start=2):
@@ -67,6 +64,8 @@ def read_log(file: BinaryIO, row_step: float | None = None) -> Log:
             rows.append(row)
     columns = dict(zip(names, np.array(rows, float).reshape(-1, len(names)).T, strict=True))
     times = [columns.pop(each) for each in names if TIMES.fullmatch(each)]
+    if not (rows and columns):
+        raise InputError(f"log {name}: expected rows of numbers, and a column that is not of times")
     own_step = _row_step(times[0], name) if times else None
     if own_step and row_step and abs(own_step - row_step) > OTHER * row_step:
         raise InputError(f"log {name}: rows every {own_step:g} s, expected every {row_step:g} s")
@@ -82,8 +81,8 @@ def _number(cell: str) -> float | None:
 
 def _row_step(t: FloatArray, name: str) -> float:
     """Return the time between two rows, in the unit of the times t, shape (rows,)."""
-    step = float(np.ptp(t)) / max(len(t) - 1, 1)
-    late = np.abs(t - (t[:1] + step * np.arange(len(t))))
+    step = float(t[-1] - t[0]) / max(len(t) - 1, 1)
+    late = np.abs(t - np.linspace(t[0], t[-1], len(t)))
     if not (step > 0 and late.max() <= LATE * step):  # not a number included
         raise InputError(f"log {name}: its times do not rise by equal steps: log every step of one size")
     return step

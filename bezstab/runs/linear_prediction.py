@@ -63,6 +63,9 @@ STANDARD_ERRORS = 3.0
 TIMES_FARTHEST = 2.0
 """Times the farthest pole of the better half of the fits, that is stated: windows overlap, and err alike."""
 
+PARTING = 2.0
+"""Over a window, of the logarithms of two poles' powers: as a mechanism moves, one pole twice has looked so."""
+
 SPREAD = 1e-3
 """Of |z|, and rad: fits that differ by more have not found one and the same pole."""
 
@@ -210,13 +213,13 @@ def _formal_error(before: FloatArray, left_over: FloatArray, coefficients: Float
 def _off_if_two(roots: ComplexArray, pole: complex, residual: float, samples: int) -> float:
     """Return how far the largest of the roots may be off as two close poles look like one, or one like two.
 
-    Of (a + b k) z^k neighbours have a ratio that changes by (b / a)^2 from row to row: that is hidden where it comes to
-    less than what is left over. Two roots whose powers part by less than a factor e over the window, or by less than a
-    radian, may be one pole twice.
+    Of (a + b k) z^k neighbours have a ratio that changes by (b / a)^2 from row to row, and so deviates by that times
+    samples / sqrt(12): that is hidden where it comes to less than what is left over. Two roots whose powers part by
+    less than a factor e^PARTING over the window, or by less than PARTING radians, may be one pole twice.
     """
-    hidden = STANDARD_ERRORS * abs(pole) * np.sqrt(residual / samples)
+    hidden = STANDARD_ERRORS * abs(pole) * np.sqrt(np.sqrt(12) * residual / samples)
     distances = np.abs(roots - pole)
-    close = distances[distances * samples < abs(pole)]
+    close = distances[distances * samples < PARTING * abs(pole)]
     return float(hidden + close.max())
 
 

@@ -44,6 +44,8 @@ def test_every_column_but_that_of_times_holds_an_error_and_a_run_that_breaks_dow
     [
         ("", "line 1: '': expected a name for each column"),
         ("0,1\n1,2\n", "line 1: '0,1': expected a name"),
+        ("t,c\n", "expected rows of numbers"),
+        ("t\n0\n1\n", "expected rows of numbers, and a column that is not of times"),
         ("c,c\n1,2\n", "line 1: 'c,c': expected a name"),
         ("t,c\n0,1\n1,one\n", "line 3: '1,one': expected a number for each column"),
         ("t,c\n0,1\n\n1,2,3\n", "line 4: '1,2,3': expected a number for each column"),
