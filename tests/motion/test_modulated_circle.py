@@ -76,7 +76,8 @@ def run(name: str, alpha_hat: float, beta_hat: float, modulation: float) -> tupl
 @pytest.mark.parametrize(("alpha_hat", "beta_hat"), [(0.3, 0.1), (0.8, 0.2)])
 @pytest.mark.parametrize("name", PLAIN)
 def test_it_predicts_runs(name: str, alpha_hat: float, beta_hat: float) -> None:
-    rate, modulation, moment = run(name, alpha_hat, beta_hat, 0.02)
+    # what varies shows beside the torque of stages; midpoint's next terms are larger
+    rate, modulation, moment = run(name, alpha_hat, beta_hat, 0.05 if name == "heun" else 0.02)
     predicted = motion_energy(lookup(name), alpha_hat, beta_hat, rate, modulation).gained
     # the next terms: of fourth order in the modulation, and that the rate itself grows while it is measured
     assert moment == pytest.approx(float(predicted) * rate**2 / 2, rel=0.005)
