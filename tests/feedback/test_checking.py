@@ -1,5 +1,6 @@
 """A point that is given is judged whole: each part agrees with the function that finds it."""
 
+from dataclasses import fields, is_dataclass
 from fractions import Fraction
 from math import sqrt
 from typing import Any
@@ -10,19 +11,28 @@ from bezstab.engines.conversions import Point
 from bezstab.engines.engine_list import ENGINES
 from bezstab.feedback import columns
 from bezstab.feedback.checking import check, checks, largest_step, step_answer
-from bezstab.feedback.conditions import Setup, conditions
+from bezstab.feedback.conditions import Conditions, Setup, conditions
 from bezstab.feedback.judgement import Judgement
 from bezstab.methods.registry import lookup
 from bezstab.motion.spinning_bodies import spin_change
 from bezstab.questions.energy import engine_energy_rate
+from bezstab.questions.scene_runs import SceneRun
 from bezstab.rationals import rational
-from bezstab.stability.choices import choose
+from bezstab.stability.choices import Choice, choose
 from tests.reference.engine_steps import STEPS, matrix
 
 SYM, RK4 = lookup("SYM"), lookup("RK4")
 ONE = Fraction(1)
 POINT = (ONE, Fraction(1, 2))
 AT: dict[str, Any] = {"alpha_hat": ONE, "beta_hat": Fraction(1, 2)}
+
+
+def test_an_answer_is_complete_when_made() -> None:
+    """Nothing of it is computed when it is touched: no property, nothing cached, nothing lazy."""
+    for kind in (Choice, Judgement, Conditions, SceneRun):
+        assert is_dataclass(kind)
+        own = {name for base in kind.__mro__[:-1] for name in vars(base) if not name.startswith("_")}
+        assert own <= {field.name for field in fields(kind)}, kind
 
 
 def test_an_answer_begins_with_its_sentence_and_is_true_where_it_is_safe() -> None:

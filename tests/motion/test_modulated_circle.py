@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from bezstab.methods.orders import accuracy
 from bezstab.methods.registry import REGISTRY, lookup
 from bezstab.methods.rotation_torque import stage_torque
-from bezstab.motion.modulated_circle import motion_energy
+from bezstab.motion.modulated_circle import motion_energy, steps_to_breakdown
 
 FloatArray = NDArray[np.float64]
 Field = Callable[[FloatArray, FloatArray], FloatArray]
@@ -93,6 +93,19 @@ def test_a_uniform_rotation_gains_what_the_stages_torque_says(name: str) -> None
         rotation = float(motion_energy(method, *point, theta / multiple, modulation=0).gained)
         leading = 2 * float(found.coefficient) * theta ** ((found.power or 1) - 1)
         assert rotation == pytest.approx(leading, rel=0.01, abs=5e-13)  # rounding of a step, 1e-16, over theta^2 / 2
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("theta", [0.03, 0.05, 0.09])
+@pytest.mark.parametrize(("alpha_hat", "beta_hat"), [(2.0, 1.0), (1.0, 0.25), (0.5, 0.0625)])
+def test_the_torque_of_midpoint_foretells_when_a_rotation_breaks_down(
+    alpha_hat: float, beta_hat: float, theta: float
+) -> None:
+    q, v, count = np.array([1.0, 0.0]), np.array([0.0, theta]), 0
+    while v @ v < 1:
+        q, v = midpoint(held(alpha_hat, beta_hat), q, v)
+        count += 1
+    assert count == pytest.approx(steps_to_breakdown(lookup("RK2"), alpha_hat, beta_hat, theta), rel=0.05)
 
 
 ALPHA, BETA = 1.0, 2.0
