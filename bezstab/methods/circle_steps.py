@@ -139,12 +139,12 @@ class CircleStep(ABC):
 
     def acceleration(self, position: Series, velocity: Series, moment: Series) -> Series:
         """Return the acceleration of the mass, with a moment about the centre."""
-        return across(position) * (moment / dot(position, position)) - position * self.multiplier(position, velocity)
+        return (across(position) * moment - position * self.pull(position, velocity)) / dot(position, position)
 
-    def multiplier(self, position: Series, velocity: Series) -> Series:
-        """Return lambda."""
+    def pull(self, position: Series, velocity: Series) -> Series:
+        """Return lambda x.x."""
         feedback: Series = dot(position, velocity) * self.alpha_hat + constraint(position) * self.beta_hat
-        return (dot(velocity, velocity) + feedback) / dot(position, position)
+        return dot(velocity, velocity) + feedback
 
     def first_order(self, known: Array) -> tuple[Array, Series]:
         """Return the matrix, (..., size, size), by which first coefficients enter what is off, and that without them.

@@ -28,7 +28,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from bezstab.matrices import inverses
-from bezstab.methods.circle_steps import Array, CircleStep, Series, across, constraint
+from bezstab.methods.circle_steps import Array, CircleStep, Series, across, constraint, dot
 from bezstab.methods.schemes import Method
 from bezstab.methods.step_equations import POSITION, VELOCITY
 
@@ -86,10 +86,11 @@ def motion_energy(
         swinging = _Wave([mean, np.concatenate([amplitude, 0 * amplitude[:1]]), 0 * mean])
         found, left = driven.quantities(swinging)
         moment, added = mean[-1], -solved(matrix, left.terms[2])[-1]
-        c, pull = constraint(found[POSITION]), driven.multiplier(found[POSITION], found[VELOCITY])
+        position, velocity = found[POSITION], found[VELOCITY]
+        c, multiplier = constraint(position), driven.pull(position, velocity) / dot(position, position)
         ahead = np.exp(1j * harmonic * theta)
         # over a step, with the mean of the multiplier at both of its ends
-        work = -np.real((ahead - 1) * c.terms[1] * np.conj((ahead + 1) / 2 * pull.terms[1])) / 2
+        work = -np.real((ahead - 1) * c.terms[1] * np.conj((ahead + 1) / 2 * multiplier.terms[1])) / 2
     # the energy is theta^2 / 2; a force of that strength changes the rate by the modulation of it
     strength = modulation * harmonic * theta**2
     rotation, multipliers = -2 * moment / theta**2, 2 * strength**2 * work / theta**3
